@@ -1,0 +1,52 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/reflect.h"
+
+namespace limn {
+
+/// How the surroundings are lit and drawn where no surface is. A resource: one a level.
+enum class SkyKind : std::uint8_t {
+    Gradient,  ///< horizon to zenith, ground below, a sun disc along the first directional light
+    Studio,    ///< dark room with soft boxes, made for looking at objects
+    Uniform,   ///< one radiance from everywhere: white furnace, tests
+};
+
+struct Environment {
+    SkyKind sky = SkyKind::Gradient;
+    Vec3 zenith = {0.20f, 0.38f, 0.85f};   ///< radiance, linear; the radiance of Uniform
+    Vec3 horizon = {0.75f, 0.82f, 0.90f};  ///< radiance, linear
+    Vec3 ground = {0.16f, 0.14f, 0.12f};   ///< radiance, linear
+    float intensity = 1.0f;                ///< multiplies all of it, >= 0
+    bool visible = true;                   ///< drawn as background; its light counts either way
+};
+
+enum class ToneCurve : std::uint8_t {
+    Neutral,  ///< Khronos PBR neutral: base colors survive
+    Aces,     ///< ACES filmic fit (Hill 2017)
+    Linear,   ///< clamp: for comparisons
+};
+
+/// Resource: from scene radiance to the display.
+struct Exposure {
+    float ev = 0.0f;       ///< radiance is multiplied by 2^ev before the curve, -24 .. 24
+    ToneCurve curve = ToneCurve::Aces;
+};
+
+template <typename Visitor>
+void visit_fields(Environment& environment, Visitor&& visit) {
+    visit("sky", environment.sky, {.doc = "what surrounds the scene", .values = "gradient studio uniform"});
+    visit("zenith", environment.zenith, {.doc = "radiance from above, or of uniform", .min = 0, .max = 1e5, .color = true});
+    visit("horizon", environment.horizon, {.doc = "radiance from the horizon", .min = 0, .max = 1e5, .color = true});
+    visit("ground", environment.ground, {.doc = "radiance from below", .min = 0, .max = 1e5, .color = true});
+    visit("intensity", environment.intensity, {.doc = "multiplies all of it", .min = 0, .max = 1e5});
+    visit("visible", environment.visible, {.doc = "drawn as background"});
+}
+
+template <typename Visitor>
+void visit_fields(Exposure& exposure, Visitor&& visit) {
+    visit("ev", exposure.ev, {.doc = "radiance times 2^ev before the curve", .unit = "EV", .min = -24, .max = 24});
+    visit("curve", exposure.curve, {.doc = "tone curve", .values = "neutral aces linear"});
+}
+
+}  // namespace limn

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+namespace limn {
+
+/// Resource: what the player does in this step, the same whether it comes from a window, a level's
+/// timed events or a replay.
+struct Input {
+    Vec3 move = {0, 0, 0};  ///< wanted motion: x right, y up, z forward, each -1 .. 1
+    Vec2 look = {0, 0};     ///< mouse motion [pixels]: x right, y down
+    float zoom = 0.0f;      ///< wheel steps, > 0 = nearer
+    bool fast = false;      ///< move faster
+};
+
+}  // namespace limn

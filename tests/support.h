@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace limn::test {
+
+/// The path of a file under ../shared/assets, or nothing: then the line "SKIP: ..." is printed and the test
+/// returns. No other reason to skip is accepted by .ci/run.
+inline std::optional<std::string> shared_asset(const std::string& relative) {
+    const std::filesystem::path path =
+        std::filesystem::path(LIMN_SOURCE_DIR) / ".." / "shared" / "assets" / relative;
+    if (!std::filesystem::exists(path)) {
+        std::printf("SKIP: ../shared/assets/%s is not here\n", relative.c_str());
+        return std::nullopt;
+    }
+    return path.lexically_normal().string();
+}
+
+/// A folder for a test's files, empty at the start and gone at the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "limn-test-XXXXXX").string();
+        if (mkdtemp(pattern.data()) != nullptr) {
+            path_ = pattern;
+        }
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+    [[nodiscard]] std::string path() const { return path_.string(); }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace limn::test
