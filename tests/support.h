@@ -7,8 +7,8 @@
 
 namespace limn::test {
 
-/// The path of a file under ../shared/assets, or nothing: then the line "SKIP: ..." is printed and the test
-/// returns. No other reason to skip is accepted by .ci/run.
+/// The path of a file under ../shared/assets, or nothing: then the line "SKIP: ..." is printed and
+/// the test returns. No other reason to skip is accepted by .ci/run.
 inline std::optional<std::string> shared_asset(const std::string& relative) {
     const std::filesystem::path path =
         std::filesystem::path(LIMN_SOURCE_DIR) / ".." / "shared" / "assets" / relative;
@@ -21,9 +21,10 @@ inline std::optional<std::string> shared_asset(const std::string& relative) {
 
 /// A folder for a test's files, empty at the start and gone at the end.
 class TemporaryFolder {
-public:
+  public:
     TemporaryFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "limn-test-XXXXXX").string();
+        std::string pattern =
+            (std::filesystem::temp_directory_path() / "limn-test-XXXXXX").string();
         if (mkdtemp(pattern.data()) != nullptr) {
             path_ = pattern;
         }
@@ -34,10 +35,12 @@ public:
         std::error_code ignored;
         std::filesystem::remove_all(path_, ignored);
     }
-    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return (path_ / name).string();
+    }
     [[nodiscard]] std::string path() const { return path_.string(); }
 
-private:
+  private:
     std::filesystem::path path_;
 };
 

@@ -3,7 +3,8 @@
 namespace limn {
 
 /// Prints "file:line: check failed: condition" (and `note`, if any) to stderr and aborts.
-[[noreturn]] void check_failed(const char* file, int line, const char* condition, const char* note = nullptr);
+[[noreturn]] void
+check_failed(const char* file, int line, const char* condition, const char* note = nullptr);
 
 }  // namespace limn
 

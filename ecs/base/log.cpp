@@ -35,7 +35,9 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 
 }  // namespace
 
-void set_log_level(LogLevel level) { logger().set_level(spdlog_level(level)); }
+void set_log_level(LogLevel level) {
+    logger().set_level(spdlog_level(level));
+}
 
 void log_message(LogLevel level, std::string_view message) {
     if (level == LogLevel::Error) {
@@ -44,6 +46,8 @@ void log_message(LogLevel level, std::string_view message) {
     logger().log(spdlog_level(level), message);
 }
 
-std::uint64_t logged_error_count() { return error_count.load(std::memory_order_relaxed); }
+std::uint64_t logged_error_count() {
+    return error_count.load(std::memory_order_relaxed);
+}
 
 }  // namespace limn

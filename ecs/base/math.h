@@ -15,8 +15,8 @@
 namespace limn {
 
 // Vectors and matrices are GLM's. SI units, radians, right-handed, +y up; matrices multiply column
-// vectors and are named right to left: clip_from_world * world_from_mesh. Depth is reversed: 1 at the
-// near plane, 0 at infinity.
+// vectors and are named right to left: clip_from_world * world_from_mesh. Depth is reversed: 1 at
+// the near plane, 0 at infinity.
 
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
@@ -29,8 +29,12 @@ using Quat = glm::quat;  ///< Quat(w, x, y, z); Quat(1, 0, 0, 0) is no rotation
 
 inline constexpr float kPi = 3.14159265358979323846f;
 
-[[nodiscard]] constexpr float radians(float degrees) { return degrees * (kPi / 180.0f); }
-[[nodiscard]] constexpr float degrees(float radians) { return radians * (180.0f / kPi); }
+[[nodiscard]] constexpr float radians(float degrees) {
+    return degrees * (kPi / 180.0f);
+}
+[[nodiscard]] constexpr float degrees(float radians) {
+    return radians * (180.0f / kPi);
+}
 
 template <typename T>
 [[nodiscard]] constexpr T square(T x) {
@@ -51,12 +55,14 @@ template <typename T>
 }
 
 /// An affine map as the three upper rows of its 4x4 matrix: 48 bytes, the layout of GLSL's
-/// `vec4 row[3]` in std430. world = (dot(row[0], p1), dot(row[1], p1), dot(row[2], p1)), p1 = (p, 1).
+/// `vec4 row[3]` in std430. world = (dot(row[0], p1), dot(row[1], p1), dot(row[2], p1)), p1 = (p,
+/// 1).
 struct Affine {
     Vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
-[[nodiscard]] inline Affine affine_from(const Vec3& position, const Quat& rotation, const Vec3& scale) {
+[[nodiscard]] inline Affine
+affine_from(const Vec3& position, const Quat& rotation, const Vec3& scale) {
     const Mat3 r = glm::mat3_cast(rotation);
     Affine a;
     for (int i = 0; i < 3; ++i) {
@@ -69,8 +75,8 @@ struct Affine {
 [[nodiscard]] inline Affine operator*(const Affine& a, const Affine& b) {
     Affine product;
     for (int i = 0; i < 3; ++i) {
-        product.row[i] =
-            a.row[i].x * b.row[0] + a.row[i].y * b.row[1] + a.row[i].z * b.row[2] + Vec4(0, 0, 0, a.row[i].w);
+        product.row[i] = a.row[i].x * b.row[0] + a.row[i].y * b.row[1] + a.row[i].z * b.row[2]
+                         + Vec4(0, 0, 0, a.row[i].w);
     }
     return product;
 }
@@ -102,9 +108,15 @@ struct Bounds {
     Vec3 max = Vec3(-INFINITY);
 };
 
-[[nodiscard]] inline bool is_empty(const Bounds& b) { return !(b.min.x <= b.max.x); }
-[[nodiscard]] inline Vec3 center(const Bounds& b) { return 0.5f * (b.min + b.max); }
-[[nodiscard]] inline Vec3 half_extent(const Bounds& b) { return 0.5f * (b.max - b.min); }
+[[nodiscard]] inline bool is_empty(const Bounds& b) {
+    return !(b.min.x <= b.max.x);
+}
+[[nodiscard]] inline Vec3 center(const Bounds& b) {
+    return 0.5f * (b.min + b.max);
+}
+[[nodiscard]] inline Vec3 half_extent(const Bounds& b) {
+    return 0.5f * (b.max - b.min);
+}
 inline void grow(Bounds& b, const Vec3& p) {
     b.min = glm::min(b.min, p);
     b.max = glm::max(b.max, p);

@@ -22,7 +22,7 @@ struct Error {
 
 template <typename T>
 class [[nodiscard]] Result {
-public:
+  public:
     Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
     Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
 
@@ -52,7 +52,7 @@ public:
         return *std::get_if<1>(&state_);
     }
 
-private:
+  private:
     const char* message_or_null() const {
         const Error* error = std::get_if<1>(&state_);
         return error != nullptr ? error->message.c_str() : nullptr;

@@ -1,0 +1,197 @@
+// The rules of the house that no compiler knows: who may include whom, unique file names, one
+// pragma.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SourceFile {
+    std::string path;  ///< from the root, with '/'
+    std::vector<std::string> lines;
+};
+
+std::vector<SourceFile> own_sources() {
+    const fs::path root = LIMN_SOURCE_DIR;
+    std::vector<SourceFile> sources;
+    for (const char* folder : {"ecs", "systems", "render", "content", "tests", "bench"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".h" && extension != ".cpp") {
+                continue;
+            }
+            SourceFile source{fs::relative(entry.path(), root).generic_string(), {}};
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);) {
+                source.lines.push_back(line);
+            }
+            sources.push_back(std::move(source));
+        }
+    }
+    return sources;
+}
+
+bool starts_with(const std::string& text, const std::string& prefix) {
+    return text.compare(0, prefix.size(), prefix) == 0;
+}
+
+/// The box of the design a file belongs to.
+std::string layer_of(const std::string& path) {
+    for (const char* layer :
+         {"ecs/base/",
+          "ecs/components/",
+          "ecs/",
+          "systems/",
+          "render/",
+          "content/app/",
+          "content/",
+          "bench/oracles/",
+          "bench/",
+          "tests/"}) {
+        if (starts_with(path, layer)) {
+            return layer;
+        }
+    }
+    return "";
+}
+
+/// What each box may include, itself apart.
+const std::map<std::string, std::set<std::string>>& allowed_layers() {
+    static const std::set<std::string> kAll = {
+        "ecs/base/",
+        "ecs/",
+        "ecs/components/",
+        "systems/",
+        "render/",
+        "content/",
+        "bench/oracles/",
+        "content/app/",
+        "tests/",
+        "bench/"};
+    static const std::map<std::string, std::set<std::string>> kAllowed = {
+        {"ecs/base/", {}},
+        {"ecs/", {"ecs/base/"}},
+        {"ecs/components/", {"ecs/base/", "ecs/"}},
+        {"systems/", {"ecs/base/", "ecs/", "ecs/components/"}},
+        {"render/", {"ecs/base/", "ecs/", "ecs/components/"}},
+        {"content/", {"ecs/base/", "ecs/", "ecs/components/"}},
+        {"bench/oracles/",
+         {"ecs/base/", "ecs/", "ecs/components/", "systems/", "render/", "content/"}},
+        {"content/app/",
+         {"ecs/base/",
+          "ecs/",
+          "ecs/components/",
+          "systems/",
+          "render/",
+          "content/",
+          "bench/oracles/"}},
+        {"tests/", kAll},
+        {"bench/", kAll},
+    };
+    return kAllowed;
+}
+
+}  // namespace
+
+TEST_CASE("house: includes point only to the left") {
+    const std::regex include(R"re(^\s*#\s*include\s+"([^"]+)")re");
+    for (const SourceFile& source : own_sources()) {
+        const std::string from = layer_of(source.path);
+        for (std::size_t i = 0; i < source.lines.size(); ++i) {
+            std::smatch match;
+            if (!std::regex_search(source.lines[i], match, include)) {
+                continue;
+            }
+            const std::string included = match[1];
+            const std::string to = layer_of(included);
+            INFO(source.path << ":" << i + 1 << " includes " << included);
+            CHECK_MESSAGE(!to.empty(), "not a full path from the root");
+            CHECK((to == from || allowed_layers().at(from).count(to) == 1));
+        }
+    }
+}
+
+TEST_CASE("house: a system never includes another system, nor a pass another pass") {
+    const std::regex include(R"re(^\s*#\s*include\s+"((systems|render/passes)/[^"]+)")re");
+    for (const SourceFile& source : own_sources()) {
+        const bool system = starts_with(source.path, "systems/")
+                            && source.path.find("_system.") != std::string::npos;
+        const bool pass = starts_with(source.path, "render/passes/")
+                          && source.path.find("_pass.") != std::string::npos;
+        if (!system && !pass) {
+            continue;
+        }
+        const std::string own_stem = fs::path(source.path).stem().string();
+        for (const std::string& line : source.lines) {
+            std::smatch match;
+            if (std::regex_search(line, match, include)) {
+                const std::string stem = fs::path(match[1].str()).stem().string();
+                const bool other_effect =
+                    stem != own_stem && (stem.ends_with("_system") || stem.ends_with("_pass"));
+                INFO(source.path << " includes " << match[1].str());
+                CHECK(!other_effect);
+            }
+        }
+    }
+}
+
+TEST_CASE("house: file names are unique in the whole tree") {
+    std::map<std::string, std::string> first;
+    for (const SourceFile& source : own_sources()) {
+        const std::string name = fs::path(source.path).filename().string();
+        if (name == "main.cpp") {
+            continue;
+        }
+        const auto [where, is_new] = first.emplace(name, source.path);
+        INFO(source.path << " and " << where->second);
+        CHECK(is_new);
+    }
+}
+
+TEST_CASE("house: every header has its pragma, every source includes its own header first") {
+    for (const SourceFile& source : own_sources()) {
+        INFO(source.path);
+        const fs::path path = source.path;
+        if (path.extension() == ".h") {
+            bool has_pragma = false;
+            for (const std::string& line : source.lines) {
+                has_pragma = has_pragma || line == "#pragma once";
+            }
+            CHECK((has_pragma || source.path.ends_with("_gpu.h")));
+            continue;
+        }
+        const std::string own = fs::path(source.path).replace_extension(".h").generic_string();
+        if (!fs::exists(fs::path(LIMN_SOURCE_DIR) / own)) {
+            continue;
+        }
+        for (const std::string& line : source.lines) {
+            if (starts_with(line, "#include")) {
+                CHECK(line == "#include \"" + own + "\"");
+                break;
+            }
+        }
+    }
+}
+
+TEST_CASE("house: no clock, no global random numbers and no printing in simulation code") {
+    const std::regex forbidden(
+        R"(std::chrono|\brand\s*\(|std::random_device|\btime\s*\(\s*(nullptr|NULL|0)\s*\)|std::cout|\bprintf\()");
+    for (const SourceFile& source : own_sources()) {
+        if (!starts_with(source.path, "systems/") && !starts_with(source.path, "ecs/components/")) {
+            continue;
+        }
+        for (std::size_t i = 0; i < source.lines.size(); ++i) {
+            INFO(source.path << ":" << i + 1 << ": " << source.lines[i]);
+            CHECK(!std::regex_search(source.lines[i], forbidden));
+        }
+    }
+}
