@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/reflect.h"
 
 namespace limn {
 
@@ -12,5 +13,13 @@ struct Input {
     float zoom = 0.0f;      ///< wheel steps, > 0 = nearer
     bool fast = false;      ///< move faster
 };
+
+template <typename Visitor>
+void visit_fields(Input& input, Visitor&& visit) {
+    visit("move", input.move, {.doc = "wanted motion: right, up, forward", .min = -1, .max = 1});
+    visit("look", input.look, {.doc = "mouse motion", .unit = "pixels"});
+    visit("zoom", input.zoom, {.doc = "wheel steps, > 0 = nearer"});
+    visit("fast", input.fast, {.doc = "move faster"});
+}
 
 }  // namespace limn

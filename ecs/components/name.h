@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/reflect.h"
+
 #include <string>
 
 namespace limn {
@@ -8,5 +10,10 @@ namespace limn {
 struct Name {
     std::string text;
 };
+
+template <typename Visitor>
+void visit_fields(Name& name, Visitor&& visit) {
+    visit("text", name.text, {.doc = "what the entity is called"});
+}
 
 }  // namespace limn

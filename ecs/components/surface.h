@@ -25,6 +25,12 @@ struct MaterialId {
     std::uint32_t index = kNoAsset;
     bool operator==(const MaterialId&) const = default;
 };
+template <>
+inline constexpr const char* asset_kind<MeshId> = "mesh";
+template <>
+inline constexpr const char* asset_kind<ImageId> = "image";
+template <>
+inline constexpr const char* asset_kind<MaterialId> = "material";
 
 /// Triangles. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be empty.
 struct MeshData {

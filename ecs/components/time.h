@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/reflect.h"
+
 #include <cstdint>
 
 namespace limn {
@@ -15,5 +17,17 @@ struct FrameTime {
 struct RandomSeed {
     std::uint64_t seed = 1;
 };
+
+template <typename Visitor>
+void visit_fields(FrameTime& time, Visitor&& visit) {
+    visit("step", time.step, {.doc = "length of a step", .unit = "s", .min = 1e-4, .max = 1});
+    visit("time", time.time, {.doc = "at the end of the step", .unit = "s", .min = 0});
+    visit("frame", time.frame, {.doc = "steps done before"});
+}
+
+template <typename Visitor>
+void visit_fields(RandomSeed& seed, Visitor&& visit) {
+    visit("seed", seed.seed, {.doc = "what every random number is keyed by"});
+}
 
 }  // namespace limn

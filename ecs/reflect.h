@@ -1,0 +1,431 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+#include "ecs/base/type_name.h"
+#include "ecs/entity.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace limn {
+
+// What the engine knows of a type of component (or resource) at run time: its name, how to move it
+// about, and its fields with documentation, unit, range and default. It is said once, beside the
+// component:
+//
+//     template <typename Visitor>
+//     void visit_fields(Spin& spin, Visitor&& visit) {
+//         visit("axis", spin.axis, {.doc = "axis of the rotation"});
+//         visit("speed", spin.speed, {.doc = "angular speed", .unit = "rad/s", .min = -100, .max =
+//         100});
+//     }
+//
+// and feeds level files, their schema, the inspector, snapshots, hashes and prefabs. Fields may be
+// numbers, bool, enums (name the enumerators in .values), vectors and matrices, std::string,
+// Entity, asset ids, structs with visit_fields of their own, and C arrays, std::array and
+// std::vector of these. A type without visit_fields has no fields; it is moved, copied and
+// destroyed all the same.
+//
+// component_id<T> is a plain load: types get their ids before main. register_component<T>()
+// additionally makes the type known by its name; ids depend on the program, names do not, so files
+// hold names. Reading and writing fields without knowing the type is in ecs/field_access.h.
+
+/// What a person should know of a field. Numbers outside min .. max are refused in files.
+struct FieldMeta {
+    const char* doc = "";
+    const char* unit = "";
+    double min = -INFINITY;
+    double max = INFINITY;
+    const char* values =
+        "";              ///< names of the enumerators 0, 1, 2 ... of an enum, one space between
+    bool color = false;  ///< linear RGB or RGBA
+};
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"  // gcc 12 takes scoped enumerators for rivals of types
+enum class FieldType : std::uint8_t {
+    Bool,
+    Int,   ///< signed, `size` bytes
+    UInt,  ///< unsigned, `size` bytes
+    Float,
+    Double,
+    Vec2,
+    Vec3,
+    Vec4,
+    Quat,  ///< in memory x y z w
+    IVec2,
+    IVec3,
+    Mat3,
+    Mat4,
+    Affine,  ///< 12 floats, rows of the upper 3x4 matrix
+    String,  ///< std::string
+    Enum,    ///< unsigned integer of `size` bytes, below values.size()
+    Entity,
+    Asset,   ///< std::uint32_t index; `asset` says of what
+    Struct,  ///< `fields`
+};
+#pragma GCC diagnostic pop
+
+/// How often a field holds its type.
+enum class FieldShape : std::uint8_t {
+    One,
+    Array,  ///< `count` of them in place
+    List,   ///< std::vector of them
+};
+
+/// What std::vector<T> is asked to do when T is unknown.
+struct ListOps {
+    std::size_t (*size)(const void* list) = nullptr;
+    void* (*data)(void* list) = nullptr;
+    void (*resize)(void* list, std::size_t size) = nullptr;  ///< new elements are value-initialized
+};
+
+struct FieldInfo {
+    const char* name = "";
+    FieldMeta meta;
+    FieldType type = FieldType::Float;
+    FieldShape shape = FieldShape::One;
+    std::uint32_t offset = 0;              ///< from the start of the struct around it [bytes]
+    std::uint32_t size = 0;                ///< of one element [bytes]
+    std::uint32_t count = 1;               ///< elements of an Array
+    const char* asset = "";                ///< of an Asset: "mesh"
+    ListOps list;                          ///< of a List
+    std::vector<std::string_view> values;  ///< of an Enum: names in order
+    std::vector<FieldInfo> fields;         ///< of a Struct
+};
+
+/// Dense, from 0, in no particular order; not the same from program to program.
+using ComponentId = std::uint32_t;
+inline constexpr ComponentId kMaxComponents = 4096;
+
+/// Where a component lives. `Table`: in the columns of the entity's archetype; quick to iterate.
+/// `Sparse`: in a table of its own; quick to add and remove.
+enum class Storage : std::uint8_t { Table, Sparse };
+
+struct DefaultTraits {
+    static constexpr Storage storage = Storage::Table;
+    static constexpr bool saved = true;   ///< part of snapshots
+    static constexpr bool hashed = true;  ///< part of the state hash
+    static constexpr bool trivially_relocatable =
+        false;  ///< may be moved by memcpy although not trivially copyable
+};
+
+/// To choose otherwise, beside the component:
+///     template <> struct limn::ComponentTraits<WaterState> : DefaultTraits { static constexpr bool
+///     saved = false; };
+template <typename T>
+struct ComponentTraits : DefaultTraits {};
+
+/// The kind of thing an asset id names, or nullptr: T is no asset id. A component header
+/// specializes it:
+///     template <> inline constexpr const char* asset_kind<MeshId> = "mesh";
+template <typename T>
+inline constexpr const char* asset_kind = nullptr;
+
+/// How equal values are recognized without knowing the type.
+enum class ValueBytes : std::uint8_t {
+    All,     ///< every byte counts: no padding
+    Fields,  ///< the fields count
+    Opaque,  ///< unknown: padding, pointers or destructors, and no visit_fields
+};
+
+/// Batches of `count` neighbors; `destination` and `source` do not overlap.
+struct ComponentOps {
+    void (*construct_default)(void* destination, std::size_t count) =
+        nullptr;  ///< null: has no default
+    void (*construct_copy)(void* destination, const void* source, std::size_t count) =
+        nullptr;  ///< null: move-only
+    void (*construct_move)(void* destination, void* source, std::size_t count) =
+        nullptr;  ///< sources stay alive
+    void (*relocate)(void* destination, void* source, std::size_t count) =
+        nullptr;  ///< moves, ends the sources
+    void (*destroy)(void* first, std::size_t count) = nullptr;
+};
+
+/// One type of component or resource. The address is stable and lives as long as the program.
+struct ComponentInfo {
+    ComponentId id = 0;
+    std::string name;         ///< "point_light"
+    std::uint32_t size = 0;   ///< [bytes]; 0 for tags
+    std::uint32_t align = 1;  ///< [bytes]
+    Storage storage = Storage::Table;
+    bool is_tag = false;  ///< empty: present or not, no data
+    bool trivially_copyable = false;
+    bool trivially_relocatable = false;
+    bool trivially_destructible = false;
+    bool saved = true;
+    bool hashed = true;
+    bool is_registered = false;  ///< found by name
+    bool is_resource = false;    ///< registered as resource
+    ValueBytes value_bytes = ValueBytes::Opaque;
+    bool has_entities = false;  ///< some field, at any depth, is an Entity
+    ComponentOps ops;
+    std::vector<FieldInfo> fields;
+    const void* defaults =
+        nullptr;  ///< a default-constructed instance; null for types without fields
+};
+
+/// The type with this id, which must exist.
+[[nodiscard]] const ComponentInfo& component_info(ComponentId id);
+
+/// How many ids are taken.
+[[nodiscard]] std::uint32_t component_count();
+
+/// Registered components, by name; nullptr if there is none.
+[[nodiscard]] const ComponentInfo* find_component(std::string_view name);
+[[nodiscard]] const ComponentInfo* find_resource(std::string_view name);
+
+/// All that are registered, in the order of their names.
+[[nodiscard]] std::vector<const ComponentInfo*> all_components();
+[[nodiscard]] std::vector<const ComponentInfo*> all_resources();
+
+/// "" or " (did you mean point_light?)", to end a message about an unknown component or resource.
+[[nodiscard]] std::string component_suggestion(std::string_view name);
+[[nodiscard]] std::string resource_suggestion(std::string_view name);
+
+namespace detail {
+
+/// Takes the next id. `info.id` is overwritten.
+ComponentId add_component_info(ComponentInfo info);
+/// Two types of one name stop the program.
+void name_component(ComponentId id, bool is_resource);
+/// Completes offsets, names of enumerators and `has_entities`.
+void finish_fields(ComponentInfo& info);
+[[nodiscard]] std::vector<std::string_view> split_words(const char* words);
+
+struct AnyVisitor {
+    template <typename F>
+    void operator()(const char*, F&, const FieldMeta& = {}) const {}
+};
+
+template <typename T>
+concept HasFields = requires(T& value, AnyVisitor visitor) {
+    visit_fields(value, visitor);
+};
+
+template <typename T>
+inline constexpr bool is_list = false;
+template <typename T, typename Allocator>
+inline constexpr bool is_list<std::vector<T, Allocator>> = true;
+template <typename T>
+inline constexpr bool is_std_array = false;
+template <typename T, std::size_t N>
+inline constexpr bool is_std_array<std::array<T, N>> = true;
+
+template <typename T>
+void describe_fields(T& instance, std::vector<FieldInfo>& fields);
+
+/// Type and size of F, which is no array or list.
+template <typename F>
+void describe_type(FieldInfo& field) {
+    field.size = sizeof(F);
+    if constexpr (std::is_same_v<F, bool>) {
+        field.type = FieldType::Bool;
+    } else if constexpr (std::is_enum_v<F>) {
+        field.type = FieldType::Enum;
+        field.values = split_words(field.meta.values);
+    } else if constexpr (std::is_integral_v<F>) {
+        field.type = std::is_signed_v<F> ? FieldType::Int : FieldType::UInt;
+    } else if constexpr (std::is_same_v<F, float>) {
+        field.type = FieldType::Float;
+    } else if constexpr (std::is_same_v<F, double>) {
+        field.type = FieldType::Double;
+    } else if constexpr (std::is_same_v<F, Vec2>) {
+        field.type = FieldType::Vec2;
+    } else if constexpr (std::is_same_v<F, Vec3>) {
+        field.type = FieldType::Vec3;
+    } else if constexpr (std::is_same_v<F, Vec4>) {
+        field.type = FieldType::Vec4;
+    } else if constexpr (std::is_same_v<F, Quat>) {
+        field.type = FieldType::Quat;
+    } else if constexpr (std::is_same_v<F, IVec2>) {
+        field.type = FieldType::IVec2;
+    } else if constexpr (std::is_same_v<F, IVec3>) {
+        field.type = FieldType::IVec3;
+    } else if constexpr (std::is_same_v<F, Mat3>) {
+        field.type = FieldType::Mat3;
+    } else if constexpr (std::is_same_v<F, Mat4>) {
+        field.type = FieldType::Mat4;
+    } else if constexpr (std::is_same_v<F, Affine>) {
+        field.type = FieldType::Affine;
+    } else if constexpr (std::is_same_v<F, std::string>) {
+        field.type = FieldType::String;
+    } else if constexpr (std::is_same_v<F, Entity>) {
+        field.type = FieldType::Entity;
+    } else if constexpr (asset_kind<F> != nullptr) {
+        static_assert(sizeof(F) == sizeof(std::uint32_t));
+        field.type = FieldType::Asset;
+        field.asset = asset_kind<F>;
+    } else {
+        static_assert(HasFields<F>, "a field of this type needs visit_fields");
+        field.type = FieldType::Struct;
+        F instance{};
+        describe_fields(instance, field.fields);
+    }
+}
+
+template <typename T>
+void describe_list(FieldInfo& field) {
+    using Element = typename T::value_type;
+    static_assert(
+        !std::is_same_v<Element, bool>, "std::vector<bool> has no bools in it; use std::uint8_t");
+    describe_type<Element>(field);
+    field.shape = FieldShape::List;
+    field.list.size = [](const void* list) { return static_cast<const T*>(list)->size(); };
+    field.list.data = [](void* list) { return static_cast<void*>(static_cast<T*>(list)->data()); };
+    field.list.resize = [](void* list, std::size_t size) { static_cast<T*>(list)->resize(size); };
+}
+
+struct DescribeVisitor {
+    const void* base;
+    std::vector<FieldInfo>& fields;
+
+    template <typename F>
+    void operator()(const char* name, F& field, const FieldMeta& meta = {}) const {
+        FieldInfo info;
+        info.name = name;
+        info.meta = meta;
+        info.offset = static_cast<std::uint32_t>(
+            reinterpret_cast<const char*>(&field) - static_cast<const char*>(base));
+        if constexpr (is_list<F>) {
+            describe_list<F>(info);
+        } else if constexpr (std::is_array_v<F>) {
+            static_assert(std::rank_v<F> == 1);
+            describe_type<std::remove_extent_t<F>>(info);
+            info.shape = FieldShape::Array;
+            info.count = std::extent_v<F>;
+        } else if constexpr (is_std_array<F>) {
+            describe_type<typename F::value_type>(info);
+            info.shape = FieldShape::Array;
+            info.count = std::tuple_size_v<F>;
+        } else {
+            describe_type<F>(info);
+        }
+        fields.push_back(std::move(info));
+    }
+};
+
+template <typename T>
+void describe_fields(T& instance, std::vector<FieldInfo>& fields) {
+    visit_fields(instance, DescribeVisitor{&instance, fields});
+}
+
+/// Whether every byte of a T is part of its value. The compiler refuses to read padding in a
+/// constant expression, which is how this finds it.
+template <typename T>
+consteval bool reads_all_bytes() {
+    const auto bytes = std::bit_cast<std::array<unsigned char, sizeof(T)>>(T{});
+    unsigned sum = 0;
+    for (const unsigned char byte : bytes) {
+        sum += byte;
+    }
+    return sum < 0xffffffffu;
+}
+template <typename T>
+concept HasNoPadding = std::has_unique_object_representations_v<T> ||(
+    std::is_trivially_copyable_v<T>&& std::is_default_constructible_v<T>&& requires {
+        typename std::bool_constant<reads_all_bytes<T>()>;
+    });
+
+template <typename T>
+consteval ValueBytes value_bytes_of() {
+    if constexpr (std::is_empty_v<T>) {
+        return ValueBytes::All;
+    } else if constexpr (std::is_trivially_copyable_v<T> && HasNoPadding<T>) {
+        return ValueBytes::All;
+    } else {
+        return HasFields<T> ? ValueBytes::Fields : ValueBytes::Opaque;
+    }
+}
+
+template <typename T>
+ComponentOps component_ops() {
+    ComponentOps ops;
+    if constexpr (std::is_default_constructible_v<T>) {
+        ops.construct_default = [](void* destination, std::size_t count) {
+            std::uninitialized_value_construct_n(static_cast<T*>(destination), count);
+        };
+    }
+    if constexpr (std::is_copy_constructible_v<T>) {
+        ops.construct_copy = [](void* destination, const void* source, std::size_t count) {
+            std::uninitialized_copy_n(
+                static_cast<const T*>(source), count, static_cast<T*>(destination));
+        };
+    }
+    ops.construct_move = [](void* destination, void* source, std::size_t count) {
+        std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
+    };
+    ops.relocate = [](void* destination, void* source, std::size_t count) {
+        std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
+        std::destroy_n(static_cast<T*>(source), count);
+    };
+    ops.destroy = [](void* first, std::size_t count) {
+        std::destroy_n(static_cast<T*>(first), count);
+    };
+    return ops;
+}
+
+template <typename T>
+ComponentId make_component_id() {
+    static_assert(std::is_nothrow_move_constructible_v<T> && std::is_nothrow_destructible_v<T>);
+    ComponentInfo info;
+    info.name = snake_case(short_name(type_name<T>()));
+    info.is_tag = std::is_empty_v<T>;
+    info.size = info.is_tag ? 0 : sizeof(T);
+    info.align = alignof(T);
+    info.storage = ComponentTraits<T>::storage;
+    info.trivially_copyable = std::is_trivially_copyable_v<T>;
+    info.trivially_relocatable =
+        info.trivially_copyable || ComponentTraits<T>::trivially_relocatable;
+    info.trivially_destructible = std::is_trivially_destructible_v<T>;
+    info.saved = ComponentTraits<T>::saved;
+    info.hashed = ComponentTraits<T>::hashed;
+    info.value_bytes = value_bytes_of<T>();
+    info.ops = component_ops<T>();
+    if constexpr (HasFields<T>) {
+        static_assert(std::is_default_constructible_v<T>, "fields come with defaults");
+        T* defaults = new T{};  // as long as the program
+        info.defaults = defaults;
+        describe_fields(*defaults, info.fields);
+        finish_fields(info);
+    }
+    return add_component_info(std::move(info));
+}
+
+}  // namespace detail
+
+/// The id of T, ready before main.
+template <typename T>
+inline const ComponentId component_id = detail::make_component_id<T>();
+
+template <typename T>
+[[nodiscard]] const ComponentInfo& component_info() {
+    return component_info(component_id<std::remove_cvref_t<T>>);
+}
+
+/// Makes T known by its name: in level files, snapshots, the inspector. Again is no mistake; two
+/// types of one name are.
+template <typename T>
+const ComponentInfo& register_component() {
+    detail::name_component(component_id<T>, false);
+    return component_info<T>();
+}
+
+/// The same for a one-of-a-kind: a registered resource is part of snapshots and hashes unless its
+/// ComponentTraits say otherwise.
+template <typename T>
+const ComponentInfo& register_resource() {
+    detail::name_component(component_id<T>, true);
+    return component_info<T>();
+}
+
+}  // namespace limn
