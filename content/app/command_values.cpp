@@ -1,0 +1,126 @@
+#include "content/app/command_values.h"
+
+#include "ecs/base/log.h"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace limn {
+namespace {
+
+/// Reads all of `text` as a number; false if anything is left, missing or out of the type's range.
+template <typename Number>
+bool read_all(std::string_view text, Number& number) {
+    const char* end = text.data() + text.size();
+    const auto [stop, code] = std::from_chars(text.data(), end, number);
+    return code == std::errc{} && stop == end;
+}
+
+/// Insertions, deletions, substitutions and swaps of neighbors that turn one word into the other.
+int edit_distance(std::string_view a, std::string_view b) {
+    std::vector<int> before_last(b.size() + 1);
+    std::vector<int> last(b.size() + 1);
+    std::vector<int> row(b.size() + 1);
+    std::iota(last.begin(), last.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = static_cast<int>(i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const int change = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, change});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = std::min(row[j], before_last[j - 2] + 1);
+            }
+        }
+        std::swap(before_last, last);
+        std::swap(last, row);
+    }
+    return last[b.size()];
+}
+
+}  // namespace
+
+Result<IVec2> parse_size(std::string_view text) {
+    const std::size_t cross = text.find('x');
+    IVec2 size = {0, 0};
+    if (cross == std::string_view::npos || !read_all(text.substr(0, cross), size.x)
+        || !read_all(text.substr(cross + 1), size.y) || size.x < 1 || size.y < 1
+        || size.x > kMaxImageSide || size.y > kMaxImageSide) {
+        return fail(
+            "found \"{}\", expected WIDTHxHEIGHT such as 1280x720, each 1 to {}",
+            text,
+            kMaxImageSide);
+    }
+    return size;
+}
+
+Result<FrameRange> parse_frame_range(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    FrameRange range;
+    const bool first_ok = read_all(text.substr(0, colon), range.first);
+    const bool last_ok =
+        colon == std::string_view::npos || read_all(text.substr(colon + 1), range.last);
+    if (colon == std::string_view::npos) {
+        range.last = range.first;
+    }
+    if (!first_ok || !last_ok || range.first < 0 || range.last < range.first
+        || range.last >= kMaxFrames) {
+        return fail(
+            "found \"{}\", expected FIRST:LAST such as 0:99, 0 <= FIRST <= LAST < {}",
+            text,
+            kMaxFrames);
+    }
+    return range;
+}
+
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t min, std::int64_t max) {
+    std::int64_t number = 0;
+    if (!read_all(text, number) || number < min || number > max) {
+        return fail("found \"{}\", expected a whole number from {} to {}", text, min, max);
+    }
+    return number;
+}
+
+Result<double> parse_number(std::string_view text, double min, double max) {
+    double number = 0.0;
+    if (!read_all(text, number) || !(number >= min && number <= max)) {
+        return fail("found \"{}\", expected a number from {} to {}", text, min, max);
+    }
+    return number;
+}
+
+Result<Assignment> parse_assignment(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size()) {
+        return fail("found \"{}\", expected path=value such as exposure.ev=1", text);
+    }
+    return Assignment{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+}
+
+Result<std::vector<std::string>> parse_list(std::string_view text) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', begin), text.size());
+        if (comma == begin) {
+            return fail("found \"{}\", expected names with commas between", text);
+        }
+        parts.emplace_back(text.substr(begin, comma - begin));
+        begin = comma + 1;
+    }
+    return parts;
+}
+
+std::string nearest_name(std::string_view typed, std::span<const std::string> candidates) {
+    std::string nearest;
+    int fewest = static_cast<int>(typed.size()) / 3 + 2;  // one more than the most that counts
+    for (const std::string& candidate : candidates) {
+        const int edits = edit_distance(typed, candidate);
+        if (edits < fewest) {
+            fewest = edits;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace limn

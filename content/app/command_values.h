@@ -1,0 +1,57 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+// What people write after an option, read strictly: "640x360" yes, "640x", "640x360x2", "nan" and
+// "1e999" no. Every message says what was found and what was expected.
+
+/// First and last frame of a range, both drawn.
+struct FrameRange {
+    int first = 0;
+    int last = 0;  ///< >= first
+    bool operator==(const FrameRange&) const = default;
+};
+
+/// `path=value` of --set.
+struct Assignment {
+    std::string path;   ///< "lamp.point_light.intensity" or "exposure.ev"
+    std::string value;  ///< JSON, or a bare word
+};
+
+inline constexpr int kMaxImageSide = 16384;  ///< pixels
+inline constexpr int kMaxFrames = 1'000'000;
+
+/// "1280x720": width and height, each 1 .. kMaxImageSide.
+[[nodiscard]] Result<IVec2> parse_size(std::string_view text);
+
+/// "A:B" with 0 <= A <= B < kMaxFrames, or "A" for one frame.
+[[nodiscard]] Result<FrameRange> parse_frame_range(std::string_view text);
+
+/// A whole number from `min` to `max`, nothing behind it.
+[[nodiscard]] Result<std::int64_t>
+parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
+
+/// A decimal number from `min` to `max`; never NaN.
+[[nodiscard]] Result<double> parse_number(std::string_view text, double min, double max);
+
+/// "path=value"; neither may be empty.
+[[nodiscard]] Result<Assignment> parse_assignment(std::string_view text);
+
+/// The parts between the commas; an empty part is an error.
+[[nodiscard]] Result<std::vector<std::string>> parse_list(std::string_view text);
+
+/// The name that `typed` was probably meant to be: fewest edits, at most a third of its length and
+/// one more; empty if none is that near.
+[[nodiscard]] std::string
+nearest_name(std::string_view typed, std::span<const std::string> candidates);
+
+}  // namespace limn
