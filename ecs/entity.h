@@ -14,6 +14,10 @@ struct Entity {
     std::uint32_t generation = 0;
 
     [[nodiscard]] constexpr bool is_null() const { return index == kNullIndex; }
+    /// Both numbers in one, different for different entities.
+    [[nodiscard]] constexpr std::uint64_t bits() const {
+        return (static_cast<std::uint64_t>(generation) << 32) | index;
+    }
     bool operator==(const Entity&) const = default;
     auto operator<=>(const Entity&) const = default;
 };
