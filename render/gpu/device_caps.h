@@ -1,0 +1,90 @@
+#pragma once
+
+#include "ecs/base/result.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn::gpu {
+
+// What the device can do, read once, and whether a pass fits it (shade.profile). Three classes of
+// error, all found before anything is drawn: a capability is absent, the context lacks something
+// mandatory, or a capacity is exceeded.
+
+struct DeviceCaps {
+    std::string vendor;
+    std::string renderer;
+    std::string version;
+    int gl_major = 0;
+    int gl_minor = 0;
+    bool software = false;  ///< the CPU draws: llvmpipe, softpipe, SwiftShader
+    bool debug = false;     ///< a debug context
+
+    int max_texture_size = 0;  ///< [px] of a side
+    int max_texture_3d_size = 0;
+    int max_cube_size = 0;
+    int max_texture_layers = 0;
+    int max_samples = 0;
+    int max_color_attachments = 0;  ///< that one pass can write
+    int max_vertex_textures = 0;    ///< texture units of a stage
+    int max_fragment_textures = 0;
+    int max_compute_textures = 0;
+    int max_combined_textures = 0;  ///< texture units of all stages together
+    int max_image_units = 0;
+    int max_uniform_block_bytes = 0;
+    int max_uniform_bindings = 0;
+    int max_storage_bindings = 0;
+    int max_vertex_storage_blocks = 0;
+    int max_fragment_storage_blocks = 0;
+    int max_compute_invocations = 0;  ///< of one work group
+    int max_compute_shared_bytes = 0;
+    int uniform_alignment = 256;  ///< of an offset in a buffer [bytes]
+    int storage_alignment = 256;
+    float max_anisotropy = 1;
+};
+
+/// Of the context that is current.
+[[nodiscard]] DeviceCaps read_device_caps();
+
+/// What a pass needs; 0 where it does not care.
+struct PassRequirements {
+    int vertex_textures = 0;
+    int fragment_textures = 0;
+    int compute_textures = 0;
+    int color_attachments = 0;
+    int texture_size = 0;
+    int texture_layers = 0;
+    int samples = 0;
+    int image_units = 0;
+    int uniform_block_bytes = 0;
+    int vertex_storage_blocks = 0;
+    int fragment_storage_blocks = 0;
+    int compute_invocations = 0;
+    int compute_shared_bytes = 0;
+};
+
+enum class ProfileErrorKind {
+    Capability,  ///< the feature is absent: its limit is 0
+    Context,     ///< something mandatory is missing, e.g. a vertex stage that writes no position
+    Capacity,    ///< the feature is there, its limit exceeded
+};
+
+struct ProfileError {
+    ProfileErrorKind kind;
+    std::string message;  ///< "capacity: 40 fragment textures asked for, 32 there are"
+};
+
+/// Everything in `needs` that `caps` cannot give; empty if it fits.
+[[nodiscard]] std::vector<ProfileError>
+check_requirements(const DeviceCaps& caps, const PassRequirements& needs);
+
+/// check_requirements as one line that begins with `pass`.
+[[nodiscard]] Status
+require(const DeviceCaps& caps, const char* pass, const PassRequirements& needs);
+
+/// Index of the first of `versions` (most capable first) that fits, or -1.
+[[nodiscard]] int
+choose_version(const DeviceCaps& caps, std::span<const PassRequirements> versions);
+
+}  // namespace limn::gpu

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "render/gpu/gl_object.h"
+
+#include <optional>
+
+namespace limn::gpu {
+
+/// One counter of the GPU: GL_TIMESTAMP, GL_TIME_ELAPSED, GL_SAMPLES_PASSED,
+/// GL_PRIMITIVES_GENERATED ...
+class GpuQuery {
+  public:
+    GpuQuery() = default;
+    GpuQuery(std::string_view label, GLenum target);
+
+    void begin();  ///< not for GL_TIMESTAMP; one query of a target at a time
+    void end();
+    void timestamp();  ///< of GL_TIMESTAMP: when everything before it is done
+
+    /// The result once the GPU has it; never waits. Nothing before begin() or timestamp().
+    [[nodiscard]] std::optional<std::uint64_t> poll() const;
+    /// The result, waiting for the GPU.
+    [[nodiscard]] std::uint64_t wait() const;
+
+    explicit operator bool() const { return static_cast<bool>(object_); }
+
+  private:
+    GlObject<ObjectKind::Query> object_;
+    GLenum target_ = GL_NONE;
+    bool issued_ = false;
+};
+
+}  // namespace limn::gpu

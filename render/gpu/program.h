@@ -1,0 +1,81 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+#include "render/gpu/gl_object.h"
+#include "render/gpu/pipeline_state.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn::gpu {
+
+// A linked program and what the shader compiler says it uses. Programs come from ShaderLibrary;
+// bindings are written in the shaders (layout(binding = n)), so C++ rarely needs a name.
+
+enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture, Image };
+
+/// Something a program expects to be bound before it draws.
+struct ProgramBinding {
+    BindingKind kind;
+    std::string name;       ///< of the block or the sampler; arrays as "name[0]"
+    int binding = 0;        ///< buffer binding, texture or image unit
+    int size = 0;           ///< blocks: bytes the shader may read; others: elements
+    GLenum type = GL_NONE;  ///< samplers and images, e.g. GL_SAMPLER_2D
+};
+
+class Program {
+  public:
+    Program() = default;
+    /// Takes over a linked OpenGL program and reads its interface.
+    Program(GLuint id, std::string_view label);
+
+    [[nodiscard]] GLuint id() const { return object_.id(); }
+    [[nodiscard]] const std::vector<ProgramBinding>& bindings() const { return bindings_; }
+    /// Fails unless the program has this binding (and a block at least fits in `size` bytes): call
+    /// it once after loading for layouts that C++ shares with the shader.
+    [[nodiscard]] Status
+    expect(BindingKind kind, std::string_view name, int binding, int size = 0) const;
+
+    /// Location of a plain uniform, -1 if the program has none of that name.
+    [[nodiscard]] int find_uniform(std::string_view name) const;
+    /// Set a plain uniform, which keeps its value until set again, across draws and reloads.
+    /// Unknown names do nothing: the compiler may have dropped them.
+    void set(std::string_view name, float value) const;
+    void set(std::string_view name, int value) const;
+    void set(std::string_view name, unsigned value) const;
+    void set(std::string_view name, const Vec2& value) const;
+    void set(std::string_view name, const Vec3& value) const;
+    void set(std::string_view name, const Vec4& value) const;
+    void set(std::string_view name, const IVec2& value) const;
+    void set(std::string_view name, const Mat3& value) const;
+    void set(std::string_view name, const Mat4& value) const;
+
+    explicit operator bool() const { return static_cast<bool>(object_); }
+
+  private:
+    friend class ShaderLibrary;
+    void copy_uniforms_from(const Program& old) const;
+
+    struct Uniform {
+        std::string name;
+        int location;
+        GLenum type;
+        int count;
+    };
+
+    GlObject<ObjectKind::Program> object_;
+    std::string label_;
+    std::vector<ProgramBinding> bindings_;
+    std::vector<Uniform> uniforms_;  // sorted by name
+};
+
+/// A program with the state it draws with; the program belongs to the ShaderLibrary and stays where
+/// it is when it is reloaded.
+struct Pipeline {
+    const Program* program = nullptr;
+    PipelineState state = {};
+};
+
+}  // namespace limn::gpu

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "render/gpu/program.h"
+#include "render/gpu/shader_source.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limn::gpu {
+
+class Device;
+struct DeviceCaps;
+
+// Every program of a device, compiled once and reloaded when a file it is made of changes.
+//
+//     Result<const Program*> program = device.shaders().load({.vertex = "water.vert", .fragment =
+//     "water.frag"});
+
+/// Which files make a program, and with what definitions. Give either `compute` or `vertex` (with
+/// the others).
+struct ProgramDesc {
+    std::string vertex = {};
+    std::string geometry = {};
+    std::string fragment = {};
+    std::string compute = {};
+    std::vector<ShaderDefine> defines = {};
+
+    bool operator==(const ProgramDesc&) const = default;
+};
+
+struct ReloadReport {
+    int reloaded = 0;                 ///< programs replaced by a new version
+    std::vector<std::string> errors;  ///< "file:line: ..." of programs that keep their old version
+};
+
+class ShaderLibrary {
+  public:
+    explicit ShaderLibrary(const DeviceCaps& caps, ShaderFiles files = ShaderFiles::standard());
+    ~ShaderLibrary();
+    ShaderLibrary(const ShaderLibrary&) = delete;
+    ShaderLibrary& operator=(const ShaderLibrary&) = delete;
+
+    /// The program, compiled now if it is new; the same one for equal descriptions. The pointer is
+    /// good as long as the library. Fails with the shader compiler's message, by file and line, or
+    /// a profile error.
+    [[nodiscard]] Result<const Program*> load(const ProgramDesc& desc);
+
+    /// Compiles again what was made from files that changed since. A program whose new text fails
+    /// keeps working as it was. Costs a stat() a file.
+    ReloadReport reload_changed();
+    /// Compiles everything again.
+    ReloadReport reload_all();
+
+    [[nodiscard]] std::size_t program_count() const { return entries_.size(); }
+    [[nodiscard]] ShaderFiles& files() { return files_; }
+
+  private:
+    struct Entry;
+    struct WatchedFile {
+        std::string path;
+        std::uint64_t version;
+    };
+    [[nodiscard]] Result<Program>
+    build(const ProgramDesc& desc, std::vector<WatchedFile>& watched) const;
+    ReloadReport reload(bool all);
+
+    const DeviceCaps& caps_;
+    ShaderFiles files_;
+    std::vector<std::unique_ptr<Entry>> entries_;
+};
+
+}  // namespace limn::gpu

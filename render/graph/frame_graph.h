@@ -1,0 +1,274 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+#include "render/gpu/device.h"
+
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace limn {
+
+// One frame as a list of passes. A pass says which textures and buffers it reads and writes and
+// brings the code that draws; the graph does the rest:
+//
+// - a pass that nothing needs is not run. Needed are what keep() names and what is imported from
+// outside;
+// - transient textures come from a pool and share memory when their lifetimes do not overlap;
+// - targets are attached, cleared and bound, memory barriers set, debug groups opened;
+// - every pass is timed on the CPU and the GPU (smoothed, some frames late, never waiting).
+//
+// Passes run in the order they are added. Reading what no earlier pass wrote is a programmer's
+// mistake and stops.
+//
+//     graph.begin_frame();
+//     const TextureId hdr = graph.create({.name = "hdr", .format = GL_RGBA16F, .width = w, .height
+//     = h}); graph.add_pass("sky", {depth}, {cleared(hdr)}, [=, &pass](PassContext& context) {
+//         context.device().use(pass.draw);
+//         context.bind_texture(0, depth);
+//         context.device().draw_fullscreen();
+//     });
+//     graph.keep(hdr);
+//     graph.execute();
+//     const gpu::Texture* image = graph.texture(hdr);
+//
+// Make one graph and keep it: after the first frames it allocates nothing. What a pass captures is
+// copied into the graph and destroyed after execute().
+
+struct TextureId {
+    std::uint32_t index = ~0u;
+    [[nodiscard]] bool valid() const { return index != ~0u; }
+    bool operator==(const TextureId&) const = default;
+};
+struct BufferId {
+    std::uint32_t index = ~0u;
+    [[nodiscard]] bool valid() const { return index != ~0u; }
+    bool operator==(const BufferId&) const = default;
+};
+
+/// A texture that lives for (part of) a frame. Names are paths like "gbuffer.normal"; the viewer
+/// lists them.
+struct TextureSpec {
+    std::string_view name = {};
+    GLenum format = GL_RGBA16F;
+    int width = 1;
+    int height = 1;
+    int depth = 1;  ///< layers or slices
+    int levels = 1;
+    int samples = 0;
+    GLenum target = GL_TEXTURE_2D;
+};
+struct BufferSpec {
+    std::string_view name = {};
+    std::size_t bytes = 0;
+};
+
+/// How a pass uses something; made by the functions below, or of an id alone.
+struct Use {
+    enum class How : std::uint8_t {
+        Plain,  ///< read: any kind of fetch. Written: a target (texture), a storage block (buffer)
+        Cleared,    ///< a target, cleared first
+        Discarded,  ///< a target of which every pixel is written
+        DepthTest,  ///< read as depth attachment that is tested, not written; may be sampled as
+                    ///< well
+        Image,      ///< written as a shader image or a copy: not attached
+    };
+
+    Use(TextureId texture) : resource(texture.index) {}
+    Use(BufferId buffer) : resource(buffer.index) {}
+    Use(std::uint32_t id, How use) : resource(id), how(use) {}
+
+    std::uint32_t resource;
+    How how = How::Plain;
+    int level = 0;
+    int layer = -1;  ///< all
+    Vec4 clear = {0, 0, 0, 0};
+};
+
+/// A target cleared to `value` before the pass; depth takes x, stencil y. The default is depth's
+/// far end.
+[[nodiscard]] inline Use cleared(TextureId texture, const Vec4& value = Vec4(0)) {
+    Use use(texture.index, Use::How::Cleared);
+    use.clear = value;
+    return use;
+}
+/// A target of which the pass writes every pixel: what it held is not kept, nor the passes that
+/// drew it.
+[[nodiscard]] inline Use discarded(TextureId texture) {
+    return {texture.index, Use::How::Discarded};
+}
+/// Written by image stores, a copy or glGenerateTextureMipmap.
+[[nodiscard]] inline Use image(TextureId texture) {
+    return {texture.index, Use::How::Image};
+}
+/// Among the reads: the depth buffer to test against without writing.
+[[nodiscard]] inline Use depth_tested(TextureId texture) {
+    return {texture.index, Use::How::DepthTest};
+}
+/// One level or layer of a target instead of all: `target_level(cleared(cube), 0, face)`.
+[[nodiscard]] inline Use target_level(Use use, int level, int layer = -1) {
+    use.level = level;
+    use.layer = layer;
+    return use;
+}
+
+class FrameGraph;
+
+/// What a pass sees while it runs: its targets are bound and cleared, the viewport covers them.
+class PassContext {
+  public:
+    [[nodiscard]] gpu::Device& device() const { return device_; }
+    [[nodiscard]] const gpu::Texture& texture(TextureId id) const;
+    [[nodiscard]] const gpu::Buffer& buffer(BufferId id) const;
+    /// Of the targets [px]; (0, 0) without any.
+    [[nodiscard]] IVec2 size() const { return size_; }
+
+    void bind_texture(unsigned unit, TextureId id, const gpu::Sampler* sampler = nullptr) const;
+    void
+    bind_image(unsigned unit, TextureId id, GLenum access, int level = 0, int layer = -1) const;
+    void bind_storage(unsigned binding, BufferId id) const;
+    void bind_uniforms(unsigned binding, BufferId id) const;
+
+  private:
+    friend class FrameGraph;
+    PassContext(gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
+
+    gpu::Device& device_;
+    FrameGraph& graph_;
+    IVec2 size_ = {0, 0};
+};
+
+/// What a pass costs. GPU times are of a frame some frames ago.
+struct PassTiming {
+    std::string_view name = {};
+    double cpu_ms = 0;       ///< smoothed over some 20 frames
+    double gpu_ms = 0;       ///< smoothed
+    double last_cpu_ms = 0;  ///< of the last frame
+    double last_gpu_ms = 0;  ///< of the last frame whose times arrived
+};
+
+class FrameGraph {
+  public:
+    explicit FrameGraph(gpu::Device& device);
+    ~FrameGraph();
+    FrameGraph(const FrameGraph&) = delete;
+    FrameGraph& operator=(const FrameGraph&) = delete;
+
+    /// Forgets last frame's passes and textures; ids of it are no longer valid.
+    void begin_frame();
+
+    [[nodiscard]] TextureId create(const TextureSpec& spec);
+    [[nodiscard]] BufferId create_buffer(const BufferSpec& spec);
+    /// A texture or buffer from outside, which must live until execute() has returned. Passes that
+    /// write it are always run.
+    [[nodiscard]] TextureId import(std::string_view name, const gpu::Texture& texture);
+    [[nodiscard]] BufferId import(std::string_view name, const gpu::Buffer& buffer);
+
+    /// Adds a pass. A texture may be among the writes of several passes: later ones draw over it.
+    template <typename Run>
+    void add_pass(
+        std::string_view name,
+        std::initializer_list<Use> reads,
+        std::initializer_list<Use> writes,
+        Run&& run) {
+        add_pass(
+            name,
+            std::span(reads.begin(), reads.size()),
+            std::span(writes.begin(), writes.size()),
+            std::forward<Run>(run));
+    }
+    template <typename Run>
+    void add_pass(
+        std::string_view name, std::span<const Use> reads, std::span<const Use> writes, Run&& run);
+    /// The pass added last is run whether or not somebody needs what it writes.
+    void always_run();
+
+    /// The texture is wanted after the frame: its contents stay until the next begin_frame().
+    void keep(TextureId texture);
+    /// keep() for everything of this name in every frame from now on (buffer viewer, AOVs); stop
+    /// with forget.
+    void keep_named(std::string_view name);
+    void forget_named(std::string_view name);
+
+    /// Mistakes in what was declared: a read before any write, a texture that is both read and
+    /// written in one pass, targets of different sizes. execute() stops on them.
+    [[nodiscard]] Status validate() const;
+    void execute();
+
+    // ---- after add_pass ----
+    /// The last texture declared under this name in this frame; not valid() if there is none.
+    [[nodiscard]] TextureId find(std::string_view name) const;
+    [[nodiscard]] TextureSpec spec(TextureId id) const;
+
+    // ---- after execute ----
+    /// Its contents after the frame; null if its passes were not run or its memory went to a later
+    /// texture: keep it.
+    [[nodiscard]] const gpu::Texture* texture(TextureId id) const;
+    /// Names of all textures of the frame, in order of declaration.
+    [[nodiscard]] std::vector<std::string_view> texture_names() const;
+    [[nodiscard]] bool was_run(std::string_view pass) const;
+
+    /// In the order of the last frame.
+    [[nodiscard]] std::span<const PassTiming> timings() const;
+    /// All passes of a frame together, smoothed.
+    [[nodiscard]] double total_cpu_ms() const;
+    [[nodiscard]] double total_gpu_ms() const;
+    /// Waits for the GPU times of every frame so far: for `limn bench`.
+    void wait_for_timings();
+    /// Timestamps can be switched off to see what they cost.
+    void set_gpu_timing(bool on);
+
+    /// A table of passes, what they read and write, and their times.
+    [[nodiscard]] std::string to_text() const;
+    /// The same as a graph for Graphviz.
+    [[nodiscard]] std::string to_dot() const;
+
+    struct PoolStats {
+        int textures = 0;          ///< alive in the pool
+        std::size_t bytes = 0;     ///< of textures and buffers in the pool
+        std::size_t unshared = 0;  ///< bytes that this frame's textures would take without sharing
+        int framebuffers = 0;
+    };
+    [[nodiscard]] PoolStats pool_stats() const;
+
+  private:
+    friend class PassContext;
+    struct Impl;
+    using RunFunction = void (*)(void*, PassContext&);
+    using DestroyFunction = void (*)(void*);
+
+    /// Room for a pass's captures, until the next begin_frame().
+    [[nodiscard]] void* allocate_closure(std::size_t size, std::size_t alignment);
+    void add_pass_erased(
+        std::string_view name,
+        std::span<const Use> reads,
+        std::span<const Use> writes,
+        void* closure,
+        RunFunction run,
+        DestroyFunction destroy);
+
+    std::unique_ptr<Impl> impl_;
+};
+
+template <typename Run>
+void FrameGraph::add_pass(
+    std::string_view name, std::span<const Use> reads, std::span<const Use> writes, Run&& run) {
+    using Closure = std::decay_t<Run>;
+    void* room = allocate_closure(sizeof(Closure), alignof(Closure));
+    new (room) Closure(std::forward<Run>(run));
+    add_pass_erased(
+        name,
+        reads,
+        writes,
+        room,
+        [](void* closure, PassContext& context) { (*static_cast<Closure*>(closure))(context); },
+        [](void* closure) { static_cast<Closure*>(closure)->~Closure(); });
+}
+
+}  // namespace limn

@@ -1,0 +1,37 @@
+// How surfaces scatter light. Every function returns what one light adds for an irradiance of 1 on a plane
+// that faces it; cosines are named n_l = dot(normal, to_light) and so on, with h halfway between l and v.
+
+const float kPi = 3.14159265358979;
+
+// Coefficients (1, diffuse, specular, 1) of light.lit; specular ends where the light sets.
+vec4 lit(float n_l, float n_h, float shininess) {
+    float diffuse = max(n_l, 0.0);
+    float specular = n_l > 0.0 && n_h > 0.0 ? pow(n_h, shininess) : 0.0;
+    return vec4(1.0, diffuse, specular, 1.0);
+}
+
+// Half vector of two unit vectors by their cosine alone: |l + v| = sqrt(2 + 2 l.v). Returns (n.h, v.h); both
+// 0 where l = -v.
+vec2 half_cosines(float n_l, float n_v, float l_v) {
+    float inverse_length = inversesqrt(max(2.0 + 2.0 * l_v, 1e-8));
+    return vec2(clamp((n_l + n_v) * inverse_length, 0.0, 1.0), clamp((1.0 + l_v) * inverse_length, 0.0, 1.0));
+}
+
+// GGX distribution times height-correlated Smith visibility, times n.l: the specular lobe without Fresnel.
+// alpha2 = roughness^4 (perceptual). Walter et al. 2007; Heitz 2014.
+float ggx_lobe(float n_l, float n_v, float n_h, float alpha2) {
+    float t = n_h * n_h * (alpha2 - 1.0) + 1.0;
+    float smith_v = n_l * sqrt(n_v * n_v * (1.0 - alpha2) + alpha2);
+    float smith_l = n_v * sqrt(n_l * n_l * (1.0 - alpha2) + alpha2);
+    return n_l * alpha2 * 0.5 / max(kPi * t * t * (smith_v + smith_l), 1e-7);
+}
+
+// (1 - v.h)^5 of Schlick's Fresnel term f0 + (1 - f0) (1 - v.h)^5.
+float schlick_weight(float v_h) {
+    float m = clamp(1.0 - v_h, 0.0, 1.0);
+    float m2 = m * m;
+    return m2 * m2 * m;
+}
+
+// Perceptual roughness below which point lights would leave highlights smaller than a pixel.
+const float kMinRoughness = 0.045;

@@ -1,0 +1,27 @@
+// What arrives from a light: the formulas of point, spot and directional lights, branch-free so that every
+// option costs the same. bench/oracles/light_oracle.h says the same in double precision.
+
+// Irradiance factor of a point or spot light at squared distance d2 [m^2], 1 cd unattenuated.
+//   inv_radius2   1 / radius^2; 0: never fades to nothing
+//   polynomial    c, l, q of 1 / (c + l d + q d^2); the inverse square is (0, 0, 1)
+//   multiplier    0: the window (1 - (d/r)^4)^2 of Karis 2013; else clamp(multiplier (1 - (d/r)^2), 0, 1)
+float distance_attenuation(float d2, float inv_radius2, vec3 polynomial, float multiplier) {
+    float x = d2 * inv_radius2;
+    float karis = clamp(1.0 - x * x, 0.0, 1.0);
+    float window = multiplier > 0.0 ? clamp(multiplier * (1.0 - x), 0.0, 1.0) : karis * karis;
+    return window / max(polynomial.x + polynomial.y * sqrt(d2) + polynomial.z * d2, 1e-4);
+}
+
+// Spot profiles, as numbered by SpotProfile.
+const float kSpotLinearCosine = 0.0;
+const float kSpotSmoothstep = 1.0;
+const float kSpotLinearAngle = 2.0;
+
+// 1 inside the inner cone, 0 outside the outer one. `axis` is where the light shines, `scale_offset` maps the
+// cosine (or, for kSpotLinearAngle, minus the angle) of the two cones to 1 and 0.
+float spot_attenuation(vec3 to_light, vec3 axis, vec2 scale_offset, float profile) {
+    float cosine = -dot(to_light, axis);
+    float t = profile == kSpotLinearAngle ? -acos(clamp(cosine, -1.0, 1.0)) : cosine;
+    float s = clamp(t * scale_offset.x + scale_offset.y, 0.0, 1.0);
+    return profile == kSpotSmoothstep ? s * s * (3.0 - 2.0 * s) : s;
+}

@@ -1,0 +1,52 @@
+// From scene radiance to the display: curves, the sRGB encoding and the dither before 8 bits.
+
+// Rec. 709 luminance; hdr.luminance lists other weights.
+float luminance(vec3 color) {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Khronos PBR neutral: the identity less a small toe until 0.76, then compresses toward white and
+// desaturates. Khronos Group, "PBR Neutral Tone Mapper", 2024.
+vec3 tone_neutral(vec3 color) {
+    const float kStart = 0.8 - 0.04;
+    const float kDesaturation = 0.15;
+    float low = min(color.r, min(color.g, color.b));
+    float offset = low < 0.08 ? low - 6.25 * low * low : 0.04;
+    color -= offset;
+    float peak = max(color.r, max(color.g, color.b));
+    float d = 1.0 - kStart;
+    float new_peak = 1.0 - d * d / (max(peak, kStart) + d - kStart);
+    float g = 1.0 - 1.0 / (kDesaturation * (max(peak, kStart) - new_peak) + 1.0);
+    vec3 compressed = mix(color * (new_peak / max(peak, kStart)), vec3(new_peak), g);
+    return peak < kStart ? color : compressed;
+}
+
+// Fit of the ACES reference and output transforms (Stephen Hill 2017), exposed so that 18 % gray stays near it.
+vec3 tone_aces(vec3 color) {
+    const mat3 kInput = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+    const mat3 kOutput = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+    vec3 v = kInput * color;
+    vec3 a = v * (v + 0.0245786) - 0.000090537;
+    vec3 b = v * (0.983729 * v + 0.4329510) + 0.238081;
+    return kOutput * (a / b);
+}
+
+// Linear [0, 1] to sRGB [0, 1] (IEC 61966-2-1).
+vec3 srgb_encode(vec3 linear) {
+    vec3 power = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
+    return mix(power, 12.92 * linear, lessThan(linear, vec3(0.0031308)));
+}
+
+// Two uniform numbers in [0, 1) from a pixel: interleaved gradient noise (Jimenez 2014), whose neighbors
+// differ much, and a shifted copy.
+vec2 pixel_noise(vec2 pixel) {
+    vec2 n = vec2(dot(pixel, vec2(0.06711056, 0.00583715)), dot(pixel + 47.0, vec2(0.00583715, 0.06711056)));
+    return fract(52.9829189 * fract(n));
+}
+
+// Triangular noise in (-1, 1): added in units of one code before rounding it makes the rounding error
+// independent of the color, so that no band remains.
+float triangular_dither(vec2 pixel) {
+    vec2 n = pixel_noise(pixel);
+    return n.x + n.y - 1.0;
+}
