@@ -1,0 +1,59 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cstdint>
+#include <span>
+
+namespace limn {
+
+// Which boxes the camera may see: every mesh instance's box, taken to the world, against the five
+// planes of the view pyramid (there is no far plane). Conservative: a box is dropped only if it
+// lies wholly outside one plane, so that none that is seen is ever lost; boxes near the pyramid's
+// edges may survive unseen.
+//
+// The kernel works on structure-of-arrays blocks with Highway; the scalar version is what it is
+// tested with.
+
+inline constexpr int kFrustumPlanes = 5;
+
+/// Points with dot(plane.xyz, p) + plane.w >= 0 are inside; left, right, bottom, top, near.
+struct Frustum {
+    Vec4 planes[kFrustumPlanes];
+};
+
+/// Of a reversed, infinite projection.
+[[nodiscard]] Frustum make_frustum(const Mat4& clip_from_world);
+
+/// World boxes of up to one logical chunk, as center and half extent.
+inline constexpr int kCullBlock = 1024;
+struct BoxBlock {
+    alignas(64) float center_x[kCullBlock];
+    alignas(64) float center_y[kCullBlock];
+    alignas(64) float center_z[kCullBlock];
+    alignas(64) float half_x[kCullBlock];
+    alignas(64) float half_y[kCullBlock];
+    alignas(64) float half_z[kCullBlock];
+};
+
+/// The box around `box` after `transform` (Arvo 1990).
+[[nodiscard]] inline Bounds transform_bounds(const Affine& transform, const Bounds& box) {
+    const Vec3 c = transform_point(transform, center(box));
+    const Vec3 h = half_extent(box);
+    Vec3 half;
+    for (int i = 0; i < 3; ++i) {
+        const Vec4& r = transform.row[i];
+        half[i] = std::abs(r.x) * h.x + std::abs(r.y) * h.y + std::abs(r.z) * h.z;
+    }
+    return {c - half, c + half};
+}
+
+/// visible[i] = 1 if box i of the first `count` may be seen, else 0.
+void cull_boxes(
+    const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
+
+/// The same, one box after the other.
+void cull_boxes_scalar(
+    const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
+
+}  // namespace limn

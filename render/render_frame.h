@@ -1,0 +1,106 @@
+#pragma once
+
+#include "ecs/base/result.h"
+#include "render/render_view.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+class FrameGraph;
+class World;
+
+// The image as a list of passes (render_frame.cpp). Reads the world, never changes it:
+//
+//     Result<std::unique_ptr<Renderer>> renderer = create_renderer(device);
+//     const FrameOutput frame = render_frame(**renderer, world, make_render_view(world, camera));
+//     gpu::ByteImage png = gpu::read_bytes(*frame.display);
+//
+// Of the world it reads the resources Assets, Environment, Exposure and FrameTime and the entities
+// with WorldTransform and MeshInstance or a light. No Environment means none: black, and only
+// lights light. What was loaded into Assets is uploaded the first time it is seen; another World,
+// or another Assets, is noticed.
+
+/// Chosen once.
+struct RenderSettings {
+    float anisotropy = 8.0f;     ///< of texture filters, clamped to what the device has
+    int environment_size = 256;  ///< of the reflected surroundings [px], a power of two, 16 .. 1024
+};
+
+/// Names of what can be had beside the picture, in this order:
+///   depth     distance along the view axis [m]; kNoDepth where nothing is (1 channel)
+///   normal    of the shaded surface, world space, unit; 0 where nothing is (3)
+///   albedo    base color, linear (3)
+///   velocity  motion since the moment before [px], right and down, as image rows run (2)
+///   emission  radiance of the surface's own light (3)
+[[nodiscard]] const std::vector<std::string_view>& aov_names();
+[[nodiscard]] int aov_channels(std::string_view name);  ///< 0: no such AOV
+inline constexpr float kNoDepth = 1e10f;
+
+/// What to make of this frame.
+struct FrameRequest {
+    std::vector<std::string> aovs;  ///< of aov_names(); unknown ones are left out
+};
+
+struct FrameStatistics {
+    int instances = 0;           ///< with mesh, material and transform
+    int visible_instances = 0;   ///< after culling
+    int draws = 0;               ///< submitted for geometry; a multi-draw counts as one
+    std::int64_t triangles = 0;  ///< submitted
+    int lights = 0;              ///< that shine
+    double extract_ms = 0;       ///< CPU time of culling and filling instance and light buffers
+};
+
+struct AovOutput {
+    std::string name;
+    int channels = 0;
+    const gpu::Texture* texture = nullptr;  ///< RGBA32F; read the first `channels`
+};
+
+/// Textures belong to the renderer and are good until its next frame. gpu::read_floats and
+/// gpu::read_bytes give their rows from top to bottom.
+struct FrameOutput {
+    const gpu::Texture* display = nullptr;   ///< RGBA8: what a screen or PNG shows, sRGB encoded
+    const gpu::Texture* radiance = nullptr;  ///< RGBA16F or RGBA32F: linear light before exposure
+    std::vector<AovOutput> aovs;
+    FrameStatistics statistics;
+};
+
+class Renderer;
+struct RendererDeleter {
+    void operator()(Renderer* renderer) const;
+};
+using RendererPtr = std::unique_ptr<Renderer, RendererDeleter>;
+
+/// Loads every shader; fails with the compiler's message. The device must outlive the renderer.
+[[nodiscard]] Result<RendererPtr>
+create_renderer(gpu::Device& device, const RenderSettings& settings = {});
+
+/// Draws one picture.
+FrameOutput render_frame(
+    Renderer& renderer,
+    const World& world,
+    const RenderView& view,
+    const FrameRequest& request = {});
+
+/// The mean radiance of `samples` >= 1 pictures whose pixels are shifted by sample_jitter: edges
+/// become smooth. Radiance is RGBA32F; AOVs and statistics are those of the picture in the middle.
+FrameOutput render_accumulated(
+    Renderer& renderer,
+    const World& world,
+    const RenderView& view,
+    int samples,
+    const FrameRequest& request = {});
+
+/// Its passes and their times, for profiler and buffer viewer.
+[[nodiscard]] FrameGraph& frame_graph(Renderer& renderer);
+
+}  // namespace limn

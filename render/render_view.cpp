@@ -1,0 +1,138 @@
+#include "render/render_view.h"
+
+#include "ecs/components/name.h"
+#include "ecs/world.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace limn {
+namespace {
+
+/// Rotation and position alone, whatever the scale or shear.
+Affine without_scale(const Affine& a) {
+    const Vec3 back = normalize_or({a.row[0].z, a.row[1].z, a.row[2].z}, {0, 0, 1});
+    const Vec3 up = {a.row[0].y, a.row[1].y, a.row[2].y};
+    const Vec3 right = normalize_or(glm::cross(up, back), any_perpendicular(back));
+    const Vec3 true_up = glm::cross(back, right);
+    Affine rigid;
+    for (int i = 0; i < 3; ++i) {
+        rigid.row[i] = {right[i], true_up[i], back[i], a.row[i].w};
+    }
+    return rigid;
+}
+
+Mat4 view_from_world(const Affine& rigid) {
+    return glm::inverse(to_mat4(rigid));
+}
+
+}  // namespace
+
+Affine mix_affine(const Affine& previous, const Affine& current, float alpha) {
+    Affine mixed;
+    for (int i = 0; i < 3; ++i) {
+        mixed.row[i] = previous.row[i] + alpha * (current.row[i] - previous.row[i]);
+    }
+    return mixed;
+}
+
+RenderView make_render_view(
+    const Camera& camera,
+    const Affine& world_from_camera,
+    const Affine& previous,
+    const ViewRequest& request) {
+    LIMN_CHECK(request.width > 0 && request.height > 0);
+
+    const float tangent = std::tan(0.5f * camera.fov_y);
+    const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
+    RenderView view;
+    view.width = request.width;
+    view.height = request.height;
+    view.near = camera.near;
+    view.tangent = {tangent * aspect, tangent};
+    view.alpha = request.alpha;
+    view.alpha_before = request.alpha_before;
+
+    Mat4 clip_from_view(0.0f);
+    clip_from_view[0][0] = 1.0f / view.tangent.x;
+    clip_from_view[1][1] = 1.0f / view.tangent.y;
+    clip_from_view[2][3] = -1.0f;
+    clip_from_view[3][2] = camera.near;
+
+    // Exactly the pose itself when nothing is to be mixed: goldens do not depend on rounding.
+    view.world_from_camera = without_scale(
+        request.alpha == 1.0f ? world_from_camera
+                              : mix_affine(previous, world_from_camera, request.alpha));
+    const Affine before =
+        without_scale(mix_affine(previous, world_from_camera, request.alpha_before));
+    view.steady_from_world = clip_from_view * view_from_world(view.world_from_camera);
+    view.previous_from_world = clip_from_view * view_from_world(before);
+
+    return with_jitter(view, request.jitter);
+}
+
+RenderView with_jitter(const RenderView& view, const Vec2& jitter) {
+    // Clip space moves by a share of w, whatever the distance.
+    Mat4 shift(1.0f);
+    shift[3][0] = 2.0f * jitter.x / static_cast<float>(view.width);
+    shift[3][1] = 2.0f * jitter.y / static_cast<float>(view.height);
+    RenderView jittered = view;
+    jittered.jitter = jitter;
+    jittered.clip_from_world = shift * view.steady_from_world;
+    return jittered;
+}
+
+RenderView make_render_view(const World& world, Entity camera, const ViewRequest& request) {
+    const Affine& current = world.get<WorldTransform>(camera).world;
+    const auto* previous = world.find<PreviousWorldTransform>(camera);
+    return make_render_view(
+        world.get<Camera>(camera),
+        current,
+        previous != nullptr ? previous->world : current,
+        request);
+}
+
+std::optional<Entity> find_camera(const World& world, std::string_view name) {
+    std::optional<Entity> found;
+    if (name.empty()) {
+        world.query<const Camera, With<WorldTransform>>().each(
+            [&](Entity entity, const Camera& camera) {
+                if (!found && camera.active) {
+                    found = entity;
+                }
+            });
+    } else {
+        world.query<const Name, With<Camera>, With<WorldTransform>>().each(
+            [&](Entity entity, const Name& its) {
+                if (!found && its.text == name) {
+                    found = entity;
+                }
+            });
+    }
+    return found;
+}
+
+Affine look_at(const Vec3& eye, const Vec3& target) {
+    const Vec3 back = normalize_or(eye - target, {0, 0, 1});
+    const Vec3 right = normalize_or(glm::cross({0, 1, 0}, back), any_perpendicular(back));
+    const Vec3 up = glm::cross(back, right);
+    Affine pose;
+    for (int i = 0; i < 3; ++i) {
+        pose.row[i] = {right[i], up[i], back[i], eye[i]};
+    }
+    return pose;
+}
+
+Vec2 sample_jitter(int index, int count) {
+    if (count <= 1) {
+        return {0, 0};
+    }
+    // Fractional parts of multiples of the plastic number's powers, in double: index may be large.
+    const double i = index + 0.5;
+    const double x = i * 0.7548776662466927;
+    const double y = i * 0.5698402909980532;
+    return {
+        static_cast<float>(x - std::floor(x) - 0.5), static_cast<float>(y - std::floor(y) - 0.5)};
+}
+
+}  // namespace limn
