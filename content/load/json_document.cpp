@@ -1,6 +1,7 @@
 #include "content/load/json_document.h"
 
 #include "ecs/base/log.h"
+#include "ecs/base/type_name.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
-#include <numeric>
 #include <unordered_set>
 
 namespace limn {
@@ -530,27 +531,6 @@ JsonValue number_of(Number number) {
     return value;
 }
 
-/// Levenshtein distance where swapping neighbors counts once too.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> before_last(b.size() + 1);
-    std::vector<std::size_t> last(b.size() + 1);
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(last.begin(), last.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replace = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            row[j] = std::min({last[j] + 1, row[j - 1] + 1, replace});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = std::min(row[j], before_last[j - 2] + 1);
-            }
-        }
-        std::swap(before_last, last);
-        std::swap(last, row);
-    }
-    return last[b.size()];
-}
-
 }  // namespace
 
 const JsonValue* JsonValue::find(std::string_view key) const {
@@ -677,27 +657,17 @@ std::string in_quotes(std::string_view text) {
     return '"' + shown + (i < text.size() ? "...\"" : "\"");
 }
 
-std::string_view
-nearest_name(std::string_view name, const std::vector<std::string_view>& candidates) {
-    constexpr std::size_t kLongestName =
-        64;  // longer ones are no typos, and the distance is quadratic
-    std::string_view nearest;
-    std::size_t nearest_distance = name.size() > kLongestName ? 0 : name.size() / 3 + 2;
-    for (const std::string_view candidate : candidates) {
-        if (candidate.size() > kLongestName) {
-            continue;
-        }
-        const std::size_t distance = edit_distance(name, candidate);
-        if (distance < nearest_distance && distance < std::max(name.size(), candidate.size())) {
-            nearest_distance = distance;
-            nearest = candidate;
-        }
-    }
-    return nearest;
-}
-
 std::string did_you_mean(std::string_view name, const std::vector<std::string_view>& candidates) {
-    const std::string_view nearest = nearest_name(name, candidates);
+    // What is long is no typo, and the search is quadratic in it.
+    constexpr std::size_t kLongestName = 64;
+    std::vector<std::string_view> short_ones;
+    std::copy_if(
+        candidates.begin(),
+        candidates.end(),
+        std::back_inserter(short_ones),
+        [](std::string_view c) { return c.size() <= kLongestName; });
+    const std::string nearest =
+        name.size() <= kLongestName ? nearest_name(name, short_ones) : std::string();
     return nearest.empty() ? "" : fmt::format(" (did you mean {}?)", nearest);
 }
 

@@ -83,10 +83,6 @@ parse_json(std::string_view text, std::string_view file, const JsonLimits& limit
 /// `text` in quotes, escaped, cut when long: what messages show of strings from a file.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
-/// The candidate that `name` most likely misspells, or "" when none is near.
-[[nodiscard]] std::string_view
-nearest_name(std::string_view name, const std::vector<std::string_view>& candidates);
-
 /// " (did you mean Z?)", or "" when nothing is near.
 [[nodiscard]] std::string
 did_you_mean(std::string_view name, const std::vector<std::string_view>& candidates);

@@ -1,0 +1,726 @@
+#include "content/load/component_json.h"
+
+#include "ecs/base/log.h"
+#include "ecs/components/light.h"
+#include "ecs/components/transform.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <limits>
+
+namespace limn {
+
+namespace {
+
+struct Reader {
+    const JsonPlace& place;
+    const FindNames& names;
+
+    Status read_fields(
+        const JsonValue& json,
+        std::span<const FieldInfo> fields,
+        void* object,
+        const std::string& path) const;
+    Status read_shape(
+        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
+    Status read_one(
+        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
+
+  private:
+    Error refuse(
+        const std::string& path,
+        SourcePosition at,
+        std::string_view found,
+        std::string_view expected) const {
+        return error_at({place.file, path}, at, found, expected);
+    }
+
+    Status read_scalar(
+        const JsonValue& json,
+        const FieldInfo& info,
+        const std::string& path,
+        double& number) const;
+    Status read_floats(
+        const JsonValue& json,
+        const FieldInfo& info,
+        std::span<float> floats,
+        const std::string& path) const;
+    Status read_integer(
+        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
+    Status
+    read_color(const JsonValue& json, std::span<float> floats, const std::string& path) const;
+    Status read_rotation(
+        const JsonValue& json, const FieldInfo& info, Quat& q, const std::string& path) const;
+    Status read_enum(
+        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
+    Status read_name(
+        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
+};
+
+std::vector<std::string_view> names_of(std::span<const FieldInfo> fields) {
+    std::vector<std::string_view> names;
+    for (const FieldInfo& field : fields) {
+        names.emplace_back(field.name);
+    }
+    return names;
+}
+
+std::string joined(const std::vector<std::string_view>& words) {
+    std::string text;
+    for (const std::string_view word : words) {
+        text += (text.empty() ? "" : " ") + std::string(word);
+    }
+    return text;
+}
+
+bool is_angle(const FieldInfo& info) {
+    return std::string_view(info.meta.unit).starts_with("rad");
+}
+
+/// "a number 0 .. 10 [m]".
+std::string expected_number(const FieldInfo& info, std::string_view noun) {
+    std::string text(noun);
+    const double low = info.meta.min;
+    const double high = info.meta.max;
+    if (std::isfinite(low) && std::isfinite(high)) {
+        text += fmt::format(" {} .. {}", low, high);
+    } else if (std::isfinite(low)) {
+        text += fmt::format(" >= {}", low);
+    } else if (std::isfinite(high)) {
+        text += fmt::format(" <= {}", high);
+    }
+    if (*info.meta.unit != '\0') {
+        text += fmt::format(" [{}]", info.meta.unit);
+    }
+    return text;
+}
+
+/// "45deg" as radians; nothing for other strings.
+std::optional<double> angle_from_text(std::string_view text) {
+    if (!text.ends_with("deg")) {
+        return std::nullopt;
+    }
+    text.remove_suffix(3);
+    double degrees_read = 0.0;
+    const char* const end = text.data() + text.size();
+    const std::from_chars_result parsed = std::from_chars(text.data(), end, degrees_read);
+    if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(degrees_read)) {
+        return std::nullopt;
+    }
+    return degrees_read * (3.14159265358979323846 / 180.0);
+}
+
+Status Reader::read_fields(
+    const JsonValue& json,
+    std::span<const FieldInfo> fields,
+    void* object,
+    const std::string& path) const {
+    if (json.kind != JsonKind::Object) {
+        return refuse(path, json.at, describe(json), "an object with the fields to set");
+    }
+    for (const JsonMember& member : json.members) {
+        const auto field = std::find_if(fields.begin(), fields.end(), [&](const FieldInfo& info) {
+            return info.name == member.key;
+        });
+        if (field == fields.end()) {
+            const std::vector<std::string_view> known = names_of(fields);
+            return refuse(
+                path,
+                member.at,
+                "the field " + in_quotes(member.key),
+                (known.empty() ? "none" : "one of " + joined(known))
+                    + did_you_mean(member.key, known));
+        }
+        const Status status = read_shape(
+            member.value,
+            *field,
+            static_cast<std::byte*>(object) + field->offset,
+            path.empty() ? member.key : path + '.' + member.key);
+        if (!status) {
+            return status;
+        }
+    }
+    return Done{};
+}
+
+Status Reader::read_shape(
+    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
+    if (info.shape == FieldShape::One) {
+        return read_one(json, info, field, path);
+    }
+    const bool is_list = info.shape == FieldShape::List;
+    if (json.kind != JsonKind::Array || (!is_list && json.items.size() != info.count)) {
+        return refuse(
+            path,
+            json.at,
+            describe(json),
+            is_list ? "an array" : fmt::format("an array of {}", info.count));
+    }
+    void* elements = field;
+    if (is_list) {
+        info.list.resize(field, 0);  // elements start from their defaults
+        info.list.resize(field, json.items.size());
+        elements = info.list.data(field);
+    }
+    for (std::size_t i = 0; i < json.items.size(); ++i) {
+        const Status status = read_one(
+            json.items[i],
+            info,
+            static_cast<std::byte*>(elements) + i * info.size,
+            fmt::format("{}[{}]", path, i));
+        if (!status) {
+            return status;
+        }
+    }
+    return Done{};
+}
+
+Status Reader::read_one(
+    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
+    switch (info.type) {
+    case FieldType::Bool:
+        if (json.kind != JsonKind::Bool) {
+            return refuse(path, json.at, describe(json), "true or false");
+        }
+        *static_cast<bool*>(field) = json.truth;
+        return Done{};
+    case FieldType::Int:
+    case FieldType::UInt:
+        return read_integer(json, info, field, path);
+    case FieldType::Double:
+        return read_scalar(json, info, path, *static_cast<double*>(field));
+    case FieldType::Float:
+    case FieldType::Vec2:
+    case FieldType::Vec3:
+    case FieldType::Vec4:
+    case FieldType::Mat3:
+    case FieldType::Mat4:
+    case FieldType::Affine:
+        return read_floats(
+            json, info, {static_cast<float*>(field), info.size / sizeof(float)}, path);
+    case FieldType::Quat:
+        return read_rotation(json, info, *static_cast<Quat*>(field), path);
+    case FieldType::IVec2:
+    case FieldType::IVec3: {
+        const std::size_t count = info.size / sizeof(int);
+        if (json.kind != JsonKind::Array || json.items.size() != count) {
+            return refuse(
+                path, json.at, describe(json), fmt::format("an array of {} integers", count));
+        }
+        FieldInfo element = info;
+        element.type = FieldType::Int;
+        element.size = sizeof(int);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Status status = read_integer(
+                json.items[i],
+                element,
+                static_cast<int*>(field) + i,
+                fmt::format("{}[{}]", path, i));
+            if (!status) {
+                return status;
+            }
+        }
+        return Done{};
+    }
+    case FieldType::String:
+        if (json.kind != JsonKind::String) {
+            return refuse(path, json.at, describe(json), "a string");
+        }
+        *static_cast<std::string*>(field) = json.text;
+        return Done{};
+    case FieldType::Enum:
+        return read_enum(json, info, field, path);
+    case FieldType::Entity:
+    case FieldType::Asset:
+        return read_name(json, info, field, path);
+    case FieldType::Struct:
+        return read_fields(json, info.fields, field, path);
+    }
+    return Done{};
+}
+
+Status Reader::read_scalar(
+    const JsonValue& json, const FieldInfo& info, const std::string& path, double& number) const {
+    const std::optional<double> angle =
+        json.kind == JsonKind::String && is_angle(info) ? angle_from_text(json.text) : std::nullopt;
+    if (json.kind != JsonKind::Number && !angle) {
+        const std::string or_degrees = is_angle(info) ? " or a string like \"45deg\"" : "";
+        return refuse(
+            path, json.at, describe(json), expected_number(info, "a number") + or_degrees);
+    }
+    const double read = angle.value_or(json.number);
+    if (!(read >= info.meta.min && read <= info.meta.max)) {
+        return refuse(path, json.at, describe(json), expected_number(info, "a number"));
+    }
+    number = read;
+    return Done{};
+}
+
+Status Reader::read_floats(
+    const JsonValue& json,
+    const FieldInfo& info,
+    std::span<float> floats,
+    const std::string& path) const {
+    const auto read_float = [&](const JsonValue& item, float& out, const std::string& where) {
+        double number = 0.0;
+        Status status = read_scalar(item, info, where, number);
+        if (!status) {
+            return status;
+        }
+        if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
+            return Status(
+                refuse(where, item.at, describe(item), "a number that fits 32-bit floating point"));
+        }
+        out = static_cast<float>(number);
+        return status;
+    };
+    if (floats.size() == 1) {
+        return read_float(json, floats[0], path);
+    }
+    if (info.meta.color && json.kind == JsonKind::String) {
+        return read_color(json, floats, path);
+    }
+    const bool without_alpha = info.meta.color && floats.size() == 4 && json.items.size() == 3;
+    if (json.kind != JsonKind::Array || (json.items.size() != floats.size() && !without_alpha)) {
+        const std::string color = info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
+        return refuse(
+            path,
+            json.at,
+            describe(json),
+            fmt::format("an array of {} numbers{}", floats.size(), color));
+    }
+    for (std::size_t i = 0; i < json.items.size(); ++i) {
+        const Status status = read_float(json.items[i], floats[i], fmt::format("{}[{}]", path, i));
+        if (!status) {
+            return status;
+        }
+    }
+    return Done{};
+}
+
+Status
+Reader::read_color(const JsonValue& json, std::span<float> floats, const std::string& path) const {
+    const std::string& text = json.text;
+    const std::size_t digits = text.size() - 1;
+    std::uint32_t code = 0;
+    bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
+    if (good) {
+        const char* const end = text.data() + text.size();
+        const std::from_chars_result parsed = std::from_chars(text.data() + 1, end, code, 16);
+        good = parsed.ec == std::errc() && parsed.ptr == end;
+    }
+    if (!good) {
+        const char* const form = floats.size() == 4 ? "#rrggbb or #rrggbbaa" : "#rrggbb";
+        return refuse(path, json.at, describe(json), std::string("a color as ") + form);
+    }
+    if (digits == 8) {
+        floats[3] = static_cast<float>(code & 0xff) / 255.0f;
+        code >>= 8;
+    }
+    for (int i = 0; i < 3; ++i) {
+        floats[i] = linear_from_srgb(static_cast<float>((code >> (16 - 8 * i)) & 0xff) / 255.0f);
+    }
+    return Done{};
+}
+
+Status Reader::read_rotation(
+    const JsonValue& json, const FieldInfo& info, Quat& q, const std::string& path) const {
+    const bool is_euler = json.kind == JsonKind::Array && json.items.size() == 3;
+    if (!is_euler && (json.kind != JsonKind::Array || json.items.size() != 4)) {
+        return refuse(
+            path,
+            json.at,
+            describe(json),
+            "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
+    }
+    FieldInfo plain = info;
+    plain.meta = {};
+    float v[4] = {};
+    const Status status = read_floats(json, plain, {v, json.items.size()}, path);
+    if (!status) {
+        return status;
+    }
+    if (is_euler) {
+        q = rotation_from_degrees({v[0], v[1], v[2]});
+        return Done{};
+    }
+    const float largest =
+        std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
+    if (largest == 0.0f) {
+        return refuse(path, json.at, "a quaternion of length 0", "one that is a rotation");
+    }
+    // First by the largest, so that no square overflows.
+    const Vec4 scaled(v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest);
+    const Vec4 unit = scaled / std::sqrt(glm::dot(scaled, scaled));
+    q = Quat(unit.w, unit.x, unit.y, unit.z);
+    return Done{};
+}
+
+Status Reader::read_integer(
+    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
+    const bool is_signed = info.type == FieldType::Int;
+    const unsigned bits = 8 * info.size;
+    const std::uint64_t high = (~std::uint64_t{0} >> (64 - bits)) >> (is_signed ? 1 : 0);
+    const std::string expected = expected_number(info, "an integer");
+    std::uint64_t magnitude = 0;
+    bool is_negative = false;
+    bool good = json.kind == JsonKind::Number;
+    if (good) {
+        std::string_view digits = json.text;
+        is_negative = digits.starts_with('-');
+        digits.remove_prefix(is_negative ? 1 : 0);
+        const char* const end = digits.data() + digits.size();
+        const std::from_chars_result parsed = std::from_chars(digits.data(), end, magnitude);
+        good = parsed.ec == std::errc() && parsed.ptr == end;
+    }
+    // Two's complement: one further below zero than above.
+    good = good && magnitude <= high + (is_signed && is_negative ? 1 : 0)
+           && (is_signed || !is_negative || magnitude == 0) && json.number >= info.meta.min
+           && json.number <= info.meta.max;
+    if (!good) {
+        const bool is_limited = std::isfinite(info.meta.min) && std::isfinite(info.meta.max);
+        const std::string width =
+            is_limited ? std::string() : fmt::format(" of {} bits", bits - (is_signed ? 1 : 0));
+        return refuse(path, json.at, describe(json), expected + width);
+    }
+    const std::uint64_t value = is_negative ? ~magnitude + 1 : magnitude;
+    std::memcpy(field, &value, info.size);  // little-endian
+    return Done{};
+}
+
+Status Reader::read_enum(
+    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
+    const auto value = std::find(info.values.begin(), info.values.end(), json.text);
+    if (json.kind != JsonKind::String || value == info.values.end()) {
+        const std::string hint =
+            json.kind == JsonKind::String ? did_you_mean(json.text, info.values) : std::string();
+        return refuse(path, json.at, describe(json), "one of " + joined(info.values) + hint);
+    }
+    const auto index = static_cast<std::uint64_t>(value - info.values.begin());
+    std::memcpy(field, &index, info.size);
+    return Done{};
+}
+
+Status Reader::read_name(
+    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
+    const bool is_entity = info.type == FieldType::Entity;
+    const std::string kind = is_entity ? "entity" : info.asset;
+    if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
+        return refuse(path, json.at, describe(json), "the name of an " + kind + ", or null");
+    }
+    bool found = false;
+    if (is_entity) {
+        Entity& entity = *static_cast<Entity*>(field);
+        std::optional<Entity> named = Entity{};
+        if (json.kind == JsonKind::String) {
+            named = names.entity ? names.entity(json.text, json.at) : std::nullopt;
+        }
+        found = named.has_value();
+        entity = named.value_or(Entity{});
+    } else {
+        std::optional<std::uint32_t> index = std::numeric_limits<std::uint32_t>::max();
+        if (json.kind == JsonKind::String) {
+            index = names.asset ? names.asset(kind, json.text) : std::nullopt;
+        }
+        found = index.has_value();
+        const std::uint32_t value = index.value_or(0);
+        std::memcpy(field, &value, sizeof(value));
+    }
+    if (!found) {
+        const std::vector<std::string_view> all =
+            names.all ? names.all(kind) : std::vector<std::string_view>();
+        return refuse(
+            path,
+            json.at,
+            fmt::format("the {} {}", kind, in_quotes(json.text)),
+            (all.empty() ? "none: there are no names of that kind here"
+                         : "the name of one that exists")
+                + did_you_mean(json.text, all));
+    }
+    return Done{};
+}
+
+/// What ranges of single fields cannot say; empty when all is well.
+std::string misfit(const ComponentInfo& info, const void* object) {
+    if (&info == &component_info<Transform>()) {
+        const Vec3 scale = static_cast<const Transform*>(object)->scale;
+        if (scale.x == 0.0f || scale.y == 0.0f || scale.z == 0.0f) {
+            return "found a scale of 0, expected one along each axis";
+        }
+    }
+    if (&info == &component_info<SpotLight>()) {
+        const auto* light = static_cast<const SpotLight*>(object);
+        if (light->inner_angle > light->outer_angle) {
+            return fmt::format(
+                "found an inner_angle {} beyond the outer_angle {}, expected at most that",
+                light->inner_angle,
+                light->outer_angle);
+        }
+    }
+    return "";
+}
+
+JsonValue write_floats(const FieldInfo& info, const void* field) {
+    const auto* floats = static_cast<const float*>(field);
+    std::vector<JsonValue> items;
+    for (std::size_t i = 0; i < info.size / sizeof(float); ++i) {
+        items.push_back(json_of(floats[i]));
+    }
+    return items.size() == 1 ? items[0] : json_array(std::move(items));
+}
+
+JsonValue write_integer(const FieldInfo& info, const void* field) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, field, info.size);
+    if (info.type == FieldType::UInt) {
+        return json_of(value);
+    }
+    const unsigned unused = 64 - 8 * info.size;  // sign bits come back with the shift
+    return json_of(static_cast<std::int64_t>(value << unused) >> unused);
+}
+
+JsonValue
+write_fields(std::span<const FieldInfo> fields, const void* object, const GiveNames& names) {
+    JsonValue json = json_object();
+    for (const FieldInfo& field : fields) {
+        const void* place = static_cast<const std::byte*>(object) + field.offset;
+        json.members.push_back({field.name, {}, write_field(field, place, names)});
+    }
+    return json;
+}
+
+JsonValue write_name(const std::string& name) {
+    return name.empty() ? JsonValue() : json_of(std::string_view(name));
+}
+
+JsonValue write_one(const FieldInfo& info, const void* field, const GiveNames& names) {
+    switch (info.type) {
+    case FieldType::Bool:
+        return json_of(*static_cast<const bool*>(field));
+    case FieldType::Int:
+    case FieldType::UInt:
+        return write_integer(info, field);
+    case FieldType::Double:
+        return json_of(*static_cast<const double*>(field));
+    case FieldType::IVec2:
+    case FieldType::IVec3: {
+        JsonValue json = json_array();
+        for (std::size_t i = 0; i < info.size / sizeof(int); ++i) {
+            json.items.push_back(json_of(std::int64_t{static_cast<const int*>(field)[i]}));
+        }
+        return json;
+    }
+    case FieldType::Quat: {
+        const Quat& q = *static_cast<const Quat*>(field);
+        return json_array({json_of(q.x), json_of(q.y), json_of(q.z), json_of(q.w)});
+    }
+    case FieldType::String:
+        return json_of(std::string_view(*static_cast<const std::string*>(field)));
+    case FieldType::Enum: {
+        std::uint64_t index = 0;
+        std::memcpy(&index, field, info.size);
+        return index < info.values.size() ? json_of(info.values[index]) : JsonValue();
+    }
+    case FieldType::Entity:
+        return write_name(names.entity ? names.entity(*static_cast<const Entity*>(field)) : "");
+    case FieldType::Asset: {
+        std::uint32_t index = 0;
+        std::memcpy(&index, field, sizeof(index));
+        return write_name(names.asset ? names.asset(info.asset, index) : "");
+    }
+    case FieldType::Struct:
+        return write_fields(info.fields, field, names);
+    default:
+        return write_floats(info, field);
+    }
+}
+
+/// Calls visit(info, element) with every element that is no struct.
+template <typename Visit>
+void for_each_element(std::span<const FieldInfo> fields, void* object, const Visit& visit) {
+    for (const FieldInfo& info : fields) {
+        void* elements = static_cast<std::byte*>(object) + info.offset;
+        std::size_t count = info.shape == FieldShape::Array ? info.count : 1;
+        if (info.shape == FieldShape::List) {
+            count = info.list.size(elements);
+            elements = info.list.data(elements);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            void* element = static_cast<std::byte*>(elements) + i * info.size;
+            if (info.type == FieldType::Struct) {
+                for_each_element(info.fields, element, visit);
+            } else {
+                visit(info, element);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Error error_at(
+    const JsonPlace& place, SourcePosition at, std::string_view found, std::string_view expected) {
+    std::string line(place.file);
+    if (at.line > 0) {
+        line += fmt::format(":{}:{}", at.line, at.column);
+    }
+    if (!place.path.empty()) {
+        line += ": " + place.path;
+    }
+    return fail("{}: found {}, expected {}", line, found, expected);
+}
+
+Status read_component(
+    const JsonValue& json,
+    const ComponentInfo& info,
+    void* object,
+    const JsonPlace& place,
+    const FindNames& names) {
+    Status status = Reader{place, names}.read_fields(json, info.fields, object, place.path);
+    if (!status) {
+        return status;
+    }
+    if (const std::string problem = misfit(info, object); !problem.empty()) {
+        return fail(
+            "{}:{}:{}: {}: {}", place.file, json.at.line, json.at.column, place.path, problem);
+    }
+    return status;
+}
+
+Result<AnyComponent> read_component(
+    const JsonValue& json,
+    const ComponentInfo& info,
+    const JsonPlace& place,
+    const FindNames& names) {
+    AnyComponent component(info);
+    const Status status = read_component(json, info, component.data(), place, names);
+    if (!status) {
+        return status.error();
+    }
+    return component;
+}
+
+Status read_field(
+    const JsonValue& json,
+    const FieldInfo& info,
+    void* field,
+    const JsonPlace& place,
+    const FindNames& names) {
+    return Reader{place, names}.read_shape(json, info, field, place.path);
+}
+
+JsonValue write_component(const ComponentInfo& info, const void* object, const GiveNames& names) {
+    return write_fields(info.fields, object, names);
+}
+
+JsonValue write_field(const FieldInfo& info, const void* field, const GiveNames& names) {
+    if (info.shape == FieldShape::One) {
+        return write_one(info, field, names);
+    }
+    const void* elements = field;
+    std::size_t count = info.count;
+    if (info.shape == FieldShape::List) {
+        count = info.list.size(field);
+        elements = info.list.data(const_cast<void*>(field));  // read only
+    }
+    JsonValue json = json_array();
+    for (std::size_t i = 0; i < count; ++i) {
+        const void* element = static_cast<const std::byte*>(elements) + i * info.size;
+        json.items.push_back(write_one(info, element, names));
+    }
+    return json;
+}
+
+Result<FieldPlace> find_field(const ComponentInfo& info, void* object, std::string_view path) {
+    std::span<const FieldInfo> fields = info.fields;
+    FieldPlace place{nullptr, object};
+    while (true) {
+        const std::string_view name = path.substr(0, path.find('.'));
+        const auto field = std::find_if(
+            fields.begin(), fields.end(), [&](const FieldInfo& f) { return f.name == name; });
+        if (field == fields.end()) {
+            const std::vector<std::string_view> known = names_of(fields);
+            return fail(
+                "found the field {}, expected {}{}",
+                in_quotes(name),
+                known.empty() ? "none" : "one of " + joined(known),
+                did_you_mean(name, known));
+        }
+        place.info = &*field;
+        place.field = static_cast<std::byte*>(place.field) + field->offset;
+        if (name.size() == path.size()) {
+            return place;
+        }
+        if (field->type != FieldType::Struct || field->shape != FieldShape::One) {
+            return fail(
+                "found {} behind {}, expected a field that has fields",
+                in_quotes(path.substr(name.size())),
+                in_quotes(name));
+        }
+        path.remove_prefix(name.size() + 1);
+        fields = field->fields;
+    }
+}
+
+int float_count(const FieldInfo& info) {
+    if (info.shape != FieldShape::One) {
+        return 0;
+    }
+    switch (info.type) {
+    case FieldType::Float:
+        return 1;
+    case FieldType::Vec2:
+        return 2;
+    case FieldType::Vec3:
+        return 3;
+    case FieldType::Vec4:
+        return 4;
+    default:
+        return 0;
+    }
+}
+
+void for_each_entity(
+    std::span<const FieldInfo> fields, void* object, const std::function<void(Entity&)>& visit) {
+    for_each_element(fields, object, [&](const FieldInfo& info, void* element) {
+        if (info.type == FieldType::Entity) {
+            visit(*static_cast<Entity*>(element));
+        }
+    });
+}
+
+void for_each_asset(
+    std::span<const FieldInfo> fields,
+    void* object,
+    const std::function<void(std::string_view, std::uint32_t&)>& visit) {
+    for_each_element(fields, object, [&](const FieldInfo& info, void* element) {
+        if (info.type == FieldType::Asset) {
+            std::uint32_t index = 0;
+            std::memcpy(&index, element, sizeof(index));
+            visit(info.asset, index);
+            std::memcpy(element, &index, sizeof(index));
+        }
+    });
+}
+
+Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {
+    // In double, so that the angles of a quarter turn give exact-looking matrices.
+    const auto about = [](double angle_deg, int axis) {
+        const double half = angle_deg * (3.14159265358979323846 / 360.0);
+        glm::dquat q(std::cos(half), 0.0, 0.0, 0.0);
+        q[axis] = std::sin(half);
+        return q;
+    };
+    const glm::dquat q = about(static_cast<double>(yaw_pitch_roll.x), 1)
+                         * about(static_cast<double>(yaw_pitch_roll.y), 0)
+                         * about(static_cast<double>(yaw_pitch_roll.z), 2);
+    return Quat(glm::normalize(q));
+}
+
+float linear_from_srgb(float srgb) {
+    return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
+
+}  // namespace limn
