@@ -30,7 +30,7 @@ struct PointLight {
     Vec3 color = {1, 1, 1};   ///< linear, >= 0
     float intensity = 10.0f;  ///< [cd], >= 0
     float radius = 10.0f;     ///< where it has faded to nothing [m]; 0: never fades to nothing
-    Attenuation attenuation;
+    Attenuation attenuation = {};
     bool enabled = true;
 };
 
@@ -41,7 +41,7 @@ struct SpotLight {
     Vec3 color = {1, 1, 1};
     float intensity = 20.0f;  ///< [cd]
     float radius = 15.0f;     ///< [m]
-    Attenuation attenuation;
+    Attenuation attenuation = {};
     float inner_angle = radians(20.0f);  ///< half angle of full light [rad], 0 .. outer_angle
     float outer_angle = radians(30.0f);  ///< half angle where it ends [rad], inner_angle .. pi/2
     SpotProfile profile = SpotProfile::Smoothstep;

@@ -1,0 +1,38 @@
+#include "ecs/components/all.h"
+
+#include "ecs/components/camera.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/input.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+
+namespace limn {
+
+void register_all_components() {
+    register_component<Name>();
+    register_component<Transform>();
+    register_component<WorldTransform>();
+    register_component<PreviousWorldTransform>();
+    register_component<Teleport>();
+    register_component<Spin>();
+    register_component<Sway>();
+    register_component<MeshInstance>();
+    register_component<PointLight>();
+    register_component<SpotLight>();
+    register_component<DirectionalLight>();
+    register_component<LightPulse>();
+    register_component<Camera>();
+    register_component<OrbitCamera>();
+    register_component<FlyCamera>();
+
+    register_resource<FrameTime>();
+    register_resource<RandomSeed>();
+    register_resource<Input>();
+    register_resource<Environment>();
+    register_resource<Exposure>();
+}
+
+}  // namespace limn
