@@ -1,0 +1,82 @@
+#pragma once
+
+#include "ecs/base/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+struct ImageData;
+
+// OpenEXR pictures with any number of named channels (hdr.openexr): linear light for further work,
+// and the buffers a frame was made from. A layer is a prefix: "normal.X", "normal.Y", "normal.Z";
+// the picture itself is R, G, B and A without one. Values are floats in memory whatever the file
+// holds: a half goes through a float and back without a change (hdr.float-formats); a 32 bit
+// integer rounds to a float.
+//
+// Scan-line files of one part; tiled, deep, multi-part and subsampled (luminance/chroma) files are
+// errors that say so.
+
+enum class ExrCompression : std::uint8_t { None, Rle, Zips, Zip, Piz };
+
+struct ExrChannel {
+    std::string name;           ///< "R", "depth.Z" ...
+    bool half = false;          ///< stored with 16 bits in the file, else 32
+    std::vector<float> values;  ///< width * height, rows from top to bottom
+};
+
+struct ExrImage {
+    int width = 0;   ///< of the data window [pixels], > 0
+    int height = 0;  ///< of the data window [pixels], > 0
+    int x = 0;       ///< where the data window begins
+    int y = 0;
+    std::vector<ExrChannel> channels = {};  ///< names differ; the file orders them by name
+    std::vector<std::pair<std::string, std::string>> metadata = {};  ///< text attributes by name
+};
+
+struct ExrLimits {
+    int max_size = 16384;                             ///< pixels along either side
+    std::int64_t max_values = std::int64_t{1} << 28;  ///< width * height * channels; 1 GiB
+    int max_channels = 1024;
+};
+
+/// Reads the file `path`. Fails with "path: found X, expected Y".
+[[nodiscard]] Result<ExrImage> read_exr(const std::string& path, const ExrLimits& limits = {});
+
+/// The same from memory; `place` begins the message of an error.
+[[nodiscard]] Result<ExrImage> decode_exr(
+    std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits = {});
+
+/// Writes the file whole or not at all. Finite values beyond the range of a half become its
+/// largest, 65504, in half channels; infinities and NaN stay what they are.
+[[nodiscard]] Status write_exr(
+    const std::string& path,
+    const ExrImage& image,
+    ExrCompression compression = ExrCompression::Zip);
+
+/// Appends the channels "layer.X" ... for the letters of `letters`, from interleaved `values` with
+/// one value a letter. An empty `layer` gives plain "R", "G" ...
+void add_layer(
+    ExrImage& image,
+    std::string_view layer,
+    std::string_view letters,
+    std::span<const float> values,
+    bool half);
+
+/// The channel called `name`, or null.
+[[nodiscard]] const ExrChannel* find_channel(const ExrImage& image, std::string_view name);
+
+/// Replaces NaN by 0 and infinities by the largest half of their sign; returns how many there were.
+std::size_t replace_non_finite(std::span<float> values);
+
+/// R, G, B and A as an image for a texture: Rgba16F where all are half, else Rgba32F. Without R, G
+/// and B it is gray, from Y or else the first channel; a missing alpha is 1.
+[[nodiscard]] ImageData to_image_data(const ExrImage& image, const std::string& name);
+
+}  // namespace limn

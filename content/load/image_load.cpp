@@ -1,0 +1,204 @@
+#include "content/load/image_load.h"
+
+#include "content/load/atomic_file.h"
+#include "content/load/exr_file.h"
+#include "content/load/png_check.h"
+#include "ecs/base/log.h"
+#include "ecs/components/surface.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+namespace limn {
+
+namespace {
+
+/// The reader for files that begin like `bytes`; "" when unknown.
+std::string sniff_format(std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    constexpr std::pair<std::string_view, const char*> kMagic[] = {
+        {"\x89PNG\r\n\x1a\n", "png"},
+        {"\xff\xd8\xff", "jpeg"},
+        {"BM", "bmp"},
+        {"#?RADIANCE", "hdr"},
+        {"#?RGBE", "hdr"},
+        {"\x76\x2f\x31\x01", "exr"},
+    };
+    for (const auto& [magic, format] : kMagic) {
+        if (text.starts_with(magic)) {
+            return format;
+        }
+    }
+    if (text.starts_with("RIFF")
+        && text.substr(std::min<std::size_t>(text.size(), 8)).starts_with("WEBP")) {
+        return "webp";
+    }
+    return "";
+}
+
+/// libjpeg fills a picture that ends early with gray and OpenImageIO takes it; so ask for its end
+/// mark.
+bool is_truncated_jpeg(std::span<const std::byte> bytes) {
+    constexpr std::string_view kEnd = "\xff\xd9";
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return text.rfind(kEnd) == std::string_view::npos;
+}
+
+/// First line of a library's message, which may have many.
+std::string one_line(std::string message) {
+    message.resize(std::min(message.find('\n'), message.size()));
+    return message.empty() ? "the reader does not say why" : message;
+}
+
+template <typename T>
+T one();
+template <>
+std::uint8_t one() {
+    return 255;
+}
+template <>
+float one() {
+    return 1.0f;
+}
+/// Spreads `count` pixels of `channels` interleaved values to RGBA, in place of nothing.
+template <typename T>
+void expand_to_rgba(const T* source, std::size_t count, int channels, T* rgba) {
+    for (std::size_t i = 0; i < count; ++i, source += channels, rgba += 4) {
+        const bool gray = channels < 3;
+        rgba[0] = source[0];
+        rgba[1] = source[gray ? 0 : 1];
+        rgba[2] = source[gray ? 0 : 2];
+        rgba[3] = channels == 2 ? source[1] : channels >= 4 ? source[3] : one<T>();
+    }
+}
+
+template <typename T>
+bool read_pixels(
+    OIIO::ImageInput& input, int channels, std::vector<std::uint8_t>& pixels, OIIO::TypeDesc type) {
+    const std::size_t width = static_cast<std::size_t>(input.spec().width);
+    const std::size_t height = static_cast<std::size_t>(input.spec().height);
+    std::vector<T> source(width * height * static_cast<std::size_t>(channels));
+    if (!input.read_image(0, 0, 0, channels, type, source.data())) {
+        return false;
+    }
+    pixels.resize(width * height * 4 * sizeof(T));
+    expand_to_rgba(source.data(), width * height, channels, reinterpret_cast<T*>(pixels.data()));
+    return true;
+}
+
+Result<ImageData> decode(
+    std::span<const std::byte> bytes,
+    const std::string& place,
+    bool srgb,
+    const ImageLimits& limits) {
+    const std::string format = sniff_format(bytes);
+    if (bytes.empty()) {
+        return fail("{}: found nothing, expected a picture", place);
+    }
+    if (format.empty()) {
+        return fail(
+            "{}: found {} bytes of an unknown kind, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
+            "picture",
+            place,
+            bytes.size());
+    }
+    if (format == "png") {
+        if (Status status = check_png(bytes, place); !status) {
+            return status.error();
+        }
+    }
+    if (format == "jpeg" && is_truncated_jpeg(bytes)) {
+        return fail("{}: the JPEG picture ends early", place);
+    }
+
+    if (format == "exr") {
+        const ExrLimits exr_limits{
+            .max_size = limits.max_size, .max_values = 4 * limits.max_pixels, .max_channels = 64};
+        const Result<ExrImage> picture = decode_exr(bytes, place, exr_limits);
+        if (!picture) {
+            return picture.error();
+        }
+        return to_image_data(*picture, place);
+    }
+
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+    if (input == nullptr || !input->supports("ioproxy") || !input->set_ioproxy(&memory)) {
+        OIIO::geterror();
+        return fail("{}: this OpenImageIO cannot read {} pictures from memory", place, format);
+    }
+    OIIO::ImageSpec spec;
+    if (!input->open(place, spec, wishes)) {
+        return fail("{}: broken {} picture: {}", place, format, one_line(input->geterror()));
+    }
+    if (spec.width <= 0 || spec.height <= 0 || spec.width > limits.max_size
+        || spec.height > limits.max_size
+        || std::int64_t{spec.width} * spec.height > limits.max_pixels) {
+        return fail(
+            "{}: found {} x {} pixels, expected at most {} along a side and {} in all",
+            place,
+            spec.width,
+            spec.height,
+            limits.max_size,
+            limits.max_pixels);
+    }
+    if (spec.depth > 1 || spec.nchannels < 1 || spec.deep) {
+        return fail("{}: found a deep or volume picture, expected a flat one", place);
+    }
+
+    ImageData image;
+    image.name = place;
+    image.width = spec.width;
+    image.height = spec.height;
+    const int channels = std::min(spec.nchannels, 4);
+    bool complete = false;
+    if (spec.format.is_floating_point()) {
+        image.format = PixelFormat::Rgba32F;
+        complete = read_pixels<float>(*input, channels, image.pixels, OIIO::TypeFloat);
+    } else {
+        image.srgb = srgb;
+        complete = read_pixels<std::uint8_t>(*input, channels, image.pixels, OIIO::TypeUInt8);
+    }
+    if (!complete || input->has_error()) {
+        return fail("{}: broken {} picture: {}", place, format, one_line(input->geterror()));
+    }
+    return image;
+}
+
+}  // namespace
+
+Result<ImageData> load_image(const std::string& path, bool srgb, const ImageLimits& limits) {
+    const Result<std::vector<std::byte>> bytes = read_file(path);
+    if (!bytes) {
+        return bytes.error();
+    }
+    Result<ImageData> image = decode_image(*bytes, path, srgb, limits);
+    if (image) {
+        image->name = std::filesystem::path(path).stem().string();
+    }
+    return image;
+}
+
+Result<ImageData> decode_image(
+    std::span<const std::byte> bytes,
+    const std::string& place,
+    bool srgb,
+    const ImageLimits& limits) {
+    try {
+        return decode(bytes, place, srgb, limits);
+    } catch (const std::exception& exception) {
+        return fail("{}: broken picture: {}", place, one_line(exception.what()));
+    }
+}
+
+}  // namespace limn

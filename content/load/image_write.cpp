@@ -1,0 +1,86 @@
+#include "content/load/image_write.h"
+
+#include "content/load/atomic_file.h"
+#include "ecs/base/log.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <exception>
+#include <memory>
+#include <vector>
+
+namespace limn {
+
+namespace {
+
+/// The PNG as bytes; `values` has width * height * channels entries of `type`.
+Result<std::vector<unsigned char>>
+encode_png(int width, int height, int channels, OIIO::TypeDesc type, const void* values) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
+    if (output == nullptr || !output->set_ioproxy(&memory)) {
+        return fail("this OpenImageIO cannot write PNG: {}", OIIO::geterror());
+    }
+    OIIO::ImageSpec spec(width, height, channels, type);
+    if (channels == 2 || channels == 4) {
+        spec.alpha_channel = channels - 1;
+    }
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (!output->open("memory.png", spec) || !output->write_image(type, values)
+        || !output->close()) {
+        return fail("cannot encode PNG: {}", output->geterror());
+    }
+    return bytes;
+}
+
+Status write_values(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    OIIO::TypeDesc type,
+    std::size_t count,
+    const void* values) {
+    LIMN_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
+    LIMN_CHECK(
+        count
+        == static_cast<std::size_t>(width) * static_cast<std::size_t>(height)
+               * static_cast<std::size_t>(channels));
+    try {
+        const Result<std::vector<unsigned char>> bytes =
+            encode_png(width, height, channels, type, values);
+        if (!bytes) {
+            return fail("{}: {}", path, bytes.error().message);
+        }
+        return write_file(path, std::as_bytes(std::span(*bytes)));
+    } catch (const std::exception& exception) {
+        return fail("{}: cannot encode PNG: {}", path, exception.what());
+    }
+}
+
+}  // namespace
+
+Status write_png(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    std::span<const std::uint8_t> pixels) {
+    return write_values(
+        path, width, height, channels, OIIO::TypeUInt8, pixels.size(), pixels.data());
+}
+
+Status write_png16(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    std::span<const std::uint16_t> pixels) {
+    return write_values(
+        path, width, height, channels, OIIO::TypeUInt16, pixels.size(), pixels.data());
+}
+
+}  // namespace limn

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "ecs/base/result.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace limn {
+
+// PNG, encoded in memory by OpenImageIO and written whole or not at all (atomic_file.h). Values are
+// what a display gets: sRGB encoded, alpha not multiplied into the color. Equal pixels give equal
+// files.
+
+/// Writes `width` x `height` pixels of `channels` (1 gray, 2 gray and alpha, 3 RGB, 4 RGBA)
+/// interleaved values, rows from top to bottom.
+[[nodiscard]] Status write_png(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    std::span<const std::uint8_t> pixels);
+
+/// The same with 16 bits a value, for ramps that 8 bits would band.
+[[nodiscard]] Status write_png16(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    std::span<const std::uint16_t> pixels);
+
+}  // namespace limn

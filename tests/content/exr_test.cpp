@@ -1,0 +1,256 @@
+#include "content/load/atomic_file.h"
+#include "content/load/exr_file.h"
+#include "ecs/components/surface.h"
+#include "tests/support.h"
+
+#include <Imath/half.h>
+#include <OpenImageIO/imageio.h>
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+using namespace limn;
+using limn::test::TemporaryFolder;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// 256 x 256 values: every bit pattern of a half but the NaNs, which become 0.
+ExrImage make_all_halves() {
+    ExrImage image{.width = 256, .height = 256};
+    std::vector<float> values(65536);
+    for (std::uint32_t i = 0; i < 65536; ++i) {
+        half h;
+        h.setBits(static_cast<std::uint16_t>(i));
+        values[i] = h.isNan() ? 0.0f : static_cast<float>(h);
+    }
+    add_layer(image, "", "R", values, true);
+    return image;
+}
+
+ExrImage make_picture() {
+    ExrImage image{.width = 7, .height = 5, .metadata = {{"limn/time", "1.5"}, {"owner", "tests"}}};
+    std::vector<float> color;
+    std::vector<float> depth;
+    std::vector<float> normal;
+    for (int i = 0; i < 35; ++i) {
+        color.insert(color.end(), {0.5f * float(i), 1.0f, 1024.0f, 0.25f});
+        depth.push_back(std::ldexp(1.1f, i - 20));
+        normal.insert(normal.end(), {0.1f * float(i), -1.0f, 0.3f});
+    }
+    add_layer(image, "", "RGBA", color, true);
+    add_layer(image, "depth", "Z", depth, false);
+    add_layer(image, "normal", "XYZ", normal, false);
+    return image;
+}
+
+std::vector<std::byte>
+bytes_of(const ExrImage& image, ExrCompression compression = ExrCompression::Zip) {
+    const TemporaryFolder folder;
+    REQUIRE(write_exr(folder.file("a.exr"), image, compression).ok());
+    return read_file(folder.file("a.exr")).value();
+}
+
+/// Where the value of the header attribute `name` of `type` begins.
+std::size_t find_attribute(
+    const std::vector<std::byte>& bytes, const std::string& name, const std::string& type) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string key = name + '\0' + type + '\0';
+    const std::size_t at = text.find(key);
+    REQUIRE(at != std::string_view::npos);
+    return at + key.size() + 4;
+}
+
+}  // namespace
+
+TEST_CASE("exr: halves are IEEE 754 binary16, rounded to even") {
+    CHECK(half(1.0f).bits() == 0x3C00);
+    CHECK(half(0.5f).bits() == 0x3800);
+    CHECK(half(0.1f).bits() == 0x2E66);
+    CHECK(half(1.0f / 3.0f).bits() == 0x3555);
+    CHECK(half(0.18f).bits() == 0x31C3);
+    CHECK(half(65504.0f).bits() == 0x7BFF);
+    CHECK(half(std::ldexp(1.0f, -14)).bits() == 0x0400);
+    CHECK(half(std::ldexp(1.0f, -24)).bits() == 0x0001);
+    CHECK(half(65519.0f).bits() == 0x7BFF);
+    CHECK(std::isinf(static_cast<float>(half(65520.0f))));
+    CHECK(static_cast<float>(half(0.1f)) == doctest::Approx(0.0999756).epsilon(1e-6));
+    CHECK(65504.0 / std::ldexp(1.0, -14) > 1e5);
+}
+
+TEST_CASE("exr: every half goes through a float and back without a change") {
+    for (std::uint32_t i = 0; i < 65536; ++i) {
+        half h;
+        h.setBits(static_cast<std::uint16_t>(i));
+        const half back(static_cast<float>(h));
+        if (h.isNan()) {
+            CHECK(back.isNan());
+        } else {
+            REQUIRE(back.bits() == h.bits());
+        }
+    }
+}
+
+TEST_CASE("exr: a half picture reads back bit for bit with every compression") {
+    const ExrImage image = make_all_halves();
+    for (const ExrCompression compression :
+         {ExrCompression::None,
+          ExrCompression::Rle,
+          ExrCompression::Zips,
+          ExrCompression::Zip,
+          ExrCompression::Piz}) {
+        const std::vector<std::byte> bytes = bytes_of(image, compression);
+        const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+        CHECK(std::memcmp(bytes.data(), magic, 4) == 0);
+        const Result<ExrImage> back = decode_exr(bytes, "a.exr");
+        REQUIRE(back.ok());
+        REQUIRE(back->channels.size() == 1);
+        CHECK(back->channels[0].half);
+        CHECK(
+            std::memcmp(back->channels[0].values.data(), image.channels[0].values.data(), 65536 * 4)
+            == 0);
+    }
+}
+
+TEST_CASE("exr: layers, types, window and metadata survive") {
+    ExrImage image = make_picture();
+    image.x = -3;
+    image.y = 12;
+    const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
+    REQUIRE(back.ok());
+    CHECK(back->width == 7);
+    CHECK(back->height == 5);
+    CHECK(back->x == -3);
+    CHECK(back->y == 12);
+    REQUIRE(back->channels.size() == 8);
+    for (const ExrChannel& channel : image.channels) {
+        const ExrChannel* found = find_channel(*back, channel.name);
+        REQUIRE(found != nullptr);
+        CHECK(found->half == channel.half);
+        CHECK(found->values == channel.values);
+    }
+    for (const auto& entry : image.metadata) {
+        CHECK(
+            std::find(back->metadata.begin(), back->metadata.end(), entry) != back->metadata.end());
+    }
+}
+
+TEST_CASE("exr: OpenImageIO sees the same channels and values") {
+    const TemporaryFolder folder;
+    const ExrImage image = make_picture();
+    REQUIRE(write_exr(folder.file("a.exr"), image).ok());
+    const auto input = OIIO::ImageInput::open(folder.file("a.exr"));
+    REQUIRE(input != nullptr);
+    const OIIO::ImageSpec& spec = input->spec();
+    CHECK(spec.width == 7);
+    CHECK(spec.height == 5);
+    REQUIRE(spec.nchannels == 8);
+    CHECK(std::string(spec.get_string_attribute("compression")) == "zip");
+    std::vector<float> values(7 * 5 * 8);
+    REQUIRE(input->read_image(0, 0, 0, 8, OIIO::TypeFloat, values.data()));
+    for (int c = 0; c < 8; ++c) {
+        const ExrChannel* channel =
+            find_channel(image, spec.channelnames[static_cast<std::size_t>(c)]);
+        REQUIRE(channel != nullptr);
+        for (int i = 0; i < 35; ++i) {
+            CHECK(values[8 * i + c] == channel->values[static_cast<std::size_t>(i)]);
+        }
+    }
+}
+
+TEST_CASE("exr: half channels keep finite values finite, infinities infinite and NaN a NaN") {
+    ExrImage image{.width = 4, .height = 1};
+    const float infinity = std::numeric_limits<float>::infinity();
+    add_layer(image, "", "R", std::vector<float>{1e9f, -1e9f, infinity, std::nanf("")}, true);
+    const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
+    REQUIRE(back.ok());
+    const std::vector<float>& values = back->channels[0].values;
+    CHECK(values[0] == 65504.0f);
+    CHECK(values[1] == -65504.0f);
+    CHECK(values[2] == infinity);
+    CHECK(std::isnan(values[3]));
+}
+
+TEST_CASE("exr: non-finite values are replaced and counted") {
+    std::vector<float> values = {1, std::nanf(""), INFINITY, -INFINITY, -2};
+    CHECK(replace_non_finite(values) == 3);
+    CHECK(values == std::vector<float>{1, 0, 65504, -65504, -2});
+    CHECK(replace_non_finite(values) == 0);
+}
+
+TEST_CASE("exr: as a texture a missing alpha is 1 and a lone channel is gray") {
+    ExrImage image{.width = 1, .height = 1};
+    add_layer(image, "", "Y", std::vector<float>{0.5f}, true);
+    const ImageData texture = to_image_data(image, "gray");
+    CHECK(texture.format == PixelFormat::Rgba16F);
+    REQUIRE(texture.pixels.size() == 8);
+    std::uint16_t bits[4];
+    std::memcpy(bits, texture.pixels.data(), 8);
+    CHECK(bits[0] == 0x3800);
+    CHECK(bits[2] == 0x3800);
+    CHECK(bits[3] == 0x3C00);
+}
+
+TEST_CASE("exr: broken files are errors of one line") {
+    const std::vector<std::byte> good = bytes_of(make_picture());
+    std::vector<std::byte> wrong_magic = good;
+    wrong_magic[0] = std::byte{0x77};
+    std::vector<std::byte> truncated = good;
+    truncated.resize(good.size() * 2 / 3);
+    std::vector<std::byte> negative = good;
+    const std::int32_t minus_five = -5;
+    std::memcpy(&negative[find_attribute(good, "dataWindow", "box2i") + 8], &minus_five, 4);
+    std::vector<std::byte> absurd = good;
+    const std::int32_t large = 2'000'000'000;
+    std::memcpy(&absurd[find_attribute(good, "dataWindow", "box2i") + 12], &large, 4);
+    std::vector<std::byte> wide = good;
+    const std::int32_t wide_max = 40'000;
+    std::memcpy(&wide[find_attribute(good, "dataWindow", "box2i") + 8], &wide_max, 4);
+    std::vector<std::byte> deep = good;
+    deep[5] |= std::byte{0x08};
+    std::vector<std::byte> tiled = good;
+    tiled[5] |= std::byte{0x02};
+
+    const std::pair<const char*, std::vector<std::byte>> cases[] = {
+        {"expected 76 2f 31 01", wrong_magic},
+        {"", truncated},
+        {"", negative},
+        {"", absurd},
+        {"40001 x 5", wide},
+        {"deep OpenEXR file, which is unsupported", deep},
+        {"tiled OpenEXR file, which is unsupported", tiled},
+        {"0 bytes", {}},
+    };
+    for (const auto& [expected, bytes] : cases) {
+        CAPTURE(expected);
+        const Result<ExrImage> image = decode_exr(bytes, "a.exr");
+        REQUIRE_FALSE(image.ok());
+        const std::string& message = image.error().message;
+        CAPTURE(message);
+        CHECK(message.starts_with("a.exr: "));
+        CHECK(contains(message, expected));
+        CHECK_FALSE(contains(message, "\n"));
+    }
+    CHECK(contains(read_exr("/nonexistent/a.exr").error().message, "no such file"));
+}
+
+TEST_CASE("exr: a damaged byte never does more than fail") {
+    const std::vector<std::byte> good = bytes_of(make_picture());
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
+            std::vector<std::byte> bad = good;
+            bad[i] ^= static_cast<std::byte>(flip);
+            (void)decode_exr(bad, "bad", {.max_size = 256, .max_values = 1 << 20});
+        }
+    }
+    for (std::size_t size = 0; size < good.size(); ++size) {
+        CHECK_FALSE(decode_exr(std::span(good).first(size), "short").ok());
+    }
+}
