@@ -1,0 +1,53 @@
+#pragma once
+
+#include "content/app/frame_statistics.h"
+#include "ecs/base/math.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+// The numbers of a bench run and the three ways they are written. All times in milliseconds.
+
+enum class BenchClock : std::uint8_t { Cpu, Gpu };
+enum class BenchKind : std::uint8_t { Frame, System, Pass };
+
+/// Times of one thing, a sample a frame.
+struct BenchSeries {
+    std::string name;
+    BenchKind kind = BenchKind::Frame;
+    BenchClock clock = BenchClock::Cpu;
+    std::vector<double> samples;  ///< [ms]
+};
+
+struct BenchReport {
+    std::string scene;
+    IVec2 size = {0, 0};  ///< [pixels]
+    int frames = 0;
+    int warmup = 0;
+    int threads = 0;
+    std::string gl_renderer;
+    std::string gl_version;
+    double resident_mib = 0.0;  ///< memory of the process
+    double gpu_mib = 0.0;       ///< textures and buffers of the frame graph's pool
+    std::int64_t entities = 0;
+    std::int64_t draws = 0;      ///< of the last frame
+    std::int64_t triangles = 0;  ///< of the last frame
+    std::vector<BenchSeries> series;
+};
+
+/// The series called so, added at its first use.
+BenchSeries&
+find_series(BenchReport& report, BenchKind kind, BenchClock clock, std::string_view name);
+
+/// For people: what was run, then a table, the slowest first within each kind.
+[[nodiscard]] std::string bench_table(const BenchReport& report);
+/// The schema stands in `limn bench --help`.
+[[nodiscard]] std::string bench_json(const BenchReport& report);
+/// kind,name,clock,median_ms,p95_ms,max_ms
+[[nodiscard]] std::string bench_csv(const BenchReport& report);
+
+}  // namespace limn

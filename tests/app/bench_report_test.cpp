@@ -1,0 +1,51 @@
+#include "content/app/bench_report.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+namespace limn {
+namespace {
+
+BenchReport small_report() {
+    BenchReport report{
+        .scene = "gallery", .size = {640, 360}, .frames = 3, .warmup = 1, .threads = 2};
+    report.gl_renderer = "a \"quoted\" renderer";
+    for (const double ms : {4.0, 2.0, 3.0}) {
+        find_series(report, BenchKind::Frame, BenchClock::Cpu, "frame").samples.push_back(ms);
+        find_series(report, BenchKind::Pass, BenchClock::Gpu, "sky").samples.push_back(0.5 * ms);
+        find_series(report, BenchKind::Pass, BenchClock::Gpu, "lights").samples.push_back(ms);
+    }
+    return report;
+}
+
+}  // namespace
+
+TEST_CASE("bench_report: the JSON parses and holds median, p95 and max of every series") {
+    const nlohmann::json json = nlohmann::json::parse(bench_json(small_report()));
+    CHECK(json["scene"] == "gallery");
+    CHECK(json["size"] == nlohmann::json::array({640, 360}));
+    CHECK(json["gl"]["renderer"] == "a \"quoted\" renderer");
+    REQUIRE(json["frame"].size() == 1);
+    CHECK(json["frame"][0]["median_ms"] == 3.0);
+    CHECK(json["frame"][0]["p95_ms"] == 4.0);
+    CHECK(json["frame"][0]["max_ms"] == 4.0);
+    REQUIRE(json["passes"].size() == 2);
+    CHECK(json["passes"][0]["name"] == "sky");
+    CHECK(json["passes"][0]["clock"] == "gpu");
+    CHECK(json["systems"].empty());
+}
+
+TEST_CASE("bench_report: the CSV has a header and a line a series") {
+    const std::string csv = bench_csv(small_report());
+    CHECK(csv.starts_with("kind,name,clock,median_ms,p95_ms,max_ms\n"));
+    CHECK(csv.find("frame,frame,cpu,3.000000,4.000000,4.000000\n") != std::string::npos);
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 4);
+}
+
+TEST_CASE("bench_report: the table names the slowest pass first") {
+    const std::string table = bench_table(small_report());
+    CHECK(table.find("lights") < table.find("sky"));
+    CHECK(table.find("640 x 360") != std::string::npos);
+}
+
+}  // namespace limn
