@@ -1,0 +1,94 @@
+#include "content/app/player_camera.h"
+#include "render/render_view.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+namespace limn {
+namespace {
+
+Vec3 position_of(const Affine& pose) {
+    return {pose.row[0].w, pose.row[1].w, pose.row[2].w};
+}
+Vec3 forward_of(const Affine& pose) {
+    return -Vec3(pose.row[0].z, pose.row[1].z, pose.row[2].z);
+}
+
+void check_near(const Vec3& a, const Vec3& b, float tolerance = 1e-4f) {
+    CAPTURE(a.x);
+    CAPTURE(a.y);
+    CAPTURE(a.z);
+    CHECK(glm::distance(a, b) <= tolerance);
+}
+
+}  // namespace
+
+TEST_CASE("player_camera: flying takes over exactly where the camera stood") {
+    const Affine pose = look_at({3, 4, 5}, {0, 1, -2});
+    PlayerCamera camera;
+    start_fly(camera, pose);
+    step_fly(camera, {}, 1.0f / 60.0f);
+    check_near(position_of(camera.pose), {3, 4, 5});
+    check_near(forward_of(camera.pose), forward_of(pose));
+}
+
+TEST_CASE("player_camera: W flies forward at the set speed, four times as fast with Shift") {
+    for (const bool fast : {false, true}) {
+        PlayerCamera camera;
+        camera.fly.speed = 2.0f;
+        start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
+        for (int i = 0; i < 60; ++i) {  // until it has got up speed
+            step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
+        }
+        const float before = camera.position.z;
+        for (int i = 0; i < 60; ++i) {
+            step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
+        }
+        CHECK(camera.position.z - before == doctest::Approx(fast ? -8.0f : -2.0f).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("player_camera: two keys at once are no faster than one") {
+    PlayerCamera camera;
+    start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
+    for (int i = 0; i < 120; ++i) {
+        step_fly(camera, {.move = {1, 0, 1}}, 1.0f / 60.0f);
+    }
+    CHECK(glm::length(camera.velocity) == doctest::Approx(camera.fly.speed).epsilon(1e-3));
+}
+
+TEST_CASE("player_camera: looking up never goes over the head") {
+    PlayerCamera camera;
+    start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
+    step_fly(camera, {.look = {0, -100000}}, 1.0f / 60.0f);
+    CHECK(forward_of(camera.pose).y > 0.99f);
+    CHECK(std::isfinite(camera.pose.row[0].x));
+    CHECK(camera.pose.row[1].y > 0.0f);  // its up still points up
+}
+
+TEST_CASE("player_camera: orbit starts where the camera stood and keeps its distance") {
+    PlayerCamera camera;
+    start_orbit(camera, look_at({0, 3, 4}, {9, 9, 9}), {0, 0, 0});
+    step_orbit(camera, {}, {0, 0, 0}, 1.0f / 60.0f);
+    check_near(position_of(camera.pose), {0, 3, 4});
+    for (int i = 0; i < 20; ++i) {
+        step_orbit(camera, {.look = {37, -21}}, {0, 0, 0}, 1.0f / 60.0f);
+        CHECK(glm::length(position_of(camera.pose)) == doctest::Approx(5.0f).epsilon(1e-4));
+        check_near(forward_of(camera.pose), -position_of(camera.pose) / 5.0f, 1e-3f);
+    }
+}
+
+TEST_CASE("player_camera: the lag is the same at 30 and at 60 frames a second") {
+    PlayerCamera slow;
+    start_orbit(slow, look_at({0, 0, 5}, {0, 0, 0}), {0, 0, 0});
+    PlayerCamera quick = slow;
+    const Vec3 target = {10, 0, 0};
+    step_orbit(slow, {}, target, 1.0f / 30.0f);
+    step_orbit(quick, {}, target, 1.0f / 60.0f);
+    CHECK(quick.focus.x == doctest::Approx(9.0f).epsilon(1e-4));  // follow 0.9 leaves a tenth
+    step_orbit(quick, {}, target, 1.0f / 60.0f);
+    CHECK(quick.focus.x == doctest::Approx(9.9f).epsilon(1e-4));
+    CHECK(slow.focus.x == doctest::Approx(quick.focus.x).epsilon(1e-4));
+}
+
+}  // namespace limn
