@@ -1,0 +1,26 @@
+#pragma once
+
+#include <imgui.h>
+
+namespace limn {
+
+// How the HUD looks: dark glass, one warm accent, numbers in a monospaced face. Sizes are for a
+// display of 96 dpi and grow with its content scale and with large windows.
+
+inline const ImVec4 kHudAccent = {0.96f, 0.72f, 0.33f, 1.0f};
+inline const ImVec4 kHudText = {0.91f, 0.92f, 0.94f, 1.0f};
+inline const ImVec4 kHudDim = {0.60f, 0.63f, 0.69f, 1.0f};
+inline const ImVec4 kHudGood = {0.50f, 0.83f, 0.58f, 1.0f};
+inline const ImVec4 kHudBad = {0.96f, 0.45f, 0.40f, 1.0f};
+
+struct HudFonts {
+    ImFont* text = nullptr;
+    ImFont* numbers = nullptr;
+    ImFont* title = nullptr;
+};
+
+/// Loads the fonts (DejaVu where it is installed, ImGui's own otherwise) and sets colors and
+/// spacing of the current ImGui context for `scale` pixels a unit.
+[[nodiscard]] HudFonts apply_hud_style(float scale);
+
+}  // namespace limn

@@ -1,0 +1,179 @@
+#include "content/app/window.h"
+
+#include "ecs/base/check.h"
+#include "ecs/base/log.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr float kDragThreshold = 4.0f;  // pixels: a press that moves further is no click
+
+/// GLFW's last complaint, for the next error message; GLFW reports through a callback only.
+std::string& last_complaint() {
+    static std::string complaint;
+    return complaint;
+}
+
+/// Initializes GLFW once; false without a display.
+bool start_glfw() {
+    static const bool started = [] {
+        glfwSetErrorCallback([](int, const char* text) { last_complaint() = text; });
+        return glfwInit() == GLFW_TRUE;
+    }();
+    return started;
+}
+
+Window& window_of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+}  // namespace
+
+bool Window::has_display() {
+    return start_glfw();
+}
+
+Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
+    if (!start_glfw()) {
+        return fail("window: found no display ({}), expected one", last_complaint());
+    }
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+#if defined(LIMN_GL_DEBUG)
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+#endif
+    // The scene is drawn into textures; the window itself needs color only.
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);
+    glfwWindowHint(GLFW_STENCIL_BITS, 0);
+    glfwWindowHint(GLFW_ALPHA_BITS, 0);
+
+    GLFWmonitor* monitor = options.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
+    IVec2 size = options.size;
+    if (monitor != nullptr) {
+        const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+        size = mode != nullptr ? IVec2(mode->width, mode->height) : size;
+    }
+    std::unique_ptr<Window> window(new Window);
+    window->window_ = glfwCreateWindow(size.x, size.y, options.title.c_str(), monitor, nullptr);
+    if (window->window_ == nullptr) {
+        return fail(
+            "window: found no OpenGL 4.5 core context on this display ({}), expected one",
+            last_complaint());
+    }
+    glfwMakeContextCurrent(window->window_);
+    glfwSwapInterval(options.vsync ? 1 : 0);
+    glfwSetWindowUserPointer(window->window_, window.get());
+    window->install_callbacks();
+    return window;
+}
+
+Window::~Window() {
+    if (window_ != nullptr) {
+        glfwDestroyWindow(window_);
+    }
+}
+
+void Window::install_callbacks() {
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+        if (action != GLFW_RELEASE) {
+            window_of(window).collecting_.keys.push_back(
+                {.key = key, .modifiers = modifiers, .repeated = action == GLFW_REPEAT});
+        }
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double y) {
+        window_of(window).collecting_.wheel += static_cast<float>(y);
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        Window& self = window_of(window);
+        const Vec2 position(static_cast<float>(x), static_cast<float>(y));
+        if (self.mouse_known_) {
+            self.collecting_.mouse_motion += position - self.last_mouse_;
+        }
+        self.last_mouse_ = position;
+        self.mouse_known_ = true;
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+        Window& self = window_of(window);
+        if (button != GLFW_MOUSE_BUTTON_LEFT) {
+            return;
+        }
+        if (action == GLFW_PRESS) {
+            self.press_position_ = self.last_mouse_;
+        } else if (glm::distance(self.press_position_, self.last_mouse_) <= kDragThreshold) {
+            self.collecting_.left_clicked = true;
+        }
+    });
+}
+
+const WindowEvents& Window::poll() {
+    glfwPollEvents();
+    std::swap(events_, collecting_);
+    collecting_.keys.clear();  // keeps its memory
+    collecting_.mouse_motion = {0, 0};
+    collecting_.wheel = 0.0f;
+    collecting_.left_clicked = false;
+    return events_;
+}
+
+void Window::swap() {
+    glfwSwapBuffers(window_);
+}
+
+bool Window::wants_to_close() const {
+    return glfwWindowShouldClose(window_) == GLFW_TRUE;
+}
+
+void Window::request_close() {
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+IVec2 Window::framebuffer_size() const {
+    IVec2 size = {0, 0};
+    glfwGetFramebufferSize(window_, &size.x, &size.y);
+    return size;
+}
+
+Vec2 Window::mouse_position() const {
+    IVec2 size = {0, 0};
+    glfwGetWindowSize(window_, &size.x, &size.y);
+    const Vec2 pixels_per_unit = Vec2(framebuffer_size()) / Vec2(glm::max(size, IVec2(1)));
+    return last_mouse_ * pixels_per_unit;
+}
+
+float Window::content_scale() const {
+    float x = 1.0f;
+    float y = 1.0f;
+    glfwGetWindowContentScale(window_, &x, &y);
+    return x;
+}
+
+bool Window::is_key_down(int key) const {
+    return glfwGetKey(window_, key) == GLFW_PRESS;
+}
+
+bool Window::is_button_down(int button) const {
+    return glfwGetMouseButton(window_, button) == GLFW_PRESS;
+}
+
+void Window::capture_mouse(bool captured) {
+    if (captured == captured_) {
+        return;
+    }
+    captured_ = captured;
+    // The pointer jumps when its mode changes; that is no motion of the player's.
+    mouse_known_ = false;
+    glfwSetInputMode(window_, GLFW_CURSOR, captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+}
+
+void Window::set_title(const std::string& title) {
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
+}  // namespace limn

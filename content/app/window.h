@@ -1,0 +1,85 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace limn {
+
+// A window with an OpenGL 4.5 core context, and what the player did since the last look. Through
+// GLFW; everything happens on the main thread. Keys and buttons are GLFW's codes.
+
+struct WindowOptions {
+    std::string title = "Limn";
+    IVec2 size = {1280, 720};  ///< of the window without its frame [screen units]
+    bool fullscreen = false;
+    bool vsync = true;
+};
+
+/// A key went down (or repeated, while held).
+struct KeyPress {
+    int key = 0;
+    int modifiers = 0;  ///< GLFW_MOD_*
+    bool repeated = false;
+};
+
+/// What happened between two calls of poll.
+struct WindowEvents {
+    std::vector<KeyPress> keys;  ///< in order
+    Vec2 mouse_motion = {0, 0};  ///< [pixels], x right, y down
+    float wheel = 0.0f;          ///< steps, > 0 away from the player
+    bool left_clicked = false;   ///< pressed and released without dragging
+};
+
+class Window {
+  public:
+    /// Opens the window and makes its context current. Fails without a display or OpenGL 4.5.
+    [[nodiscard]] static Result<std::unique_ptr<Window>> open(const WindowOptions& options);
+
+    /// Whether there is a display to open a window on.
+    [[nodiscard]] static bool has_display();
+
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    ~Window();
+
+    /// Takes the events since the last call. The reference holds until the next one.
+    const WindowEvents& poll();
+    /// Shows what was drawn; waits for the display if vsync is on.
+    void swap();
+
+    [[nodiscard]] bool wants_to_close() const;
+    void request_close();
+
+    [[nodiscard]] IVec2 framebuffer_size() const;  ///< [pixels]; 0 x 0 while minimized
+    [[nodiscard]] Vec2 mouse_position() const;  ///< [pixels of the framebuffer], from the top left
+    [[nodiscard]] float content_scale() const;  ///< 1 on a usual display, 2 on a very fine one
+    [[nodiscard]] bool is_key_down(int key) const;
+    [[nodiscard]] bool is_button_down(int button) const;
+
+    /// Hides the pointer and lets it move without bounds, for looking around.
+    void capture_mouse(bool captured);
+    [[nodiscard]] bool is_mouse_captured() const { return captured_; }
+
+    void set_title(const std::string& title);
+    [[nodiscard]] GLFWwindow* handle() const { return window_; }
+
+  private:
+    Window() = default;
+    void install_callbacks();
+
+    GLFWwindow* window_ = nullptr;
+    WindowEvents collecting_;
+    WindowEvents events_;
+    Vec2 last_mouse_ = {0, 0};
+    bool mouse_known_ = false;
+    Vec2 press_position_ = {0, 0};
+    bool captured_ = false;
+};
+
+}  // namespace limn
