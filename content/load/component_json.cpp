@@ -3,9 +3,9 @@
 #include "ecs/base/log.h"
 #include "ecs/components/light.h"
 #include "ecs/components/transform.h"
+#include "ecs/field_access.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cstring>
 #include <limits>
@@ -20,7 +20,7 @@ struct Reader {
 
     Status read_fields(
         const JsonValue& json,
-        std::span<const FieldInfo> fields,
+        const std::vector<FieldInfo>& fields,
         void* object,
         const std::string& path) const;
     Status read_shape(
@@ -59,7 +59,7 @@ struct Reader {
         const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
 };
 
-std::vector<std::string_view> names_of(std::span<const FieldInfo> fields) {
+std::vector<std::string_view> names_of(const std::vector<FieldInfo>& fields) {
     std::vector<std::string_view> names;
     for (const FieldInfo& field : fields) {
         names.emplace_back(field.name);
@@ -79,22 +79,10 @@ bool is_angle(const FieldInfo& info) {
     return std::string_view(info.meta.unit).starts_with("rad");
 }
 
-/// "a number 0 .. 10 [m]".
+/// "a number 0 .. 10 m".
 std::string expected_number(const FieldInfo& info, std::string_view noun) {
-    std::string text(noun);
-    const double low = info.meta.min;
-    const double high = info.meta.max;
-    if (std::isfinite(low) && std::isfinite(high)) {
-        text += fmt::format(" {} .. {}", low, high);
-    } else if (std::isfinite(low)) {
-        text += fmt::format(" >= {}", low);
-    } else if (std::isfinite(high)) {
-        text += fmt::format(" <= {}", high);
-    }
-    if (*info.meta.unit != '\0') {
-        text += fmt::format(" [{}]", info.meta.unit);
-    }
-    return text;
+    const std::string range = range_text(info.meta);
+    return range.empty() ? std::string(noun) : fmt::format("{} {}", noun, range);
 }
 
 /// "45deg" as radians; nothing for other strings.
@@ -114,17 +102,15 @@ std::optional<double> angle_from_text(std::string_view text) {
 
 Status Reader::read_fields(
     const JsonValue& json,
-    std::span<const FieldInfo> fields,
+    const std::vector<FieldInfo>& fields,
     void* object,
     const std::string& path) const {
     if (json.kind != JsonKind::Object) {
         return refuse(path, json.at, describe(json), "an object with the fields to set");
     }
     for (const JsonMember& member : json.members) {
-        const auto field = std::find_if(fields.begin(), fields.end(), [&](const FieldInfo& info) {
-            return info.name == member.key;
-        });
-        if (field == fields.end()) {
+        const FieldInfo* const field = find_field(fields, member.key);
+        if (field == nullptr) {
             const std::vector<std::string_view> known = names_of(fields);
             return refuse(
                 path,
@@ -136,7 +122,7 @@ Status Reader::read_fields(
         const Status status = read_shape(
             member.value,
             *field,
-            static_cast<std::byte*>(object) + field->offset,
+            field_ptr(object, *field),
             path.empty() ? member.key : path + '.' + member.key);
         if (!status) {
             return status;
@@ -158,18 +144,13 @@ Status Reader::read_shape(
             describe(json),
             is_list ? "an array" : fmt::format("an array of {}", info.count));
     }
-    void* elements = field;
     if (is_list) {
         info.list.resize(field, 0);  // elements start from their defaults
         info.list.resize(field, json.items.size());
-        elements = info.list.data(field);
     }
     for (std::size_t i = 0; i < json.items.size(); ++i) {
         const Status status = read_one(
-            json.items[i],
-            info,
-            static_cast<std::byte*>(elements) + i * info.size,
-            fmt::format("{}[{}]", path, i));
+            json.items[i], info, element_ptr(info, field, i), fmt::format("{}[{}]", path, i));
         if (!status) {
             return status;
         }
@@ -482,11 +463,11 @@ JsonValue write_integer(const FieldInfo& info, const void* field) {
 }
 
 JsonValue
-write_fields(std::span<const FieldInfo> fields, const void* object, const GiveNames& names) {
+write_fields(const std::vector<FieldInfo>& fields, const void* object, const GiveNames& names) {
     JsonValue json = json_object();
     for (const FieldInfo& field : fields) {
-        const void* place = static_cast<const std::byte*>(object) + field.offset;
-        json.members.push_back({field.name, {}, write_field(field, place, names)});
+        json.members.push_back(
+            {field.name, {}, write_field(field, field_ptr(object, field), names)});
     }
     return json;
 }
@@ -539,16 +520,11 @@ JsonValue write_one(const FieldInfo& info, const void* field, const GiveNames& n
 
 /// Calls visit(info, element) with every element that is no struct.
 template <typename Visit>
-void for_each_element(std::span<const FieldInfo> fields, void* object, const Visit& visit) {
+void for_each_element(const std::vector<FieldInfo>& fields, void* object, const Visit& visit) {
     for (const FieldInfo& info : fields) {
-        void* elements = static_cast<std::byte*>(object) + info.offset;
-        std::size_t count = info.shape == FieldShape::Array ? info.count : 1;
-        if (info.shape == FieldShape::List) {
-            count = info.list.size(elements);
-            elements = info.list.data(elements);
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            void* element = static_cast<std::byte*>(elements) + i * info.size;
+        void* const data = field_ptr(object, info);
+        for (std::size_t i = 0; i < element_count(info, data); ++i) {
+            void* const element = element_ptr(info, data, i);
             if (info.type == FieldType::Struct) {
                 for_each_element(info.fields, element, visit);
             } else {
@@ -619,71 +595,15 @@ JsonValue write_field(const FieldInfo& info, const void* field, const GiveNames&
     if (info.shape == FieldShape::One) {
         return write_one(info, field, names);
     }
-    const void* elements = field;
-    std::size_t count = info.count;
-    if (info.shape == FieldShape::List) {
-        count = info.list.size(field);
-        elements = info.list.data(const_cast<void*>(field));  // read only
-    }
     JsonValue json = json_array();
-    for (std::size_t i = 0; i < count; ++i) {
-        const void* element = static_cast<const std::byte*>(elements) + i * info.size;
-        json.items.push_back(write_one(info, element, names));
+    for (std::size_t i = 0; i < element_count(info, field); ++i) {
+        json.items.push_back(write_one(info, element_ptr(info, field, i), names));
     }
     return json;
 }
 
-Result<FieldPlace> find_field(const ComponentInfo& info, void* object, std::string_view path) {
-    std::span<const FieldInfo> fields = info.fields;
-    FieldPlace place{nullptr, object};
-    while (true) {
-        const std::string_view name = path.substr(0, path.find('.'));
-        const auto field = std::find_if(
-            fields.begin(), fields.end(), [&](const FieldInfo& f) { return f.name == name; });
-        if (field == fields.end()) {
-            const std::vector<std::string_view> known = names_of(fields);
-            return fail(
-                "found the field {}, expected {}{}",
-                in_quotes(name),
-                known.empty() ? "none" : "one of " + joined(known),
-                did_you_mean(name, known));
-        }
-        place.info = &*field;
-        place.field = static_cast<std::byte*>(place.field) + field->offset;
-        if (name.size() == path.size()) {
-            return place;
-        }
-        if (field->type != FieldType::Struct || field->shape != FieldShape::One) {
-            return fail(
-                "found {} behind {}, expected a field that has fields",
-                in_quotes(path.substr(name.size())),
-                in_quotes(name));
-        }
-        path.remove_prefix(name.size() + 1);
-        fields = field->fields;
-    }
-}
-
-int float_count(const FieldInfo& info) {
-    if (info.shape != FieldShape::One) {
-        return 0;
-    }
-    switch (info.type) {
-    case FieldType::Float:
-        return 1;
-    case FieldType::Vec2:
-        return 2;
-    case FieldType::Vec3:
-        return 3;
-    case FieldType::Vec4:
-        return 4;
-    default:
-        return 0;
-    }
-}
-
 void for_each_entity(
-    std::span<const FieldInfo> fields, void* object, const std::function<void(Entity&)>& visit) {
+    const std::vector<FieldInfo>& fields, void* object, const std::function<void(Entity&)>& visit) {
     for_each_element(fields, object, [&](const FieldInfo& info, void* element) {
         if (info.type == FieldType::Entity) {
             visit(*static_cast<Entity*>(element));
@@ -692,7 +612,7 @@ void for_each_entity(
 }
 
 void for_each_asset(
-    std::span<const FieldInfo> fields,
+    const std::vector<FieldInfo>& fields,
     void* object,
     const std::function<void(std::string_view, std::uint32_t&)>& visit) {
     for_each_element(fields, object, [&](const FieldInfo& info, void* element) {

@@ -7,7 +7,6 @@
 
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,25 +94,11 @@ write_component(const ComponentInfo& info, const void* object, const GiveNames& 
 [[nodiscard]] JsonValue
 write_field(const FieldInfo& info, const void* field, const GiveNames& names);
 
-/// A field found by its path inside an object.
-struct FieldPlace {
-    const FieldInfo* info = nullptr;
-    void* field = nullptr;
-};
-
-/// The field at "attenuation.falloff" of an `object` of type `info`; `error.message` is one "found
-/// X, expected Y" with the nearest name.
-[[nodiscard]] Result<FieldPlace>
-find_field(const ComponentInfo& info, void* object, std::string_view path);
-
-/// How many of Float, Vec2 .. Vec4 make up a field that can be interpolated; 0 for others.
-[[nodiscard]] int float_count(const FieldInfo& info);
-
 /// Calls `visit` with every Entity, or every asset id and its kind, in the value.
 void for_each_entity(
-    std::span<const FieldInfo> fields, void* object, const std::function<void(Entity&)>& visit);
+    const std::vector<FieldInfo>& fields, void* object, const std::function<void(Entity&)>& visit);
 void for_each_asset(
-    std::span<const FieldInfo> fields,
+    const std::vector<FieldInfo>& fields,
     void* object,
     const std::function<void(std::string_view kind, std::uint32_t& index)>& visit);
 

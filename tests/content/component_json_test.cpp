@@ -1,0 +1,376 @@
+#include "content/load/component_json.h"
+#include "ecs/components/all.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/light.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/field_access.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+enum class Mood : std::uint8_t { Calm, Busy, Wild };
+
+struct Knob {
+    float turn = 0.5f;
+    int clicks = 3;
+};
+
+template <typename Visitor>
+void visit_fields(Knob& knob, Visitor&& visit) {
+    visit("turn", knob.turn, {.unit = "rad", .min = -10, .max = 10});
+    visit("clicks", knob.clicks, {.min = 0, .max = 9});
+}
+
+/// A field of every kind that reflection knows.
+struct Everything {
+    bool on = false;
+    std::int8_t small = -1;
+    std::uint64_t large = 0;
+    std::int64_t far = 0;
+    double fine = 0.5;
+    Vec2 flat = {1, 2};
+    Vec3 tint = {1, 1, 1};
+    Vec4 glass = {1, 1, 1, 0.5f};
+    Quat turn = {1, 0, 0, 0};
+    IVec3 cell = {1, 2, 3};
+    Mat3 frame = Mat3(1.0f);
+    Affine place;
+    std::string label = "x";
+    Mood mood = Mood::Calm;
+    Entity friend_of;
+    MeshId mesh;
+    Knob knob;
+    std::array<float, 3> triple = {1, 2, 3};
+    std::vector<Knob> knobs;
+    std::vector<std::string> words;
+};
+
+template <typename Visitor>
+void visit_fields(Everything& all, Visitor&& visit) {
+    visit("on", all.on);
+    visit("small", all.small);
+    visit("large", all.large);
+    visit("far", all.far);
+    visit("fine", all.fine);
+    visit("flat", all.flat);
+    visit("tint", all.tint, {.min = 0, .max = 1, .color = true});
+    visit("glass", all.glass, {.min = 0, .max = 1, .color = true});
+    visit("turn", all.turn);
+    visit("cell", all.cell);
+    visit("frame", all.frame);
+    visit("place", all.place);
+    visit("label", all.label);
+    visit("mood", all.mood, {.values = "calm busy wild"});
+    visit("friend_of", all.friend_of);
+    visit("mesh", all.mesh);
+    visit("knob", all.knob);
+    visit("triple", all.triple);
+    visit("knobs", all.knobs);
+    visit("words", all.words);
+}
+
+FindNames some_names() {
+    FindNames names;
+    names.asset = [](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
+        return kind == "mesh" && name == "teapot" ? std::optional<std::uint32_t>(7) : std::nullopt;
+    };
+    names.entity = [](std::string_view name, SourcePosition) -> std::optional<Entity> {
+        return name == "lamp" ? std::optional<Entity>(Entity{4, 2}) : std::nullopt;
+    };
+    names.all = [](std::string_view kind) -> std::vector<std::string_view> {
+        return {kind == "mesh" ? "teapot" : "lamp"};
+    };
+    return names;
+}
+
+template <typename T>
+T read(std::string_view text) {
+    const Result<JsonValue> json = parse_json(text, "t.json");
+    REQUIRE(json.ok());
+    T value{};
+    const Status status = read_struct(*json, value, {"t.json", "thing"}, some_names());
+    REQUIRE_MESSAGE(status.ok(), (status.ok() ? "" : status.error().message));
+    return value;
+}
+
+template <typename T>
+std::string error_of(std::string_view text) {
+    const Result<JsonValue> json = parse_json(text, "t.json");
+    REQUIRE(json.ok());
+    T value{};
+    const Status status = read_struct(*json, value, {"t.json", "thing"}, some_names());
+    REQUIRE(!status.ok());
+    return status.error().message;
+}
+
+bool same(const Everything& a, const Everything& b) {
+    for (const FieldInfo& field : component_info<Everything>().fields) {
+        const void* const in_a = field_ptr(&a, field);
+        const void* const in_b = field_ptr(&b, field);
+        if (element_count(field, in_a) != element_count(field, in_b)) {
+            return false;
+        }
+        for (std::size_t i = 0; i < element_count(field, in_a); ++i) {
+            if (!equal_elements(field, element_ptr(field, in_a, i), element_ptr(field, in_b, i))) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("component json: a field of every type is read") {
+    const auto all = read<Everything>(R"({
+        "on": true, "small": -128, "large": 18446744073709551615, "far": -9223372036854775808,
+        "fine": 0.1, "flat": [3, 4], "tint": [0.25, 0.5, 1], "glass": [0, 0.5, 1, 0.25],
+        "turn": [0, 2, 0, 0], "cell": [-1, 0, 1], "frame": [1, 2, 3, 4, 5, 6, 7, 8, 9],
+        "place": [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7], "label": "text", "mood": "wild",
+        "friend_of": "lamp", "mesh": "teapot", "knob": {"turn": "90deg"}, "triple": [4, 5, 6],
+        "knobs": [{"clicks": 1}, {}], "words": ["a", "b"]
+    })");
+    CHECK(all.on);
+    CHECK(all.small == -128);
+    CHECK(all.large == 18446744073709551615u);
+    CHECK(all.far == std::numeric_limits<std::int64_t>::min());
+    CHECK(all.fine == 0.1);
+    CHECK(all.flat == Vec2(3, 4));
+    CHECK(all.tint == Vec3(0.25f, 0.5f, 1));
+    CHECK(all.turn == Quat(0, 0, 1, 0));  // normalized
+    CHECK(all.cell == IVec3(-1, 0, 1));
+    CHECK(all.frame[0] == Vec3(1, 2, 3));
+    CHECK(all.place.row[2] == Vec4(0, 0, 1, 7));
+    CHECK(all.label == "text");
+    CHECK(all.mood == Mood::Wild);
+    CHECK(all.friend_of == Entity{4, 2});
+    CHECK(all.mesh.index == 7);
+    CHECK(all.knob.turn == doctest::Approx(1.5707963f));
+    CHECK(all.knob.clicks == 3);
+    CHECK(all.triple[2] == 6.0f);
+    REQUIRE(all.knobs.size() == 2);
+    CHECK(all.knobs[0].clicks == 1);
+    CHECK(all.knobs[1].clicks == 3);
+    CHECK(all.words == std::vector<std::string>{"a", "b"});
+}
+
+TEST_CASE("component json: fields that are not named keep their values") {
+    Knob knob{.turn = 0.25f, .clicks = 7};
+    const Result<JsonValue> json = parse_json(R"({"turn": 1})", "t.json");
+    REQUIRE(json.ok());
+    REQUIRE(read_struct(*json, knob, {"t.json", ""}, {}).ok());
+    CHECK(knob.turn == 1.0f);
+    CHECK(knob.clicks == 7);
+}
+
+TEST_CASE("component json: null is no entity and no asset") {
+    const auto all = read<Everything>(R"({"friend_of": null, "mesh": null})");
+    CHECK(all.friend_of.is_null());
+    CHECK(all.mesh.index == kNoAsset);
+}
+
+TEST_CASE("component json: a color may be written in sRGB, and its alpha left out") {
+    const auto all = read<Everything>(R"({"tint": "#ff8000", "glass": "#00ff0080"})");
+    CHECK(all.tint.x == 1.0f);
+    CHECK(all.tint.y == doctest::Approx(0.2158605f));  // (128 / 255) decoded
+    CHECK(all.tint.z == 0.0f);
+    CHECK(all.glass == Vec4(0, 1, 0, 128.0f / 255.0f));
+    CHECK(read<Everything>(R"({"glass": [0, 0, 1]})").glass == Vec4(0, 0, 1, 0.5f));
+    CHECK(read<Everything>(R"({"glass": "#0000ff"})").glass == Vec4(0, 0, 1, 0.5f));
+}
+
+TEST_CASE("component json: angles turn about y, then x, then z") {
+    const Quat q = rotation_from_degrees({90, 0, 0});
+    const Vec3 ahead = q * Vec3(0, 0, -1);
+    CHECK(ahead.x == doctest::Approx(-1.0f));  // yaw turns to the left
+    const Vec3 up = rotation_from_degrees({0, 90, 0}) * Vec3(0, 0, -1);
+    CHECK(up.y == doctest::Approx(1.0f));  // pitch looks up
+    const Vec3 both = rotation_from_degrees({90, 30, 0}) * Vec3(0, 0, -1);
+    CHECK(both.x == doctest::Approx(-std::cos(radians(30.0f))));
+    CHECK(both.y == doctest::Approx(0.5f));
+    const Vec3 rolled = rotation_from_degrees({0, 0, 90}) * Vec3(1, 0, 0);
+    CHECK(rolled.y == doctest::Approx(1.0f));
+    const auto transform = read<Transform>(R"({"rotation": [90, 30, 0]})");
+    CHECK(glm::length(transform.rotation * Vec3(0, 0, -1) - both) < 1e-6f);
+}
+
+TEST_CASE("component json: what is wrong is named with its place, expectation and nearest name") {
+    CHECK(error_of<Everything>(R"({"lable": "a"})")
+              .starts_with(
+                  "t.json:1:2: thing: found the field \"lable\", expected one of on small "));
+    CHECK(error_of<Everything>(R"({"lable": "a"})").ends_with("(did you mean label?)"));
+    CHECK(
+        error_of<Everything>(R"({"on": 1})")
+        == "t.json:1:8: thing.on: found the number 1, expected true or false");
+    CHECK(
+        error_of<Everything>("{\n \"knob\": {\"clicks\": 10}}")
+        == "t.json:2:21: thing.knob.clicks: found the number 10, expected an integer 0 .. 9");
+    CHECK(
+        error_of<Everything>(R"({"knob": {"turn": -11}})")
+        == "t.json:1:19: thing.knob.turn: found the number -11, expected a number -10 .. 10 rad");
+    CHECK(
+        error_of<Everything>(R"({"mood": "calmm"})")
+        == "t.json:1:10: thing.mood: found the string \"calmm\", expected one of calm busy wild "
+           "(did you mean calm?)");
+    CHECK(
+        error_of<Everything>(R"({"flat": [1, 2, 3]})")
+        == "t.json:1:10: thing.flat: found an array of 3, expected an array of 2 numbers");
+    CHECK(
+        error_of<Everything>(R"({"flat": [1, "2"]})")
+        == "t.json:1:14: thing.flat[1]: found the string \"2\", expected a number");
+    CHECK(
+        error_of<Everything>(R"({"triple": [1, 2]})")
+        == "t.json:1:12: thing.triple: found an array of 2, expected an array of 3");
+    CHECK(
+        error_of<Everything>(R"({"mesh": "teapod"})")
+        == "t.json:1:10: thing.mesh: found the mesh \"teapod\", expected the name of one that "
+           "exists (did you mean teapot?)");
+    CHECK(error_of<Everything>(R"({"friend_of": "lmap"})").ends_with("(did you mean lamp?)"));
+    CHECK(
+        error_of<Everything>(R"({"friend_of": 3})").find("the name of an entity, or null")
+        != std::string::npos);
+    CHECK(
+        error_of<Everything>(R"({"knobs": [{}, {"clicks": true}]})")
+        == "t.json:1:27: thing.knobs[1].clicks: found true, expected an integer 0 .. 9");
+    CHECK(
+        error_of<Everything>(R"([])")
+        == "t.json:1:1: thing: found an array of 0, expected an object with the fields to set");
+}
+
+TEST_CASE("component json: integers must be whole and fit their type") {
+    for (const char* text :
+         {"128", "-129", "1.5", "1e1", "\"1\"", "null", "99999999999999999999"}) {
+        CAPTURE(text);
+        CHECK_FALSE(error_of<Everything>(std::string(R"({"small": )") + text + "}").empty());
+    }
+    CHECK_FALSE(error_of<Everything>(R"({"large": -1})").empty());
+    CHECK_FALSE(error_of<Everything>(R"({"large": 18446744073709551616})").empty());
+    CHECK_FALSE(error_of<Everything>(R"({"far": 9223372036854775808})").empty());
+    CHECK_FALSE(error_of<Everything>(R"({"cell": [1, 2, 2147483648]})").empty());
+}
+
+TEST_CASE("component json: numbers that become infinite as float are refused") {
+    CHECK(error_of<Everything>(R"({"flat": [1e39, 0]})").find("32-bit") != std::string::npos);
+    CHECK(read<Everything>(R"({"fine": 1e39})").fine == 1e39);
+}
+
+TEST_CASE("component json: colors and angles that are none are refused") {
+    for (const char* text :
+         {"\"ff8000\"", "\"#ff80\"", "\"#gg8000\"", "\"#ff800080\"", "\"\"", "\"#\""}) {
+        CAPTURE(text);
+        CHECK_FALSE(error_of<Everything>(std::string(R"({"tint": )") + text + "}").empty());
+    }
+    for (const char* text : {"\"deg\"", "\"90\"", "\"90 degrees\"", "\"nandeg\"", "\"infdeg\""}) {
+        CAPTURE(text);
+        CHECK_FALSE(error_of<Knob>(std::string(R"({"turn": )") + text + "}").empty());
+    }
+    CHECK_FALSE(error_of<Knob>(R"({"turn": "720deg"})").empty());  // more than 10 rad
+    CHECK_FALSE(error_of<Everything>(R"({"turn": [0, 0, 0, 0]})").empty());
+}
+
+TEST_CASE("component json: a scale of 0 and a spot light turned inside out are refused") {
+    CHECK(
+        error_of<Transform>(R"({"scale": [1, 0, 1]})")
+        == "t.json:1:1: thing: found a scale of 0, expected one along each axis");
+    CHECK(
+        error_of<SpotLight>(R"({"inner_angle": 0.6, "outer_angle": 0.5})").find("outer_angle")
+        != std::string::npos);
+}
+
+TEST_CASE("component json: what is written reads back the same, to the bit") {
+    Everything all;
+    all.on = true;
+    all.small = -100;
+    all.large = 18446744073709551615u;
+    all.far = std::numeric_limits<std::int64_t>::min();
+    all.fine = 1.0 / 3.0;
+    all.flat = {0.1f, -1e-40f};
+    all.turn = glm::normalize(Quat(1, 2, 3, 4));
+    all.label = "quote \" \n";
+    all.mood = Mood::Busy;
+    all.friend_of = {4, 2};
+    all.mesh.index = 7;
+    all.knobs = {{1.25f, 1}, {-0.1f, 2}};
+    all.words = {"", "b"};
+    GiveNames names;
+    names.asset = [](std::string_view, std::uint32_t) { return "teapot"; };
+    names.entity = [](Entity) { return "lamp"; };
+    const std::string text = write_json(write_component(component_info<Everything>(), &all, names));
+    CAPTURE(text);
+    const auto back = read<Everything>(text);
+    // Normalizing a unit quaternion again may move its last bit.
+    CHECK(
+        glm::length(
+            Vec4(back.turn.x, back.turn.y, back.turn.z, back.turn.w)
+            - Vec4(all.turn.x, all.turn.y, all.turn.z, all.turn.w))
+        < 1e-6f);
+    all.turn = back.turn;
+    CHECK(same(all, back));
+}
+
+TEST_CASE("component json: the defaults of every registered component survive a round trip") {
+    register_all_components();
+    for (const ComponentInfo* info : all_components()) {
+        CAPTURE(info->name);
+        if (info->ops.construct_default == nullptr) {
+            continue;
+        }
+        const AnyComponent original(*info);
+        const JsonValue json = write_component(*info, original.data(), {});
+        const Result<JsonValue> again = parse_json(write_json(json), "t.json");
+        REQUIRE(again.ok());
+        const Result<AnyComponent> back = read_component(*again, *info, {"t.json", ""}, {});
+        REQUIRE_MESSAGE(back.ok(), (back.ok() ? "" : back.error().message));
+        for (const FieldInfo& field : info->fields) {
+            CHECK(equal_elements(
+                field, field_ptr(original.data(), field), field_ptr(back->data(), field)));
+        }
+    }
+}
+
+TEST_CASE("component json: entities and assets are found at any depth") {
+    Everything all;
+    all.friend_of = {1, 1};
+    int entities = 0;
+    for_each_entity(component_info<Everything>().fields, &all, [&](Entity& entity) {
+        entity = {9, 9};
+        ++entities;
+    });
+    CHECK(entities == 1);
+    CHECK(all.friend_of == Entity{9, 9});
+    Material material;
+    int images = 0;
+    for_each_asset(
+        component_info<Material>().fields,
+        &material,
+        [&](std::string_view kind, std::uint32_t& index) {
+            CHECK(kind == "image");
+            index = 3;
+            ++images;
+        });
+    CHECK(images == 5);  // one in each texture slot
+    CHECK(material.emission_texture.image.index == 3);
+}
+
+TEST_CASE("any component: copies own their values") {
+    AnyComponent a =
+        AnyComponent::of(Everything{.label = "a long text that is not stored in place"});
+    AnyComponent b = a;
+    b.as<Everything>().label = "b";
+    CHECK(a.as<Everything>().label == "a long text that is not stored in place");
+    a = std::move(b);
+    CHECK(a.as<Everything>().label == "b");
+    CHECK(AnyComponent().is_empty());
+    const AnyComponent tag(component_info<Teleport>());
+    CHECK(tag.data() != nullptr);
+}
