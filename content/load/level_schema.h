@@ -1,0 +1,11 @@
+#pragma once
+
+#include "content/load/json_document.h"
+
+namespace limn {
+
+/// JSON Schema (draft 2020-12) of a level file, from the reflection of all registered components,
+/// resources and kinds of meshes and images: editors check and complete levels with it.
+[[nodiscard]] JsonValue level_schema();
+
+}  // namespace limn
