@@ -1,0 +1,119 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/surface.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Bicubic Bezier patches: points, derivatives, splitting, triangles.
+//
+//     Q(u, v) = sum_ij B_i(u) B_j(v) P_ij,   B_i the cubic Bernstein polynomials
+//
+// Tangent T along u, bitangent B along v, normal N = T x B (one convention for the whole engine;
+// the appendix of the book swaps the first two). Meshes made here store the texture coordinates (u,
+// 1 - v): seen from the front the image stands upright and unmirrored, so w = +1.
+//
+// Sums are ordered so that a boundary curve read from its other end gives the same bits: patches
+// that share a boundary have no cracks.
+// After A. Watt, F. Policarpo, "Advanced Game Development with Programmable Graphics Hardware"
+// (2005), appendix 7.1 (its printed end tangent, expansion and partition of unity are mended here).
+
+/// The four cubic Bernstein polynomials at `u`; they sum to 1.
+[[nodiscard]] Vec4 bernstein(float u);
+
+/// The cubic with control points `p` at `u` in 0 .. 1. Exact at both ends and where all points are
+/// one; the sum is about the middle of the ends, so that neither direction is preferred.
+template <typename T>
+[[nodiscard]] T bezier_point(const std::array<T, 4>& p, float u) {
+    if (u <= 0.0f || u >= 1.0f) {
+        return u <= 0.0f ? p[0] : p[3];
+    }
+    const Vec4 b = bernstein(u);
+    const T middle = 0.5f * (p[0] + p[3]);
+    return middle
+           + ((b.x * (p[0] - middle) + b.w * (p[3] - middle))
+              + (b.y * (p[1] - middle) + b.z * (p[2] - middle)));
+}
+
+/// dQ/du of the same cubic; exactly 0 where all points are one.
+template <typename T>
+[[nodiscard]] T bezier_derivative(const std::array<T, 4>& p, float u) {
+    const float s = 1.0f - u;
+    return 3.0f * ((s * s * (p[1] - p[0]) + u * u * (p[3] - p[2])) + 2.0f * s * u * (p[2] - p[1]));
+}
+
+/// 16 control points: p[i][j], i along u, j along v. The corners lie on the surface.
+struct BezierPatch {
+    std::array<std::array<Vec3, 4>, 4> p;
+};
+
+[[nodiscard]] Vec3 patch_point(const BezierPatch& patch, float u, float v);
+[[nodiscard]] Vec3 patch_du(const BezierPatch& patch, float u, float v);
+[[nodiscard]] Vec3 patch_dv(const BezierPatch& patch, float u, float v);
+[[nodiscard]] Vec3 patch_duv(const BezierPatch& patch, float u, float v);
+
+/// Where the surface is, and how it lies there.
+struct PatchFrame {
+    Vec3 point;
+    Vec3 normal;   ///< unit, du x dv
+    Vec3 tangent;  ///< unit, along u, perpendicular to `normal`
+};
+
+/// Finite everywhere: where an edge has collapsed to a point (the lid of the teapot) the frame is
+/// the limit from inside the patch; a patch that is one point has the frame of the x-y plane.
+[[nodiscard]] PatchFrame patch_frame(const BezierPatch& patch, float u, float v);
+
+/// De Casteljau at the middle of both directions: children at 0 (low u, low v), 1 (high u, low v),
+/// 2 (low u, high v), 3 (high u, high v). child(s, t) = parent(s / 2, t / 2) for child 0.
+[[nodiscard]] std::array<BezierPatch, 4> split_patch(const BezierPatch& patch);
+
+/// How far the control points are from the bilinear patch through the corners [m]. The surface is
+/// nowhere farther from it than this.
+[[nodiscard]] float patch_flatness(const BezierPatch& patch);
+
+/// One vertex of a tessellation.
+struct PatchSample {
+    std::uint32_t patch = 0;
+    float u = 0;
+    float v = 0;
+};
+
+/// Triangles over patches, counter-clockwise seen from the side that du x dv points to.
+struct PatchTriangles {
+    std::vector<PatchSample> samples;
+    std::vector<std::uint32_t> indices;  ///< three a triangle, into `samples`
+};
+
+/// `divisions` x `divisions` quads a patch, two triangles each. divisions = 2^d is uniform depth d.
+[[nodiscard]] PatchTriangles tessellate_uniform(std::size_t patch_count, int divisions);
+
+/// Quads as large as `tolerance` [m] > 0 allows (see patch_flatness), at most 2^max_depth along an
+/// edge of a patch. Where neighbors differ, the coarser leaf takes over the vertices of the finer
+/// one, in the same patch and across patches that share a boundary: there are no T-junctions.
+[[nodiscard]] PatchTriangles
+tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int max_depth = 6);
+
+/// The mesh of a tessellation: positions, normals, tangents, uvs (u, 1 - v), bounds.
+[[nodiscard]] MeshData
+make_patch_mesh(std::span<const BezierPatch> patches, const PatchTriangles& triangles);
+
+/// Levels of detail of one patch: level l is 4^l sub-patches, row by row, each the surface's own
+/// control polyhedron, so that a level is fetched and not computed.
+struct PatchLevels {
+    std::vector<std::vector<BezierPatch>> level;
+};
+
+[[nodiscard]] PatchLevels make_patch_levels(const BezierPatch& patch, int count);
+
+/// The level 0 .. count-1 whose quads span about `pixels_per_quad` when the patch spans
+/// `projected_pixels`. `current` is kept until the wish leaves it by 10 %, so that it does not
+/// flicker.
+[[nodiscard]] int
+choose_patch_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
+
+}  // namespace limn
