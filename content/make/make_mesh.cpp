@@ -1,0 +1,58 @@
+#include "content/make/make_mesh.h"
+
+#include "content/make/shapes.h"
+#include "content/make/teapot.h"
+#include "content/make/terrain.h"
+#include "ecs/base/type_name.h"
+
+#include <vector>
+
+namespace limn {
+
+namespace {
+
+template <typename Shape, MeshData (*make)(const Shape&)>
+MeshKind mesh_kind(const char* name, const char* doc) {
+    const auto call = [](const void* parameters) {
+        return make(*static_cast<const Shape*>(parameters));
+    };
+    return {name, doc, &component_info<Shape>(), call};
+}
+
+}  // namespace
+
+std::span<const MeshKind> mesh_kinds() {
+    static const std::vector<MeshKind> kinds = {
+        mesh_kind<BoxShape, make_box>("box", "a box, its edges rounded if asked"),
+        mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
+        mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
+        mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
+        mesh_kind<SphereShape, make_sphere>("sphere", "a ball with longitude and latitude"),
+        mesh_kind<TeapotShape, make_teapot>(
+            "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
+        mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
+        mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
+    };
+    return kinds;
+}
+
+const MeshKind* find_mesh_kind(std::string_view name) {
+    for (const MeshKind& kind : mesh_kinds()) {
+        if (kind.name == name) {
+            return &kind;
+        }
+    }
+    return nullptr;
+}
+
+std::string mesh_kind_suggestion(std::string_view name) {
+    std::vector<std::string> names;
+    for (const MeshKind& kind : mesh_kinds()) {
+        names.emplace_back(kind.name);
+    }
+    const std::string nearest = nearest_name(name, names);
+    return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
+}  // namespace limn

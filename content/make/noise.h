@@ -1,0 +1,59 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cstdint>
+
+namespace limn {
+
+// Noise for making images and terrain: a function of place and seed alone, the same on every
+// machine (no libm beyond sqrt and floor). `period` > 0 makes it repeat after so many lattice
+// cells, so that an image tiles; 0 = never repeats. After K. Perlin, "Improving Noise" (2002), S.
+// Worley, "A Cellular Texture Basis Function" (1996) and, for the fractals, F. K. Musgrave in
+// "Texturing and Modeling" (2003).
+
+/// 32 well-mixed bits for a point of the integer lattice.
+[[nodiscard]] std::uint32_t lattice_hash(int x, int y, std::uint32_t seed);
+
+/// The same as a number in 0 .. 1, 1 exclusive.
+[[nodiscard]] float lattice_random(int x, int y, std::uint32_t seed);
+
+/// Value and gradient of a noise.
+struct NoiseSample {
+    float value;
+    Vec2 slope;
+};
+
+/// Gradient noise: about -1 .. 1, mean 0, 0 at lattice points, twice differentiable.
+[[nodiscard]] NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, int period = 0);
+[[nodiscard]] float gradient_noise(const Vec2& p, std::uint32_t seed, int period = 0);
+
+/// How octaves add up: octave i has frequency 2^i and amplitude gain^i; the sum is divided by the
+/// sum of the amplitudes.
+struct Octaves {
+    int count = 5;      ///< >= 1
+    float gain = 0.5f;  ///< 0 .. 1: 0.5 like hills, more is rougher
+};
+
+/// Fractal sum of gradient noise, about -1 .. 1.
+[[nodiscard]] float
+fractal_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period = 0);
+
+/// Sharp crests where the noise crosses 0, about 0 .. 1; an octave is as strong as the ones before
+/// it are high, so that valleys stay smooth.
+[[nodiscard]] float
+ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period = 0);
+
+/// One jittered feature point a cell.
+struct CellSample {
+    float nearest;       ///< distance to the nearest feature point
+    float second;        ///< distance to the second nearest
+    float edge;          ///< distance to the border between the cells of the two
+    std::uint32_t cell;  ///< random bits of the nearest point's cell
+};
+
+/// `jitter` 0 = a square grid .. 1 = as irregular as it gets.
+[[nodiscard]] CellSample
+cell_noise(const Vec2& p, std::uint32_t seed, float jitter = 1.0f, int period = 0);
+
+}  // namespace limn

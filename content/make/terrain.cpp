@@ -1,0 +1,95 @@
+#include "content/make/terrain.h"
+
+#include "content/make/noise.h"
+#include "content/make/surface_grid.h"
+#include "ecs/base/check.h"
+#include "ecs/base/jobs.h"
+
+#include <cmath>
+#include <vector>
+
+namespace limn {
+
+namespace {
+
+/// About 0 .. 1.
+float eroded_hills(Vec2 p, std::uint32_t seed, const TerrainShape& shape) {
+    float sum = 0;
+    float amplitude = 1;
+    Vec2 slope = {0, 0};
+    for (int i = 0; i < shape.octaves; ++i) {
+        const NoiseSample n = gradient_noise_slope(p, seed + static_cast<std::uint32_t>(i));
+        slope += 0.5f * n.slope;
+        sum += amplitude * n.value / (1.0f + shape.erosion * glm::dot(slope, slope));
+        amplitude *= 0.5f;
+        // Doubled and turned (by the angle of the 3-4-5 triangle) so that octaves do not line up.
+        p = 2.0f * Vec2(0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y);
+    }
+    return 0.5f + 0.45f * sum;
+}
+
+float landscape(const TerrainShape& shape, float x, float z) {
+    const auto seed = static_cast<std::uint32_t>(shape.seed) * 64u;
+    const Vec2 p = Vec2(x, z) / shape.feature_size;
+    const Vec2 bend = {gradient_noise(0.7f * p, seed + 40), gradient_noise(0.7f * p, seed + 41)};
+    const Vec2 bent = p + shape.warp * bend;
+    const float hills = shape.ridges < 1 ? eroded_hills(bent, seed, shape) : 0.0f;
+    const float crests =
+        shape.ridges > 0
+            ? ridged_noise(0.5f * bent, seed + 20, {.count = shape.octaves, .gain = 0.5f})
+            : 0.0f;
+    return shape.height * glm::mix(hills, crests, shape.ridges);
+}
+
+}  // namespace
+
+float terrain_height(const TerrainShape& shape, float x, float z) {
+    if (shape.clearing <= 0) {
+        return landscape(shape, x, z);
+    }
+    const float wild =
+        glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z));
+    const float level = landscape(shape, 0, 0);
+    return wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level;
+}
+
+MeshData make_terrain(const TerrainShape& shape) {
+    LIMN_CHECK(shape.size.x > 0 && shape.size.y > 0 && shape.feature_size > 0);
+    LIMN_CHECK(shape.divisions >= 1 && shape.octaves >= 1);
+
+    // One row and column more on each side, for the normals at the rim.
+    const int n = shape.divisions;
+    const int width = n + 3;
+    const Vec2 step = shape.size / static_cast<float>(n);
+    const auto place = [&](int i, int j) { return Vec2(i, j) * step - 0.5f * shape.size; };
+    std::vector<float> heights(static_cast<std::size_t>(width) * static_cast<std::size_t>(width));
+    const auto at = [&](int i, int j) -> float& {
+        return heights
+            [static_cast<std::size_t>(j + 1) * static_cast<std::size_t>(width)
+             + static_cast<std::size_t>(i + 1)];
+    };
+    parallel_for(static_cast<std::size_t>(width), 8, [&](std::size_t begin, std::size_t end) {
+        for (int j = static_cast<int>(begin) - 1; j < static_cast<int>(end) - 1; ++j) {
+            for (int i = -1; i <= n + 1; ++i) {
+                const Vec2 p = place(i, j);
+                at(i, j) = terrain_height(shape, p.x, p.y);
+            }
+        }
+    });
+
+    MeshData mesh;
+    append_grid(mesh, n, n, {}, [&](int i, int j) {
+        const Vec2 p = place(i, j);
+        const float rise_x = (at(i + 1, j) - at(i - 1, j)) / (2.0f * step.x);
+        const float rise_z = (at(i, j + 1) - at(i, j - 1)) / (2.0f * step.y);
+        GridVertex vertex;
+        vertex.position = {p.x, at(i, j), p.y};
+        vertex.normal = glm::normalize(Vec3(-rise_x, 1, -rise_z));
+        vertex.tangent = glm::normalize(Vec3(1, rise_x, 0));
+        vertex.uv = Vec2(i, j) / static_cast<float>(n);
+        return vertex;
+    });
+    return mesh;
+}
+
+}  // namespace limn

@@ -1,0 +1,164 @@
+#include "content/make/make_mesh.h"
+#include "content/make/shapes.h"
+#include "mesh_laws.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace limn;
+using namespace limn::test;
+
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+/// The mesh that a level gets when it names a kind and nothing else.
+MeshData make_default(const MeshKind& kind) {
+    std::vector<std::byte> bytes(kind.parameters->size);
+    kind.parameters->ops.construct_copy(bytes.data(), kind.parameters->defaults, 1);
+    MeshData mesh = kind.make(bytes.data());
+    kind.parameters->ops.destroy(bytes.data(), 1);
+    return mesh;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
+    REQUIRE(mesh_kinds().size() == 9);
+    for (const MeshKind& kind : mesh_kinds()) {
+        INFO(std::string(kind.name));
+        const MeshData mesh = make_default(kind);
+        check_arrays(mesh);
+        CHECK(
+            worst_facing(mesh) > 0.2f);  // the lip of the teapot's spout; all others are above 0.8
+    }
+}
+
+TEST_CASE(
+    "shapes: frames agree with differences of position and texture ever better with more quads") {
+    CHECK(
+        worst_tangent(make_sphere({.segments = 256, .rings = 128}))
+        > 0.8f);  // poles: half a column off
+    CHECK(worst_tangent(make_torus({.segments = 256, .sides = 128})) > 0.999f);
+    CHECK(worst_tangent(make_cylinder({.segments = 256})) > 0.999f);
+    CHECK(worst_tangent(make_plane({})) > 0.99999f);
+    CHECK(worst_tangent(make_box({})) > 0.99999f);
+    CHECK(worst_tangent(make_disc({.segments = 16, .divisions = 3})) > 0.9999f);
+    CHECK(worst_facing(make_sphere({.segments = 256, .rings = 128})) > 0.999f);
+    CHECK(worst_facing(make_torus({.segments = 256, .sides = 128})) > 0.999f);
+}
+
+TEST_CASE("shapes: closed shapes are watertight") {
+    CHECK(open_edges(make_sphere({})) == 0);
+    CHECK(open_edges(make_torus({})) == 0);
+    CHECK(open_edges(make_box({})) == 0);
+    CHECK(
+        open_edges(
+            make_box({.size = {1, 2, 3}, .bevel = 0.2f, .bevel_segments = 3, .divisions = 2}))
+        == 0);
+    CHECK(open_edges(make_box({.size = {1, 2, 1}, .bevel = 9.0f})) == 0);
+    CHECK(open_edges(make_cylinder({.segments = 17, .divisions = 3})) == 0);
+    CHECK(open_edges(make_cone({})) == 0);
+    CHECK(open_edges(make_cone({.top_radius = 0.2f})) == 0);
+    CHECK(open_edges(make_disc({.segments = 12})) == 12);
+    CHECK(open_edges(make_plane({.divisions = 3})) == 12);
+}
+
+TEST_CASE("shapes: volume and area converge to the closed forms") {
+    const MeshData ball = make_sphere({.radius = 0.5f, .segments = 256, .rings = 128});
+    CHECK(signed_volume(ball) == doctest::Approx(kPiD / 6.0).epsilon(1e-3));
+    CHECK(surface_area(ball) == doctest::Approx(kPiD).epsilon(1e-3));
+    const MeshData ring =
+        make_torus({.radius = 0.35f, .tube = 0.15f, .segments = 256, .sides = 128});
+    CHECK(
+        signed_volume(ring) == doctest::Approx(2 * kPiD * kPiD * 0.35 * 0.15 * 0.15).epsilon(1e-3));
+    const MeshData tube = make_cylinder({.radius = 0.5f, .height = 2, .segments = 256});
+    CHECK(signed_volume(tube) == doctest::Approx(kPiD * 0.5).epsilon(1e-3));
+    const MeshData cone = make_cone({.radius = 0.5f, .height = 2, .segments = 256});
+    CHECK(signed_volume(cone) == doctest::Approx(kPiD / 6.0).epsilon(1e-3));
+    CHECK(signed_volume(make_box({.size = {1, 2, 3}})) == doctest::Approx(6.0));
+    CHECK(surface_area(make_plane({.size = {2, 3}, .divisions = 4})) == doctest::Approx(6.0));
+    CHECK(
+        surface_area(make_disc({.radius = 1, .inner_radius = 0.5f, .segments = 256}))
+        == doctest::Approx(0.75 * kPiD).epsilon(1e-3));
+
+    // A box rounded by r: its core, six slabs, twelve quarter tubes and eight eighths of a ball.
+    const double r = 0.25;
+    const double core[3] = {0.5, 1.5, 2.5};
+    const double rounded = core[0] * core[1] * core[2]
+                           + 2 * r * (core[0] * core[1] + core[1] * core[2] + core[2] * core[0])
+                           + kPiD * r * r * (core[0] + core[1] + core[2])
+                           + 4.0 / 3.0 * kPiD * r * r * r;
+    const MeshData soft = make_box({.size = {1, 2, 3}, .bevel = 0.25f, .bevel_segments = 24});
+    CHECK(signed_volume(soft) == doctest::Approx(rounded).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "shapes: every vertex of a sphere is on the sphere, and moving it along its normal swells it") {
+    const MeshData ball = make_sphere({.radius = 1.0f, .segments = 48, .rings = 24});
+    for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+        REQUIRE(glm::length(ball.positions[i]) == doctest::Approx(1.0).epsilon(1e-6));
+        REQUIRE(
+            glm::length(ball.positions[i] + 0.2f * ball.normals[i])
+            == doctest::Approx(1.2).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("shapes: a hard-edged box has 24 vertices and swelling it opens gaps of f sqrt(2)") {
+    const MeshData box = make_box({});
+    REQUIRE(box.positions.size() == 24);
+    const float f = 0.1f;
+    int pairs = 0;
+    for (std::size_t a = 0; a < 24; ++a) {
+        for (std::size_t b = a + 1; b < 24; ++b) {
+            if (box.positions[a] == box.positions[b]) {
+                ++pairs;
+                const Vec3 gap = (box.positions[a] + f * box.normals[a])
+                                 - (box.positions[b] + f * box.normals[b]);
+                CHECK(glm::length(gap) == doctest::Approx(f * std::sqrt(2.0f)));
+            }
+        }
+    }
+    CHECK(pairs == 8 * 3);
+}
+
+TEST_CASE("shapes: a rounded box has one normal at a point, so that swelling it opens no gap") {
+    const MeshData box = make_box({.bevel = 0.1f, .bevel_segments = 2});
+    std::map<std::array<float, 3>, Vec3> normals;
+    for (std::size_t i = 0; i < box.positions.size(); ++i) {
+        const Vec3 p = box.positions[i] + 0.0f;
+        const auto [entry, fresh] = normals.try_emplace({p.x, p.y, p.z}, box.normals[i]);
+        REQUIRE(glm::length(entry->second - box.normals[i]) < 1e-6f);
+    }
+    CHECK(normals.size() < box.positions.size());
+}
+
+TEST_CASE("shapes: an image stands upright and unmirrored on the front of a sphere") {
+    // Seen from +z with +y up: u grows toward +x, v toward -y.
+    const MeshData ball = make_sphere({.radius = 1.0f});
+    for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+        const Vec2 from_middle = ball.uvs[i] - 0.5f;
+        if (std::abs(from_middle.x) < 0.2f && std::abs(from_middle.y) < 0.4f) {
+            REQUIRE(ball.positions[i].z > 0);
+            REQUIRE(ball.positions[i].x * from_middle.x >= 0);
+            REQUIRE(ball.positions[i].y * from_middle.y <= 1e-6f);
+        }
+    }
+}
+
+TEST_CASE("shapes: kinds are found by name, and a slip is answered with the nearest") {
+    REQUIRE(find_mesh_kind("teapot") != nullptr);
+    CHECK(find_mesh_kind("tea pot") == nullptr);
+    CHECK(mesh_kind_suggestion("teapod") == " (did you mean teapot?)");
+    CHECK(mesh_kind_suggestion("quarterdeck") == "");
+    for (const MeshKind& kind : mesh_kinds()) {
+        INFO(std::string(kind.name));
+        CHECK(!kind.parameters->fields.empty());
+        for (const FieldInfo& field : kind.parameters->fields) {
+            INFO(std::string(field.name));
+            CHECK(std::string(field.meta.doc) != "");
+        }
+    }
+}
