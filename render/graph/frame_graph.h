@@ -229,13 +229,17 @@ class FrameGraph {
     /// The same as a graph for Graphviz.
     [[nodiscard]] std::string to_dot() const;
 
-    struct PoolStats {
-        int textures = 0;          ///< alive in the pool
-        std::size_t bytes = 0;     ///< of textures and buffers in the pool
-        std::size_t unshared = 0;  ///< bytes that this frame's textures would take without sharing
-        int framebuffers = 0;
+    /// Of the last frame.
+    struct Stats {
+        int passes_run = 0;
+        int passes_culled = 0;
+        int barriers = 0;                ///< glMemoryBarrier calls
+        int pool_textures = 0;           ///< alive in the pool
+        int framebuffers = 0;            ///< alive in the cache
+        std::size_t pool_bytes = 0;      ///< of textures and buffers in the pool
+        std::size_t unshared_bytes = 0;  ///< what they would take if each had its own memory
     };
-    [[nodiscard]] PoolStats pool_stats() const;
+    [[nodiscard]] const Stats& stats() const;
 
   private:
     friend class PassContext;

@@ -1,0 +1,239 @@
+#include "render/gpu/shader_library.h"
+
+#include "ecs/base/log.h"
+#include "render/gpu/device_caps.h"
+
+#include <algorithm>
+#include <array>
+
+namespace limn::gpu {
+
+struct ShaderLibrary::Entry {
+    ProgramDesc desc;
+    Program program;
+    std::vector<WatchedFile> watched;
+};
+
+namespace {
+
+/// Owns a shader object until its program is linked.
+class Shader {
+  public:
+    explicit Shader(GLenum stage) : id_(glCreateShader(stage)) {}
+    Shader(Shader&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    Shader& operator=(Shader&&) = delete;
+    Shader(const Shader&) = delete;
+    Shader& operator=(const Shader&) = delete;
+    ~Shader() { glDeleteShader(id_); }
+    [[nodiscard]] GLuint id() const { return id_; }
+
+  private:
+    GLuint id_;
+};
+
+std::string shader_log(GLuint shader) {
+    GLint length = 0;
+    glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    glGetShaderInfoLog(shader, length, &length, log.data());
+    log.resize(static_cast<std::size_t>(std::max(length, 0)));
+    return log;
+}
+
+std::string program_log(GLuint program) {
+    GLint length = 0;
+    glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    glGetProgramInfoLog(program, length, &length, log.data());
+    log.resize(static_cast<std::size_t>(std::max(length, 0)));
+    return log;
+}
+
+/// `text` without comments, so that a word in one does not count.
+std::string strip_comments(std::string_view text) {
+    std::string code;
+    while (!text.empty()) {
+        const std::size_t at = std::min(text.find("//"), text.find("/*"));
+        code += text.substr(0, at);
+        if (at == std::string_view::npos) {
+            break;
+        }
+        const bool block = text[at + 1] == '*';
+        const std::size_t end = block ? text.find("*/", at + 2) : text.find('\n', at);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + (block ? 2 : 0));
+    }
+    return code;
+}
+
+/// The parts of `desc` as "water.vert + water.frag".
+std::string describe(const ProgramDesc& desc) {
+    std::string text;
+    for (const std::string* part : {&desc.vertex, &desc.geometry, &desc.fragment, &desc.compute}) {
+        if (!part->empty()) {
+            text += (text.empty() ? "" : " + ") + *part;
+        }
+    }
+    for (const ShaderDefine& define : desc.defines) {
+        text += fmt::format(" {}={}", define.name, define.value);
+    }
+    return text;
+}
+
+/// Too many textures of one stage are a capability or capacity error, with the device's own limit.
+Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Program& program) {
+    constexpr std::array<std::pair<GLenum, int PassRequirements::*>, 3> kStages = {{
+        {GL_REFERENCED_BY_VERTEX_SHADER, &PassRequirements::vertex_textures},
+        {GL_REFERENCED_BY_FRAGMENT_SHADER, &PassRequirements::fragment_textures},
+        {GL_REFERENCED_BY_COMPUTE_SHADER, &PassRequirements::compute_textures},
+    }};
+    PassRequirements needs;
+    for (const ProgramBinding& binding : program.bindings()) {
+        if (binding.kind != BindingKind::Texture) {
+            continue;
+        }
+        const GLuint index =
+            glGetProgramResourceIndex(program.id(), GL_UNIFORM, binding.name.c_str());
+        for (const auto& [stage, field] : kStages) {
+            GLint used = 0;
+            glGetProgramResourceiv(program.id(), GL_UNIFORM, index, 1, &stage, 1, nullptr, &used);
+            needs.*field += used != 0 ? binding.size : 0;
+        }
+    }
+    return require(caps, describe(desc).c_str(), needs);
+}
+
+}  // namespace
+
+ShaderLibrary::ShaderLibrary(const DeviceCaps& caps, ShaderFiles files)
+    : caps_(caps), files_(std::move(files)) {}
+
+ShaderLibrary::~ShaderLibrary() = default;
+
+Result<const Program*> ShaderLibrary::load(const ProgramDesc& desc) {
+    LIMN_CHECK(desc.compute.empty() != desc.vertex.empty());
+    for (const std::unique_ptr<Entry>& entry : entries_) {
+        if (entry->desc == desc) {
+            return &entry->program;
+        }
+    }
+    auto entry = std::make_unique<Entry>();
+    entry->desc = desc;
+    Result<Program> program = build(desc, entry->watched);
+    if (!program) {
+        return program.error();
+    }
+    entry->program = *std::move(program);
+    entries_.push_back(std::move(entry));
+    return &entries_.back()->program;
+}
+
+ReloadReport ShaderLibrary::reload_changed() {
+    return reload(false);
+}
+
+ReloadReport ShaderLibrary::reload_all() {
+    return reload(true);
+}
+
+ReloadReport ShaderLibrary::reload(bool all) {
+    ReloadReport report;
+    for (const std::unique_ptr<Entry>& entry : entries_) {
+        const bool changed =
+            std::any_of(entry->watched.begin(), entry->watched.end(), [&](const WatchedFile& file) {
+                return files_.version(file.path) != file.version;
+            });
+        if (!all && !changed) {
+            continue;
+        }
+        Result<Program> program = build(entry->desc, entry->watched);
+        if (program) {
+            program->copy_uniforms_from(entry->program);
+            entry->program = *std::move(program);
+            ++report.reloaded;
+        } else {
+            report.errors.push_back(program.error().message);
+        }
+    }
+    return report;
+}
+
+Result<Program>
+ShaderLibrary::build(const ProgramDesc& desc, std::vector<WatchedFile>& watched) const {
+    const std::array<std::pair<GLenum, const std::string*>, 4> stages = {{
+        {GL_VERTEX_SHADER, &desc.vertex},
+        {GL_GEOMETRY_SHADER, &desc.geometry},
+        {GL_FRAGMENT_SHADER, &desc.fragment},
+        {GL_COMPUTE_SHADER, &desc.compute},
+    }};
+    // All files first: what fails to compile must be watched too, or its repair would go unseen.
+    std::vector<std::pair<GLenum, ShaderSource>> sources;
+    std::vector<std::string> seen;
+    Status assembled = Done{};
+    for (const auto& [stage, path] : stages) {
+        if (path->empty() || !assembled) {
+            continue;
+        }
+        Result<ShaderSource> source = assemble_shader(files_, *path, desc.defines, &seen);
+        if (source) {
+            sources.emplace_back(stage, *std::move(source));
+        } else {
+            assembled = source.error();
+        }
+    }
+    watched.clear();
+    for (std::string& path : seen) {
+        const std::uint64_t version = files_.version(path);
+        watched.push_back({std::move(path), version});
+    }
+    if (!assembled) {
+        return assembled.error();
+    }
+
+    std::vector<Shader> shaders;
+    for (const auto& [stage, source] : sources) {
+        if (stage == GL_VERTEX_SHADER && desc.geometry.empty()
+            && strip_comments(source.text).find("gl_Position") == std::string::npos) {
+            return fail("{}: context: no write of gl_Position found, expected one", desc.vertex);
+        }
+        Shader shader(stage);
+        const char* text = source.text.c_str();
+        glShaderSource(shader.id(), 1, &text, nullptr);
+        glCompileShader(shader.id());
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
+        if (compiled != GL_TRUE) {
+            const std::string log = name_files_in_log(shader_log(shader.id()), source.files);
+            return fail(
+                "{}",
+                log.empty() ? source.files[0] + ":1: does not compile, no reason given" : log);
+        }
+        shaders.push_back(std::move(shader));
+    }
+
+    const GLuint id = glCreateProgram();
+    for (const Shader& shader : shaders) {
+        glAttachShader(id, shader.id());
+    }
+    glLinkProgram(id);
+    for (const Shader& shader : shaders) {
+        glDetachShader(id, shader.id());
+    }
+    GLint linked = GL_FALSE;
+    glGetProgramiv(id, GL_LINK_STATUS, &linked);
+    if (linked != GL_TRUE) {
+        std::string log = program_log(id);
+        while (!log.empty() && (log.back() == '\n' || log.back() == '\0')) {
+            log.pop_back();
+        }
+        glDeleteProgram(id);
+        return fail("{}: {}", describe(desc), log.empty() ? "does not link, no reason given" : log);
+    }
+    Program program(id, describe(desc));
+    const Status fits = check_textures(caps_, desc, program);
+    if (!fits) {
+        return fits.error();
+    }
+    return program;
+}
+
+}  // namespace limn::gpu

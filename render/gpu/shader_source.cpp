@@ -1,0 +1,388 @@
+#include "render/gpu/shader_source.h"
+
+#include "ecs/base/hash.h"
+#include "ecs/base/log.h"
+#include "render/gpu/embedded_shaders.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace limn::gpu {
+namespace {
+
+constexpr std::string_view kSpace = " \t\r";
+
+std::string_view trim(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(kSpace);
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+/// If `line` is the directive `#name rest`, true and `rest`.
+bool is_directive(std::string_view line, std::string_view name, std::string_view& rest) {
+    line = trim(line);
+    if (line.empty() || line.front() != '#') {
+        return false;
+    }
+    line = trim(line.substr(1));
+    if (!line.starts_with(name)) {
+        return false;
+    }
+    line.remove_prefix(name.size());
+    if (!line.empty() && kSpace.find(line.front()) == std::string_view::npos
+        && line.front() != '"') {
+        return false;  // a longer word
+    }
+    rest = trim(line);
+    return true;
+}
+
+/// "a/b/../c" becomes "a/c"; nothing if it leaves the folder or is absolute.
+std::optional<std::string> clean_path(std::string_view path) {
+    const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
+    if (normal.empty() || normal.is_absolute() || *normal.begin() == "..") {
+        return std::nullopt;
+    }
+    return normal.generic_string();
+}
+
+std::optional<std::string_view> find_embedded(std::string_view path) {
+    for (unsigned i = 0; i < kEmbeddedShaderCount; ++i) {
+        if (path == kEmbeddedShaders[i].path) {
+            return kEmbeddedShaders[i].text;
+        }
+    }
+    return std::nullopt;
+}
+
+/// Pastes files together.
+class Assembler {
+  public:
+    Assembler(
+        const ShaderFiles& files,
+        const std::vector<ShaderDefine>& defines,
+        std::vector<std::string>* seen)
+        : files_(files), defines_(defines), seen_(seen) {}
+
+    Result<ShaderSource> run(std::string_view path) {
+        const Status status = add_file(path, "shader");
+        if (!status) {
+            return status.error();
+        }
+        return ShaderSource{std::move(text_), std::move(names_)};
+    }
+
+  private:
+    /// `place` begins the message if the file is missing.
+    Status add_file(std::string_view path, const std::string& place) {
+        if (seen_ != nullptr && std::find(seen_->begin(), seen_->end(), path) == seen_->end()) {
+            seen_->emplace_back(path);
+        }
+        const std::optional<std::string> body = files_.read(path);
+        if (!body) {
+            return fail("{}: no file {} found, expected it in the shader folder", place, path);
+        }
+        const auto number = names_.size();
+        names_.emplace_back(path);
+        open_.emplace_back(path);
+        const Status status = number == 0 ? add_main(*body) : add_lines(*body, 1, number);
+        open_.pop_back();
+        return status;
+    }
+
+    /// The shader itself: definitions go between its #version and the rest.
+    Status add_main(std::string_view body) {
+        int line = 1;
+        std::string_view rest;
+        while (true) {
+            if (body.empty()) {
+                return fail(
+                    "{}:1: no #version found, expected '#version 450' before any code", names_[0]);
+            }
+            const std::string_view current = take_line(body);
+            if (is_directive(current, "version", rest)) {
+                text_ += fmt::format("{}\n", trim(current));
+                break;
+            }
+            const std::string_view stripped = trim(current);
+            if (!stripped.empty() && !stripped.starts_with("//")) {
+                return fail(
+                    "{}:{}: '{}' found, expected '#version 450' before any code",
+                    names_[0],
+                    line,
+                    stripped);
+            }
+            ++line;
+        }
+        for (const ShaderDefine& define : defines_) {
+            text_ += fmt::format("#define {} {}\n", define.name, define.value);
+        }
+        return add_lines(body, line + 1, 0);
+    }
+
+    Status add_lines(std::string_view body, int line, std::size_t number) {
+        text_ += fmt::format("#line {} {}\n", line, number);
+        // Depth of #if blocks inside a C++ part; 0 when not in one.
+        int cpp_depth = 0;
+        // What `#ifdef __cplusplus` opened and is still open: depth of plain #if inside each.
+        std::vector<int> guards;
+        for (; !body.empty(); ++line) {
+            const std::string_view current = take_line(body);
+            if (skip_cpp(current, cpp_depth, guards)) {
+                text_ += '\n';
+                continue;
+            }
+            std::string_view rest;
+            if (is_directive(current, "include", rest)) {
+                const Status status = add_include(rest, line, number);
+                if (!status) {
+                    return status;
+                }
+                text_ += fmt::format("#line {} {}\n", line + 1, number);
+            } else if (is_directive(current, "pragma", rest) && rest == "once") {
+                text_ += '\n';
+            } else if (
+                is_directive(current, "extension", rest)
+                && rest.starts_with("GL_GOOGLE_include_directive")) {
+                text_ += '\n';  // for editors; drivers do not know it
+            } else if (number != 0 && is_directive(current, "version", rest)) {
+                return fail(
+                    "{}:{}: #version found in an included file, expected it in the shader alone",
+                    names_[number],
+                    line);
+            } else {
+                text_ += current;
+                text_ += '\n';
+            }
+        }
+        return Done{};
+    }
+
+    /// Whether the line belongs to C++ (or is a directive that says so). Only `#ifdef __cplusplus`,
+    /// `#ifndef __cplusplus` and their #else and #endif are understood; everything else is left to
+    /// GLSL.
+    static bool skip_cpp(std::string_view line, int& cpp_depth, std::vector<int>& guards) {
+        std::string_view rest;
+        const bool opens = is_directive(line, "ifdef", rest) || is_directive(line, "ifndef", rest)
+                           || is_directive(line, "if", rest);
+        const bool closes = !opens && is_directive(line, "endif", rest);
+        if (cpp_depth > 0) {
+            if (opens) {
+                ++cpp_depth;
+            } else if (closes) {
+                --cpp_depth;
+            } else if (cpp_depth == 1 && is_directive(line, "else", rest)) {
+                cpp_depth = 0;
+                guards.push_back(0);
+            }
+            return true;
+        }
+        if (is_directive(line, "ifdef", rest) && rest == "__cplusplus") {
+            cpp_depth = 1;
+            return true;
+        }
+        if (is_directive(line, "ifndef", rest) && rest == "__cplusplus") {
+            guards.push_back(0);
+            return true;
+        }
+        if (guards.empty()) {
+            return false;
+        }
+        if (opens) {
+            ++guards.back();
+        } else if (closes && guards.back() > 0) {
+            --guards.back();
+        } else if (closes) {
+            guards.pop_back();
+            return true;
+        } else if (guards.back() == 0 && is_directive(line, "else", rest)) {
+            guards.pop_back();
+            cpp_depth = 1;
+            return true;
+        }
+        return false;
+    }
+
+    Status add_include(std::string_view argument, int line, std::size_t number) {
+        const std::string place = fmt::format("{}:{}", names_[number], line);
+        const std::size_t end = argument.find('"', 1);
+        if (argument.size() < 3 || argument.front() != '"' || end == std::string_view::npos
+            || end == 1) {
+            return fail("{}: '#include {}' found, expected #include \"path\"", place, argument);
+        }
+        constexpr std::string_view kRootInCpp = "render/shaders/";
+        std::string_view wanted = argument.substr(1, end - 1);
+        if (wanted.starts_with(kRootInCpp)) {
+            wanted.remove_prefix(kRootInCpp.size());
+        }
+        std::optional<std::string> path = clean_path(wanted);
+        if (!path) {
+            return fail(
+                "{}: include of '{}' found, expected a path inside the shader folder",
+                place,
+                wanted);
+        }
+        if (!files_.read(*path)) {
+            // Not from the root: beside the file that includes it, then.
+            const std::filesystem::path beside =
+                std::filesystem::path(names_[number]).parent_path() / *path;
+            if (files_.read(beside.generic_string())) {
+                path = beside.generic_string();
+            }
+        }
+        const auto cycle = std::find(open_.begin(), open_.end(), *path);
+        if (cycle != open_.end()) {
+            std::string chain;
+            for (auto it = cycle; it != open_.end(); ++it) {
+                chain += *it + " -> ";
+            }
+            return fail("{}: include cycle {}{} found, expected none", place, chain, *path);
+        }
+        if (std::find(names_.begin(), names_.end(), *path) != names_.end()) {
+            return Done{};  // each file once
+        }
+        return add_file(*path, place);
+    }
+
+    static std::string_view take_line(std::string_view& body) {
+        const std::size_t end = body.find('\n');
+        std::string_view line = body.substr(0, end);
+        body.remove_prefix(end == std::string_view::npos ? body.size() : end + 1);
+        if (line.ends_with('\r')) {
+            line.remove_suffix(1);
+        }
+        return line;
+    }
+
+    const ShaderFiles& files_;
+    const std::vector<ShaderDefine>& defines_;
+    std::vector<std::string>* seen_;
+    std::string text_;
+    std::vector<std::string> names_;
+    std::vector<std::string> open_;  // files that are being read, outermost first
+};
+
+}  // namespace
+
+ShaderFiles ShaderFiles::standard() {
+    ShaderFiles files;
+    files.embedded_ = true;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(LIMN_SHADER_DIR, ignored)) {
+        files.folder_ = LIMN_SHADER_DIR;
+    }
+    return files;
+}
+
+std::optional<std::string> ShaderFiles::read(std::string_view path) const {
+    const std::optional<std::string> clean = clean_path(path);
+    if (!clean) {
+        return std::nullopt;
+    }
+    if (const auto found = texts_.find(*clean); found != texts_.end()) {
+        return found->second;
+    }
+    if (!folder_.empty()) {
+        const std::filesystem::path file = std::filesystem::path(folder_) / *clean;
+        std::error_code ignored;
+        if (std::filesystem::is_regular_file(file, ignored)) {
+            std::ifstream stream(file, std::ios::binary);
+            std::string text{std::istreambuf_iterator<char>(stream), {}};
+            if (stream) {
+                return text;
+            }
+        }
+    }
+    if (embedded_) {
+        if (const auto text = find_embedded(*clean)) {
+            return std::string(*text);
+        }
+    }
+    return std::nullopt;
+}
+
+std::uint64_t ShaderFiles::version(std::string_view path) const {
+    const std::optional<std::string> clean = clean_path(path);
+    if (!clean) {
+        return 0;
+    }
+    if (const auto found = texts_.find(*clean); found != texts_.end()) {
+        return 1 | hash_text(found->second);
+    }
+    if (!folder_.empty()) {
+        std::error_code error;
+        const std::filesystem::path file = std::filesystem::path(folder_) / *clean;
+        const auto time = std::filesystem::last_write_time(file, error);
+        if (!error) {
+            const std::uint64_t size = std::filesystem::file_size(file, error);
+            return 1
+                   | hash_combine(
+                       size, static_cast<std::uint64_t>(time.time_since_epoch().count()));
+        }
+    }
+    return embedded_ && find_embedded(*clean) ? 1 : 0;
+}
+
+Result<ShaderSource> assemble_shader(
+    const ShaderFiles& files,
+    std::string_view path,
+    const std::vector<ShaderDefine>& defines,
+    std::vector<std::string>* files_seen) {
+    return Assembler(files, defines, files_seen).run(path);
+}
+
+std::string name_files_in_log(std::string_view log, const std::vector<std::string>& files) {
+    // A place is "number:line" or "number(line)" at the start of a line, perhaps after "ERROR: ".
+    std::string out;
+    const auto digits = [](std::string_view text) {
+        return std::min(text.find_first_not_of("0123456789"), text.size());
+    };
+    while (!log.empty()) {
+        const std::size_t end = std::min(log.find('\n'), log.size());
+        std::string_view line = log.substr(0, end);
+        log.remove_prefix(std::min(end + 1, log.size()));
+        if (trim(line).empty()) {
+            continue;
+        }
+        for (const std::string_view prefix : {"ERROR: ", "WARNING: "}) {
+            if (line.starts_with(prefix)) {
+                line.remove_prefix(prefix.size());
+            }
+        }
+        if (!out.empty()) {
+            out += '\n';
+        }
+        const std::size_t file_digits = digits(line);
+        if (file_digits > 0 && file_digits < 5 && file_digits < line.size()
+            && (line[file_digits] == ':' || line[file_digits] == '(')) {
+            const std::string_view after = line.substr(file_digits + 1);
+            const std::size_t line_digits = digits(after);
+            const auto number =
+                static_cast<std::size_t>(std::stoi(std::string(line.substr(0, file_digits))));
+            if (line_digits > 0 && number < files.size()) {
+                std::string_view message = after.substr(line_digits);
+                // Mesa adds the column in parentheses, NVIDIA closes its own.
+                if (message.starts_with('(')) {
+                    message.remove_prefix(std::min(message.find(')'), message.size() - 1) + 1);
+                } else if (message.starts_with(')')) {
+                    message.remove_prefix(1);
+                }
+                message = trim(message);
+                if (message.starts_with(':')) {
+                    message = trim(message.substr(1));
+                }
+                out +=
+                    fmt::format("{}:{}: {}", files[number], after.substr(0, line_digits), message);
+                continue;
+            }
+        }
+        out += line;
+    }
+    return out;
+}
+
+}  // namespace limn::gpu
