@@ -518,22 +518,6 @@ JsonValue write_one(const FieldInfo& info, const void* field, const GiveNames& n
     }
 }
 
-/// Calls visit(info, element) with every element that is no struct.
-template <typename Visit>
-void for_each_element(const std::vector<FieldInfo>& fields, void* object, const Visit& visit) {
-    for (const FieldInfo& info : fields) {
-        void* const data = field_ptr(object, info);
-        for (std::size_t i = 0; i < element_count(info, data); ++i) {
-            void* const element = element_ptr(info, data, i);
-            if (info.type == FieldType::Struct) {
-                for_each_element(info.fields, element, visit);
-            } else {
-                visit(info, element);
-            }
-        }
-    }
-}
-
 }  // namespace
 
 Error error_at(
@@ -602,27 +586,27 @@ JsonValue write_field(const FieldInfo& info, const void* field, const GiveNames&
     return json;
 }
 
-void for_each_entity(
-    const std::vector<FieldInfo>& fields, void* object, const std::function<void(Entity&)>& visit) {
-    for_each_element(fields, object, [&](const FieldInfo& info, void* element) {
-        if (info.type == FieldType::Entity) {
-            visit(*static_cast<Entity*>(element));
-        }
-    });
-}
-
 void for_each_asset(
     const std::vector<FieldInfo>& fields,
     void* object,
     const std::function<void(std::string_view, std::uint32_t&)>& visit) {
-    for_each_element(fields, object, [&](const FieldInfo& info, void* element) {
-        if (info.type == FieldType::Asset) {
+    for (const FieldInfo& info : fields) {
+        if (info.type != FieldType::Asset && info.type != FieldType::Struct) {
+            continue;
+        }
+        void* const data = field_ptr(object, info);
+        for (std::size_t i = 0; i < element_count(info, data); ++i) {
+            void* const element = element_ptr(info, data, i);
+            if (info.type == FieldType::Struct) {
+                for_each_asset(info.fields, element, visit);
+                continue;
+            }
             std::uint32_t index = 0;
             std::memcpy(&index, element, sizeof(index));
             visit(info.asset, index);
             std::memcpy(element, &index, sizeof(index));
         }
-    });
+    }
 }
 
 Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {

@@ -94,9 +94,7 @@ write_component(const ComponentInfo& info, const void* object, const GiveNames& 
 [[nodiscard]] JsonValue
 write_field(const FieldInfo& info, const void* field, const GiveNames& names);
 
-/// Calls `visit` with every Entity, or every asset id and its kind, in the value.
-void for_each_entity(
-    const std::vector<FieldInfo>& fields, void* object, const std::function<void(Entity&)>& visit);
+/// Calls `visit` with every asset id in the value, and its kind.
 void for_each_asset(
     const std::vector<FieldInfo>& fields,
     void* object,

@@ -338,16 +338,7 @@ TEST_CASE("component json: the defaults of every registered component survive a 
     }
 }
 
-TEST_CASE("component json: entities and assets are found at any depth") {
-    Everything all;
-    all.friend_of = {1, 1};
-    int entities = 0;
-    for_each_entity(component_info<Everything>().fields, &all, [&](Entity& entity) {
-        entity = {9, 9};
-        ++entities;
-    });
-    CHECK(entities == 1);
-    CHECK(all.friend_of == Entity{9, 9});
+TEST_CASE("component json: assets are found at any depth") {
     Material material;
     int images = 0;
     for_each_asset(
@@ -363,8 +354,9 @@ TEST_CASE("component json: entities and assets are found at any depth") {
 }
 
 TEST_CASE("any component: copies own their values") {
-    AnyComponent a =
-        AnyComponent::of(Everything{.label = "a long text that is not stored in place"});
+    Everything all;
+    all.label = "a long text that is not stored in place";
+    AnyComponent a = AnyComponent::of(all);
     AnyComponent b = a;
     b.as<Everything>().label = "b";
     CHECK(a.as<Everything>().label == "a long text that is not stored in place");
