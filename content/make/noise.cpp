@@ -56,7 +56,7 @@ float lattice_random(int x, int y, std::uint32_t seed) {
     return static_cast<float>(lattice_hash(x, y, seed) >> 8) * 0x1p-24f;
 }
 
-NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, int period) {
+NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period) {
     const float cell_x = std::floor(p.x);
     const float cell_y = std::floor(p.y);
     const int x0 = static_cast<int>(cell_x);
@@ -70,7 +70,8 @@ NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, int period) 
     for (int corner = 0; corner < 4; ++corner) {
         const int dx = corner % 2;
         const int dy = corner / 2;
-        const std::uint32_t h = lattice_hash(wrap(x0 + dx, period), wrap(y0 + dy, period), seed);
+        const std::uint32_t h =
+            lattice_hash(wrap(x0 + dx, period.x), wrap(y0 + dy, period.y), seed);
         gradient[corner] = kDirections[h >> 28];
         ramp[corner] = gradient[corner].x * (fx - static_cast<float>(dx))
                        + gradient[corner].y * (fy - static_cast<float>(dy));
@@ -91,18 +92,20 @@ NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, int period) 
     return {kNoiseScale * value, kNoiseScale * slope};
 }
 
-float gradient_noise(const Vec2& p, std::uint32_t seed, int period) {
+float gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period) {
     return gradient_noise_slope(p, seed, period).value;
 }
 
-float fractal_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period) {
+float fractal_noise(
+    const Vec2& p, std::uint32_t seed, const Octaves& octaves, const IVec2& period) {
     float sum = 0;
     float total = 0;
     float amplitude = 1;
     float frequency = 1;
     for (int i = 0; i < octaves.count; ++i) {
         sum += amplitude
-               * gradient_noise(p * frequency, seed + static_cast<std::uint32_t>(i), period << i);
+               * gradient_noise(
+                   p * frequency, seed + static_cast<std::uint32_t>(i), period * (1 << i));
         total += amplitude;
         amplitude *= octaves.gain;
         frequency *= 2.0f;
@@ -110,7 +113,7 @@ float fractal_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, i
     return sum / total;
 }
 
-float ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period) {
+float ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, const IVec2& period) {
     float sum = 0;
     float total = 0;
     float amplitude = 1;
@@ -118,7 +121,7 @@ float ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, in
     float weight = 1;
     for (int i = 0; i < octaves.count; ++i) {
         const float n =
-            gradient_noise(p * frequency, seed + static_cast<std::uint32_t>(i), period << i);
+            gradient_noise(p * frequency, seed + static_cast<std::uint32_t>(i), period * (1 << i));
         const float crest = square(1.0f - std::abs(n));
         sum += amplitude * weight * crest;
         total += amplitude;
@@ -129,7 +132,7 @@ float ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, in
     return sum / total;
 }
 
-CellSample cell_noise(const Vec2& p, std::uint32_t seed, float jitter, int period) {
+CellSample cell_noise(const Vec2& p, std::uint32_t seed, float jitter, const IVec2& period) {
     const Vec2 cell = glm::floor(p);
     const int x0 = static_cast<int>(cell.x);
     const int y0 = static_cast<int>(cell.y);
@@ -140,8 +143,8 @@ CellSample cell_noise(const Vec2& p, std::uint32_t seed, float jitter, int perio
     int count = 0;
     for (int dy = -2; dy <= 2; ++dy) {
         for (int dx = -2; dx <= 2; ++dx) {
-            const int x = wrap(x0 + dx, period);
-            const int y = wrap(y0 + dy, period);
+            const int x = wrap(x0 + dx, period.x);
+            const int y = wrap(y0 + dy, period.y);
             const Vec2 random = {
                 lattice_random(x, y, seed), lattice_random(x, y, seed ^ 0x68bc21ebu)};
             const Vec2 place = Vec2(x0 + dx, y0 + dy) + 0.5f + jitter * (random - 0.5f) - p;

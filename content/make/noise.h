@@ -25,8 +25,9 @@ struct NoiseSample {
 };
 
 /// Gradient noise: about -1 .. 1, mean 0, 0 at lattice points, twice differentiable.
-[[nodiscard]] NoiseSample gradient_noise_slope(const Vec2& p, std::uint32_t seed, int period = 0);
-[[nodiscard]] float gradient_noise(const Vec2& p, std::uint32_t seed, int period = 0);
+[[nodiscard]] NoiseSample
+gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0});
+[[nodiscard]] float gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0});
 
 /// How octaves add up: octave i has frequency 2^i and amplitude gain^i; the sum is divided by the
 /// sum of the amplitudes.
@@ -36,13 +37,13 @@ struct Octaves {
 };
 
 /// Fractal sum of gradient noise, about -1 .. 1.
-[[nodiscard]] float
-fractal_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period = 0);
+[[nodiscard]] float fractal_noise(
+    const Vec2& p, std::uint32_t seed, const Octaves& octaves, const IVec2& period = {0, 0});
 
 /// Sharp crests where the noise crosses 0, about 0 .. 1; an octave is as strong as the ones before
 /// it are high, so that valleys stay smooth.
-[[nodiscard]] float
-ridged_noise(const Vec2& p, std::uint32_t seed, const Octaves& octaves, int period = 0);
+[[nodiscard]] float ridged_noise(
+    const Vec2& p, std::uint32_t seed, const Octaves& octaves, const IVec2& period = {0, 0});
 
 /// One jittered feature point a cell.
 struct CellSample {
@@ -54,6 +55,6 @@ struct CellSample {
 
 /// `jitter` 0 = a square grid .. 1 = as irregular as it gets.
 [[nodiscard]] CellSample
-cell_noise(const Vec2& p, std::uint32_t seed, float jitter = 1.0f, int period = 0);
+cell_noise(const Vec2& p, std::uint32_t seed, float jitter = 1.0f, const IVec2& period = {0, 0});
 
 }  // namespace limn

@@ -118,13 +118,15 @@ TEST_CASE("noise: with a period it repeats, octaves and cells too") {
         const Vec2 p = {0.25f * static_cast<float>(i), 1.75f};
         const Vec2 q = p + Vec2(8, -16);
         CHECK(
-            fractal_noise(p, 3, {.count = 4}, 8)
-            == doctest::Approx(fractal_noise(q, 3, {.count = 4}, 8)));
+            fractal_noise(p, 3, {.count = 4}, IVec2(8))
+            == doctest::Approx(fractal_noise(q, 3, {.count = 4}, IVec2(8))));
         CHECK(
-            ridged_noise(p, 3, {.count = 4}, 8)
-            == doctest::Approx(ridged_noise(q, 3, {.count = 4}, 8)));
-        CHECK(cell_noise(p, 3, 1, 8).cell == cell_noise(q, 3, 1, 8).cell);
-        CHECK(cell_noise(p, 3, 1, 8).edge == doctest::Approx(cell_noise(q, 3, 1, 8).edge));
+            ridged_noise(p, 3, {.count = 4}, IVec2(8))
+            == doctest::Approx(ridged_noise(q, 3, {.count = 4}, IVec2(8))));
+        CHECK(cell_noise(p, 3, 1, IVec2(8)).cell == cell_noise(q, 3, 1, IVec2(8)).cell);
+        CHECK(
+            cell_noise(p, 3, 1, IVec2(8)).edge
+            == doctest::Approx(cell_noise(q, 3, 1, IVec2(8)).edge));
     }
 }
 

@@ -1,0 +1,190 @@
+#include "content/make/patterns.h"
+#include "ecs/base/hash.h"
+#include "ecs/base/jobs.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+/// What a level gets that names a kind and a size.
+PatternMaps make_small(const PatternKind& kind, int size, int seed = 1) {
+    std::vector<std::byte> bytes(kind.parameters->size);
+    kind.parameters->ops.construct_copy(bytes.data(), kind.parameters->defaults, 1);
+    for (const FieldInfo& field : kind.parameters->fields) {
+        if (std::string(field.name) == "size") {
+            *reinterpret_cast<int*>(bytes.data() + field.offset) = size;
+        } else if (std::string(field.name) == "seed") {
+            *reinterpret_cast<int*>(bytes.data() + field.offset) = seed;
+        }
+    }
+    PatternMaps maps = kind.make(bytes.data());
+    kind.parameters->ops.destroy(bytes.data(), 1);
+    return maps;
+}
+
+int channel(const ImageData& image, int x, int y, int c) {
+    return image.pixels[static_cast<std::size_t>(4 * (y * image.width + x) + c)];
+}
+
+/// Mean difference of neighbors along `axis` between lines `at` - 1 and `at`, over all channels.
+double step_across(const ImageData& image, int axis, int at) {
+    double sum = 0;
+    const int n = image.width;
+    for (int i = 0; i < n; ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const int before = (at + n - 1) % n;
+            const int a = axis == 0 ? channel(image, before, i, c) : channel(image, i, before, c);
+            const int b = axis == 0 ? channel(image, at, i, c) : channel(image, i, at, c);
+            sum += std::abs(a - b);
+        }
+    }
+    return sum / (3.0 * n);
+}
+
+std::uint64_t bits(const PatternMaps& maps) {
+    std::uint64_t hash = 0;
+    for (const ImageData* image : {&maps.base_color, &maps.normal, &maps.orm}) {
+        hash = hash_bytes(image->pixels.data(), image->pixels.size(), hash);
+    }
+    return hash;
+}
+
+}  // namespace
+
+TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
+    REQUIRE(pattern_kinds().size() == 10);
+    for (const PatternKind& kind : pattern_kinds()) {
+        INFO(std::string(kind.name));
+        const PatternMaps maps = make_small(kind, 64);
+        for (const ImageData* image : {&maps.base_color, &maps.normal, &maps.orm}) {
+            CHECK(image->width == 64);
+            CHECK(image->height == 64);
+            CHECK(image->pixels.size() == 64 * 64 * 4);
+        }
+        CHECK(maps.base_color.srgb);
+        CHECK(!maps.normal.srgb);
+        CHECK(!maps.orm.srgb);
+        CHECK(make_small(kind, 1).normal.pixels.size() == 4);
+    }
+}
+
+TEST_CASE("patterns: no seam shows where an image meets itself") {
+    for (const PatternKind& kind : pattern_kinds()) {
+        INFO(std::string(kind.name));
+        const PatternMaps maps = make_small(kind, 192);
+        for (const ImageData* image : {&maps.base_color, &maps.normal, &maps.orm}) {
+            for (const int axis : {0, 1}) {
+                double most = 0;
+                for (int line = 1; line < 192; ++line) {
+                    most = std::max(most, step_across(*image, axis, line));
+                }
+                CHECK(step_across(*image, axis, 0) <= 1.25 * most + 1.0);
+            }
+        }
+    }
+}
+
+TEST_CASE("patterns: normals are unit, point outwards and have no lean") {
+    for (const PatternKind& kind : pattern_kinds()) {
+        INFO(std::string(kind.name));
+        const PatternMaps maps = make_small(kind, 128);
+        glm::dvec3 sum(0);
+        for (int y = 0; y < 128; ++y) {
+            for (int x = 0; x < 128; ++x) {
+                const Vec3 n = Vec3(
+                                   channel(maps.normal, x, y, 0),
+                                   channel(maps.normal, x, y, 1),
+                                   channel(maps.normal, x, y, 2))
+                                   / 127.5f
+                               - 1.0f;
+                REQUIRE(glm::length(n) == doctest::Approx(1.0f).epsilon(0.02));
+                REQUIRE(n.z > 0);
+                sum += glm::dvec3(n);
+            }
+        }
+        CHECK(std::abs(sum.x) < 0.01 * sum.z);
+        CHECK(std::abs(sum.y) < 0.01 * sum.z);
+    }
+}
+
+TEST_CASE("patterns: red points right and green up where the surface falls that way") {
+    const PatternMaps right = make_pattern_maps(
+        64, [](const Vec2& uv) { return PatternTexel{.height = -0.5f * std::abs(uv.x - 0.5f)}; });
+    CHECK(channel(right.normal, 48, 32, 0) > 160);  // right half: falls to the right
+    CHECK(channel(right.normal, 16, 32, 0) < 96);
+    CHECK(std::abs(channel(right.normal, 48, 32, 1) - 128) <= 1);
+    const PatternMaps up = make_pattern_maps(
+        64, [](const Vec2& uv) { return PatternTexel{.height = -0.5f * std::abs(uv.y - 0.5f)}; });
+    CHECK(channel(up.normal, 32, 16, 1) > 160);  // upper half: falls to the top
+    CHECK(channel(up.normal, 32, 48, 1) < 96);
+    // A slope of 1/2: the normal is (0, 1, 2) / sqrt(5).
+    CHECK(
+        channel(up.normal, 32, 16, 1)
+        == doctest::Approx(127.5 * (1 + 1 / std::sqrt(5.0))).epsilon(0.01));
+}
+
+TEST_CASE("patterns: a texel's numbers arrive in their channels") {
+    const PatternMaps maps = make_pattern_maps(2, [](const Vec2& uv) {
+        return PatternTexel{
+            .color = {1, 0.2159f, uv.x < 0.5f ? 0.0f : 1.0f},
+            .roughness = 0.4f,
+            .metalness = 1,
+            .occlusion = 0.2f};
+    });
+    CHECK(channel(maps.base_color, 0, 0, 0) == 255);
+    CHECK(channel(maps.base_color, 0, 0, 1) == 128);  // sRGB 0.502
+    CHECK(channel(maps.base_color, 0, 0, 2) == 0);
+    CHECK(channel(maps.base_color, 1, 1, 2) == 255);
+    CHECK(channel(maps.orm, 0, 1, 0) == 51);
+    CHECK(channel(maps.orm, 0, 1, 1) == 102);
+    CHECK(channel(maps.orm, 0, 1, 2) == 255);
+}
+
+TEST_CASE("patterns: the same parameters give the same pixels on any number of threads, another "
+          "seed others") {
+    const int threads = thread_count();
+    for (const PatternKind& kind : pattern_kinds()) {
+        INFO(std::string(kind.name));
+        set_thread_count(1);
+        const std::uint64_t one = bits(make_small(kind, 64));
+        set_thread_count(3);
+        CHECK(bits(make_small(kind, 64)) == one);
+        CHECK(bits(make_small(kind, 64, 2)) != one);
+    }
+    set_thread_count(threads);
+}
+
+TEST_CASE("patterns: metals are metal, rust is not, and everything else is no metal at all") {
+    for (const PatternKind& kind : pattern_kinds()) {
+        INFO(std::string(kind.name));
+        const PatternMaps maps = make_small(kind, 128);
+        double metal = 0;
+        for (int i = 0; i < 128 * 128; ++i) {
+            metal += channel(maps.orm, i % 128, i / 128, 2) / 255.0 / (128 * 128);
+        }
+        const std::string name = kind.name;
+        if (name == "brushed_metal") {
+            CHECK(metal == doctest::Approx(1.0));
+        } else if (name == "rust") {
+            CHECK(metal > 0.2);
+            CHECK(metal < 0.8);
+        } else {
+            CHECK(metal == 0);
+        }
+    }
+}
+
+TEST_CASE("patterns: kinds are found by name, and a slip is answered with the nearest") {
+    REQUIRE(find_pattern_kind("marble") != nullptr);
+    CHECK(find_pattern_kind("Marble") == nullptr);
+    CHECK(pattern_kind_suggestion("marbel") == " (did you mean marble?)");
+    for (const PatternKind& kind : pattern_kinds()) {
+        CHECK(kind.parameters->fields.size() >= 3);
+    }
+}
