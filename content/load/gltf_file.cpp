@@ -1,0 +1,247 @@
+#include "content/load/gltf_file.h"
+
+#include "content/load/atomic_file.h"
+#include "content/load/json_document.h"
+#include "ecs/base/log.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+
+namespace limn {
+
+namespace {
+
+constexpr std::uint32_t kGlbMagic = 0x46546c67;   // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004e4942;   // "BIN"
+
+std::uint32_t little_endian(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
+    }
+    return value;
+}
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string& file) {
+    if (bytes.size() < 20) {
+        return fail("{}: found a GLB of {} bytes, expected at least 20", file, bytes.size());
+    }
+    const std::uint32_t version = little_endian(bytes, 4);
+    if (version != 2) {
+        return fail("{}: found GLB version {}, expected 2", file, version);
+    }
+    const std::uint32_t length = little_endian(bytes, 8);
+    if (length != bytes.size()) {
+        return fail(
+            "{}: found {} bytes, expected the {} that the GLB header says",
+            file,
+            bytes.size(),
+            length);
+    }
+    GltfChunks chunks;
+    bool has_json = false;
+    for (std::size_t at = 12; at < bytes.size();) {
+        if (bytes.size() - at < 8) {
+            return fail(
+                "{}: found {} bytes after the last GLB chunk, expected none",
+                file,
+                bytes.size() - at);
+        }
+        const std::uint32_t size = little_endian(bytes, at);
+        const std::uint32_t type = little_endian(bytes, at + 4);
+        at += 8;
+        if (size > bytes.size() - at) {
+            return fail(
+                "{}: found a GLB chunk of {} bytes, expected at most the {} left in the file",
+                file,
+                size,
+                bytes.size() - at);
+        }
+        const std::span<const std::byte> data = bytes.subspan(at, size);
+        if (!has_json && type != kJsonChunk) {
+            return fail(
+                "{}: found chunk type {:#010x}, expected JSON as the first chunk", file, type);
+        }
+        if (!has_json) {
+            chunks.json = as_text(data);
+            has_json = true;
+        } else if (type == kBinChunk && !chunks.has_binary) {
+            chunks.binary = data;
+            chunks.has_binary = true;
+        }
+        at += size;
+    }
+    if (!has_json) {
+        return fail("{}: found a GLB without chunks, expected JSON", file);
+    }
+    // Spaces are the padding of the standard; zeros are that of some exporters.
+    chunks.json = chunks.json.substr(0, chunks.json.find_last_not_of('\0') + 1);
+    return chunks;
+}
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') {
+        return c - '0';
+    }
+    const char lower = static_cast<char>(c | 0x20);
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+/// "%20" to " "; nothing when a % is not followed by two hexadecimal digits or gives a zero byte.
+std::optional<std::string> decode_percent(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            result += text[i];
+            continue;
+        }
+        if (i + 2 >= text.size() || hex_digit(text[i + 1]) < 0 || hex_digit(text[i + 2]) < 0) {
+            return std::nullopt;
+        }
+        result += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
+        i += 2;
+    }
+    return result.find('\0') == std::string::npos ? std::optional(result) : std::nullopt;
+}
+
+constexpr std::array<std::int8_t, 256> make_base64_table() {
+    std::array<std::int8_t, 256> table{};
+    table.fill(-1);
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < kDigits.size(); ++i) {
+        table[static_cast<unsigned char>(kDigits[i])] = static_cast<std::int8_t>(i);
+    }
+    return table;
+}
+
+constexpr std::array<std::int8_t, 256> kBase64 = make_base64_table();
+
+std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
+    while (!text.empty() && text.back() == '=') {
+        text.remove_suffix(1);
+    }
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() * 3 / 4);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const int digit = kBase64[static_cast<unsigned char>(c)];
+        if (digit < 0) {
+            return std::nullopt;
+        }
+        bits = (bits << 6) | static_cast<std::uint32_t>(digit);
+        count += 6;
+        if (count >= 8) {
+            count -= 8;
+            bytes.push_back(static_cast<std::byte>(bits >> count));
+        }
+    }
+    return bytes;
+}
+
+Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& place) {
+    constexpr std::string_view kBase64Mark = ";base64,";
+    const std::size_t mark = uri.substr(0, 256).find(kBase64Mark);
+    if (mark == std::string_view::npos) {
+        return fail("{}: found {}, expected a data: URI in base64", place, in_quotes(uri));
+    }
+    std::optional<std::vector<std::byte>> bytes =
+        decode_base64(uri.substr(mark + kBase64Mark.size()));
+    if (!bytes) {
+        return fail("{}: found a data: URI with a character that is not base64", place);
+    }
+    return std::move(*bytes);
+}
+
+/// Why `path`, percent-decoded, may not be opened, or "".
+std::string_view refusal(const std::string& path) {
+    if (path.empty()) {
+        return "an empty URI";
+    }
+    if (path.front() == '/' || path.front() == '\\') {
+        return "an absolute path";
+    }
+    if (path.find(':') != std::string::npos) {
+        return "a scheme or a drive";
+    }
+    if (path.find('\\') != std::string::npos) {
+        return "a backslash";
+    }
+    for (const std::filesystem::path& part : std::filesystem::path(path)) {
+        if (part == "..") {
+            return "\"..\"";
+        }
+    }
+    return "";
+}
+
+bool is_under(const std::filesystem::path& path, const std::filesystem::path& folder) {
+    const auto [in_folder, in_path] =
+        std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+    return in_folder == folder.end() || in_folder->empty();
+}
+
+}  // namespace
+
+Result<GltfChunks> split_gltf(std::span<const std::byte> bytes, const std::string& file) {
+    if (bytes.empty()) {
+        return fail("{}: found an empty file, expected glTF", file);
+    }
+    if (bytes.size() >= 4 && little_endian(bytes, 0) == kGlbMagic) {
+        return split_glb(bytes, file);
+    }
+    return GltfChunks{.json = as_text(bytes), .binary = {}, .has_binary = false};
+}
+
+Result<std::vector<std::byte>> fetch_uri(
+    const std::string& uri,
+    const std::string& folder,
+    const std::string& place,
+    std::uint64_t max_bytes) {
+    if (uri.starts_with("data:")) {
+        return decode_data_uri(uri, place);
+    }
+    const std::optional<std::string> relative = decode_percent(uri);
+    if (!relative) {
+        return fail(
+            "{}: found {}, expected %XX with two hexadecimal digits", place, in_quotes(uri));
+    }
+    if (const std::string_view why = refusal(*relative); !why.empty()) {
+        return fail(
+            "{}: found {} in {}, expected a path under the file's own folder",
+            place,
+            why,
+            in_quotes(uri));
+    }
+    if (folder.empty()) {
+        return fail("{}: found {}, expected no other files here", place, in_quotes(uri));
+    }
+    std::error_code error;
+    const std::filesystem::path base = std::filesystem::canonical(folder, error);
+    const std::filesystem::path path = std::filesystem::canonical(base / *relative, error);
+    if (error) {
+        return fail("{}: {}: no such file", place, in_quotes(uri));
+    }
+    if (!is_under(path, base)) {
+        return fail(
+            "{}: found {}, a link out of the file's folder, expected a file under it",
+            place,
+            in_quotes(uri));
+    }
+    Result<std::vector<std::byte>> bytes = read_file(path.string(), max_bytes);
+    if (!bytes) {
+        return fail("{}: {}", place, bytes.error().message);
+    }
+    return bytes;
+}
+
+}  // namespace limn

@@ -1,0 +1,505 @@
+#include "content/load/gltf_node.h"
+
+#include "content/load/component_json.h"
+#include "content/load/gltf_accessor.h"
+#include "ecs/base/log.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+namespace limn {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// A scale of 0, with which some files hide a node, has no inverse; this is as good as hidden.
+constexpr float kSmallestScale = 1e-6f;
+
+Vec3 vector_of(const std::vector<double>& values) {
+    return {
+        static_cast<float>(values[0]),
+        static_cast<float>(values[1]),
+        static_cast<float>(values[2])};
+}
+
+/// Position, rotation and scale of an affine matrix; `sheared` where those cannot say all of it.
+Transform decompose(const Mat4& matrix, bool& sheared) {
+    Transform result;
+    result.position = Vec3(matrix[3]);
+    Mat3 axes(matrix);
+    for (int i = 0; i < 3; ++i) {
+        result.scale[i] = glm::length(axes[i]);
+        axes[i] = normalize_or(axes[i], Vec3(i == 0, i == 1, i == 2));
+    }
+    sheared = std::abs(glm::dot(axes[0], axes[1])) > 1e-3f
+              || std::abs(glm::dot(axes[1], axes[2])) > 1e-3f
+              || std::abs(glm::dot(axes[2], axes[0])) > 1e-3f;
+    if (glm::determinant(axes) < 0) {  // mirrored: an odd number of scales is negative
+        result.scale.x = -result.scale.x;
+        axes[0] = -axes[0];
+    }
+    // Gram-Schmidt, so that a sheared matrix gives a rotation, too.
+    axes[1] =
+        normalize_or(axes[1] - axes[0] * glm::dot(axes[0], axes[1]), any_perpendicular(axes[0]));
+    axes[2] = glm::cross(axes[0], axes[1]);
+    result.rotation = glm::normalize(glm::quat_cast(axes));
+    return result;
+}
+
+void avoid_zero_scale(Transform& transform) {
+    for (int i = 0; i < 3; ++i) {
+        if (std::abs(transform.scale[i]) < kSmallestScale) {
+            transform.scale[i] = std::copysign(kSmallestScale, transform.scale[i]);
+        }
+    }
+}
+
+class NodeBuilder {
+  public:
+    NodeBuilder(GltfDocument& document, const GltfParts& parts, GltfScene& scene)
+        : document_(document), nodes_(document.model.nodes), parts_(parts), scene_(scene) {}
+
+    Status build() {
+        if (Status status = find_parents(); !status) {
+            return status;
+        }
+        if (Status status = order_nodes(); !status) {
+            return status;
+        }
+        for (const std::uint32_t index : order_) {
+            if (Status status = add_node(index); !status) {
+                return status;
+            }
+        }
+        if (Status status = add_skinned_meshes(); !status) {
+            return status;
+        }
+        return add_components();
+    }
+
+  private:
+    [[nodiscard]] std::string place(std::size_t node) const {
+        return fmt::format("{}: nodes[{}]", document_.file, node);
+    }
+
+    Status find_parents() {
+        parent_.assign(nodes_.size(), kNone);
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            for (const int child : nodes_[i].children) {
+                std::uint32_t& parent = parent_[static_cast<std::size_t>(child)];
+                if (parent != kNone) {
+                    return fail(
+                        "{}.children: found node {}, which is a child of nodes[{}] already, "
+                        "expected one parent",
+                        place(i),
+                        child,
+                        parent);
+                }
+                parent = i;
+            }
+        }
+        return Done{};
+    }
+
+    /// Lists the nodes of the scene, parents first. Nodes that no root reaches form cycles.
+    Status order_nodes() {
+        const std::vector<tinygltf::Scene>& scenes = document_.model.scenes;
+        std::vector<bool> reached(nodes_.size(), false);
+        std::vector<std::uint32_t> all;
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            if (parent_[i] == kNone) {
+                if (Status status = visit(i, reached, all); !status) {
+                    return status;
+                }
+            }
+        }
+        if (all.size() < nodes_.size()) {
+            const auto cycle = std::find(reached.begin(), reached.end(), false);
+            return fail(
+                "{}.children: found a node that is its own ancestor, expected a tree",
+                place(static_cast<std::size_t>(cycle - reached.begin())));
+        }
+        if (scenes.empty()) {
+            order_ = std::move(all);
+            return Done{};
+        }
+        const std::size_t scene = document_.model.defaultScene >= 0
+                                      ? static_cast<std::size_t>(document_.model.defaultScene)
+                                      : 0;
+        reached.assign(nodes_.size(), false);
+        for (const int root : scenes[scene].nodes) {
+            const auto index = static_cast<std::uint32_t>(root);
+            if (parent_[index] != kNone || reached[index]) {
+                return fail(
+                    "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
+                    document_.file,
+                    scene,
+                    root,
+                    reached[index] ? "is there twice" : "has a parent");
+            }
+            if (Status status = visit(index, reached, order_); !status) {
+                return status;
+            }
+        }
+        return Done{};
+    }
+
+    /// Appends `root` and what is under it to `order`, without recursion. Each node has one parent
+    /// and roots have none, so that nothing is met twice.
+    Status
+    visit(std::uint32_t root, std::vector<bool>& reached, std::vector<std::uint32_t>& order) {
+        struct Open {
+            std::uint32_t node;
+            std::uint32_t depth;
+        };
+        std::vector<Open> open = {{root, 1}};
+        while (!open.empty()) {
+            const Open now = open.back();
+            open.pop_back();
+            if (now.depth > document_.limits.max_depth) {
+                return fail(
+                    "{}: found more than {} nodes in each other",
+                    place(now.node),
+                    document_.limits.max_depth);
+            }
+            reached[now.node] = true;
+            order.push_back(now.node);
+            const std::vector<int>& children = nodes_[now.node].children;
+            for (auto child = children.rbegin(); child != children.rend(); ++child) {
+                open.push_back({static_cast<std::uint32_t>(*child), now.depth + 1});
+            }
+        }
+        return Done{};
+    }
+
+    Status add_node(std::uint32_t index) {
+        const tinygltf::Node& source = nodes_[index];
+        GltfNode node;
+        node.name = source.name;
+        if (parent_[index] != kNone) {
+            node.parent = static_cast<std::int32_t>(number_.at(parent_[index]));
+        }
+        if (Status status = read_transform(index, node.transform); !status) {
+            return status;
+        }
+        if (source.mesh >= 0 && source.skin < 0) {
+            node.parts = parts_[static_cast<std::size_t>(source.mesh)];
+        }
+        read_camera(source, node);
+        if (const auto light = source.extensions.find("KHR_lights_punctual");
+            light != source.extensions.end()) {
+            node.light = make_light(light->second.Get("light").GetNumberAsInt());
+        }
+        number_[index] = static_cast<std::uint32_t>(scene_.nodes.size());
+        scene_.nodes.push_back(std::move(node));
+        return Done{};
+    }
+
+    Status read_transform(std::uint32_t index, Transform& transform) {
+        const tinygltf::Node& source = nodes_[index];
+        if (source.matrix.size() == 16) {
+            const std::vector<double>& m = source.matrix;
+            if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
+                return fail(
+                    "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
+                    place(index),
+                    m[3],
+                    m[7],
+                    m[11],
+                    m[15]);
+            }
+            Mat4 matrix;
+            for (int i = 0; i < 16; ++i) {
+                matrix[i / 4][i % 4] = static_cast<float>(m[static_cast<std::size_t>(i)]);
+            }
+            bool sheared = false;
+            transform = decompose(matrix, sheared);
+            if (sheared) {
+                document_.warnings.push_back(place(index) + ".matrix: its shear is left out");
+            }
+        }
+        if (source.translation.size() == 3) {
+            transform.position = vector_of(source.translation);
+        }
+        if (source.scale.size() == 3) {
+            transform.scale = vector_of(source.scale);
+        }
+        if (source.rotation.size() == 4) {
+            const std::vector<double>& q = source.rotation;
+            const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+            if (length < 1e-6) {
+                return fail(
+                    "{}.rotation: found a quaternion of length {}, expected 1",
+                    place(index),
+                    length);
+            }
+            transform.rotation = Quat(
+                static_cast<float>(q[3] / length),
+                static_cast<float>(q[0] / length),
+                static_cast<float>(q[1] / length),
+                static_cast<float>(q[2] / length));
+        }
+        avoid_zero_scale(transform);
+        return Done{};
+    }
+
+    void read_camera(const tinygltf::Node& source, GltfNode& node) {
+        if (source.camera < 0) {
+            return;
+        }
+        const tinygltf::Camera& camera =
+            document_.model.cameras[static_cast<std::size_t>(source.camera)];
+        if (camera.type != "perspective") {
+            document_.warnings.push_back(fmt::format(
+                "{}: cameras[{}] is left out: it is orthographic", document_.file, source.camera));
+            return;
+        }
+        node.has_camera = true;
+        node.camera.fov_y = static_cast<float>(camera.perspective.yfov);
+        node.camera.near = static_cast<float>(camera.perspective.znear);
+        if (node.name.empty()) {
+            node.name = camera.name;
+        }
+    }
+
+    [[nodiscard]] GltfLight make_light(int index) const {
+        const tinygltf::Light& source = document_.model.lights[static_cast<std::size_t>(index)];
+        const Vec3 color = source.color.size() == 3 ? vector_of(source.color) : Vec3(1);
+        const auto intensity = static_cast<float>(source.intensity);
+        const auto radius =
+            static_cast<float>(source.range);  // 0 when the file gives none: as ours
+        if (source.type == "directional") {
+            DirectionalLight light;
+            light.color = color;
+            light.illuminance = intensity;
+            return light;
+        }
+        if (source.type == "point") {
+            PointLight light;
+            light.color = color;
+            light.intensity = intensity;
+            light.radius = radius;
+            return light;
+        }
+        SpotLight light;
+        light.color = color;
+        light.intensity = intensity;
+        light.radius = radius;
+        light.outer_angle = std::min(static_cast<float>(source.spot.outerConeAngle), 0.5f * kPi);
+        light.inner_angle =
+            std::min(static_cast<float>(source.spot.innerConeAngle), light.outer_angle);
+        return light;
+    }
+
+    /// World matrix of node `index` of the file; in double precision, since a skin multiplies it
+    /// with an inverse.
+    [[nodiscard]] glm::dmat4 world_matrix(std::uint32_t index) const {
+        glm::dmat4 world(1.0);
+        for (auto i = static_cast<std::int32_t>(index); i >= 0;
+             i = scene_.nodes[static_cast<std::size_t>(i)].parent) {
+            const Transform& t = scene_.nodes[static_cast<std::size_t>(i)].transform;
+            glm::dmat4 local(glm::mat3_cast(glm::dquat(t.rotation)));
+            for (int k = 0; k < 3; ++k) {
+                local[k] *= static_cast<double>(t.scale[k]);
+            }
+            local[3] = glm::dvec4(t.position, 1.0);
+            world = local * world;
+        }
+        return world;
+    }
+
+    Status add_skinned_meshes() {
+        for (const std::uint32_t index : order_) {
+            const tinygltf::Node& source = nodes_[index];
+            if (source.mesh < 0 || source.skin < 0) {
+                continue;
+            }
+            Result<Transform> transform = find_bind_pose(source.skin);
+            if (!transform) {
+                return transform.error();
+            }
+            GltfNode node;
+            node.name = source.name.empty() ? "" : source.name + ".skin";
+            node.transform = *transform;
+            node.parts = parts_[static_cast<std::size_t>(source.mesh)];
+            scene_.nodes.push_back(std::move(node));
+        }
+        return Done{};
+    }
+
+    /// What the first joint does to its vertices in the pose of the file: in bind pose every joint
+    /// does the same.
+    Result<Transform> find_bind_pose(int skin_index) {
+        const tinygltf::Skin& skin = document_.model.skins[static_cast<std::size_t>(skin_index)];
+        const auto joint = number_.find(static_cast<std::uint32_t>(skin.joints[0]));
+        const std::string place = fmt::format("{}: skins[{}]", document_.file, skin_index);
+        if (joint == number_.end()) {
+            return fail(
+                "{}.joints: found node {}, which is not in the scene", place, skin.joints[0]);
+        }
+        glm::dmat4 inverse_bind(1.0);
+        if (skin.inverseBindMatrices >= 0) {
+            const Result<std::vector<float>> values = read_floats(
+                document_, skin.inverseBindMatrices, 16, place + ".inverseBindMatrices");
+            if (!values) {
+                return values.error();
+            }
+            for (int i = 0; i < 16; ++i) {
+                inverse_bind[i / 4][i % 4] =
+                    static_cast<double>((*values)[static_cast<std::size_t>(i)]);
+            }
+        }
+        const Mat4 matrix(world_matrix(joint->second) * inverse_bind);
+        for (int i = 0; i < 16; ++i) {
+            if (!(std::abs(matrix[i / 4][i % 4]) <= 1e9f)) {
+                return fail("{}.inverseBindMatrices: found a matrix that is too large", place);
+            }
+        }
+        bool sheared = false;
+        Transform transform = decompose(matrix, sheared);
+        avoid_zero_scale(transform);
+        return transform;
+    }
+
+    Status add_components() {
+        std::unordered_map<std::string_view, std::uint32_t> by_name;
+        for (std::uint32_t i = 0; i < scene_.nodes.size(); ++i) {
+            by_name.try_emplace(scene_.nodes[i].name, i);
+        }
+        by_name.erase("");
+        FindNames names;
+        names.entity = [&by_name](std::string_view name, SourcePosition) -> std::optional<Entity> {
+            const auto found = by_name.find(name);
+            return found == by_name.end() ? std::nullopt
+                                          : std::optional(gltf_node_entity(found->second));
+        };
+        names.asset = [this](std::string_view kind, std::string_view name) {
+            return find_asset(kind, name);
+        };
+        names.all = [this](std::string_view kind) { return all_names(kind); };
+        for (const std::uint32_t index : order_) {
+            const JsonValue& source = json_item(document_, "nodes", index);
+            const JsonValue* extras = source.find("extras");
+            const JsonValue* limn = extras != nullptr ? extras->find("limn") : nullptr;
+            if (limn != nullptr) {
+                if (Status status = read_components(*limn, index, names); !status) {
+                    return status;
+                }
+            }
+        }
+        return Done{};
+    }
+
+    /// An object with a member for each component; or that object as text, as Blender writes a
+    /// custom property that somebody typed.
+    Status read_components(const JsonValue& limn, std::uint32_t index, const FindNames& names) {
+        const std::string where = fmt::format("nodes[{}].extras.limn", index);
+        if (limn.kind == JsonKind::String) {
+            const Result<JsonValue> parsed =
+                parse_json(limn.text, fmt::format("{}: {}", document_.file, where));
+            if (!parsed) {
+                return parsed.error();
+            }
+            return read_component_object(*parsed, index, where, names);
+        }
+        return read_component_object(limn, index, where, names);
+    }
+
+    Status read_component_object(
+        const JsonValue& object,
+        std::uint32_t index,
+        const std::string& where,
+        const FindNames& names) {
+        if (object.kind != JsonKind::Object) {
+            return fail(
+                "{}: {}: found {}, expected an object with a member for each component",
+                document_.file,
+                where,
+                describe(object));
+        }
+        for (const JsonMember& member : object.members) {
+            const ComponentInfo* info = find_component(member.key);
+            if (info == nullptr) {
+                std::vector<std::string_view> known;
+                for (const ComponentInfo* other : all_components()) {
+                    known.push_back(other->name);
+                }
+                return fail(
+                    "{}: {}: found {}, expected the name of a component{}",
+                    document_.file,
+                    where,
+                    in_quotes(member.key),
+                    did_you_mean(member.key, known));
+            }
+            Result<AnyComponent> component = read_component(
+                member.value, *info, {document_.file, where + "." + member.key}, names);
+            if (!component) {
+                return component.error();
+            }
+            scene_.nodes[number_.at(index)].components.push_back(std::move(*component));
+        }
+        return Done{};
+    }
+
+    /// Calls visit(names of the assets of that kind, in order).
+    template <typename Visit>
+    void visit_assets(std::string_view kind, Visit&& visit) const {
+        if (kind == "mesh") {
+            visit(scene_.meshes);
+        } else if (kind == "material") {
+            visit(scene_.materials);
+        } else if (kind == "image") {
+            visit(scene_.images);
+        }
+    }
+
+    [[nodiscard]] std::optional<std::uint32_t>
+    find_asset(std::string_view kind, std::string_view name) const {
+        std::optional<std::uint32_t> result;
+        visit_assets(kind, [&](const auto& assets) {
+            for (std::uint32_t i = 0; i < assets.size() && !result; ++i) {
+                if (assets[i].name == name) {
+                    result = i;
+                }
+            }
+        });
+        return result;
+    }
+
+    [[nodiscard]] std::vector<std::string_view> all_names(std::string_view kind) const {
+        std::vector<std::string_view> names;
+        visit_assets(kind, [&](const auto& assets) {
+            for (const auto& asset : assets) {
+                names.push_back(asset.name);
+            }
+        });
+        if (kind == "entity") {
+            for (const GltfNode& node : scene_.nodes) {
+                names.push_back(node.name);
+            }
+        }
+        return names;
+    }
+
+    GltfDocument& document_;
+    const std::vector<tinygltf::Node>& nodes_;
+    const GltfParts& parts_;
+    GltfScene& scene_;
+    std::vector<std::uint32_t> parent_;  ///< of each node of the file
+    std::vector<std::uint32_t> order_;   ///< nodes of the scene, parents first
+    std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< node of the file -> of the scene
+};
+
+}  // namespace
+
+Status build_nodes(GltfDocument& document, const GltfParts& parts, GltfScene& scene) {
+    return NodeBuilder(document, parts, scene).build();
+}
+
+}  // namespace limn

@@ -1,0 +1,78 @@
+#include "content/load/gltf_scene.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace limn {
+
+std::vector<Affine> find_node_matrices(const GltfScene& scene) {
+    std::vector<Affine> matrices;
+    matrices.reserve(scene.nodes.size());
+    for (const GltfNode& node : scene.nodes) {
+        const Transform& t = node.transform;
+        const Affine local = affine_from(t.position, t.rotation, t.scale);
+        matrices.push_back(
+            node.parent < 0 ? local : matrices[static_cast<std::size_t>(node.parent)] * local);
+    }
+    return matrices;
+}
+
+Bounds transform_bounds(const Affine& matrix, const Bounds& box) {
+    Bounds result;
+    if (is_empty(box)) {
+        return result;
+    }
+    // The extent along an axis is the sum of what the three half sides contribute (Arvo 1990).
+    const Vec3 middle = transform_point(matrix, center(box));
+    const Vec3 half = half_extent(box);
+    Vec3 extent;
+    for (int i = 0; i < 3; ++i) {
+        extent[i] = glm::dot(glm::abs(Vec3(matrix.row[i])), half);
+    }
+    grow(result, middle - extent);
+    grow(result, middle + extent);
+    return result;
+}
+
+Bounds find_bounds(const GltfScene& scene) {
+    const std::vector<Affine> matrices = find_node_matrices(scene);
+    Bounds bounds;
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        for (const GltfPart& part : scene.nodes[i].parts) {
+            const Bounds box = transform_bounds(matrices[i], scene.meshes[part.mesh].bounds);
+            if (!is_empty(box)) {
+                grow(bounds, box);
+            }
+        }
+    }
+    return bounds;
+}
+
+Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect) {
+    const Bounds box = is_empty(bounds) ? Bounds{Vec3(-0.5f), Vec3(0.5f)} : bounds;
+    const Vec3 to_camera = glm::normalize(Vec3(0.45f, 0.3f, 1.0f));  // by eye
+    const Vec3 right = glm::normalize(glm::cross(Vec3(0, 1, 0), to_camera));
+    const Vec3 up = glm::cross(to_camera, right);
+
+    // The nearest distance at which each corner of the box lies within the picture, with a margin.
+    constexpr float kMargin = 1.08f;
+    const float tan_y = std::tan(0.5f * fov_y) / kMargin;
+    const float tan_x = tan_y * aspect;
+    const Vec3 half = glm::max(half_extent(box), Vec3(1e-6f));
+    float distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = half * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const float toward = glm::dot(p, to_camera);
+        distance = std::max(
+            {distance,
+             toward + std::abs(glm::dot(p, right)) / tan_x,
+             toward + std::abs(glm::dot(p, up)) / tan_y});
+    }
+    Transform view;
+    view.position = center(box) + distance * to_camera;
+    view.rotation = glm::quat_cast(Mat3(right, up, to_camera));
+    return view;
+}
+
+}  // namespace limn
