@@ -1,0 +1,268 @@
+#include "ecs/archetype.h"
+
+#include "ecs/base/check.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t round_up(std::size_t value, std::size_t step) {
+    return (value + step - 1) / step * step;
+}
+
+constexpr std::uint32_t round_rows_down(std::size_t rows) {
+    return static_cast<std::uint32_t>(
+        std::min<std::size_t>(rows, kMaxRows) / kRowPadding * kRowPadding);
+}
+
+std::size_t alignment(const Column& column) {
+    return std::max<std::size_t>(kColumnAlign, column.info->align);
+}
+
+/// Where a promoted column starts in its range.
+std::size_t promoted_offset(const Column& column, std::size_t position) {
+    return round_up((position + 1) * kColumnSkew % 4096, alignment(column));
+}
+
+void move_bytes(std::byte* destination, const std::byte* source, std::size_t count) {
+    if (count > 0) {
+        std::memcpy(destination, source, count);
+    }
+}
+
+}  // namespace
+
+void relocate_values(
+    const ComponentInfo& info, void* destination, void* source, std::size_t count) {
+    if (info.trivially_relocatable) {
+        move_bytes(
+            static_cast<std::byte*>(destination),
+            static_cast<std::byte*>(source),
+            count * info.size);
+    } else {
+        info.ops.relocate(destination, source, count);
+    }
+}
+
+Archetype::Archetype(
+    std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks)
+    : index_(index), components_(components.begin(), components.end()), blocks_(blocks) {
+    column_of_.assign(components.empty() ? 0 : components.back() + 1, std::int16_t{kNoColumn});
+    for (const ComponentId id : components) {
+        const ComponentInfo& info = component_info(id);
+        if (info.is_tag) {
+            column_of_[id] = kTagColumn;
+            continue;
+        }
+        LIMN_CHECK_NOTE(info.align <= 4096, "components are aligned to 4096 bytes at most");
+        column_of_[id] = static_cast<std::int16_t>(columns_.size());
+        Column column;
+        column.info = &info;
+        column.size = info.size;
+        columns_.push_back(std::move(column));
+        is_trivial_ = is_trivial_ && info.trivially_destructible;
+    }
+}
+
+Archetype::~Archetype() {
+    destroy_components(0, size_);
+    leave_block();
+}
+
+std::size_t Archetype::committed() const {
+    std::size_t bytes = block_bytes_ + entity_range_.committed();
+    for (const Column& column : columns_) {
+        bytes += column.range.committed();
+    }
+    return bytes;
+}
+
+// ---- growth
+// --------------------------------------------------------------------------------------
+
+void Archetype::grow(std::uint32_t rows) {
+    if (!is_promoted()) {
+        for (std::size_t bytes = BlockPool::kSmallest; bytes <= BlockPool::kLargest; bytes *= 2) {
+            if (rows_in_block(bytes) >= rows) {
+                move_to_block(bytes);
+                return;
+            }
+        }
+        promote();
+    }
+    commit(rows);
+}
+
+std::uint32_t Archetype::rows_in_block(std::size_t bytes) const {
+    std::size_t row_bytes = sizeof(Entity);
+    for (const Column& column : columns_) {
+        row_bytes += column.size;
+    }
+    // Alignment costs a little: take rows off until all columns fit.
+    std::uint32_t rows = round_rows_down(std::min<std::size_t>(bytes / row_bytes, kChunkRows));
+    for (; rows > 0; rows -= kRowPadding) {
+        std::size_t end = rows * sizeof(Entity);
+        for (const Column& column : columns_) {
+            end = round_up(end, alignment(column)) + std::size_t{rows} * column.size;
+        }
+        if (end <= bytes) {
+            break;
+        }
+    }
+    return rows;
+}
+
+void Archetype::move_to_block(std::size_t bytes) {
+    std::byte* block = blocks_.allocate(bytes);
+    const std::uint32_t rows = rows_in_block(bytes);
+    move_bytes(block, reinterpret_cast<const std::byte*>(entities_), size_ * sizeof(Entity));
+    std::size_t end = rows * sizeof(Entity);
+    for (Column& column : columns_) {
+        const std::size_t start = round_up(end, alignment(column));
+        relocate_values(*column.info, block + start, column.data, size_);
+        column.data = block + start;
+        end = start + std::size_t{rows} * column.size;
+    }
+    leave_block();
+    block_ = block;
+    block_bytes_ = bytes;
+    entities_ = reinterpret_cast<Entity*>(block);
+    capacity_ = rows;
+}
+
+void Archetype::promote() {
+    entity_range_ = VirtualRange(std::size_t{kMaxRows} * sizeof(Entity));
+    entity_range_.commit(size_ * sizeof(Entity));
+    move_bytes(
+        entity_range_.data(),
+        reinterpret_cast<const std::byte*>(entities_),
+        size_ * sizeof(Entity));
+    entities_ = reinterpret_cast<Entity*>(entity_range_.data());
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        Column& column = columns_[i];
+        const std::size_t offset = promoted_offset(column, i);
+        column.range = VirtualRange(offset + std::size_t{kMaxRows} * column.size);
+        column.range.commit(offset + std::size_t{size_} * column.size);
+        relocate_values(*column.info, column.range.data() + offset, column.data, size_);
+        column.data = column.range.data() + offset;
+    }
+    leave_block();
+    capacity_ = 0;
+    commit(std::max(size_, std::uint32_t{1}));
+}
+
+void Archetype::commit(std::uint32_t rows) {
+    LIMN_CHECK_NOTE(rows <= kMaxRows, "more rows than an archetype can hold");
+    const std::size_t padded = round_up(rows, kRowPadding);
+    entity_range_.commit(padded * sizeof(Entity));
+    capacity_ = round_rows_down(entity_range_.committed() / sizeof(Entity));
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        Column& column = columns_[i];
+        const std::size_t offset = promoted_offset(column, i);
+        column.range.commit(offset + padded * column.size);
+        capacity_ =
+            std::min(capacity_, round_rows_down((column.range.committed() - offset) / column.size));
+    }
+}
+
+void Archetype::leave_block() {
+    if (block_ != nullptr) {
+        blocks_.free(block_, block_bytes_);
+        block_ = nullptr;
+        block_bytes_ = 0;
+    }
+}
+
+void Archetype::add_chunk(std::uint32_t version) {
+    structure_.push_back(version);
+    for (Column& column : columns_) {
+        column.versions.push_back(version);
+        column.newest = version;
+    }
+}
+
+// ---- rows
+// ----------------------------------------------------------------------------------------
+
+std::uint32_t Archetype::append(std::span<const Entity> entities, std::uint32_t version) {
+    const std::uint32_t first = size_;
+    const std::uint32_t count = static_cast<std::uint32_t>(entities.size());
+    LIMN_CHECK_NOTE(entities.size() <= kMaxRows - size_, "more rows than an archetype can hold");
+    if (count == 0) {
+        return first;
+    }
+    reserve(first + count);
+    std::copy(entities.begin(), entities.end(), entities_ + first);
+    size_ += count;
+    for (std::uint32_t chunk = first / kChunkRows; chunk < chunk_count(); ++chunk) {
+        touch_structure(chunk * kChunkRows, version);
+    }
+    return first;
+}
+
+Entity Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
+    const std::uint32_t last = --size_;
+    touch_structure(row, version);
+    if (row == last) {
+        return {};
+    }
+    touch_structure(last, version);
+    for (Column& column : columns_) {
+        relocate_values(*column.info, column.at(row), column.at(last), 1);
+    }
+    entities_[row] = entities_[last];
+    return entities_[row];
+}
+
+void Archetype::construct_default(std::uint32_t first, std::uint32_t count) {
+    for (Column& column : columns_) {
+        LIMN_CHECK_NOTE(column.info->ops.construct_default != nullptr, column.info->name.c_str());
+        column.info->ops.construct_default(column.at(first), count);
+    }
+}
+
+void Archetype::destroy_components(std::uint32_t first, std::uint32_t count) {
+    if (is_trivial_ || count == 0) {
+        return;
+    }
+    for (Column& column : columns_) {
+        if (!column.info->trivially_destructible) {
+            column.info->ops.destroy(column.at(first), count);
+        }
+    }
+}
+
+void Archetype::clear(std::uint32_t version) {
+    destroy_components(0, size_);
+    for (std::uint32_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        touch_structure(chunk * kChunkRows, version);
+    }
+    size_ = 0;
+}
+
+// ---- change versions
+// -----------------------------------------------------------------------------
+
+void Archetype::touch_column(int column, std::uint32_t version) {
+    if (column < 0) {
+        return;
+    }
+    Column& target = columns_[static_cast<std::size_t>(column)];
+    std::fill_n(target.versions.begin(), chunk_count(), version);
+    target.newest = version;
+}
+
+void Archetype::forget_versions_before(std::uint32_t oldest) {
+    const auto raise = [oldest](std::uint32_t& version) { version = newer_of(version, oldest); };
+    std::for_each(structure_.begin(), structure_.end(), raise);
+    raise(newest_structure_);
+    for (Column& column : columns_) {
+        std::for_each(column.versions.begin(), column.versions.end(), raise);
+        raise(column.newest);
+    }
+}
+
+}  // namespace limn

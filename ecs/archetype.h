@@ -1,0 +1,210 @@
+#pragma once
+
+#include "ecs/column.h"
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// All entities with the same set of table components, one row each. Every component has a column:
+// an array over all rows, at least 64-byte aligned, without gaps, so that a system is a plain loop
+// over arrays. The first rows live in a block shared by all columns; from some hundred rows on, at
+// 1024 at the latest, each column has a VirtualRange of its own and never moves again. Rows up to
+// the next multiple of 16 can be read and written, so vector loops need no tail.
+//
+// 1024 rows are a chunk, the unit of work and of change versions. A version is the number of the
+// system run (or the moment between runs) that last took the chunk of the column for writing; rows
+// that come, go or move count as a change of all columns of their chunk, and are kept apart in one
+// number a chunk.
+
+inline constexpr std::uint32_t kChunkRows = 1024;
+inline constexpr std::uint32_t kRowPadding = 16;
+inline constexpr std::size_t kColumnAlign = 64;
+/// Neighboring columns start this much apart modulo 4096, so that a row of many columns does not
+/// compete for one set of the cache. A multiple of kColumnAlign. [bytes]
+inline constexpr std::size_t kColumnSkew = 64;
+#if defined(LIMN_SANITIZED)
+inline constexpr std::uint32_t kMaxRows = 1u << 22;  // sanitizers have little address space
+#else
+inline constexpr std::uint32_t kMaxRows = 1u << 26;
+#endif
+
+inline constexpr int kNoColumn = -1;
+inline constexpr int kTagColumn = -2;  ///< present, but has no data
+
+/// Whether `version` is later than `since`; numbers wrap around, so only the difference counts.
+[[nodiscard]] constexpr bool is_newer(std::uint32_t version, std::uint32_t since) {
+    return static_cast<std::int32_t>(version - since) > 0;
+}
+
+[[nodiscard]] constexpr std::uint32_t newer_of(std::uint32_t a, std::uint32_t b) {
+    return is_newer(a, b) ? a : b;
+}
+
+/// Tasks of one system may write the same value to the same version at the same time.
+inline void store_version(std::uint32_t& target, std::uint32_t version) {
+    std::atomic_ref<std::uint32_t>(target).store(version, std::memory_order_relaxed);
+}
+
+[[nodiscard]] constexpr std::uint32_t chunks_of(std::uint32_t rows) {
+    return (rows + kChunkRows - 1) / kChunkRows;
+}
+
+struct Column {
+    std::byte* data = nullptr;
+    const ComponentInfo* info = nullptr;
+    std::uint32_t size = 0;               ///< of an element [bytes]
+    std::uint32_t newest = 0;             ///< no version of a chunk is newer
+    std::vector<std::uint32_t> versions;  ///< last taken for writing, a chunk
+    VirtualRange range;                   ///< empty while in a block
+
+    [[nodiscard]] std::byte* at(std::uint32_t row) const { return data + std::size_t{row} * size; }
+};
+
+class Archetype {
+  public:
+    /// `components` ascending, of Storage::Table.
+    Archetype(std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks);
+    Archetype(const Archetype&) = delete;
+    Archetype& operator=(const Archetype&) = delete;
+    ~Archetype();
+
+    [[nodiscard]] std::uint32_t index() const { return index_; }
+    [[nodiscard]] std::uint32_t size() const { return size_; }
+    [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
+    [[nodiscard]] std::uint32_t chunk_count() const { return chunks_of(size_); }
+    [[nodiscard]] std::span<const Entity> entities() const { return {entities_, size_}; }
+    /// Ascending, tags too.
+    [[nodiscard]] std::span<const ComponentId> components() const { return components_; }
+    [[nodiscard]] std::span<const Column> columns() const { return columns_; }
+    [[nodiscard]] std::span<Column> columns() { return columns_; }
+    [[nodiscard]] const Column& column(int index) const {
+        return columns_[static_cast<std::size_t>(index)];
+    }
+    [[nodiscard]] Column& column(int index) { return columns_[static_cast<std::size_t>(index)]; }
+    /// Where the component is: a column, kTagColumn or kNoColumn.
+    [[nodiscard]] int column_of(ComponentId id) const {
+        return id < column_of_.size() ? column_of_[id] : kNoColumn;
+    }
+    [[nodiscard]] bool has(ComponentId id) const { return column_of(id) != kNoColumn; }
+    /// Whether columns have reserved ranges of their own.
+    [[nodiscard]] bool is_promoted() const { return block_ == nullptr && capacity_ > 0; }
+    [[nodiscard]] bool is_trivial() const { return is_trivial_; }
+    /// Memory behind the columns and the entities [bytes].
+    [[nodiscard]] std::size_t committed() const;
+
+    // ---- rows; components are the caller's to construct and destroy
+    // ------------------------------
+
+    /// Adds a row whose components are raw memory.
+    std::uint32_t append(Entity entity, std::uint32_t version) {
+        if (size_ == capacity_) {
+            grow(size_ + 1);
+        }
+        const std::uint32_t row = size_++;
+        entities_[row] = entity;
+        touch_structure(row, version);
+        return row;
+    }
+    /// Adds a row for every entity; returns the first.
+    std::uint32_t append(std::span<const Entity> entities, std::uint32_t version);
+    void reserve(std::uint32_t rows) {
+        if (rows > capacity_) {
+            grow(rows);
+        }
+    }
+    /// Moves the last row into `row`, whose components are gone already. Returns the entity that
+    /// moved; null if `row` was the last.
+    Entity fill_hole(std::uint32_t row, std::uint32_t version);
+    void construct_default(std::uint32_t first, std::uint32_t count);
+    void destroy_components(std::uint32_t first, std::uint32_t count);
+    /// Destroys all rows; keeps the memory.
+    void clear(std::uint32_t version);
+
+    // ---- change versions
+    // --------------------------------------------------------------------------
+
+    /// Last change of rows of the chunk: came, went, moved.
+    [[nodiscard]] std::uint32_t structure_version(std::uint32_t chunk) const {
+        return structure_[chunk];
+    }
+    [[nodiscard]] std::uint32_t newest_structure() const { return newest_structure_; }
+    /// Last change of the column in the chunk, of either kind.
+    [[nodiscard]] std::uint32_t version(int column, std::uint32_t chunk) const {
+        return column < 0 ? structure_[chunk]
+                          : newer_of(
+                              columns_[static_cast<std::size_t>(column)].versions[chunk],
+                              structure_[chunk]);
+    }
+    /// No chunk of the column changed later.
+    [[nodiscard]] std::uint32_t newest_version(int column) const {
+        return column < 0
+                   ? newest_structure_
+                   : newer_of(columns_[static_cast<std::size_t>(column)].newest, newest_structure_);
+    }
+    /// Says that all rows are about to be written.
+    void touch_column(int column, std::uint32_t version);
+    /// Says that the row is about to be written.
+    void touch_row(int column, std::uint32_t row, std::uint32_t version) {
+        if (column >= 0) {
+            Column& target = columns_[static_cast<std::size_t>(column)];
+            store_version(target.versions[row / kChunkRows], version);
+            store_version(target.newest, version);
+        }
+    }
+    /// Makes versions that are older than `oldest` equal to it, so that differences never overflow.
+    void forget_versions_before(std::uint32_t oldest);
+
+    // ---- what the world remembers here
+    // ------------------------------------------------------------
+
+    std::vector<std::uint32_t>
+        add_edges;  ///< archetype with one component more, by id; kNoArchetype: unknown
+    std::vector<std::uint32_t> remove_edges;  ///< with one component less
+    bool observes_add = false;                ///< some observer waits for a component of it
+    bool observes_remove = false;
+    std::uint64_t rows_moved_in = 0;  ///< for the inspector
+
+  private:
+    void grow(std::uint32_t rows);
+    void move_to_block(std::size_t bytes);
+    void promote();
+    void commit(std::uint32_t rows);
+    void leave_block();
+    [[nodiscard]] std::uint32_t rows_in_block(std::size_t bytes) const;
+    void add_chunk(std::uint32_t version);
+    void touch_structure(std::uint32_t row, std::uint32_t version) {
+        const std::uint32_t chunk = row / kChunkRows;
+        if (chunk >= structure_.size()) {
+            add_chunk(version);
+        }
+        structure_[chunk] = version;
+        newest_structure_ = version;
+    }
+
+    std::uint32_t index_;
+    std::uint32_t size_ = 0;
+    std::uint32_t capacity_ = 0;
+    std::uint32_t newest_structure_ = 0;
+    Entity* entities_ = nullptr;
+    std::vector<Column> columns_;
+    std::vector<std::uint32_t> structure_;
+    std::vector<std::int16_t> column_of_;
+    std::vector<ComponentId> components_;
+    VirtualRange entity_range_;
+    BlockPool& blocks_;
+    std::byte* block_ = nullptr;
+    std::size_t block_bytes_ = 0;
+    bool is_trivial_ = true;  ///< no destructors
+};
+
+/// Moves `count` values to raw memory and ends the sources.
+void relocate_values(const ComponentInfo& info, void* destination, void* source, std::size_t count);
+
+}  // namespace limn

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// Functions that are told when a component comes or goes: how objects on the GPU are made and
+// freed.
+//
+// Observers are called in the order they were registered in, each with all entities of the
+// operation at once: one for world.create, n for create_many, and for a sync point of Commands all
+// entities that gained (lost) the component there, in the order of the commands.
+//     on_add     after everything is in place; may change the structure. An entity that an earlier
+//     observer
+//                destroyed, or took the component from, is left out.
+//     on_remove  before anything is gone: the component can still be read. Must not change the
+//     structure.
+// Replacing a value is neither. World::clear and the world's end call on_remove for all that is
+// left.
+
+enum class ObserverEvent : std::uint8_t { Add, Remove };
+
+/// A function object of any type behind one kind of call.
+class ObserverFunction {
+  public:
+    template <typename F>
+    explicit ObserverFunction(F function)
+        : body_(new F(std::move(function)), [](void* body) { delete static_cast<F*>(body); }),
+          call_([](void* body, World& world, std::span<const Entity> entities) {
+              (*static_cast<F*>(body))(world, entities);
+          }) {}
+    void operator()(World& world, std::span<const Entity> entities) const {
+        call_(body_.get(), world, entities);
+    }
+
+  private:
+    std::unique_ptr<void, void (*)(void*)> body_;
+    void (*call_)(void*, World&, std::span<const Entity>);
+};
+
+struct Observer {
+    ObserverEvent event;
+    ComponentId component;
+    ObserverFunction function;
+};
+
+}  // namespace limn

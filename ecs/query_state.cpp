@@ -1,0 +1,143 @@
+#include "ecs/query_state.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+bool is_required(TermKind kind) {
+    return kind == TermKind::Read || kind == TermKind::Write || kind == TermKind::With
+           || kind == TermKind::Changed;
+}
+
+bool has_data(TermKind kind) {
+    return kind == TermKind::Read || kind == TermKind::Write || kind == TermKind::OptionalRead
+           || kind == TermKind::OptionalWrite;
+}
+
+/// Whether test(term) holds for some Changed term of every group.
+template <typename Test>
+bool all_groups(
+    const std::vector<std::uint8_t>& groups,
+    const std::vector<QueryTerm>& terms,
+    const Test& test) {
+    return std::all_of(groups.begin(), groups.end(), [&](std::uint8_t group) {
+        return std::any_of(terms.begin(), terms.end(), [&](const QueryTerm& term) {
+            return term.kind == TermKind::Changed && term.group == group && test(term);
+        });
+    });
+}
+
+}  // namespace
+
+QueryState::QueryState(std::span<const QueryTerm> terms) : terms_(terms.begin(), terms.end()) {
+    for (QueryTerm& term : terms_) {
+        term.is_sparse = component_info(term.id).storage == Storage::Sparse;
+    }
+    for (const QueryTerm& term : terms_) {
+        if (term.kind != TermKind::Changed) {
+            continue;
+        }
+        const bool any_sparse =
+            std::any_of(terms_.begin(), terms_.end(), [&](const QueryTerm& other) {
+                return other.kind == TermKind::Changed && other.group == term.group
+                       && other.is_sparse;
+            });
+        std::vector<std::uint8_t>& groups = any_sparse ? sparse_groups_ : table_groups_;
+        if (groups.empty() || groups.back() != term.group) {
+            groups.push_back(term.group);
+        }
+    }
+}
+
+bool QueryState::matches(const Archetype& archetype) const {
+    return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
+        if (term.is_sparse) {
+            return true;  // decided by row
+        }
+        if (term.kind == TermKind::Without) {
+            return !archetype.has(term.id);
+        }
+        return !is_required(term.kind) || archetype.has(term.id);
+    });
+}
+
+void QueryState::extend(const WorldCore& core) {
+    if (epoch_ != core.epoch || seen_ > core.archetypes.size()) {
+        matches_.clear();
+        match_of_.clear();
+        seen_ = 0;
+        epoch_ = core.epoch;
+    }
+    match_of_.resize(core.archetypes.size(), -1);
+    for (; seen_ < core.archetypes.size(); ++seen_) {
+        Archetype& archetype = *core.archetypes[seen_];
+        if (!matches(archetype)) {
+            continue;
+        }
+        QueryMatch match;
+        match.archetype = &archetype;
+        match.columns.fill(kNoColumn);
+        std::size_t position = 0;
+        for (const QueryTerm& term : terms_) {
+            if (has_data(term.kind)) {
+                match.columns[position++] = static_cast<std::int16_t>(archetype.column_of(term.id));
+            }
+        }
+        match_of_[seen_] = static_cast<std::int32_t>(matches_.size());
+        matches_.push_back(match);
+    }
+}
+
+bool QueryState::archetype_changed(const Archetype& archetype, std::uint32_t since) const {
+    return all_groups(table_groups_, terms_, [&](const QueryTerm& term) {
+        return is_newer(archetype.newest_version(archetype.column_of(term.id)), since);
+    });
+}
+
+bool QueryState::chunk_changed(
+    const Archetype& archetype, std::uint32_t chunk, std::uint32_t since) const {
+    return all_groups(table_groups_, terms_, [&](const QueryTerm& term) {
+        return is_newer(archetype.version(archetype.column_of(term.id), chunk), since);
+    });
+}
+
+bool QueryState::row_changed(
+    const WorldCore& core,
+    const Archetype& archetype,
+    std::uint32_t row,
+    std::uint32_t since) const {
+    return all_groups(sparse_groups_, terms_, [&](const QueryTerm& term) {
+        if (!term.is_sparse) {
+            return is_newer(
+                archetype.version(archetype.column_of(term.id), row / kChunkRows), since);
+        }
+        const SparseSet* set = core.sparse_set(term.id);
+        const std::uint32_t position = set->find(archetype.entities()[row]);
+        return position != SparseSet::kAbsent && is_newer(set->version(position), since);
+    });
+}
+
+bool QueryState::row_matches(const WorldCore& core, Entity entity) const {
+    return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
+        const bool matters =
+            term.is_sparse && (is_required(term.kind) || term.kind == TermKind::Without);
+        if (!matters) {
+            return true;
+        }
+        const SparseSet* set = core.sparse_set(term.id);
+        return (set != nullptr && set->has(entity)) == is_required(term.kind);
+    });
+}
+
+const SparseSet* QueryState::leading_set(const WorldCore& core) const {
+    for (const QueryTerm& term : terms_) {
+        if (term.is_sparse && is_required(term.kind)) {
+            return core.sparse_set(term.id);
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace limn

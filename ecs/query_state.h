@@ -1,0 +1,88 @@
+#pragma once
+
+#include "ecs/archetype.h"
+#include "ecs/world_core.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// The part of a query that does not depend on types: which components it asks for, and the
+// archetypes that have them. The list is kept and only extended, by the archetypes that are new
+// since it was last looked at.
+
+inline constexpr std::size_t kMaxQueryColumns = 16;
+
+enum class TermKind : std::uint8_t {
+    Read,           ///< const T
+    Write,          ///< T
+    OptionalRead,   ///< Optional<const T>
+    OptionalWrite,  ///< Optional<T>
+    With,           ///< With<T>
+    Without,        ///< Without<T>
+    Changed,        ///< Changed<T>: T must be there, its versions are compared
+};
+
+struct QueryTerm {
+    TermKind kind;
+    ComponentId id;
+    std::uint8_t group = 0;  ///< Changed terms of one group: any of them
+    bool is_sparse = false;
+};
+
+struct QueryMatch {
+    Archetype* archetype;
+    std::array<std::int16_t, kMaxQueryColumns> columns;  ///< of each term with data, in order
+};
+
+class QueryState {
+  public:
+    explicit QueryState(std::span<const QueryTerm> terms);
+
+    /// Looks at the archetypes that are new. Not to be called by two threads at the same time.
+    void update(const WorldCore& core) {
+        if (seen_ != core.archetypes.size() || epoch_ != core.epoch) {
+            extend(core);
+        }
+    }
+    [[nodiscard]] std::span<const QueryMatch> matches() const { return matches_; }
+    /// nullptr: the archetype does not match.
+    [[nodiscard]] const QueryMatch* match_of(std::uint32_t archetype) const {
+        const std::int32_t position = archetype < match_of_.size() ? match_of_[archetype] : -1;
+        return position < 0 ? nullptr : &matches_[static_cast<std::size_t>(position)];
+    }
+    [[nodiscard]] std::span<const QueryTerm> terms() const { return terms_; }
+
+    /// Whether every group of Changed terms has a change later than `since`; groups with a sparse
+    /// component are left to row_changed. Of an archetype, false is certain and true may turn out
+    /// to be no chunk.
+    [[nodiscard]] bool archetype_changed(const Archetype& archetype, std::uint32_t since) const;
+    [[nodiscard]] bool
+    chunk_changed(const Archetype& archetype, std::uint32_t chunk, std::uint32_t since) const;
+    [[nodiscard]] bool row_changed(
+        const WorldCore& core,
+        const Archetype& archetype,
+        std::uint32_t row,
+        std::uint32_t since) const;
+    /// Whether the entity has the required sparse components and none of the excluded.
+    [[nodiscard]] bool row_matches(const WorldCore& core, Entity entity) const;
+    /// The set of the first required sparse component: the iteration follows its order. nullptr: it
+    /// is empty.
+    [[nodiscard]] const SparseSet* leading_set(const WorldCore& core) const;
+
+  private:
+    void extend(const WorldCore& core);
+    [[nodiscard]] bool matches(const Archetype& archetype) const;
+    std::vector<QueryTerm> terms_;
+    std::vector<QueryMatch> matches_;
+    std::vector<std::int32_t> match_of_;  ///< by archetype; -1: none
+    std::size_t seen_ = 0;
+    std::uint32_t epoch_ = 0;
+    std::vector<std::uint8_t> table_groups_;  ///< groups of Changed terms without sparse components
+    std::vector<std::uint8_t> sparse_groups_;  ///< those with
+};
+
+}  // namespace limn

@@ -1,0 +1,248 @@
+#pragma once
+
+#include "ecs/query_state.h"
+#include "ecs/reflect.h"
+
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+// The terms of a query and what they mean. Query<const A, B, Optional<const C>, With<D>,
+// Without<E>, Changed<A>> visits the entities that have A, B and D, not E, and whose A may have
+// changed since the system last ran; it reads A, writes B, and reads C where there is one.
+
+/// Must have all of them; they are not touched.
+template <typename... Ts>
+struct With {};
+
+/// Must have none of them.
+template <typename... Ts>
+struct Without {};
+
+/// Arrives as T*, null where the entity has none.
+template <typename T>
+struct Optional {};
+
+/// Must have all of them, and one must have changed; several Changed terms must all hold. What is
+/// known is that something in the chunk of 1024 rows was taken for writing, came, went or moved.
+template <typename... Ts>
+struct Changed {};
+
+namespace detail {
+
+template <typename... Ts>
+struct TypeList {
+    static constexpr std::size_t size = sizeof...(Ts);
+};
+
+template <typename T>
+inline constexpr bool is_sparse =
+    ComponentTraits<std::remove_const_t<T>>::storage == Storage::Sparse;
+
+/// A component type as such, not a pointer, a reference or another term.
+template <typename T>
+concept Component =
+    std::is_object_v<T> && !std::is_pointer_v<
+        T> && !std::is_array_v<T> && !std::is_volatile_v<T> && !std::is_same_v<std::remove_const_t<T>, Entity>;
+
+template <typename T>
+struct TermTraits {
+    static_assert(
+        Component<T>,
+        "a query term is T, const T, Optional<T>, With<..>, Without<..> or Changed<..>; "
+        "entities arrive without being asked for");
+    static constexpr bool is_data = true;
+    static constexpr bool is_optional = false;
+    static constexpr bool is_write = !std::is_const_v<T>;
+    static constexpr bool needs_sparse = is_sparse<T>;
+    static constexpr bool filters_rows = is_sparse<T>;
+    static constexpr bool is_changed = false;
+    using Value = T;
+
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        sink(is_write ? TermKind::Write : TermKind::Read, component_id<std::remove_const_t<T>>);
+    }
+};
+
+template <typename T>
+struct TermTraits<Optional<T>> {
+    static_assert(Component<T>, "Optional takes one component type");
+    static constexpr bool is_data = true;
+    static constexpr bool is_optional = true;
+    static constexpr bool is_write = !std::is_const_v<T>;
+    static constexpr bool needs_sparse = false;
+    static constexpr bool filters_rows = false;
+    static constexpr bool is_changed = false;
+    using Value = T;
+
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        sink(
+            is_write ? TermKind::OptionalWrite : TermKind::OptionalRead,
+            component_id<std::remove_const_t<T>>);
+    }
+};
+
+template <typename... Ts>
+struct FilterTraits {
+    static_assert((Component<Ts> && ...), "With, Without and Changed take component types");
+    static constexpr bool is_data = false;
+    static constexpr bool is_write = false;
+    static constexpr bool filters_rows = (is_sparse<Ts> || ...);
+};
+
+template <typename... Ts>
+struct TermTraits<With<Ts...>> : FilterTraits<Ts...> {
+    static constexpr bool needs_sparse = (is_sparse<Ts> || ...);
+    static constexpr bool is_changed = false;
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        (sink(TermKind::With, component_id<std::remove_const_t<Ts>>), ...);
+    }
+};
+
+template <typename... Ts>
+struct TermTraits<Without<Ts...>> : FilterTraits<Ts...> {
+    static constexpr bool needs_sparse = false;
+    static constexpr bool is_changed = false;
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        (sink(TermKind::Without, component_id<std::remove_const_t<Ts>>), ...);
+    }
+};
+
+template <typename... Ts>
+struct TermTraits<Changed<Ts...>> : FilterTraits<Ts...> {
+    static constexpr bool needs_sparse = (is_sparse<Ts> || ...);
+    static constexpr bool is_changed = true;
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        (sink(TermKind::Changed, component_id<std::remove_const_t<Ts>>), ...);
+    }
+};
+
+/// The terms that arrive as arguments, in order.
+template <typename Found, typename... Terms>
+struct DataTermsOf {
+    using Type = Found;
+};
+template <typename... Found, typename Term, typename... Rest>
+struct DataTermsOf<TypeList<Found...>, Term, Rest...>
+    : std::conditional_t<
+          TermTraits<Term>::is_data,
+          DataTermsOf<TypeList<Found..., Term>, Rest...>,
+          DataTermsOf<TypeList<Found...>, Rest...>> {};
+template <typename... Terms>
+using DataTerms = typename DataTermsOf<TypeList<>, Terms...>::Type;
+
+/// What a term without data in its column refers to: tags have one value.
+template <typename T>
+inline std::remove_const_t<T> tag_value{};
+
+// How a term finds its argument from the row. Simple enough that a loop over rows of several
+// becomes a loop over arrays.
+
+template <typename T>
+struct TableAccess {
+    T* base;
+    T& operator[](std::uint32_t row) const { return base[row]; }
+};
+template <typename T>
+struct OptionalAccess {
+    T* base;
+    T* operator[](std::uint32_t row) const { return base != nullptr ? base + row : nullptr; }
+};
+template <typename T>
+struct TagAccess {
+    T& operator[](std::uint32_t) const { return tag_value<T>; }
+};
+template <typename T>
+struct OptionalTagAccess {
+    bool present;
+    T* operator[](std::uint32_t) const { return present ? &tag_value<T> : nullptr; }
+};
+template <typename T>
+struct SparseOptionalAccess {
+    SparseSet* set;
+    const Entity* entities;
+    std::uint32_t version;
+
+    T* operator[](std::uint32_t row) const {
+        const std::uint32_t position =
+            set != nullptr ? set->find(entities[row]) : SparseSet::kAbsent;
+        if (position == SparseSet::kAbsent) {
+            return nullptr;
+        }
+        if constexpr (std::is_empty_v<T>) {
+            return &tag_value<T>;
+        } else {
+            if constexpr (!std::is_const_v<T>) {
+                set->touch(position, version);
+            }
+            return reinterpret_cast<T*>(set->value(position));
+        }
+    }
+};
+template <typename T>
+struct SparseAccess {
+    SparseOptionalAccess<T> optional;
+    T& operator[](std::uint32_t row) const { return *optional[row]; }
+};
+
+template <typename Term>
+auto access_term(
+    const WorldCore& core, const QueryMatch& match, std::size_t position, std::uint32_t version) {
+    using Traits = TermTraits<Term>;
+    using T = typename Traits::Value;
+    [[maybe_unused]] const int column = match.columns[position];
+    if constexpr (is_sparse<T>) {
+        const SparseOptionalAccess<T> access{
+            core.sparse_set(component_id<std::remove_const_t<T>>),
+            match.archetype->entities().data(),
+            version};
+        if constexpr (Traits::is_optional) {
+            return access;
+        } else {
+            return SparseAccess<T>{access};
+        }
+    } else if constexpr (std::is_empty_v<T>) {
+        if constexpr (Traits::is_optional) {
+            return OptionalTagAccess<T>{column != kNoColumn};
+        } else {
+            return TagAccess<T>{};
+        }
+    } else if constexpr (Traits::is_optional) {
+        return OptionalAccess<T>{
+            column < 0 ? nullptr : reinterpret_cast<T*>(match.archetype->column(column).data)};
+    } else {
+        return TableAccess<T>{reinterpret_cast<T*>(match.archetype->column(column).data)};
+    }
+}
+
+/// What the function of each() is given for a term: const T&, T& or T*.
+template <typename Term>
+using RowArgument = std::conditional_t<
+    TermTraits<Term>::is_optional,
+    typename TermTraits<Term>::Value*,
+    typename TermTraits<Term>::Value&>;
+
+template <typename... Terms>
+[[nodiscard]] std::vector<QueryTerm> query_terms() {
+    std::vector<QueryTerm> terms;
+    std::uint8_t group = 0;
+    const auto one = [&]<typename Term>() {
+        TermTraits<Term>::add([&](TermKind kind, ComponentId id) {
+            terms.push_back({kind, id, group, false});
+        });
+        ++group;
+    };
+    (one.template operator()<Terms>(), ...);
+    return terms;
+}
+
+}  // namespace detail
+
+}  // namespace limn

@@ -1,0 +1,106 @@
+#include "ecs/system.h"
+
+#include "ecs/world_internals.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace limn {
+
+namespace {
+
+using Ids = std::vector<ComponentId>;
+
+void sort_unique(Ids& ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+void subtract(Ids& ids, const Ids& others) {
+    std::erase_if(
+        ids, [&](ComponentId id) { return std::binary_search(others.begin(), others.end(), id); });
+}
+
+bool overlap(const Ids& a, const Ids& b) {
+    return std::any_of(a.begin(), a.end(), [&](ComponentId id) {
+        return std::binary_search(b.begin(), b.end(), id);
+    });
+}
+
+bool writes_anything(const SystemAccess& access) {
+    return !access.writes.empty() || !access.resource_writes.empty();
+}
+
+}  // namespace
+
+WorldCore& detail::core_of(World& world) {
+    return world.core();
+}
+
+ResourceSlot& detail::resource_slot_of(World& world, ComponentId id) {
+    return world.require_resource_slot(id);
+}
+
+void SystemAccess::normalize() {
+    sort_unique(reads);
+    sort_unique(writes);
+    sort_unique(resource_reads);
+    sort_unique(resource_writes);
+    subtract(reads, writes);
+    subtract(resource_reads, resource_writes);
+}
+
+bool SystemAccess::conflicts_with(const SystemAccess& other) const {
+    if (exclusive || other.exclusive) {
+        return true;
+    }
+    if ((reads_all && writes_anything(other)) || (other.reads_all && writes_anything(*this))) {
+        return true;
+    }
+    return overlap(writes, other.writes) || overlap(writes, other.reads)
+           || overlap(reads, other.writes) || overlap(resource_writes, other.resource_writes)
+           || overlap(resource_writes, other.resource_reads)
+           || overlap(resource_reads, other.resource_writes);
+}
+
+void System::run(World& world, std::uint32_t version) {
+    const std::uint32_t since = has_run_ ? last_version_ : version - kNeverRan;
+    // In a task of its own: its commands are numbered from the start, wherever it was stolen to.
+    const TaskScopeGuard scope({});
+    if (access_.exclusive) {
+        world.core().check_unlocked();
+        body_->run(world, version, since);
+    } else {
+        const IterationGuard guard(world.core(), IterationLock::Shared);
+        body_->run(world, version, since);
+    }
+    last_version_ = version;
+    has_run_ = true;
+}
+
+void run_system(World& world, System& system) {
+    world.core().check_unlocked();
+    const std::uint32_t version = world.begin_run();
+    system.prepare(world);
+    system.run(world, version);
+    if (CommandBuffer* commands = system.commands(); commands != nullptr) {
+        apply_commands(world, {&commands, 1});
+    }
+}
+
+System* SystemCache::find(World& world, const void* type, const void* function) {
+    for (const auto& known : world.internals_->systems) {
+        if (known.type == type && known.function == function) {
+            return known.system.get();
+        }
+    }
+    return nullptr;
+}
+
+System& SystemCache::insert(World& world, const void* type, const void* function, System system) {
+    world.internals_->systems.push_back(
+        {type, function, std::make_unique<System>(std::move(system))});
+    return *world.internals_->systems.back().system;
+}
+
+}  // namespace limn

@@ -1,0 +1,172 @@
+#pragma once
+
+#include "ecs/base/type_name.h"
+#include "ecs/system_param.h"
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace limn {
+
+// A system is a function over parts of the world:
+//
+//     void update_water(Query<const Water, WaterState> surfaces, Res<const FrameTime> time,
+//     Commands commands);
+//
+// What it may touch is its parameter types (ecs/system_param.h). A System is such a function with
+// what it keeps from run to run: the list of archetypes of each query, recorded commands, and when
+// it last ran, which is what Changed refers to.
+
+class System {
+  public:
+    /// What is behind it; in MakeSystem.
+    class Body {
+      public:
+        virtual ~Body() = default;
+        virtual void prepare(World& world) = 0;
+        virtual void run(World& world, std::uint32_t version, std::uint32_t since) = 0;
+        virtual CommandBuffer* commands() = 0;
+    };
+
+    System(std::string name, SystemAccess access, std::unique_ptr<Body> body)
+        : name_(std::move(name)), access_(std::move(access)), body_(std::move(body)) {}
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const SystemAccess& access() const { return access_; }
+
+    /// Looks at new archetypes. Before each run, while the structure does not change. Systems may
+    /// be prepared at the same time as others are.
+    void prepare(World& world) { body_->prepare(world); }
+    /// Calls the function; commands are only recorded. `version` is from World::begin_run, called
+    /// in the order of the systems. Systems whose access does not conflict may run at the same
+    /// time. An exclusive one must run alone.
+    void run(World& world, std::uint32_t version);
+    /// For apply_commands after the run; nullptr if the system takes no Commands.
+    [[nodiscard]] CommandBuffer* commands() { return body_->commands(); }
+
+  private:
+    std::string name_;
+    SystemAccess access_;
+    std::unique_ptr<Body> body_;
+    std::uint32_t last_version_ = 0;
+    bool has_run_ = false;
+};
+
+namespace detail {
+
+template <typename F>
+struct FunctionTraits : FunctionTraits<decltype(&F::operator())> {};
+template <typename R, typename... Ps>
+struct FunctionTraits<R (*)(Ps...)> {
+    using Parameters = TypeList<Ps...>;
+};
+template <typename R, typename... Ps>
+struct FunctionTraits<R (*)(Ps...) noexcept> : FunctionTraits<R (*)(Ps...)> {};
+template <typename C, typename R, typename... Ps>
+struct FunctionTraits<R (C::*)(Ps...)> : FunctionTraits<R (*)(Ps...)> {};
+template <typename C, typename R, typename... Ps>
+struct FunctionTraits<R (C::*)(Ps...) const> : FunctionTraits<R (*)(Ps...)> {};
+template <typename C, typename R, typename... Ps>
+struct FunctionTraits<R (C::*)(Ps...) noexcept> : FunctionTraits<R (*)(Ps...)> {};
+template <typename C, typename R, typename... Ps>
+struct FunctionTraits<R (C::*)(Ps...) const noexcept> : FunctionTraits<R (*)(Ps...)> {};
+
+/// A function or a function object with one operator(), not a template.
+template <typename F>
+concept SystemFunction = std::is_pointer_v<F> || requires {
+    &F::operator();
+};
+
+template <typename... Ps>
+SystemAccess access_of_parameters(TypeList<Ps...>) {
+    SystemAccess access;
+    (SystemParam<Ps>::declare(access), ...);
+    access.normalize();
+    return access;
+}
+
+template <typename F, typename List>
+class SystemBody;
+
+template <typename F, typename... Ps>
+class SystemBody<F, TypeList<Ps...>> final : public System::Body {
+    static_assert(
+        (SystemParameter<Ps> && ...),
+        "a parameter of a system is Query<...>, Res<T>, Res<const T>, Commands, World& or const "
+        "World&; "
+        "Query, Res and Commands by value");
+
+  public:
+    explicit SystemBody(F function) : function_(std::move(function)) {}
+
+    void prepare(World& world) override {
+        std::apply([&](auto&... states) { (states.prepare(world), ...); }, states_);
+    }
+    void run(World& world, std::uint32_t version, std::uint32_t since) override {
+        std::apply(
+            [&](auto&... states) { function_(states.get(world, version, since)...); }, states_);
+    }
+    CommandBuffer* commands() override {
+        CommandBuffer* found = nullptr;
+        const auto look = [&](auto& state) {
+            if constexpr (requires { state.buffer; }) {
+                found = &state.buffer;
+            }
+        };
+        std::apply([&](auto&... states) { (look(states), ...); }, states_);
+        return found;
+    }
+
+  private:
+    static_assert(
+        (int{0} + ... + int{std::is_same_v<Ps, Commands>}) <= 1, "one Commands is enough");
+    F function_;
+    std::tuple<SystemParam<Ps>...> states_;
+};
+
+/// What a run-once cache recognizes a type by.
+template <typename F>
+inline constexpr char type_key = 0;
+
+}  // namespace detail
+
+/// The system of a function or function object.
+template <typename F>
+[[nodiscard]] System make_system(std::string name, F function) {
+    static_assert(
+        detail::SystemFunction<F>, "a system is a function or a lambda without auto parameters");
+    using Parameters = typename detail::FunctionTraits<F>::Parameters;
+    return System(
+        std::move(name),
+        detail::access_of_parameters(Parameters{}),
+        std::make_unique<detail::SystemBody<F, Parameters>>(std::move(function)));
+}
+
+/// The same with the name of the function: make_system<update_water>().
+template <auto function>
+[[nodiscard]] System make_system() {
+    return make_system(std::string(short_name(value_name<function>())), function);
+}
+
+/// What the system may touch.
+template <auto function>
+[[nodiscard]] SystemAccess access_of() {
+    return detail::access_of_parameters(
+        typename detail::FunctionTraits<decltype(function)>::Parameters{});
+}
+
+/// Prepares, runs and applies the commands of one system.
+void run_system(World& world, System& system);
+
+/// The systems that World::run has met; they remember when they last ran.
+struct SystemCache {
+    /// nullptr: not yet.
+    static System* find(World& world, const void* type, const void* function);
+    static System& insert(World& world, const void* type, const void* function, System system);
+};
+
+}  // namespace limn

@@ -1,0 +1,110 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace limn {
+
+// What a parameter of a system gives access to, and how it is made from the world. A SystemParam
+// lives as long as its System; prepare() and get() are called once a run.
+
+struct SystemAccess {
+    std::vector<ComponentId> reads;   ///< components, ascending, none of them in `writes`
+    std::vector<ComponentId> writes;  ///< components, ascending
+    std::vector<ComponentId> resource_reads;
+    std::vector<ComponentId> resource_writes;
+    bool commands = false;   ///< records structural changes
+    bool reads_all = false;  ///< const World&: anything
+    bool exclusive = false;  ///< World&: everything, structure too
+
+    /// Sorts, and takes out of the reads what is also written.
+    void normalize();
+    /// Whether two systems must not run at the same time.
+    [[nodiscard]] bool conflicts_with(const SystemAccess& other) const;
+};
+
+class World;
+
+template <typename P>
+struct SystemParam {};
+
+namespace detail {
+
+template <typename P>
+concept SystemParameter = requires(SystemAccess& access) {
+    SystemParam<P>::declare(access);
+};
+
+[[nodiscard]] WorldCore& core_of(World& world);
+[[nodiscard]] ResourceSlot& resource_slot_of(World& world, ComponentId id);
+
+}  // namespace detail
+
+template <typename... Terms>
+struct SystemParam<Query<Terms...>> {
+    static void declare(SystemAccess& access) {
+        for (const QueryTerm& term : detail::query_terms<Terms...>()) {
+            switch (term.kind) {
+            case TermKind::Write:
+            case TermKind::OptionalWrite:
+                access.writes.push_back(term.id);
+                break;
+            case TermKind::Read:
+            case TermKind::OptionalRead:
+            case TermKind::Changed:
+                access.reads.push_back(term.id);
+                break;
+            case TermKind::With:
+            case TermKind::Without:
+                break;  // the structure is fixed while systems run
+            }
+        }
+    }
+    void prepare(World& world) { state.update(detail::core_of(world)); }
+    Query<Terms...> get(World& world, std::uint32_t version, std::uint32_t since) {
+        return Query<Terms...>(detail::core_of(world), state, version, since);
+    }
+    QueryState state{detail::query_terms<Terms...>()};
+};
+
+template <typename T>
+struct SystemParam<Res<T>> {
+    static void declare(SystemAccess& access) {
+        const ComponentId id = component_id<std::remove_const_t<T>>;
+        (std::is_const_v<T> ? access.resource_reads : access.resource_writes).push_back(id);
+    }
+    void prepare(World&) {}
+    Res<T> get(World& world, std::uint32_t version, std::uint32_t since) {
+        return Res<T>(
+            detail::resource_slot_of(world, component_id<std::remove_const_t<T>>), version, since);
+    }
+};
+
+template <>
+struct SystemParam<Commands> {
+    static void declare(SystemAccess& access) { access.commands = true; }
+    void prepare(World&) {}
+    Commands get(World&, std::uint32_t, std::uint32_t) { return Commands(buffer); }
+    CommandBuffer buffer;
+};
+
+template <>
+struct SystemParam<World&> {
+    static void declare(SystemAccess& access) { access.exclusive = true; }
+    void prepare(World&) {}
+    World& get(World& world, std::uint32_t, std::uint32_t) { return world; }
+};
+
+template <>
+struct SystemParam<const World&> {
+    static void declare(SystemAccess& access) { access.reads_all = true; }
+    void prepare(World&) {}
+    const World& get(World& world, std::uint32_t, std::uint32_t) { return world; }
+};
+
+}  // namespace limn

@@ -1,0 +1,517 @@
+#include "ecs/world.h"
+
+#include "ecs/world_internals.h"
+
+#include <algorithm>
+#include <new>
+
+namespace limn {
+
+namespace detail {
+
+namespace {
+std::uint32_t bundle_count = 0;
+std::uint32_t query_count = 0;
+}  // namespace
+
+// Called before main only, by one thread.
+std::uint32_t next_bundle_index() {
+    return bundle_count++;
+}
+std::uint32_t next_query_index() {
+    return query_count++;
+}
+
+}  // namespace detail
+
+World::World() : internals_(std::make_unique<Internals>()) {
+    static_cast<void>(archetype_of({}));  // the one without components is always number 0
+}
+
+World::~World() {
+    notify_all_removed();
+    drop_all_rows();
+    while (!resource_order_.empty()) {
+        remove_resource(resource_order_.back());
+    }
+}
+
+// ---- entities
+// ------------------------------------------------------------------------------------
+
+std::size_t World::entity_count() const {
+    std::size_t count = 0;
+    for (const auto& archetype : core_.archetypes) {
+        count += archetype->size();
+    }
+    return count;
+}
+
+void World::destroy(Entity entity) {
+    core_.check_unlocked();
+    const EntitySlot slot = require(entity);
+    if (!internals_->observers.empty()) {
+        notify(ObserverEvent::Remove, components_of(entity), {&entity, 1});
+    }
+    destroy_now(entity, slot);
+}
+
+void World::destroy_now(Entity entity, const EntitySlot& slot) {
+    const std::uint32_t row = slot.row;
+    Archetype& rows = archetype(slot.archetype);
+    for (SparseSet* set : core_.sparse_list) {
+        if (const std::uint32_t position = set->find(entity); position != SparseSet::kAbsent) {
+            set->remove(position, core_.now());
+        }
+    }
+    rows.destroy_components(row, 1);
+    const Entity moved = rows.fill_hole(row, core_.now());
+    if (!moved.is_null()) {
+        core_.entities.place(moved, rows.index(), row);
+    }
+    core_.entities.free(entity);
+}
+
+void World::clear() {
+    core_.check_unlocked();
+    notify_all_removed();
+    drop_all_rows();
+}
+
+void World::drop_all_rows() {
+    for (SparseSet* set : core_.sparse_list) {
+        set->clear(core_.now());
+    }
+    for (const auto& archetype : core_.archetypes) {
+        for (const Entity entity : archetype->entities()) {
+            core_.entities.free(entity);
+        }
+        archetype->clear(core_.now());
+    }
+}
+
+// ---- archetypes
+// ----------------------------------------------------------------------------------
+
+Archetype& World::archetype_of(std::span<const ComponentId> components) {
+    std::vector<ComponentId> key(components.begin(), components.end());
+    const auto found = internals_->archetype_by_components.find(key);
+    if (found != internals_->archetype_by_components.end()) {
+        return archetype(found->second);
+    }
+    const std::uint32_t index = static_cast<std::uint32_t>(core_.archetypes.size());
+    core_.archetypes.push_back(std::make_unique<Archetype>(index, components, core_.blocks));
+    internals_->archetype_by_components.emplace(std::move(key), index);
+    Archetype& made = *core_.archetypes.back();
+    const auto observed = [&](ObserverEvent event) {
+        return std::any_of(components.begin(), components.end(), [&](ComponentId id) {
+            return observes(id, event);
+        });
+    };
+    made.observes_add = observed(ObserverEvent::Add);
+    made.observes_remove = observed(ObserverEvent::Remove);
+    return made;
+}
+
+Archetype& World::archetype_with(Archetype& from, ComponentId id) {
+    if (id < from.add_edges.size() && from.add_edges[id] != kNoArchetype) {
+        return archetype(from.add_edges[id]);
+    }
+    std::vector<ComponentId> components(from.components().begin(), from.components().end());
+    components.insert(std::upper_bound(components.begin(), components.end(), id), id);
+    Archetype& to = archetype_of(components);
+    if (id >= from.add_edges.size()) {
+        from.add_edges.resize(component_count(), kNoArchetype);
+    }
+    from.add_edges[id] = to.index();
+    return to;
+}
+
+Archetype& World::archetype_without(Archetype& from, ComponentId id) {
+    if (id < from.remove_edges.size() && from.remove_edges[id] != kNoArchetype) {
+        return archetype(from.remove_edges[id]);
+    }
+    std::vector<ComponentId> components(from.components().begin(), from.components().end());
+    std::erase(components, id);
+    Archetype& to = archetype_of(components);
+    if (id >= from.remove_edges.size()) {
+        from.remove_edges.resize(component_count(), kNoArchetype);
+    }
+    from.remove_edges[id] = to.index();
+    return to;
+}
+
+const World::Bundle&
+World::make_bundle(std::uint32_t index, std::span<const ComponentId> components) {
+    Bundle bundle;
+    bundle.components.assign(components.begin(), components.end());
+    std::vector<ComponentId> table;
+    for (const ComponentId id : components) {
+        if (component_info(id).storage == Storage::Sparse) {
+            bundle.has_sparse = true;
+        } else {
+            table.push_back(id);
+        }
+    }
+    std::sort(table.begin(), table.end());
+    bundle.archetype = &archetype_of(table);
+    for (const ComponentId id : components) {
+        bundle.columns.push_back(bundle.archetype->column_of(id));
+    }
+    if (index >= bundles_.size()) {
+        bundles_.resize(index + 1);
+    }
+    bundles_[index] = std::make_unique<Bundle>(std::move(bundle));
+    return *bundles_[index];
+}
+
+std::uint32_t World::move_row(Entity entity, Archetype& from, Archetype& to) {
+    const std::uint32_t old_row = core_.entities.find(entity)->row;
+    const std::uint32_t new_row = to.append(entity, core_.now());
+    // Both lists of columns ascend by component: walk them together.
+    const std::span<Column> targets = to.columns();
+    std::size_t target = 0;
+    for (Column& source : from.columns()) {
+        while (target < targets.size() && targets[target].info->id < source.info->id) {
+            ++target;
+        }
+        if (target < targets.size() && targets[target].info == source.info) {
+            relocate_values(*source.info, targets[target].at(new_row), source.at(old_row), 1);
+        } else if (!source.info->trivially_destructible) {
+            source.info->ops.destroy(source.at(old_row), 1);
+        }
+    }
+    const Entity moved = from.fill_hole(old_row, core_.now());
+    if (!moved.is_null()) {
+        core_.entities.place(moved, from.index(), old_row);
+    }
+    core_.entities.place(entity, to.index(), new_row);
+    ++to.rows_moved_in;
+    return new_row;
+}
+
+SparseSet& World::use_sparse_set(ComponentId id) {
+    if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
+        return *set;
+    }
+    if (id >= core_.sparse.size()) {
+        core_.sparse.resize(component_count());
+    }
+    core_.sparse[id] = std::make_unique<SparseSet>(component_info(id));
+    SparseSet& made = *core_.sparse[id];
+    made.observes_add = observes(id, ObserverEvent::Add);
+    made.observes_remove = observes(id, ObserverEvent::Remove);
+    core_.sparse_list.push_back(&made);
+    return made;
+}
+
+// ---- components without types
+// --------------------------------------------------------------------
+
+std::vector<ComponentId> World::components_of(Entity entity) const {
+    const EntitySlot& slot = require(entity);
+    const auto table = archetype(slot.archetype).components();
+    std::vector<ComponentId> components(table.begin(), table.end());
+    for (const SparseSet* set : core_.sparse_list) {
+        if (set->has(entity)) {
+            components.push_back(set->info().id);
+        }
+    }
+    std::sort(components.begin() + static_cast<std::ptrdiff_t>(table.size()), components.end());
+    std::inplace_merge(
+        components.begin(),
+        components.begin() + static_cast<std::ptrdiff_t>(table.size()),
+        components.end());
+    return components;
+}
+
+bool World::has(Entity entity, ComponentId id) const {
+    const EntitySlot* slot = core_.entities.find(entity);
+    if (slot == nullptr) {
+        return false;
+    }
+    const SparseSet* set = core_.sparse_set(id);
+    return archetype(slot->archetype).has(id) || (set != nullptr && set->has(entity));
+}
+
+const void* World::find(Entity entity, ComponentId id) const {
+    const EntitySlot* slot = core_.entities.find(entity);
+    if (slot == nullptr) {
+        return nullptr;
+    }
+    if (const SparseSet* set = core_.sparse_set(id); set != nullptr) {
+        const std::uint32_t position = set->find(entity);
+        return position == SparseSet::kAbsent ? nullptr : set->value(position);
+    }
+    const Archetype& rows = archetype(slot->archetype);
+    const int column = rows.column_of(id);
+    if (column == kTagColumn) {
+        return &rows;  // some address: tags have no value
+    }
+    return column == kNoColumn ? nullptr : rows.column(column).at(slot->row);
+}
+
+void* World::find(Entity entity, ComponentId id) {
+    const void* value = std::as_const(*this).find(entity, id);
+    if (value == nullptr) {
+        return nullptr;
+    }
+    if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
+        set->touch(set->find(entity), core_.now());
+    } else {
+        const EntitySlot& slot = *core_.entities.find(entity);
+        Archetype& rows = archetype(slot.archetype);
+        rows.touch_row(rows.column_of(id), slot.row, core_.now());
+    }
+    return const_cast<void*>(value);
+}
+
+void* World::make_room(Entity entity, ComponentId id) {
+    const EntitySlot slot = require(entity);
+    const ComponentInfo& info = component_info(id);
+    if (info.storage == Storage::Sparse) {
+        SparseSet& set = use_sparse_set(id);
+        return set.value(set.append(entity, core_.now()));
+    }
+    Archetype& from = archetype(slot.archetype);
+    Archetype& to = archetype_with(from, id);
+    const std::uint32_t row = move_row(entity, from, to);
+    const int column = to.column_of(id);
+    return column < 0 ? nullptr : to.column(column).at(row);
+}
+
+void* World::add(Entity entity, ComponentId id) {
+    core_.check_unlocked();
+    if (!has(entity, id)) {
+        const ComponentInfo& info = component_info(id);
+        LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_default != nullptr, info.name.c_str());
+        void* room = make_room(entity, id);
+        if (!info.is_tag) {
+            info.ops.construct_default(room, 1);
+        }
+        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    }
+    return find(entity, id);
+}
+
+void* World::add_copy(Entity entity, ComponentId id, const void* value) {
+    core_.check_unlocked();
+    const ComponentInfo& info = component_info(id);
+    LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_copy != nullptr, info.name.c_str());
+    void* present = find(entity, id);
+    const bool is_new = present == nullptr;
+    void* room = is_new ? make_room(entity, id) : present;
+    if (!info.is_tag && room != value) {
+        if (!is_new) {
+            info.ops.destroy(room, 1);
+        }
+        info.ops.construct_copy(room, value, 1);
+    }
+    if (is_new) {
+        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    }
+    return find(entity, id);
+}
+
+void* World::add_move(Entity entity, ComponentId id, void* value) {
+    core_.check_unlocked();
+    const ComponentInfo& info = component_info(id);
+    void* present = find(entity, id);
+    const bool is_new = present == nullptr;
+    void* room = is_new ? make_room(entity, id) : present;
+    if (!info.is_tag && room != value) {
+        if (!is_new) {
+            info.ops.destroy(room, 1);
+        }
+        info.ops.construct_move(room, value, 1);
+    }
+    if (is_new) {
+        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    }
+    return find(entity, id);
+}
+
+bool World::remove(Entity entity, ComponentId id) {
+    core_.check_unlocked();
+    static_cast<void>(require(entity));
+    if (!has(entity, id)) {
+        return false;
+    }
+    if (observes(id, ObserverEvent::Remove)) {
+        notify(ObserverEvent::Remove, {&id, 1}, {&entity, 1});
+    }
+    remove_now(entity, id);
+    return true;
+}
+
+void World::remove_now(Entity entity, ComponentId id) {
+    if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
+        set->remove(set->find(entity), core_.now());
+        return;
+    }
+    Archetype& from = archetype(core_.entities.find(entity)->archetype);
+    move_row(entity, from, archetype_without(from, id));
+}
+
+// ---- queries and versions
+// ------------------------------------------------------------------------
+
+QueryState& World::make_query_state(std::uint32_t index, MakeTerms terms) const {
+    if (index >= queries_.size()) {
+        queries_.resize(index + 1);
+    }
+    queries_[index] = std::make_unique<QueryState>(terms());
+    return *queries_[index];
+}
+
+QueryState& World::shared_query_state(std::uint32_t index, MakeTerms terms) const {
+    const std::lock_guard lock(internals_->query_mutex);
+    QueryState* state = index < queries_.size() ? queries_[index].get() : nullptr;
+    if (state == nullptr) {
+        state = &make_query_state(index, terms);
+    }
+    state->update(core_);
+    return *state;
+}
+
+std::uint32_t World::begin_run() {
+    constexpr std::uint32_t kInterval = 1u << 28;  // kMaxVersionAge + kInterval < 2^31
+    if (core_.now() - versions_forgotten_at_ > kInterval
+        && core_.iterations.load(std::memory_order_relaxed) == 0) {
+        versions_forgotten_at_ = core_.now();
+        const std::uint32_t oldest = core_.now() - kMaxVersionAge;
+        for (const auto& archetype : core_.archetypes) {
+            archetype->forget_versions_before(oldest);
+        }
+        for (SparseSet* set : core_.sparse_list) {
+            set->forget_versions_before(oldest);
+        }
+        for (const auto& slot : resources_) {
+            if (slot != nullptr) {
+                slot->version = newer_of(slot->version, oldest);
+            }
+        }
+    }
+    return core_.version.fetch_add(1, std::memory_order_relaxed);
+}
+
+void World::set_version(std::uint32_t version) {
+    core_.version.store(version, std::memory_order_relaxed);
+}
+
+// ---- resources
+// -----------------------------------------------------------------------------------
+
+void* World::allocate_resource(ComponentId id) {
+    if (id >= resources_.size()) {
+        resources_.resize(component_count());
+    }
+    if (resources_[id] == nullptr) {
+        resources_[id] = std::make_unique<ResourceSlot>();
+    }
+    const ComponentInfo& info = component_info(id);
+    resources_[id]->value =
+        ::operator new (std::max<std::size_t>(info.size, 1), std::align_val_t{info.align});
+    resources_[id]->version = core_.now();
+    resource_order_.push_back(id);
+    return resources_[id]->value;
+}
+
+void* World::insert_default_resource(ComponentId id) {
+    const ComponentInfo& info = component_info(id);
+    LIMN_CHECK_NOTE(info.ops.construct_default != nullptr, info.name.c_str());
+    remove_resource(id);
+    void* value = allocate_resource(id);
+    info.ops.construct_default(value, 1);
+    return value;
+}
+
+void* World::find_resource(ComponentId id) {
+    ResourceSlot* slot = resource_slot(id);
+    if (slot == nullptr) {
+        return nullptr;
+    }
+    slot->version = core_.now();
+    return slot->value;
+}
+
+const void* World::find_resource(ComponentId id) const {
+    const ResourceSlot* slot = resource_slot(id);
+    return slot != nullptr ? slot->value : nullptr;
+}
+
+ResourceSlot& World::require_resource_slot(ComponentId id) {
+    ResourceSlot* slot = resource_slot(id);
+    LIMN_CHECK_NOTE(slot != nullptr, component_info(id).name.c_str());
+    return *slot;
+}
+
+void World::remove_resource(ComponentId id) {
+    ResourceSlot* slot = resource_slot(id);
+    if (slot == nullptr) {
+        return;
+    }
+    const ComponentInfo& info = component_info(id);
+    std::erase(resource_order_, id);
+    info.ops.destroy(slot->value, 1);
+    ::operator delete (slot->value, std::align_val_t{info.align});
+    slot->value = nullptr;
+}
+
+// ---- restore
+// -------------------------------------------------------------------------------------
+
+void World::begin_restore(const EntityTableImage& image) {
+    clear();
+    bundles_.clear();
+    core_.archetypes.clear();
+    core_.sparse.clear();
+    core_.sparse_list.clear();
+    internals_->archetype_by_components.clear();
+    ++core_.epoch;
+    core_.entities.restore(image);
+    static_cast<void>(archetype_of({}));
+}
+
+Archetype&
+World::restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities) {
+    Archetype& rows = archetype_of(components);
+    const std::uint32_t first = rows.append(entities, core_.now());
+    rows.construct_default(first, static_cast<std::uint32_t>(entities.size()));
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        core_.entities.place(entities[i], rows.index(), first + static_cast<std::uint32_t>(i));
+    }
+    return rows;
+}
+
+SparseSet& World::restore_sparse(ComponentId id, std::span<const Entity> entities) {
+    SparseSet& set = use_sparse_set(id);
+    for (const Entity entity : entities) {
+        static_cast<void>(require(entity));
+        const std::uint32_t position = set.append(entity, core_.now());
+        if (!set.info().is_tag) {
+            set.info().ops.construct_default(set.value(position), 1);
+        }
+    }
+    return set;
+}
+
+void World::end_restore() {
+    for (std::size_t i = 0; i < internals_->observers.size(); ++i) {
+        const Observer& observer = *internals_->observers[i];
+        if (observer.event != ObserverEvent::Add) {
+            continue;
+        }
+        std::vector<Entity> added;
+        each_entity([&](Entity entity) {
+            if (has(entity, observer.component)) {
+                added.push_back(entity);
+            }
+        });
+        if (!added.empty()) {
+            observer.function(*this, added);
+        }
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,268 @@
+#pragma once
+
+#include "ecs/entity.h"
+#include "ecs/observer.h"
+#include "ecs/query.h"
+#include "ecs/reflect.h"
+#include "ecs/resource.h"
+#include "ecs/system.h"
+#include "ecs/world_core.h"
+
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace limn {
+
+struct WorldMemory;
+class CommandFlush;
+
+// Everything there is: entities with their components, and resources. Entities with the same
+// components are rows of one Archetype (ecs/archetype.h has the layout); sparse components are in
+// sets of their own.
+//
+//     World world;
+//     const Entity lamp = world.create(Transform{}, PointLight{});
+//     world.get<PointLight>(lamp).intensity = 40;
+//     world.insert_resource(FrameTime{});
+//     world.run(update_lights);
+//
+// Using a stale handle or asking for a component that is not there stops the program with a
+// message, and so does a structural change (create, destroy, add, remove) while a query iterates or
+// systems run. One thread at a time, unless all only read. The functions that take a ComponentId
+// are for code that knows no types: level files, the inspector, snapshots.
+
+class World {
+  public:
+    World();
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+    ~World();
+
+    // ---- entities
+    // ---------------------------------------------------------------------------------
+
+    /// A new entity with these components.
+    template <typename... Ts>
+    Entity create(Ts&&... components);
+    /// `count` entities with copies of these components, in neighboring rows.
+    template <typename... Ts>
+    std::vector<Entity> create_many(std::size_t count, const Ts&... components);
+    /// As many as `entities` has room for.
+    template <typename... Ts>
+    void create_many(std::span<Entity> entities, const Ts&... components);
+    void destroy(Entity entity);
+    [[nodiscard]] bool alive(Entity entity) const { return core_.entities.find(entity) != nullptr; }
+    [[nodiscard]] std::size_t entity_count() const;
+    /// Destroys all entities; resources, observers and memory stay.
+    void clear();
+
+    // ---- components
+    // -------------------------------------------------------------------------------
+
+    /// Adds the component or replaces its value. The reference holds until the next structural
+    /// change.
+    template <typename T>
+    T& add(Entity entity, T component = T{});
+    /// Returns whether it was there.
+    template <typename T>
+    bool remove(Entity entity) {
+        return remove(entity, component_id<T>);
+    }
+    template <typename T>
+    [[nodiscard]] bool has(Entity entity) const {
+        return has(entity, component_id<T>);
+    }
+    /// The component, which must be there; get<T> counts as a change, get<const T> does not.
+    template <typename T>
+    [[nodiscard]] T& get(Entity entity);
+    template <typename T>
+    [[nodiscard]] const T& get(Entity entity) const;
+    /// nullptr: the entity is gone or has none.
+    template <typename T>
+    [[nodiscard]] T* find(Entity entity);
+    template <typename T>
+    [[nodiscard]] const T* find(Entity entity) const;
+
+    // ---- queries and systems
+    // ----------------------------------------------------------------------
+
+    /// Cheap: the archetypes that match are remembered for each type of query. Changed means
+    /// always, unless since() says from when.
+    template <typename... Terms>
+    [[nodiscard]] Query<Terms...> query();
+    template <typename... Terms>
+    [[nodiscard]] Query<Terms...> query() const;
+    /// Runs one system, its parameters taken from this world; then applies its commands.
+    template <typename F>
+    void run(F&& system);
+
+    /// This moment, for Query::since: what is changed from now on is later.
+    [[nodiscard]] std::uint32_t version() const {
+        return core_.version.fetch_add(1, std::memory_order_relaxed);
+    }
+
+    // ---- resources
+    // --------------------------------------------------------------------------------
+
+    /// Adds the resource or replaces it. Stays where it is until removed.
+    template <typename T>
+    T& insert_resource(T resource);
+    template <typename T>
+    [[nodiscard]] T& resource();
+    template <typename T>
+    [[nodiscard]] const T& resource() const;
+    template <typename T>
+    [[nodiscard]] T* find_resource();
+    template <typename T>
+    [[nodiscard]] const T* find_resource() const;
+    template <typename T>
+    void remove_resource() {
+        remove_resource(component_id<T>);
+    }
+
+    // ---- observers (ecs/observer.h)
+    // ---------------------------------------------------------------
+
+    /// function(World&, std::span<const Entity>)
+    template <typename T, typename F>
+    void on_add(F function) {
+        observe({ObserverEvent::Add, component_id<T>, ObserverFunction(std::move(function))});
+    }
+    template <typename T, typename F>
+    void on_remove(F function) {
+        observe({ObserverEvent::Remove, component_id<T>, ObserverFunction(std::move(function))});
+    }
+
+    // ---- without types
+    // ----------------------------------------------------------------------------
+
+    /// Ascending; table, sparse and tags.
+    [[nodiscard]] std::vector<ComponentId> components_of(Entity entity) const;
+    [[nodiscard]] bool has(Entity entity, ComponentId id) const;
+    /// The value; nullptr if there is none. Of tags, not null and not to be read. Counts as a
+    /// change if not const.
+    [[nodiscard]] void* find(Entity entity, ComponentId id);
+    [[nodiscard]] const void* find(Entity entity, ComponentId id) const;
+    /// Adds with the default value, or leaves the value there is. Returns it.
+    void* add(Entity entity, ComponentId id);
+    /// Adds a copy of `value`, or replaces the value there is with one.
+    void* add_copy(Entity entity, ComponentId id, const void* value);
+    /// The same, moving from `value`.
+    void* add_move(Entity entity, ComponentId id, void* value);
+    bool remove(Entity entity, ComponentId id);
+
+    void* insert_default_resource(ComponentId id);
+    [[nodiscard]] void* find_resource(ComponentId id);
+    [[nodiscard]] const void* find_resource(ComponentId id) const;
+    void remove_resource(ComponentId id);
+    /// The slot of a resource that must be there.
+    [[nodiscard]] ResourceSlot& require_resource_slot(ComponentId id);
+    /// In the order they were inserted.
+    [[nodiscard]] std::span<const ComponentId> resources() const { return resource_order_; }
+
+    // ---- storage: for snapshots, hashes, statistics
+    // ------------------------------------------------
+
+    [[nodiscard]] std::span<const std::unique_ptr<Archetype>> archetypes() const {
+        return core_.archetypes;
+    }
+    /// Sets in use, in the order of their first use.
+    [[nodiscard]] std::span<SparseSet* const> sparse_sets() const { return core_.sparse_list; }
+    /// Calls function(Entity) for all, in the order of queries.
+    template <typename F>
+    void each_entity(F&& function) const;
+
+    [[nodiscard]] EntityTableImage entity_image() const { return core_.entities.image(); }
+    /// A snapshot is put back in four steps: begin, which destroys what there is and forgets the
+    /// archetypes, so that they get the order of the calls that follow; then restore_rows for every
+    /// archetype, an empty one too; then restore_sparse; then end, which calls on_add. `entities`
+    /// must be alive in `image`, each once.
+    void begin_restore(const EntityTableImage& image);
+    /// Components have their default value until the caller writes them.
+    Archetype&
+    restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities);
+    /// The entities have been placed by restore_rows.
+    SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
+    void end_restore();
+
+    [[nodiscard]] WorldMemory memory() const;  ///< in ecs/world_stats.h
+    [[nodiscard]] WorldCore& core() { return core_; }
+    [[nodiscard]] const WorldCore& core() const { return core_; }
+    /// Starts a run of a system: the version of what it writes. Old versions are forgotten here.
+    [[nodiscard]] std::uint32_t begin_run();
+    /// For tests of the wrap: all that happens from now on has versions from `version` on.
+    void set_version(std::uint32_t version);
+
+  private:
+    friend class CommandFlush;
+    friend struct SystemCache;
+    struct Internals;
+
+    /// Where the components of a create() go.
+    struct Bundle {
+        Archetype* archetype = nullptr;
+        std::vector<ComponentId> components;  ///< in the order of the call
+        std::vector<int> columns;
+        bool has_sparse = false;
+    };
+
+    [[nodiscard]] const EntitySlot& require(Entity entity) const {
+        const EntitySlot* slot = core_.entities.find(entity);
+        LIMN_CHECK_NOTE(slot != nullptr, "stale handle: the entity is gone");
+        return *slot;
+    }
+    [[nodiscard]] Archetype& archetype(std::uint32_t index) const {
+        return *core_.archetypes[index];
+    }
+    template <typename... Ts>
+    const Bundle& bundle_of();
+    const Bundle& make_bundle(std::uint32_t index, std::span<const ComponentId> components);
+    [[nodiscard]] Archetype& archetype_of(std::span<const ComponentId> components);
+    [[nodiscard]] Archetype& archetype_with(Archetype& from, ComponentId id);
+    [[nodiscard]] Archetype& archetype_without(Archetype& from, ComponentId id);
+    /// Moves the entity's row; components that `to` has more are raw memory, those it has less are
+    /// gone.
+    std::uint32_t move_row(Entity entity, Archetype& from, Archetype& to);
+    /// Room for a component the entity does not have yet: raw memory, nullptr for tags.
+    void* make_room(Entity entity, ComponentId id);
+    void destroy_now(Entity entity, const EntitySlot& slot);
+    void remove_now(Entity entity, ComponentId id);
+    [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);
+
+    void observe(Observer observer);
+    void refresh_observer_flags();
+    [[nodiscard]] bool observes(ComponentId id, ObserverEvent event) const;
+    void notify(
+        ObserverEvent event,
+        std::span<const ComponentId> components,
+        std::span<const Entity> entities);
+    void notify_all_removed();
+    void drop_all_rows();
+
+    using MakeTerms = std::vector<QueryTerm> (*)();
+    QueryState& make_query_state(std::uint32_t index, MakeTerms terms) const;
+    /// Up to date, for several threads at the same time.
+    QueryState& shared_query_state(std::uint32_t index, MakeTerms terms) const;
+    [[nodiscard]] ResourceSlot* resource_slot(ComponentId id) const {
+        ResourceSlot* slot = id < resources_.size() ? resources_[id].get() : nullptr;
+        return slot != nullptr && slot->value != nullptr ? slot : nullptr;
+    }
+    void* allocate_resource(ComponentId id);
+
+    WorldCore core_;
+    std::vector<std::unique_ptr<Bundle>> bundles_;
+    mutable std::vector<std::unique_ptr<QueryState>> queries_;
+    std::vector<std::unique_ptr<ResourceSlot>> resources_;
+    std::vector<ComponentId> resource_order_;
+    std::uint32_t versions_forgotten_at_ = 0;
+    std::unique_ptr<Internals> internals_;
+};
+
+}  // namespace limn
+
+#include "ecs/world_impl.h"  // IWYU pragma: export

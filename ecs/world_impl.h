@@ -1,0 +1,295 @@
+#pragma once
+
+#include "ecs/world.h"
+
+// The templates of World; included by ecs/world.h.
+
+namespace limn {
+
+namespace detail {
+
+std::uint32_t next_bundle_index();
+std::uint32_t next_query_index();
+
+/// Numbers for combinations of types, ready before main.
+template <typename... Ts>
+inline const std::uint32_t bundle_index = next_bundle_index();
+template <typename... Terms>
+inline const std::uint32_t query_index = next_query_index();
+
+template <typename... Ts>
+inline constexpr bool all_different = true;
+template <typename T, typename... Rest>
+inline constexpr bool all_different<T, Rest...> = (!std::is_same_v<T, Rest> && ...)
+                                                  && all_different<Rest...>;
+
+}  // namespace detail
+
+// ---- entities
+// ------------------------------------------------------------------------------------
+
+template <typename... Ts>
+const World::Bundle& World::bundle_of() {
+    static_assert(detail::all_different<Ts...>, "an entity has each component once");
+    static_assert(
+        (detail::Component<Ts> && ...), "components are values, not pointers, arrays or entities");
+    const std::uint32_t index = detail::bundle_index<Ts...>;
+    if (index < bundles_.size() && bundles_[index] != nullptr) {
+        return *bundles_[index];
+    }
+    const ComponentId components[sizeof...(Ts) + 1] = {component_id<Ts>..., 0};
+    return make_bundle(index, {components, sizeof...(Ts)});
+}
+
+template <typename... Ts>
+Entity World::create(Ts&&... components) {
+    core_.check_unlocked();
+    const Bundle& bundle = bundle_of<std::remove_cvref_t<Ts>...>();
+    const std::uint32_t now = core_.now();
+    const Entity entity = core_.entities.allocate();
+    const std::uint32_t row = bundle.archetype->append(entity, now);
+    core_.entities.place(entity, bundle.archetype->index(), row);
+
+    [[maybe_unused]] std::size_t position = 0;
+    [[maybe_unused]] const auto put = [&]<typename T>(T&& component) {
+        using Value = std::remove_cvref_t<T>;
+        if constexpr (detail::is_sparse<Value>) {
+            SparseSet& set = use_sparse_set(component_id<Value>);
+            [[maybe_unused]] const std::uint32_t place = set.append(entity, now);
+            if constexpr (!std::is_empty_v<Value>) {
+                ::new (static_cast<void*>(set.value(place))) Value(std::forward<T>(component));
+            }
+        } else if constexpr (!std::is_empty_v<Value>) {
+            Column& column = bundle.archetype->column(bundle.columns[position]);
+            ::new (static_cast<void*>(reinterpret_cast<Value*>(column.data) + row))
+                Value(std::forward<T>(component));
+        }
+        ++position;
+    };
+    (put(std::forward<Ts>(components)), ...);
+
+    if (bundle.archetype->observes_add || bundle.has_sparse) {
+        notify(ObserverEvent::Add, bundle.components, {&entity, 1});
+    }
+    return entity;
+}
+
+template <typename... Ts>
+void World::create_many(std::span<Entity> entities, const Ts&... components) {
+    core_.check_unlocked();
+    const Bundle& bundle = bundle_of<Ts...>();
+    const std::uint32_t now = core_.now();
+    for (Entity& entity : entities) {
+        entity = core_.entities.allocate();
+    }
+    const std::uint32_t first = bundle.archetype->append(entities, now);
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        core_.entities.place(
+            entities[i], bundle.archetype->index(), first + static_cast<std::uint32_t>(i));
+    }
+
+    [[maybe_unused]] std::size_t position = 0;
+    [[maybe_unused]] const auto put = [&]<typename T>(const T& component) {
+        if constexpr (detail::is_sparse<T>) {
+            SparseSet& set = use_sparse_set(component_id<T>);
+            for (const Entity entity : entities) {
+                [[maybe_unused]] const std::uint32_t place = set.append(entity, now);
+                if constexpr (!std::is_empty_v<T>) {
+                    ::new (static_cast<void*>(set.value(place))) T(component);
+                }
+            }
+        } else if constexpr (!std::is_empty_v<T>) {
+            T* rows = reinterpret_cast<T*>(bundle.archetype->column(bundle.columns[position]).data)
+                      + first;
+            for (std::size_t i = 0; i < entities.size(); ++i) {
+                ::new (static_cast<void*>(rows + i)) T(component);
+            }
+        }
+        ++position;
+    };
+    (put(components), ...);
+
+    if (bundle.archetype->observes_add || bundle.has_sparse) {
+        notify(ObserverEvent::Add, bundle.components, entities);
+    }
+}
+
+template <typename... Ts>
+std::vector<Entity> World::create_many(std::size_t count, const Ts&... components) {
+    std::vector<Entity> entities(count);
+    create_many(std::span<Entity>(entities), components...);
+    return entities;
+}
+
+template <typename F>
+void World::each_entity(F&& function) const {
+    for (const auto& archetype : core_.archetypes) {
+        for (const Entity entity : archetype->entities()) {
+            function(entity);
+        }
+    }
+}
+
+// ---- components
+// ----------------------------------------------------------------------------------
+
+template <typename T>
+T& World::add(Entity entity, T component) {
+    static_assert(detail::Component<T>, "components are values, not pointers, arrays or entities");
+    core_.check_unlocked();
+    if (T* present = find<T>(entity); present != nullptr) {
+        if constexpr (!std::is_empty_v<T>) {
+            // Not operator=: a component need not be assignable.
+            present->~T();
+            return *::new (static_cast<void*>(present)) T(std::move(component));
+        } else {
+            return *present;
+        }
+    }
+    T* value = static_cast<T*>(make_room(entity, component_id<T>));
+    if constexpr (!std::is_empty_v<T>) {
+        value = ::new (static_cast<void*>(value)) T(std::move(component));
+    }
+    if (observes(component_id<T>, ObserverEvent::Add)) {
+        notify(ObserverEvent::Add, {&component_id<T>, 1}, {&entity, 1});
+        value = find<T>(entity);
+        LIMN_CHECK_NOTE(value != nullptr, "an observer took the component that was being added");
+    }
+    if constexpr (std::is_empty_v<T>) {
+        return detail::tag_value<T>;
+    } else {
+        return *value;
+    }
+}
+
+template <typename T>
+T* World::find(Entity entity) {
+    using Value = std::remove_const_t<T>;
+    const EntitySlot* slot = core_.entities.find(entity);
+    if (slot == nullptr) {
+        return nullptr;
+    }
+    if constexpr (detail::is_sparse<Value>) {
+        return detail::SparseOptionalAccess<T>{
+            core_.sparse_set(component_id<Value>), &entity, core_.now()}[0];
+    } else {
+        Archetype& rows = archetype(slot->archetype);
+        const int column = rows.column_of(component_id<Value>);
+        if (column == kNoColumn) {
+            return nullptr;
+        }
+        if constexpr (std::is_empty_v<Value>) {
+            return &detail::tag_value<Value>;
+        } else {
+            if constexpr (!std::is_const_v<T>) {
+                rows.touch_row(column, slot->row, core_.now());
+            }
+            return reinterpret_cast<T*>(rows.column(column).data) + slot->row;
+        }
+    }
+}
+
+template <typename T>
+const T* World::find(Entity entity) const {
+    return const_cast<World*>(this)->find<const T>(entity);
+}
+
+template <typename T>
+T& World::get(Entity entity) {
+    T* value = find<T>(entity);
+    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    return *value;
+}
+
+template <typename T>
+const T& World::get(Entity entity) const {
+    const T* value = find<T>(entity);
+    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    return *value;
+}
+
+// ---- queries
+// -------------------------------------------------------------------------------------
+
+template <typename... Terms>
+Query<Terms...> World::query() {
+    const std::uint32_t index = detail::query_index<Terms...>;
+    QueryState* state = index < queries_.size() ? queries_[index].get() : nullptr;
+    if (state == nullptr) {
+        state = &make_query_state(index, detail::query_terms<Terms...>);
+    }
+    return Query<Terms...>(core_, *state, IterationLock::Plain);
+}
+
+template <typename... Terms>
+Query<Terms...> World::query() const {
+    static_assert(
+        Query<Terms...>::kReadOnly, "a const World gives only const components: query<const A>()");
+    QueryState& state =
+        shared_query_state(detail::query_index<Terms...>, detail::query_terms<Terms...>);
+    return Query<Terms...>(const_cast<WorldCore&>(core_), state, IterationLock::Shared);
+}
+
+// ---- resources
+// -----------------------------------------------------------------------------------
+
+template <typename T>
+T& World::insert_resource(T resource) {
+    if (ResourceSlot* slot = resource_slot(component_id<T>); slot != nullptr) {
+        T* present = static_cast<T*>(slot->value);
+        present->~T();
+        slot->version = core_.now();
+        return *::new (static_cast<void*>(present)) T(std::move(resource));
+    }
+    return *::new (allocate_resource(component_id<T>)) T(std::move(resource));
+}
+
+template <typename T>
+T* World::find_resource() {
+    return static_cast<T*>(find_resource(component_id<T>));
+}
+
+template <typename T>
+const T* World::find_resource() const {
+    return static_cast<const T*>(find_resource(component_id<T>));
+}
+
+template <typename T>
+T& World::resource() {
+    T* value = find_resource<T>();
+    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    return *value;
+}
+
+template <typename T>
+const T& World::resource() const {
+    const T* value = find_resource<T>();
+    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    return *value;
+}
+
+// ---- systems
+// --------------------------------------------------------------------------------------
+
+template <typename F>
+void World::run(F&& system) {
+    using Function = std::decay_t<F>;
+    if constexpr (std::is_pointer_v<Function> || std::is_empty_v<Function>) {
+        const void* type = &detail::type_key<Function>;
+        const void* address = nullptr;
+        if constexpr (std::is_pointer_v<Function>) {
+            address = reinterpret_cast<const void*>(system);
+        }
+        System* known = SystemCache::find(*this, type, address);
+        run_system(
+            *this,
+            known != nullptr
+                ? *known
+                : SystemCache::insert(*this, type, address, make_system<Function>("", system)));
+    } else {
+        System once = make_system<Function>("", std::forward<F>(system));
+        run_system(*this, once);
+    }
+}
+
+}  // namespace limn

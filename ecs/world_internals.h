@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ecs/system.h"
+#include "ecs/world.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace limn {
+
+/// What the world keeps out of its header.
+struct World::Internals {
+    struct KnownSystem {
+        const void* type;
+        const void* function;
+        std::unique_ptr<System> system;
+    };
+
+    std::map<std::vector<ComponentId>, std::uint32_t> archetype_by_components;
+    std::vector<std::unique_ptr<Observer>> observers;  ///< in the order they were registered
+    std::vector<KnownSystem> systems;
+    std::mutex query_mutex;                    ///< of World::queries_ while the world is const
+    std::vector<std::uint32_t> group_by_slot;  ///< of CommandFlush; all kNoGroup between flushes
+    static constexpr std::uint32_t kNoGroup = 0xffffffffu;
+};
+
+}  // namespace limn
