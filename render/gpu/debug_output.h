@@ -25,7 +25,7 @@ class DebugOutput {
     /// Errors since the start.
     [[nodiscard]] std::uint64_t error_count() const;
     /// The messages kept since the last call (64 at most), which it forgets.
-    [[nodiscard]] std::vector<std::string> take_errors();
+    std::vector<std::string> take_errors();
     /// While muted errors are counted and kept, not logged: for tests that provoke one.
     void set_muted(bool muted);
 

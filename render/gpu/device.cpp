@@ -226,6 +226,17 @@ void Device::bind_texture(unsigned unit, const Texture& texture, const Sampler* 
     }
 }
 
+void Device::bind_texture_name(unsigned unit, GLuint texture) {
+    LIMN_CHECK(unit < kUnits);
+    forget_dead_objects();
+    if (change(textures_[unit], texture)) {
+        glBindTextureUnit(unit, texture);
+    }
+    if (change(samplers_[unit], 0u)) {
+        glBindSampler(unit, 0);
+    }
+}
+
 void Device::bind_image(
     unsigned unit, const Texture& texture, GLenum access, int level, int layer) {
     LIMN_CHECK(unit < images_.size());

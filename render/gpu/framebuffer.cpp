@@ -16,7 +16,9 @@ GLuint create_framebuffer_name() {
 
 void attach(GLuint framebuffer, GLenum point, const Attachment& attachment) {
     const GLuint texture = attachment.texture->id();
-    if (attachment.layer >= 0) {
+    const GLenum target = attachment.texture->target();
+    const bool flat = target == GL_TEXTURE_2D || target == GL_TEXTURE_2D_MULTISAMPLE;
+    if (attachment.layer >= 0 && !flat) {
         glNamedFramebufferTextureLayer(
             framebuffer, point, texture, attachment.level, attachment.layer);
     } else {

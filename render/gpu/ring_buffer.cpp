@@ -4,6 +4,7 @@
 #include "render/gpu/device_caps.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace limn::gpu {
 namespace {
@@ -69,11 +70,7 @@ void RingBuffer::end_frame() {
 
 RingSlice RingBuffer::allocate(std::size_t size, std::size_t alignment) {
     LIMN_CHECK(in_frame_);
-    // An odd alignment (a vertex stride) must hold for the place in the buffer, not for the
-    // position.
-    const std::uint64_t step = std::max(alignment, alignment_) % alignment_ == 0
-                                   ? std::max(alignment, alignment_)
-                                   : alignment_ * alignment;
+    const std::uint64_t step = alignment == 0 ? alignment_ : std::lcm(alignment, alignment_);
     const std::uint64_t needed = std::max<std::uint64_t>(size, 1);
     for (int attempt = 0;; ++attempt) {
         const std::uint64_t lap = head_ / capacity_ * capacity_;

@@ -42,8 +42,8 @@ class RingBuffer {
     void begin_frame();
     void end_frame();
 
-    /// `size` bytes, aligned for uniform and storage bindings (or to `alignment`, if larger: any
-    /// number, not only a power of two). Valid until end_frame().
+    /// `size` bytes at a multiple of what bindings need and of `alignment` (any number, such as the
+    /// stride of a vertex). Valid until end_frame().
     [[nodiscard]] RingSlice allocate(std::size_t size, std::size_t alignment = 0);
     template <typename T>
     [[nodiscard]] RingSlice push(std::span<const T> items) {

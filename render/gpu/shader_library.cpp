@@ -202,7 +202,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<WatchedFile>& watched)
         GLint compiled = GL_FALSE;
         glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
         if (compiled != GL_TRUE) {
-            const std::string log = name_files_in_log(shader_log(shader.id()), source.files);
+            const std::string log = name_files_in_log(shader_log(shader.id()), source);
             return fail(
                 "{}",
                 log.empty() ? source.files[0] + ":1: does not compile, no reason given" : log);

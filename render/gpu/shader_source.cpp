@@ -73,7 +73,7 @@ class Assembler {
         if (!status) {
             return status.error();
         }
-        return ShaderSource{std::move(text_), std::move(names_)};
+        return std::move(source_);
     }
 
   private:
@@ -86,8 +86,8 @@ class Assembler {
         if (!body) {
             return fail("{}: no file {} found, expected it in the shader folder", place, path);
         }
-        const auto number = names_.size();
-        names_.emplace_back(path);
+        const auto number = source_.files.size();
+        source_.files.emplace_back(path);
         open_.emplace_back(path);
         const Status status = number == 0 ? add_main(*body) : add_lines(*body, 1, number);
         open_.pop_back();
@@ -101,31 +101,31 @@ class Assembler {
         while (true) {
             if (body.empty()) {
                 return fail(
-                    "{}:1: no #version found, expected '#version 450' before any code", names_[0]);
+                    "{}:1: no #version found, expected '#version 450' before any code",
+                    source_.files[0]);
             }
             const std::string_view current = take_line(body);
             if (is_directive(current, "version", rest)) {
-                text_ += fmt::format("{}\n", trim(current));
+                emit(trim(current), 0, line);
                 break;
             }
             const std::string_view stripped = trim(current);
             if (!stripped.empty() && !stripped.starts_with("//")) {
                 return fail(
                     "{}:{}: '{}' found, expected '#version 450' before any code",
-                    names_[0],
+                    source_.files[0],
                     line,
                     stripped);
             }
             ++line;
         }
         for (const ShaderDefine& define : defines_) {
-            text_ += fmt::format("#define {} {}\n", define.name, define.value);
+            emit(fmt::format("#define {} {}", define.name, define.value), 0, line);
         }
         return add_lines(body, line + 1, 0);
     }
 
     Status add_lines(std::string_view body, int line, std::size_t number) {
-        text_ += fmt::format("#line {} {}\n", line, number);
         // Depth of #if blocks inside a C++ part; 0 when not in one.
         int cpp_depth = 0;
         // What `#ifdef __cplusplus` opened and is still open: depth of plain #if inside each.
@@ -133,30 +133,28 @@ class Assembler {
         for (; !body.empty(); ++line) {
             const std::string_view current = take_line(body);
             if (skip_cpp(current, cpp_depth, guards)) {
-                text_ += '\n';
                 continue;
             }
+            // The extension is for editors (drivers do not know it), the pragma for C++.
             std::string_view rest;
+            const bool drop = (is_directive(current, "pragma", rest) && rest == "once")
+                              || (is_directive(current, "extension", rest)
+                                  && rest.starts_with("GL_GOOGLE_include_directive"));
+            if (drop) {
+                continue;
+            }
             if (is_directive(current, "include", rest)) {
                 const Status status = add_include(rest, line, number);
                 if (!status) {
                     return status;
                 }
-                text_ += fmt::format("#line {} {}\n", line + 1, number);
-            } else if (is_directive(current, "pragma", rest) && rest == "once") {
-                text_ += '\n';
-            } else if (
-                is_directive(current, "extension", rest)
-                && rest.starts_with("GL_GOOGLE_include_directive")) {
-                text_ += '\n';  // for editors; drivers do not know it
             } else if (number != 0 && is_directive(current, "version", rest)) {
                 return fail(
                     "{}:{}: #version found in an included file, expected it in the shader alone",
-                    names_[number],
+                    source_.files[number],
                     line);
             } else {
-                text_ += current;
-                text_ += '\n';
+                emit(current, number, line);
             }
         }
         return Done{};
@@ -207,8 +205,15 @@ class Assembler {
         return false;
     }
 
+    void emit(std::string_view text, std::size_t number, int line) {
+        source_.text += text;
+        source_.text += '\n';
+        source_.places.push_back(
+            {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(line)});
+    }
+
     Status add_include(std::string_view argument, int line, std::size_t number) {
-        const std::string place = fmt::format("{}:{}", names_[number], line);
+        const std::string place = fmt::format("{}:{}", source_.files[number], line);
         const std::size_t end = argument.find('"', 1);
         if (argument.size() < 3 || argument.front() != '"' || end == std::string_view::npos
             || end == 1) {
@@ -229,7 +234,7 @@ class Assembler {
         if (!files_.read(*path)) {
             // Not from the root: beside the file that includes it, then.
             const std::filesystem::path beside =
-                std::filesystem::path(names_[number]).parent_path() / *path;
+                std::filesystem::path(source_.files[number]).parent_path() / *path;
             if (files_.read(beside.generic_string())) {
                 path = beside.generic_string();
             }
@@ -242,7 +247,7 @@ class Assembler {
             }
             return fail("{}: include cycle {}{} found, expected none", place, chain, *path);
         }
-        if (std::find(names_.begin(), names_.end(), *path) != names_.end()) {
+        if (std::find(source_.files.begin(), source_.files.end(), *path) != source_.files.end()) {
             return Done{};  // each file once
         }
         return add_file(*path, place);
@@ -261,8 +266,7 @@ class Assembler {
     const ShaderFiles& files_;
     const std::vector<ShaderDefine>& defines_;
     std::vector<std::string>* seen_;
-    std::string text_;
-    std::vector<std::string> names_;
+    ShaderSource source_;
     std::vector<std::string> open_;  // files that are being read, outermost first
 };
 
@@ -335,12 +339,58 @@ Result<ShaderSource> assemble_shader(
     return Assembler(files, defines, files_seen).run(path);
 }
 
-std::string name_files_in_log(std::string_view log, const std::vector<std::string>& files) {
-    // A place is "number:line" or "number(line)" at the start of a line, perhaps after "ERROR: ".
+namespace {
+
+/// Reads digits at the front of `text`; false if there are none or more than any line number has.
+bool take_number(std::string_view& text, std::size_t& number) {
+    constexpr std::size_t kMaxDigits = 8;
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    if (digits == 0 || digits > kMaxDigits) {
+        return false;
+    }
+    number = 0;
+    for (const char c : text.substr(0, digits)) {
+        number = 10 * number + static_cast<std::size_t>(c - '0');
+    }
+    text.remove_prefix(digits);
+    return true;
+}
+
+/// If `line` begins with a compiler's place, its line number; `line` is left with the message.
+bool take_place(std::string_view& line, std::size_t& number) {
+    std::string_view rest = line;
+    for (const std::string_view prefix : {"ERROR: ", "WARNING: "}) {
+        if (rest.starts_with(prefix)) {
+            rest.remove_prefix(prefix.size());
+        }
+    }
+    std::size_t string_number = 0;
+    if (!take_number(rest, string_number) || rest.empty()
+        || (rest.front() != ':' && rest.front() != '(')) {
+        return false;
+    }
+    rest.remove_prefix(1);
+    if (!take_number(rest, number)) {
+        return false;
+    }
+    // Mesa adds the column in parentheses, NVIDIA closes its own.
+    if (rest.starts_with('(')) {
+        rest.remove_prefix(std::min(rest.find(')'), rest.size() - 1) + 1);
+    } else if (rest.starts_with(')')) {
+        rest.remove_prefix(1);
+    }
+    rest = trim(rest);
+    if (rest.starts_with(':')) {
+        rest = trim(rest.substr(1));
+    }
+    line = rest;
+    return true;
+}
+
+}  // namespace
+
+std::string name_files_in_log(std::string_view log, const ShaderSource& source) {
     std::string out;
-    const auto digits = [](std::string_view text) {
-        return std::min(text.find_first_not_of("0123456789"), text.size());
-    };
     while (!log.empty()) {
         const std::size_t end = std::min(log.find('\n'), log.size());
         std::string_view line = log.substr(0, end);
@@ -348,39 +398,15 @@ std::string name_files_in_log(std::string_view log, const std::vector<std::strin
         if (trim(line).empty()) {
             continue;
         }
-        for (const std::string_view prefix : {"ERROR: ", "WARNING: "}) {
-            if (line.starts_with(prefix)) {
-                line.remove_prefix(prefix.size());
-            }
+        out += out.empty() ? "" : "\n";
+        std::string_view message = line;
+        std::size_t number = 0;
+        if (take_place(message, number) && number >= 1 && number <= source.places.size()) {
+            const ShaderSource::Place place = source.places[number - 1];
+            out += fmt::format("{}:{}: {}", source.files[place.file], place.line, message);
+        } else {
+            out += line;
         }
-        if (!out.empty()) {
-            out += '\n';
-        }
-        const std::size_t file_digits = digits(line);
-        if (file_digits > 0 && file_digits < 5 && file_digits < line.size()
-            && (line[file_digits] == ':' || line[file_digits] == '(')) {
-            const std::string_view after = line.substr(file_digits + 1);
-            const std::size_t line_digits = digits(after);
-            const auto number =
-                static_cast<std::size_t>(std::stoi(std::string(line.substr(0, file_digits))));
-            if (line_digits > 0 && number < files.size()) {
-                std::string_view message = after.substr(line_digits);
-                // Mesa adds the column in parentheses, NVIDIA closes its own.
-                if (message.starts_with('(')) {
-                    message.remove_prefix(std::min(message.find(')'), message.size() - 1) + 1);
-                } else if (message.starts_with(')')) {
-                    message.remove_prefix(1);
-                }
-                message = trim(message);
-                if (message.starts_with(':')) {
-                    message = trim(message.substr(1));
-                }
-                out +=
-                    fmt::format("{}:{}: {}", files[number], after.substr(0, line_digits), message);
-                continue;
-            }
-        }
-        out += line;
     }
     return out;
 }

@@ -12,9 +12,9 @@ namespace limn::gpu {
 
 // GLSL from files. `#include "path"` is resolved here: from the shader folder, then from the
 // including file's own folder; each file once, cycles refused. Layouts shared with C++ (name_gpu.h)
-// lose what stands under
-// `#ifdef __cplusplus`. #line directives number the files, so that a compiler's message can be
-// given back with the file and line where the text stands.
+// lose what stands under `#ifdef __cplusplus`. Every line of the result remembers where it stood,
+// so that a compiler's message can name the file and line; #line is not used, as Mesa forgets its
+// file number within expressions.
 
 /// Where shader files come from: texts put in by hand, then a folder on disk, then those in the
 /// program.
@@ -49,9 +49,13 @@ struct ShaderDefine {
 };
 
 struct ShaderSource {
-    std::string text;  ///< ready for glShaderSource
-    std::vector<std::string>
-        files;  ///< by the number that #line gives them; the shader itself is 0
+    struct Place {
+        std::uint32_t file;  ///< index into `files`
+        std::uint32_t line;  ///< from 1
+    };
+    std::string text;                ///< ready for glShaderSource
+    std::vector<std::string> files;  ///< the shader itself first
+    std::vector<Place> places;       ///< of each line of `text`
 };
 
 /// Fails with "file:line: ..." for a missing file, a cycle, a bad #include or a missing #version.
@@ -63,9 +67,7 @@ struct ShaderSource {
     const std::vector<ShaderDefine>& defines = {},
     std::vector<std::string>* files_seen = nullptr);
 
-/// A compiler's log with "number:line" (Mesa, AMD) or "number(line)" (NVIDIA) turned into
-/// "file:line".
-[[nodiscard]] std::string
-name_files_in_log(std::string_view log, const std::vector<std::string>& files);
+/// A compiler's log with its "0:line" (Mesa, AMD) or "0(line)" (NVIDIA) turned into "file:line".
+[[nodiscard]] std::string name_files_in_log(std::string_view log, const ShaderSource& source);
 
 }  // namespace limn::gpu
