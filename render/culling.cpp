@@ -2,6 +2,8 @@
 #define HWY_TARGET_INCLUDE "render/culling.cpp"
 #include "render/culling.h"
 
+#include "ecs/base/check.h"
+
 #include <glm/geometric.hpp>
 #include <hwy/foreach_target.h>  // compiles what follows once for every instruction set
 #include <hwy/highway.h>

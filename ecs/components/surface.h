@@ -3,7 +3,9 @@
 #include "ecs/base/math.h"
 #include "ecs/reflect.h"
 
+#include <atomic>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -101,12 +103,38 @@ struct Material {
     TextureSlot emission_texture;             ///< sRGB
 };
 
+/// Tells one Assets from every other of this run, even from one that lives where it did: the renderer keeps
+/// what it uploaded by it. Moves with the value; a copy is another.
+class AssetsIdentity {
+public:
+    AssetsIdentity() = default;
+    AssetsIdentity(const AssetsIdentity& /*other*/) {}
+    AssetsIdentity(AssetsIdentity&& other) noexcept : value_(std::exchange(other.value_, next())) {}
+    AssetsIdentity& operator=(const AssetsIdentity& other) {
+        value_ = this == &other ? value_ : next();
+        return *this;
+    }
+    AssetsIdentity& operator=(AssetsIdentity&& other) noexcept {
+        std::swap(value_, other.value_);
+        return *this;
+    }
+    bool operator==(const AssetsIdentity&) const = default;
+
+private:
+    static std::uint64_t next() {
+        static std::atomic<std::uint64_t> count = 0;
+        return ++count;
+    }
+    std::uint64_t value_ = next();
+};
+
 /// Resource: everything loaded or made. Append only.
 struct Assets {
     std::vector<MeshData> meshes;
     std::vector<ImageData> images;
     std::vector<Material> materials;
     std::uint64_t material_version = 1;  ///< raise after editing a material in place
+    AssetsIdentity identity;
 };
 
 /// Draws `mesh` with `material` at the entity's WorldTransform.

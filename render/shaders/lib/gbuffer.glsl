@@ -42,9 +42,9 @@ uint pack_rgb9e5(vec3 color) {
     return m.r | m.g << 9 | m.b << 18 | uint(exponent) << 27;
 }
 
-vec3 unpack_rgb9e5(uint packed) {
-    float scale = uintBitsToFloat(((packed >> 27) + (127u - 15u - 9u)) << 23);
-    return vec3(packed & 511u, packed >> 9 & 511u, packed >> 18 & 511u) * scale;
+vec3 unpack_rgb9e5(uint bits) {
+    float scale = uintBitsToFloat(((bits >> 27) + (127u - 15u - 9u)) << 23);
+    return vec3(bits & 511u, bits >> 9 & 511u, bits >> 18 & 511u) * scale;
 }
 
 uvec4 pack_surface(SurfaceSample s) {

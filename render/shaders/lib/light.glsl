@@ -17,11 +17,13 @@ const float kSpotLinearCosine = 0.0;
 const float kSpotSmoothstep = 1.0;
 const float kSpotLinearAngle = 2.0;
 
-// 1 inside the inner cone, 0 outside the outer one. `axis` is where the light shines, `scale_offset` maps the
-// cosine (or, for kSpotLinearAngle, minus the angle) of the two cones to 1 and 0.
-float spot_attenuation(vec3 to_light, vec3 axis, vec2 scale_offset, float profile) {
-    float cosine = -dot(to_light, axis);
-    float t = profile == kSpotLinearAngle ? -acos(clamp(cosine, -1.0, 1.0)) : cosine;
-    float s = clamp(t * scale_offset.x + scale_offset.y, 0.0, 1.0);
+// 1 inside the inner cone, 0 outside the outer one. `axis` is where the light shines times the profile's
+// scale; scale and `offset` map the cosine (of kSpotLinearAngle: minus the angle) at the outer cone to 0 and at
+// the inner one to 1. A zero axis and offset 1 shine everywhere: a point light.
+float spot_attenuation(vec3 to_light, vec3 axis, float offset, float profile) {
+    float scaled_cosine = -dot(to_light, axis);
+    float scale = max(length(axis), 1e-20);
+    float scaled_angle = -acos(clamp(scaled_cosine / scale, -1.0, 1.0)) * scale;
+    float s = clamp((profile == kSpotLinearAngle ? scaled_angle : scaled_cosine) + offset, 0.0, 1.0);
     return profile == kSpotSmoothstep ? s * s * (3.0 - 2.0 * s) : s;
 }

@@ -1,0 +1,146 @@
+#include "render/frame_scene.h"
+
+#include "ecs/base/log.h"
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/shaders/instance_gpu.h"
+
+namespace limn {
+namespace {
+
+struct FeatureName {
+    std::uint32_t bit;
+    const char* define;
+};
+constexpr FeatureName kFeatureNames[] = {
+    {kBaseColorMap, "BASE_COLOR_MAP"},
+    {kMetalRoughMap, "METAL_ROUGH_MAP"},
+    {kNormalMap, "NORMAL_MAP"},
+    {kOcclusionMap, "OCCLUSION_MAP"},
+    {kEmissionMap, "EMISSION_MAP"},
+    {kUvMaps, "UV_MAPS"},
+    {kAlphaMask, "ALPHA_MASK"},
+    {kDoubleSided, "DOUBLE_SIDED"},
+    {kVertexColor, "VERTEX_COLOR"},
+    {kVelocity, "VELOCITY"},
+};
+
+/// The instance streams point into this frame's part of the ring.
+void set_instance_streams(const FrameScene& scene) {
+    const GLuint id = scene.meshes->vertices().id();
+    const InstanceList& list = scene.instances;
+    glVertexArrayVertexBuffer(
+        id,
+        kInstanceStream,
+        list.instances.buffer,
+        static_cast<GLintptr>(list.instances.offset),
+        sizeof(layout::InstanceRecord));
+    glVertexArrayBindingDivisor(id, kInstanceStream, 1);
+    // Nobody reads this stream when it is empty, but something must be bound.
+    const gpu::RingSlice& before = list.before.size > 0 ? list.before : list.instances;
+    glVertexArrayVertexBuffer(
+        id, kBeforeStream, before.buffer, static_cast<GLintptr>(before.offset), sizeof(Affine));
+    glVertexArrayBindingDivisor(id, kBeforeStream, 1);
+}
+
+}  // namespace
+
+void bind_view(gpu::Device& device, const FrameScene& scene) {
+    device.bind_uniforms(
+        kViewBinding, scene.view_block.buffer, scene.view_block.offset, scene.view_block.size);
+}
+
+void bind_lighting(gpu::Device& device, const FrameScene& scene) {
+    bind_view(device, scene);
+    const gpu::RingSlice& block = scene.environment_block;
+    device.bind_uniforms(kEnvironmentBinding, block.buffer, block.offset, block.size);
+    device.bind_texture(kReflectionUnit, *scene.environment.reflection);
+    device.bind_texture(kSpecularAlbedoUnit, *scene.environment.specular_albedo);
+    scene.light_records->bind(device, kLightsUnit);
+    scene.light_indices->bind(device, kLightIndicesUnit);
+    scene.light_cells->bind(device, kLightCellsUnit);
+    scene.materials->records().bind(device, kSurfaceMaterialsUnit);
+}
+
+std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
+    std::vector<gpu::ShaderDefine> defines;
+    if (scene.lights.spots > 0) {
+        defines.push_back({"SPOT_LIGHTS"});
+    }
+    if (scene.materials->has_classic()) {
+        defines.push_back({"CLASSIC_MODELS"});
+    }
+    return defines;
+}
+
+std::uint32_t lighting_key(const FrameScene& scene) {
+    return (scene.lights.spots > 0 ? 1u : 0u) | (scene.materials->has_classic() ? 2u : 0u);
+}
+
+const gpu::Program* SurfacePrograms::get(
+    std::uint32_t features, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more) {
+    const std::uint64_t key = static_cast<std::uint64_t>(more_key) << 32 | features;
+    const auto found = programs_.find(key);
+    if (found != programs_.end()) {
+        return found->second;
+    }
+    std::vector<gpu::ShaderDefine> defines = more;
+    for (const FeatureName& feature : kFeatureNames) {
+        if ((features & feature.bit) != 0) {
+            defines.push_back({feature.define});
+        }
+    }
+    const Result<const gpu::Program*> program = device_->shaders().load(
+        {.vertex = vertex_, .fragment = fragment_, .defines = std::move(defines)});
+    if (!program) {
+        log_error("{}", program.error().message);
+    }
+    return programs_[key] = program ? *program : nullptr;
+}
+
+Status SurfacePrograms::load(
+    std::uint32_t features, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more) {
+    if (get(features, more_key, more) == nullptr) {
+        return fail("{}: does not compile, see the log", fragment_);
+    }
+    return Done{};
+}
+
+void draw_runs(
+    gpu::Device& device,
+    const FrameScene& scene,
+    const std::vector<DrawRun>& runs,
+    SurfacePrograms& programs,
+    std::uint32_t more_features,
+    std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more,
+    const gpu::PipelineState& state) {
+    if (runs.empty()) {
+        return;
+    }
+    set_instance_streams(scene);
+    scene.materials->records().bind(device, kMaterialsUnit);
+    device.bind_vertex_array(scene.meshes->vertices());
+    device.bind_indirect(scene.instances.commands.buffer);
+    for (const DrawRun& run : runs) {
+        const gpu::Program* program = programs.get(run.features | more_features, more_key, more);
+        if (program == nullptr) {
+            continue;
+        }
+        gpu::PipelineState run_state = state;
+        const bool both_sides = (run.features & kDoubleSided) != 0;
+        run_state.cull = static_cast<GLenum>(
+            both_sides     ? GL_NONE
+            : run.mirrored ? GL_FRONT
+                           : GL_BACK);
+        device.use(gpu::Pipeline{program, run_state});
+        scene.materials->bind_textures(run.textures);
+        device.draw_indexed_indirect(
+            GL_TRIANGLES,
+            GL_UNSIGNED_INT,
+            scene.instances.commands.offset + run.first_command * sizeof(DrawCommand),
+            static_cast<int>(run.command_count));
+    }
+}
+
+}  // namespace limn

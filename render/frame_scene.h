@@ -1,0 +1,104 @@
+#pragma once
+
+#include "ecs/components/environment.h"
+#include "render/buffer_texture.h"
+#include "render/gpu/program.h"
+#include "render/gpu/shader_source.h"
+#include "render/instance_list.h"
+#include "render/light_grid.h"
+#include "render/mesh_pool.h"
+#include "render/shaders/environment_gpu.h"
+
+#include <unordered_map>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+
+// What every pass of a frame finds prepared: the world as the GPU sees it. The bindings are the
+// same in all shaders; bind_scene() makes them.
+
+/// Uniform blocks.
+inline constexpr unsigned kViewBinding = 0;
+inline constexpr unsigned kEnvironmentBinding = 1;
+/// Texture units; 0 .. 4 are the material's own.
+inline constexpr unsigned kGbufferUnit = 5;
+inline constexpr unsigned kDepthUnit = 6;
+inline constexpr unsigned kReflectionUnit = 7;
+inline constexpr unsigned kSpecularAlbedoUnit = 8;
+inline constexpr unsigned kLightsUnit = 9;
+inline constexpr unsigned kLightIndicesUnit = 10;
+inline constexpr unsigned kLightCellsUnit = 11;
+inline constexpr unsigned kMaterialsUnit = 12;
+inline constexpr unsigned kSurfaceMaterialsUnit = 13;
+inline constexpr unsigned kVelocityUnit = 14;
+
+/// The surroundings of this frame, and what was made of them.
+struct SceneEnvironment {
+    Environment settings;
+    layout::EnvironmentBlock block{};
+    const gpu::Texture* reflection = nullptr;
+    const gpu::Texture* specular_albedo = nullptr;
+};
+
+struct FrameScene {
+    MeshPool* meshes = nullptr;
+    const MaterialPool* materials = nullptr;
+    InstanceList instances;
+    LightList lights;
+    LightGrid grid;
+    SceneEnvironment environment;
+    RenderView view;
+    gpu::RingSlice view_block;
+    gpu::RingSlice environment_block;
+    const BufferTexture* light_records = nullptr;
+    const BufferTexture* light_indices = nullptr;
+    const BufferTexture* light_cells = nullptr;
+};
+
+/// The view's uniform block and, of lit passes, all that lib/lighting.glsl reads.
+void bind_view(gpu::Device& device, const FrameScene& scene);
+void bind_lighting(gpu::Device& device, const FrameScene& scene);
+
+/// The definitions that lib/lighting.glsl wants for this scene: SPOT_LIGHTS, CLASSIC_MODELS.
+[[nodiscard]] std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene);
+/// A number that tells those apart.
+[[nodiscard]] std::uint32_t lighting_key(const FrameScene& scene);
+
+/// Programs of one pair of shaders by SurfaceFeature bits; made when first needed. A variant that
+/// does not compile is logged once and not drawn.
+class SurfacePrograms {
+  public:
+    SurfacePrograms(gpu::Device& device, std::string vertex, std::string fragment)
+        : device_(&device), vertex_(std::move(vertex)), fragment_(std::move(fragment)) {}
+
+    /// `more` is told apart by `more_key`. Null if it does not compile.
+    [[nodiscard]] const gpu::Program*
+    get(std::uint32_t features, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more);
+    /// Compiles one now, to know that it can be done.
+    [[nodiscard]] Status load(
+        std::uint32_t features, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more);
+
+  private:
+    gpu::Device* device_;
+    std::string vertex_;
+    std::string fragment_;
+    std::unordered_map<std::uint64_t, const gpu::Program*> programs_;
+};
+
+/// Draws the runs; `state` gets the winding and sides of each.
+void draw_runs(
+    gpu::Device& device,
+    const FrameScene& scene,
+    const std::vector<DrawRun>& runs,
+    SurfacePrograms& programs,
+    std::uint32_t more_features,
+    std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more,
+    const gpu::PipelineState& state);
+
+}  // namespace limn

@@ -1,0 +1,278 @@
+#include "render/instance_list.h"
+
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/shaders/instance_gpu.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace limn {
+namespace {
+
+constexpr std::uint16_t kHidden = 0xffff;
+static_assert(kChunkRows <= kCullBlock);
+
+// A key: blended last, then batch, mirrored, mesh. Sorting keys sorts draws.
+constexpr std::uint64_t
+make_key(bool blend, std::uint32_t batch, bool mirrored, std::uint32_t mesh) {
+    return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(batch) << 33
+           | static_cast<std::uint64_t>(mirrored) << 32 | mesh;
+}
+constexpr bool is_blended(std::uint64_t key) {
+    return key >> 63 != 0;
+}
+constexpr std::uint32_t batch_of(std::uint64_t key) {
+    return static_cast<std::uint32_t>(key >> 33) & 0x3fffffffu;
+}
+constexpr bool is_mirrored(std::uint64_t key) {
+    return (key >> 32 & 1) != 0;
+}
+constexpr std::uint32_t mesh_of(std::uint64_t key) {
+    return static_cast<std::uint32_t>(key);
+}
+
+float determinant(const Affine& a) {
+    const auto& r = a.row;
+    return r[0].x * (r[1].y * r[2].z - r[1].z * r[2].y)
+           - r[0].y * (r[1].x * r[2].z - r[1].z * r[2].x)
+           + r[0].z * (r[1].x * r[2].y - r[1].y * r[2].x);
+}
+
+/// What a chunk of a query shows of its rows.
+struct Rows {
+    std::span<const MeshInstance> surfaces;
+    std::span<const WorldTransform> now;
+    std::span<const PreviousWorldTransform> before;  ///< empty: never moved
+
+    [[nodiscard]] Affine at(std::size_t i, float alpha) const {
+        return before.empty() || alpha == 1.0f ? now[i].world
+                                               : mix_affine(before[i].world, now[i].world, alpha);
+    }
+};
+
+using InstanceQuery =
+    Query<const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>>;
+
+/// World boxes of the rows; what has no triangles or is not finite gets a box that is nowhere.
+/// `mirrored` gets the sign of each determinant.
+void fill_boxes(
+    const Rows& rows,
+    float alpha,
+    const std::vector<MeshRange>& meshes,
+    BoxBlock& boxes,
+    std::uint8_t* mirrored) {
+    for (std::size_t i = 0; i < rows.now.size(); ++i) {
+        const std::uint32_t mesh = rows.surfaces[i].mesh.index;
+        Bounds box;
+        float det = 1;
+        if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
+            const Affine a = rows.at(i, alpha);
+            box = transform_bounds(a, meshes[mesh].bounds);
+            det = determinant(a);
+        }
+        const Vec3 c = center(box);
+        const Vec3 h = half_extent(box);
+        const float sum = c.x + c.y + c.z + h.x + h.y + h.z + det;
+        const bool finite = std::abs(sum) < INFINITY;
+        boxes.center_x[i] = finite ? c.x : 0.0f;
+        boxes.center_y[i] = finite ? c.y : 0.0f;
+        boxes.center_z[i] = finite ? c.z : 0.0f;
+        boxes.half_x[i] = finite ? h.x : -1e30f;
+        boxes.half_y[i] = finite ? h.y : -1e30f;
+        boxes.half_z[i] = finite ? h.z : -1e30f;
+        mirrored[i] = det < 0 ? 1 : 0;
+    }
+}
+
+}  // namespace
+
+/// The distinct keys of a chunk: a small hash table beside the list.
+class InstanceCollector::KeyTable {
+  public:
+    explicit KeyTable(std::vector<KeyCount>& keys) : keys_(keys) {
+        keys_.clear();
+        slots_.fill(kHidden);
+    }
+    /// Counts one more of `key`; returns its place in the list.
+    std::uint16_t count(std::uint64_t key) {
+        if (!keys_.empty() && keys_[last_].key == key) {
+            ++keys_[last_].count;
+            return last_;
+        }
+        std::size_t slot = (key * 0x9e3779b97f4a7c15ull) >> 53;
+        while (slots_[slot] != kHidden && keys_[slots_[slot]].key != key) {
+            slot = (slot + 1) & (slots_.size() - 1);
+        }
+        if (slots_[slot] == kHidden) {
+            slots_[slot] = static_cast<std::uint16_t>(keys_.size());
+            keys_.push_back({key, 0, 0});
+        }
+        last_ = slots_[slot];
+        ++keys_[last_].count;
+        return last_;
+    }
+
+  private:
+    std::vector<KeyCount>& keys_;
+    std::array<std::uint16_t, 2048> slots_;  // twice the rows of a chunk: always room
+    std::uint16_t last_ = 0;
+};
+
+void InstanceCollector::collect(
+    const World& world,
+    const RenderView& view,
+    const MeshPool& meshes,
+    const MaterialPool& materials,
+    bool velocity,
+    gpu::RingBuffer& ring,
+    InstanceList& list) {
+    list = {};
+    const InstanceQuery query = world.query<
+        const MeshInstance,
+        const WorldTransform,
+        Optional<const PreviousWorldTransform>>();
+    const Frustum frustum = make_frustum(view.clip_from_world);
+    list.total = static_cast<int>(query.count());
+    chunks_.resize(query.chunk_count());
+
+    query.par_chunks([&](ChunkView chunk,
+                         std::span<const MeshInstance> surfaces,
+                         std::span<const WorldTransform> now,
+                         std::span<const PreviousWorldTransform> before) {
+        BoxBlock boxes;
+        std::uint8_t mirrored[kCullBlock];
+        std::uint8_t visible[kCullBlock];
+        ChunkWork& work = chunks_[chunk.index()];
+        fill_boxes({surfaces, now, before}, view.alpha, meshes.meshes(), boxes, mirrored);
+        cull_boxes(frustum, boxes, static_cast<int>(chunk.size()), visible);
+        KeyTable table(work.keys);
+        for (std::uint32_t i = 0; i < chunk.size(); ++i) {
+            work.local[i] = kHidden;
+            if (visible[i] != 0) {
+                const std::uint32_t batch =
+                    materials.batch_of(materials.record_of(surfaces[i].material));
+                work.local[i] = table.count(make_key(
+                    materials.batch(batch).blend, batch, mirrored[i] != 0, surfaces[i].mesh.index));
+            }
+        }
+    });
+
+    commands_.clear();
+    place_keys(meshes, materials, list);
+    list.visible = static_cast<int>(visible_count_);
+    list.instances = ring.allocate(visible_count_ * sizeof(layout::InstanceRecord));
+    list.before = ring.allocate(velocity ? visible_count_ * sizeof(Affine) : 0);
+    blended_.resize(visible_count_ - opaque_count_);
+
+    auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
+    auto* moments_before = reinterpret_cast<Affine*>(list.before.data);
+    const Vec4 forward = -Vec4(
+        view.world_from_camera.row[0].z,
+        view.world_from_camera.row[1].z,
+        view.world_from_camera.row[2].z,
+        0);
+    query.par_chunks([&](ChunkView chunk,
+                         std::span<const MeshInstance> surfaces,
+                         std::span<const WorldTransform> now,
+                         std::span<const PreviousWorldTransform> before) {
+        ChunkWork& work = chunks_[chunk.index()];
+        const Rows rows = {surfaces, now, before};
+        for (std::uint32_t i = 0; i < chunk.size(); ++i) {
+            if (work.local[i] == kHidden) {
+                continue;
+            }
+            KeyCount& kind = work.keys[work.local[i]];
+            const std::uint32_t place = kind.place++;
+            const Affine a = rows.at(i, view.alpha);
+            instances[place] = {
+                {a.row[0], a.row[1], a.row[2]},
+                materials.record_of(surfaces[i].material),
+                is_mirrored(kind.key) ? 1u : 0u,
+                chunk.entities()[i].index,
+                0};
+            if (velocity) {
+                moments_before[place] = rows.at(i, view.alpha_before);
+            }
+            if (is_blended(kind.key)) {
+                const Vec3 middle =
+                    transform_point(a, center(meshes.meshes()[mesh_of(kind.key)].bounds));
+                blended_[place - opaque_count_] = {
+                    glm::dot(forward, Vec4(middle, 0)), place, kind.key};
+            }
+        }
+    });
+
+    order_blended(meshes, materials, list);
+    list.commands = ring.push(std::span<const DrawCommand>(commands_));
+    for (const DrawCommand& command : commands_) {
+        list.triangles += static_cast<std::int64_t>(command.count / 3) * command.instance_count;
+    }
+}
+
+void InstanceCollector::place_keys(
+    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+    entries_.clear();
+    for (std::uint32_t c = 0; c < chunks_.size(); ++c) {
+        for (std::uint32_t k = 0; k < chunks_[c].keys.size(); ++k) {
+            entries_.push_back({chunks_[c].keys[k].key, c, k});
+        }
+    }
+    std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+        return a.key != b.key ? a.key < b.key : a.chunk < b.chunk;
+    });
+
+    std::uint32_t place = 0;
+    opaque_count_ = 0;
+    for (std::size_t i = 0; i < entries_.size();) {
+        const std::uint64_t key = entries_[i].key;
+        const std::uint32_t first = place;
+        for (; i < entries_.size() && entries_[i].key == key; ++i) {
+            KeyCount& kind = chunks_[entries_[i].chunk].keys[entries_[i].local];
+            kind.place = place;
+            place += kind.count;
+        }
+        if (!is_blended(key)) {
+            add_command(key, first, place - first, meshes, materials, list.opaque);
+            opaque_count_ = place;
+        }
+    }
+    visible_count_ = place;
+}
+
+void InstanceCollector::order_blended(
+    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+    std::sort(blended_.begin(), blended_.end(), [](const Blended& a, const Blended& b) {
+        return a.distance != b.distance ? a.distance > b.distance : a.instance < b.instance;
+    });
+    for (const Blended& one : blended_) {
+        add_command(one.key, one.instance, 1, meshes, materials, list.blended);
+    }
+}
+
+void InstanceCollector::add_command(
+    std::uint64_t key,
+    std::uint32_t first,
+    std::uint32_t count,
+    const MeshPool& meshes,
+    const MaterialPool& materials,
+    std::vector<DrawRun>& runs) {
+    const MeshRange& mesh = meshes.meshes()[mesh_of(key)];
+    const SurfaceBatch& batch = materials.batch(batch_of(key));
+    DrawRun run;
+    run.features = batch.features | (mesh.colored ? kVertexColor : 0u);
+    run.textures = batch.textures;
+    run.mirrored = is_mirrored(key);
+    run.first_command = static_cast<std::uint32_t>(commands_.size());
+    run.command_count = 1;
+    commands_.push_back({mesh.index_count, count, mesh.first_index, mesh.base_vertex, first});
+    if (!runs.empty() && runs.back().features == run.features
+        && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored) {
+        ++runs.back().command_count;
+    } else {
+        runs.push_back(run);
+    }
+}
+
+}  // namespace limn

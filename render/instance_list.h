@@ -1,0 +1,106 @@
+#pragma once
+
+#include "render/culling.h"
+#include "render/gpu/ring_buffer.h"
+#include "render/material_pool.h"
+#include "render/mesh_pool.h"
+#include "render/render_view.h"
+
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// From entities to draws. Every chunk of mesh instances is culled and its visible rows are keyed by
+// what they are drawn with; the keys are counted and summed, and every visible row writes its
+// record to its place: equal keys lie together, in world order, whatever thread did it. A key is
+// one command of a multi-draw, all commands of a batch are one draw: ten thousand equal meshes are
+// one. Only what is seen is written.
+//
+// 100,000 moving boxes take 1.6 ms on two cores (instance_bench).
+
+/// As glMultiDrawElementsIndirect reads it.
+struct DrawCommand {
+    std::uint32_t count = 0;
+    std::uint32_t instance_count = 0;
+    std::uint32_t first_index = 0;
+    std::int32_t base_vertex = 0;
+    std::uint32_t base_instance = 0;
+};
+
+/// Neighboring commands that need the same program, state and textures.
+struct DrawRun {
+    std::uint32_t features = 0;  ///< of SurfaceFeature, without kVelocity
+    std::uint32_t textures = 0;  ///< of MaterialPool
+    bool mirrored = false;       ///< front faces turn clockwise
+    std::uint32_t first_command = 0;
+    std::uint32_t command_count = 0;
+};
+
+struct InstanceList {
+    std::vector<DrawRun> opaque;
+    std::vector<DrawRun> blended;  ///< from back to front
+    gpu::RingSlice commands;
+    gpu::RingSlice instances;  ///< layout::InstanceRecord
+    gpu::RingSlice before;     ///< Affine; of no size unless asked for
+    int total = 0;
+    int visible = 0;
+    std::int64_t triangles = 0;
+};
+
+/// Keeps its memory from frame to frame.
+class InstanceCollector {
+  public:
+    /// Culls, sorts and writes into `ring`. `velocity`: fills `before`, too.
+    void collect(
+        const World& world,
+        const RenderView& view,
+        const MeshPool& meshes,
+        const MaterialPool& materials,
+        bool velocity,
+        gpu::RingBuffer& ring,
+        InstanceList& list);
+
+  private:
+    /// A kind of draw that occurs in a chunk, and how often; later, where its next instance goes.
+    struct KeyCount {
+        std::uint64_t key = 0;
+        std::uint32_t count = 0;
+        std::uint32_t place = 0;
+    };
+    struct ChunkWork {
+        std::vector<KeyCount> keys;
+        std::uint16_t local[kCullBlock];  ///< index into keys, kHidden if not drawn
+    };
+    struct Entry {
+        std::uint64_t key;
+        std::uint32_t chunk;
+        std::uint32_t local;
+    };
+    struct Blended {
+        float distance;
+        std::uint32_t instance;
+        std::uint64_t key;
+    };
+    class KeyTable;
+
+    void place_keys(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
+    void order_blended(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
+    void add_command(
+        std::uint64_t key,
+        std::uint32_t first,
+        std::uint32_t count,
+        const MeshPool& meshes,
+        const MaterialPool& materials,
+        std::vector<DrawRun>& runs);
+
+    std::vector<ChunkWork> chunks_;
+    std::vector<Entry> entries_;
+    std::vector<DrawCommand> commands_;
+    std::vector<Blended> blended_;
+    std::uint32_t opaque_count_ = 0;
+    std::uint32_t visible_count_ = 0;
+};
+
+}  // namespace limn

@@ -1,0 +1,176 @@
+#include "render/light_list.h"
+
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/render_view.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+/// With Falloff::None the multiplier makes the window a step at the radius.
+constexpr float kStep = 1e30f;
+/// Least difference of the two cones' cosines (or angles): equal cones make a hard edge
+/// (light.spot-falloff).
+constexpr float kLeastConeWidth = 1e-4f;
+
+Vec3 position_of(const Affine& a) {
+    return {a.row[0].w, a.row[1].w, a.row[2].w};
+}
+
+/// Local -z, where spot and directional lights shine.
+Vec3 axis_of(const Affine& a) {
+    return normalize_or({-a.row[0].z, -a.row[1].z, -a.row[2].z}, {0, 0, -1});
+}
+
+/// Whether the light adds anything: not black, not negative, no NaN or infinity in it.
+bool shines(const layout::LightRecord& r) {
+    float sum = 0;
+    for (const Vec4* v : {&r.position, &r.color, &r.polynomial, &r.axis}) {
+        sum += v->x + v->y + v->z + v->w;
+    }
+    return std::isfinite(sum) && r.color.x >= 0 && r.color.y >= 0 && r.color.z >= 0
+           && r.color.x + r.color.y + r.color.z > 0;
+}
+
+void set_attenuation(layout::LightRecord& record, const Attenuation& attenuation, float radius) {
+    record.position.w = radius > 0 ? 1 / square(radius) : 0;
+    switch (attenuation.falloff) {
+    case Falloff::InverseSquare:
+        record.polynomial = {0, 0, 1, 0};
+        break;
+    case Falloff::Polynomial:
+        record.polynomial = {attenuation.constant, attenuation.linear, attenuation.quadratic, 0};
+        break;
+    case Falloff::Smooth:
+        record.polynomial = {1, 0, 0, 0};
+        record.color.w = std::max(attenuation.multiplier, 1.0f);
+        break;
+    case Falloff::None:
+        record.polynomial = {1, 0, 0, 0};
+        record.color.w = kStep;
+        break;
+    }
+}
+
+float reach_radius(const layout::LightRecord& record) {
+    return record.position.w > 0 ? 1 / std::sqrt(record.position.w) : INFINITY;
+}
+
+/// Calls use(light, world transform, intensity factor) for every enabled light of a type.
+template <typename Light, typename Use>
+void each_light(const World& world, double time, float alpha, Use&& use) {
+    world
+        .query<
+            const Light,
+            const WorldTransform,
+            Optional<const PreviousWorldTransform>,
+            Optional<const LightPulse>>()
+        .each([&](const Light& light,
+                  const WorldTransform& now,
+                  const PreviousWorldTransform* before,
+                  const LightPulse* pulse) {
+            if (light.enabled) {
+                const Affine world_from_light = alpha == 1.0f || before == nullptr
+                                                    ? now.world
+                                                    : mix_affine(before->world, now.world, alpha);
+                use(light, world_from_light, pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f);
+            }
+        });
+}
+
+}  // namespace
+
+float pulse_factor(const LightPulse& pulse, double time) {
+    const double wave = std::sin(static_cast<double>(pulse.frequency) * time + pulse.phase);
+    return std::max(0.0f, 1.0f + pulse.amplitude * static_cast<float>(wave));
+}
+
+layout::LightRecord make_record(const PointLight& light, const Vec3& position, float factor) {
+    layout::LightRecord record{};
+    record.position = Vec4(position, 0);
+    record.color = Vec4(light.color * (light.intensity * factor), 0);
+    record.axis = {0, 0, 0, 1};  // offset 1: shines all around
+    set_attenuation(record, light.attenuation, light.radius);
+    return record;
+}
+
+layout::LightRecord
+make_record(const SpotLight& light, const Vec3& position, const Vec3& axis, float factor) {
+    layout::LightRecord record{};
+    record.position = Vec4(position, 0);
+    record.color = Vec4(light.color * (light.intensity * factor), 0);
+    set_attenuation(record, light.attenuation, light.radius);
+    const float outer = std::clamp(light.outer_angle, 0.0f, 0.5f * kPi);
+    const float inner = std::clamp(light.inner_angle, 0.0f, outer);
+    record.polynomial.w = static_cast<float>(light.profile);
+    if (light.profile == SpotProfile::LinearAngle) {
+        const float scale = 1 / std::max(outer - inner, kLeastConeWidth);
+        record.axis = Vec4(axis * scale, outer * scale);
+    } else {
+        const float scale = 1 / std::max(std::cos(inner) - std::cos(outer), kLeastConeWidth);
+        record.axis = Vec4(axis * scale, -std::cos(outer) * scale);
+    }
+    return record;
+}
+
+layout::LightRecord make_record(const DirectionalLight& light, const Vec3& axis, float factor) {
+    layout::LightRecord record{};
+    record.position = Vec4(-axis, 0);
+    record.color = Vec4(light.color * (light.illuminance * factor), 0);
+    record.axis = {0, 0, 0, 1};
+    return record;
+}
+
+void collect_lights(const World& world, float alpha, LightList& list) {
+    list.records.clear();
+    list.reach.clear();
+    list.sun_color = Vec3(0);
+    const auto* frame = world.find_resource<FrameTime>();
+    const double time =
+        frame == nullptr ? 0.0 : frame->time - (1.0 - alpha) * static_cast<double>(frame->step);
+
+    each_light<DirectionalLight>(
+        world, time, alpha, [&](const DirectionalLight& light, const Affine& a, float factor) {
+            const layout::LightRecord record = make_record(light, axis_of(a), factor);
+            if (shines(record)) {
+                if (list.records.empty()) {
+                    list.sun_direction = Vec3(record.position);
+                    list.sun_color = Vec3(record.color);
+                }
+                list.records.push_back(record);
+            }
+        });
+    list.directional = static_cast<int>(list.records.size());
+
+    each_light<PointLight>(
+        world, time, alpha, [&](const PointLight& light, const Affine& a, float factor) {
+            const layout::LightRecord record = make_record(light, position_of(a), factor);
+            if (shines(record)) {
+                list.records.push_back(record);
+                list.reach.push_back({position_of(a), reach_radius(record)});
+            }
+        });
+    list.points = static_cast<int>(list.reach.size());
+
+    each_light<SpotLight>(
+        world, time, alpha, [&](const SpotLight& light, const Affine& a, float factor) {
+            const layout::LightRecord record =
+                make_record(light, position_of(a), axis_of(a), factor);
+            if (shines(record)) {
+                list.records.push_back(record);
+                list.reach.push_back(
+                    {position_of(a),
+                     reach_radius(record),
+                     axis_of(a),
+                     std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
+            }
+        });
+    list.spots = static_cast<int>(list.reach.size()) - list.points;
+}
+
+}  // namespace limn

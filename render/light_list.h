@@ -1,0 +1,50 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/light.h"
+#include "render/shaders/light_gpu.h"
+
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// The world's lights as one packed array, directional lights first, then point lights, then spots,
+// each in world order: what shaders loop over without asking for types. Disabled, black and broken
+// (not finite) lights are left out, LightPulse is applied. Bench/oracles/light_oracle.h has the
+// formulas.
+
+/// Where a point or spot light reaches: a sphere, for spots cut to a cone.
+struct LightReach {
+    Vec3 center;            ///< [m]
+    float radius = 0;       ///< [m]; INFINITY: everywhere
+    Vec3 axis = {0, 0, 0};  ///< of a spot, unit; 0: all around
+    float cosine = -1;      ///< of the cone's half angle
+};
+
+struct LightList {
+    std::vector<layout::LightRecord> records;
+    std::vector<LightReach> reach;  ///< of the point and spot lights alone
+    int directional = 0;
+    int points = 0;
+    int spots = 0;
+    Vec3 sun_direction = {0, 1, 0};  ///< toward the first directional light, unit
+    Vec3 sun_color = {0, 0, 0};      ///< [lx]; black: there is none
+};
+
+/// Fills `list` from the entities with WorldTransform and a light; `alpha` as in RenderView.
+void collect_lights(const World& world, float alpha, LightList& list);
+
+/// What the pulse multiplies the intensity by at `time` [s] (engine.light-object), >= 0.
+[[nodiscard]] float pulse_factor(const LightPulse& pulse, double time);
+
+/// `factor` multiplies the intensity.
+[[nodiscard]] layout::LightRecord
+make_record(const PointLight& light, const Vec3& position, float factor = 1);
+[[nodiscard]] layout::LightRecord
+make_record(const SpotLight& light, const Vec3& position, const Vec3& axis, float factor = 1);
+[[nodiscard]] layout::LightRecord
+make_record(const DirectionalLight& light, const Vec3& axis, float factor = 1);
+
+}  // namespace limn

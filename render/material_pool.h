@@ -1,0 +1,101 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "render/buffer_texture.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/texture.h"
+#include "render/shaders/material_gpu.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+}
+
+// Images as textures with all their mip levels, and materials as one array of records. Materials
+// that need the same program, the same fixed state and the same textures share a batch: instances
+// of a batch are drawn together, whatever their mesh and material. An image that is missing, broken
+// or too large is magenta.
+
+inline constexpr int kMaterialTextures =
+    5;  ///< base color, metal-rough, normal, occlusion, emission
+
+/// What the program of a surface must do: one bit a definition of lib/material.glsl and
+/// gbuffer.frag.
+enum SurfaceFeature : std::uint32_t {
+    kBaseColorMap = 1u << 0,  // the five maps in the order of the texture units
+    kMetalRoughMap = 1u << 1,
+    kNormalMap = 1u << 2,
+    kOcclusionMap = 1u << 3,
+    kEmissionMap = 1u << 4,
+    kUvMaps = 1u << 5,
+    kAlphaMask = 1u << 6,
+    kDoubleSided = 1u << 7,
+    kVertexColor = 1u << 8,  // added by the mesh
+    kVelocity = 1u << 9,     // added by the frame
+};
+
+/// Materials that are drawn alike.
+struct SurfaceBatch {
+    std::uint32_t features = 0;  ///< of SurfaceFeature
+    bool blend = false;
+    std::uint32_t textures = 0;  ///< index for MaterialPool::bind_textures
+};
+
+class MaterialPool {
+  public:
+    MaterialPool(gpu::Device& device, float anisotropy);
+
+    /// Takes in what is new in `assets`: images after those it has, and all materials if there are
+    /// new ones or their version changed. `fresh`: other assets than last time.
+    void update(const Assets& assets, bool fresh);
+
+    /// Record index of a material; of none and of unknown ones, too.
+    [[nodiscard]] std::uint32_t record_of(MaterialId id) const {
+        return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
+    }
+    [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
+    [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
+    [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
+    /// Whether a material is Blinn or Phong.
+    [[nodiscard]] bool has_classic() const { return has_classic_; }
+
+    void bind_textures(std::uint32_t textures) const;
+    [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
+    [[nodiscard]] std::size_t image_count() const { return images_.size(); }
+
+  private:
+    struct BoundTexture {
+        std::uint32_t image = kNoAsset;  ///< kNoAsset: not used
+        std::uint32_t sampler = 0;
+        bool operator==(const BoundTexture&) const = default;
+    };
+    using TextureSet = std::array<BoundTexture, kMaterialTextures>;
+
+    void upload_image(const ImageData& image);
+    void add_material(const Material& material);
+    [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot);
+    [[nodiscard]] std::uint32_t texture_set(const TextureSet& set);
+
+    gpu::Device& device_;
+    float anisotropy_;
+    gpu::Texture magenta_;
+    std::vector<gpu::Texture> images_;
+    std::vector<gpu::Sampler> samplers_;
+    std::vector<std::uint32_t> sampler_keys_;
+    std::vector<TextureSet> sets_;
+    std::vector<SurfaceBatch> batches_;
+    std::vector<std::uint32_t> batch_of_;  ///< by record; 0 the default material, 1 the missing one
+    std::vector<layout::MaterialRecord> records_;
+    gpu::Buffer record_buffer_;
+    BufferTexture record_texture_;
+    std::size_t material_count_ = 0;
+    std::uint64_t material_version_ = 0;
+    bool has_classic_ = false;
+};
+
+}  // namespace limn

@@ -1,0 +1,166 @@
+#include "render/mesh_pool.h"
+
+#include "ecs/base/log.h"
+#include "render/shaders/instance_gpu.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kFirstVertices = 1 << 16;
+constexpr std::size_t kFirstIndices = 1 << 18;
+
+constexpr gpu::VertexAttribute kMeshAttributes[] = {
+    {.location = 0, .stream = kPositionStream, .components = 3},
+    {.location = 1,
+     .stream = kAttributeStream,
+     .components = 3,
+     .type = GL_SHORT,
+     .offset = offsetof(PackedVertex, normal),
+     .normalized = true},
+    {.location = 2,
+     .stream = kAttributeStream,
+     .components = 4,
+     .type = GL_SHORT,
+     .offset = offsetof(PackedVertex, tangent),
+     .normalized = true},
+    {.location = 3,
+     .stream = kAttributeStream,
+     .components = 4,
+     .offset = offsetof(PackedVertex, uv)},
+    {.location = 4,
+     .stream = kAttributeStream,
+     .components = 4,
+     .type = GL_UNSIGNED_SHORT,
+     .offset = offsetof(PackedVertex, color),
+     .normalized = true},
+    {.location = 5, .stream = kInstanceStream, .components = 4, .offset = 0},
+    {.location = 6, .stream = kInstanceStream, .components = 4, .offset = 16},
+    {.location = 7, .stream = kInstanceStream, .components = 4, .offset = 32},
+    {.location = 8,
+     .stream = kInstanceStream,
+     .components = 4,
+     .type = GL_UNSIGNED_INT,
+     .offset = offsetof(layout::InstanceRecord, material),
+     .integer = true},
+    {.location = 9, .stream = kBeforeStream, .components = 4, .offset = 0},
+    {.location = 10, .stream = kBeforeStream, .components = 4, .offset = 16},
+    {.location = 11, .stream = kBeforeStream, .components = 4, .offset = 32},
+};
+
+std::int16_t to_snorm(float x) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f));
+}
+std::uint16_t to_unorm(float x) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(x, 0.0f, 1.0f) * 65535.0f));
+}
+
+PackedVertex pack_vertex(const MeshData& mesh, std::size_t i) {
+    const auto at = [i](const auto& values, const auto& fallback) {
+        return i < values.size() ? values[i] : fallback;
+    };
+    const Vec3 n = normalize_or(at(mesh.normals, Vec3(0, 0, 1)), {0, 0, 1});
+    const Vec4 t = at(mesh.tangents, Vec4(any_perpendicular(n), 1));
+    const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
+    const Vec4 c = at(mesh.colors, Vec4(1));
+    const Vec2 uv = at(mesh.uvs, Vec2(0));
+    return {
+        {to_snorm(n.x), to_snorm(n.y), to_snorm(n.z), 0},
+        {to_snorm(t3.x), to_snorm(t3.y), to_snorm(t3.z), to_snorm(t.w < 0 ? -1.0f : 1.0f)},
+        uv,
+        at(mesh.uvs1, uv),
+        {to_unorm(c.x), to_unorm(c.y), to_unorm(c.z), to_unorm(c.w)}};
+}
+
+bool drawable(const MeshData& mesh) {
+    const auto past = [&](std::uint32_t index) { return index >= mesh.positions.size(); };
+    if (mesh.positions.empty() || mesh.indices.size() < 3) {
+        return false;
+    }
+    if (std::any_of(mesh.indices.begin(), mesh.indices.end(), past)) {
+        log_error(
+            "mesh {}: an index is past the {} vertices; it is not drawn",
+            mesh.name,
+            mesh.positions.size());
+        return false;
+    }
+    return true;
+}
+
+/// A buffer of `bytes` that begins with the first `kept` bytes of `old`.
+gpu::Buffer grown(const char* label, const gpu::Buffer& old, std::size_t kept, std::size_t bytes) {
+    gpu::Buffer buffer(label, bytes, gpu::BufferUse::Dynamic);
+    if (kept > 0) {
+        glCopyNamedBufferSubData(old.id(), buffer.id(), 0, 0, static_cast<GLsizeiptr>(kept));
+    }
+    return buffer;
+}
+
+}  // namespace
+
+MeshPool::MeshPool() : vertices_("meshes", kMeshAttributes) {
+    reserve(kFirstVertices, kFirstIndices);
+}
+
+void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
+    if (vertices > vertex_capacity_) {
+        const std::size_t capacity = std::max(vertices, 2 * vertex_capacity_);
+        positions_ = grown(
+            "mesh positions", positions_, vertex_count_ * sizeof(Vec3), capacity * sizeof(Vec3));
+        attributes_ = grown(
+            "mesh attributes",
+            attributes_,
+            vertex_count_ * sizeof(PackedVertex),
+            capacity * sizeof(PackedVertex));
+        vertex_capacity_ = capacity;
+        vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
+        vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
+    }
+    if (indices > index_capacity_) {
+        const std::size_t capacity = std::max(indices, 2 * index_capacity_);
+        indices_ = grown("mesh indices", indices_, index_count_ * 4, capacity * 4);
+        index_capacity_ = capacity;
+        vertices_.set_indices(indices_);
+    }
+}
+
+void MeshPool::append(std::span<const MeshData> meshes) {
+    std::vector<PackedVertex> packed;
+    for (const MeshData& mesh : meshes) {
+        MeshRange range;
+        range.bounds = mesh.bounds;
+        if (drawable(mesh)) {
+            if (is_empty(range.bounds)) {
+                for (const Vec3& p : mesh.positions) {
+                    grow(range.bounds, p);
+                }
+            }
+            reserve(vertex_count_ + mesh.positions.size(), index_count_ + mesh.indices.size());
+            packed.resize(mesh.positions.size());
+            for (std::size_t i = 0; i < packed.size(); ++i) {
+                packed[i] = pack_vertex(mesh, i);
+            }
+            positions_.write(vertex_count_ * sizeof(Vec3), std::span<const Vec3>(mesh.positions));
+            attributes_.write(
+                vertex_count_ * sizeof(PackedVertex), std::span<const PackedVertex>(packed));
+            indices_.write(index_count_ * 4, std::span<const std::uint32_t>(mesh.indices));
+            range.first_index = static_cast<std::uint32_t>(index_count_);
+            range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
+            range.base_vertex = static_cast<std::int32_t>(vertex_count_);
+            range.colored = !mesh.colors.empty();
+            vertex_count_ += mesh.positions.size();
+            index_count_ += mesh.indices.size();
+        }
+        meshes_.push_back(range);
+    }
+}
+
+void MeshPool::clear() {
+    meshes_.clear();
+    vertex_count_ = 0;
+    index_count_ = 0;
+}
+
+}  // namespace limn

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/vertex_array.h"
+
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// All meshes in one pair of vertex buffers and one index buffer, so that a multi-draw goes through
+// any of them without a change of state. Meshes are appended; when the buffers are full, twice as
+// large ones take over and the GPU copies.
+//
+// Positions lie apart from the rest: passes that need depth alone read a quarter as much.
+
+/// Where a mesh lies.
+struct MeshRange {
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;  ///< 0: nothing to draw
+    std::int32_t base_vertex = 0;
+    Bounds bounds;
+    bool colored = false;  ///< has a color a vertex
+};
+
+/// A vertex beside its position; normals and tangents as 16-bit integers, -32767 .. 32767 for -1
+/// .. 1.
+struct PackedVertex {
+    std::int16_t normal[4];
+    std::int16_t tangent[4];  ///< w: sign of the bitangent
+    Vec2 uv;
+    Vec2 uv1;
+    std::uint16_t color[4];  ///< 65535 = 1
+};
+static_assert(sizeof(PackedVertex) == 40);
+
+class MeshPool {
+  public:
+    MeshPool();
+
+    /// Takes in the meshes after those it has; a mesh with an index past its vertices, or without
+    /// triangles, is logged and draws nothing.
+    void append(std::span<const MeshData> meshes);
+    /// Forgets all meshes; the buffers stay.
+    void clear();
+
+    [[nodiscard]] const std::vector<MeshRange>& meshes() const { return meshes_; }
+    /// The attributes 0 .. 4 of mesh.vert; instance streams are set by who draws.
+    [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
+
+  private:
+    void reserve(std::size_t vertices, std::size_t indices);
+
+    std::vector<MeshRange> meshes_;
+    gpu::Buffer positions_;
+    gpu::Buffer attributes_;
+    gpu::Buffer indices_;
+    gpu::VertexArray vertices_;
+    std::size_t vertex_count_ = 0;
+    std::size_t vertex_capacity_ = 0;
+    std::size_t index_count_ = 0;
+    std::size_t index_capacity_ = 0;
+};
+
+/// Streams of mesh.vert.
+inline constexpr unsigned kPositionStream = 0;
+inline constexpr unsigned kAttributeStream = 1;
+inline constexpr unsigned kInstanceStream = 2;
+inline constexpr unsigned kBeforeStream = 3;
+
+}  // namespace limn

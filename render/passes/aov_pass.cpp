@@ -1,0 +1,74 @@
+#include "render/passes/aov_pass.h"
+
+#include "render/gpu/shader_library.h"
+#include "render/render_frame.h"
+
+#include <string>
+#include <vector>
+
+namespace limn {
+
+const std::array<Aov, kAovCount> kAovs = {{
+    {"depth", 1, {kNoDepth, 0, 0, 0}},
+    {"normal", 3, {0, 0, 0, 0}},
+    {"albedo", 3, {0, 0, 0, 0}},
+    {"velocity", 2, {0, 0, 0, 0}},
+    {"emission", 3, {0, 0, 0, 0}},
+}};
+
+namespace {
+constexpr int kVelocityAov = 3;
+}
+
+Result<AovPass> create_aov_pass(gpu::Device& device) {
+    AovPass pass;
+    for (int i = 0; i < kAovCount; ++i) {
+        const Result<const gpu::Program*> program = device.shaders().load(
+            {.vertex = "fullscreen.vert",
+             .fragment = "aov.frag",
+             .defines = {{"AOV", std::to_string(i)}}});
+        if (!program) {
+            return program.error();
+        }
+        pass.programs[i] = *program;
+    }
+    return pass;
+}
+
+TextureId draw_aov(
+    FrameGraph& graph,
+    const AovPass& pass,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
+    int aov) {
+    const std::string name = "aov." + std::string(kAovs[aov].name);
+    const TextureId value = graph.create(
+        {.name = name,
+         .format = GL_RGBA32F,
+         .width = scene.view.width,
+         .height = scene.view.height});
+    std::vector<Use> reads = {gbuffer.surface, depth_tested(gbuffer.depth)};
+    if (aov == kVelocityAov) {
+        reads.emplace_back(gbuffer.velocity);
+    }
+    const Use writes[] = {cleared(value, kAovs[aov].nothing)};
+    graph.add_pass(
+        name,
+        std::span<const Use>(reads),
+        std::span<const Use>(writes),
+        [&pass, &scene, gbuffer, aov](PassContext& context) {
+            gpu::PipelineState surfaces_only = gpu::kFullscreenState;
+            surfaces_only.depth = {.test = true, .write = false, .func = GL_LESS};
+            context.device().use(gpu::Pipeline{pass.programs[aov], surfaces_only});
+            bind_view(context.device(), scene);
+            context.bind_texture(kGbufferUnit, gbuffer.surface);
+            context.bind_texture(kDepthUnit, gbuffer.depth);
+            if (aov == kVelocityAov) {
+                context.bind_texture(kVelocityUnit, gbuffer.velocity);
+            }
+            context.device().draw_fullscreen();
+        });
+    return value;
+}
+
+}  // namespace limn

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "render/passes/gbuffer_pass.h"
+
+#include <array>
+#include <string_view>
+
+namespace limn {
+
+// Attributes of the G-buffer as plain numbers, for files and the buffer viewer.
+//
+// Reads    G-buffer
+// Writes   RGBA32F, named "aov.<name>"
+// Order    after the G-buffer
+// Shaders  aov.frag
+
+inline constexpr int kAovCount = 5;
+
+struct Aov {
+    std::string_view name;
+    int channels;
+    Vec4 nothing;  ///< value where no surface is
+};
+/// In the order of aov.frag.
+extern const std::array<Aov, kAovCount> kAovs;
+
+struct AovPass {
+    std::array<const gpu::Program*, kAovCount> programs{};
+};
+
+[[nodiscard]] Result<AovPass> create_aov_pass(gpu::Device& device);
+
+/// `aov` is an index into kAovs; velocity needs a G-buffer with velocity.
+[[nodiscard]] TextureId draw_aov(
+    FrameGraph& graph,
+    const AovPass& pass,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
+    int aov);
+
+}  // namespace limn

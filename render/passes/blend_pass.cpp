@@ -1,0 +1,41 @@
+#include "render/passes/blend_pass.h"
+
+namespace limn {
+
+Result<BlendPass> create_blend_pass(gpu::Device& device) {
+    BlendPass pass = {SurfacePrograms(device, "mesh.vert", "blend.frag")};
+    const Status plain = pass.programs.load(0, 0, {});
+    if (!plain) {
+        return plain.error();
+    }
+    return pass;
+}
+
+TextureId draw_blended(
+    FrameGraph& graph,
+    BlendPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    const Gbuffer& gbuffer) {
+    if (!scene.instances.blended.empty()) {
+        graph.add_pass(
+            "blended",
+            {depth_tested(gbuffer.depth)},
+            {radiance},
+            [&pass, &scene](PassContext& context) {
+                bind_lighting(context.device(), scene);
+                draw_runs(
+                    context.device(),
+                    scene,
+                    scene.instances.blended,
+                    pass.programs,
+                    0,
+                    lighting_key(scene),
+                    lighting_defines(scene),
+                    {.depth = {.write = false}, .blend = gpu::kBlendPremultiplied});
+            });
+    }
+    return radiance;
+}
+
+}  // namespace limn

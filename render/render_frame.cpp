@@ -1,0 +1,384 @@
+#include "render/render_frame.h"
+
+#include "ecs/components/environment.h"
+#include "ecs/world.h"
+#include "render/environment_light.h"
+#include "render/gpu/shader_library.h"
+#include "render/graph/frame_graph.h"
+#include "render/passes/aov_pass.h"
+#include "render/passes/blend_pass.h"
+#include "render/passes/gbuffer_pass.h"
+#include "render/passes/light_pass.h"
+#include "render/passes/reflection_pass.h"
+#include "render/passes/tone_map_pass.h"
+#include "render/shaders/view_gpu.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <optional>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kRingBytes = std::size_t{8} << 20;  ///< at start; grows with the scene
+constexpr int kSpecularAlbedoSize = 64;
+
+/// Without the resource nothing surrounds the scene.
+Environment environment_of(const World& world) {
+    const auto* environment = world.find_resource<Environment>();
+    return environment != nullptr
+               ? *environment
+               : Environment{.sky = SkyKind::Uniform, .zenith = Vec3(0), .visible = false};
+}
+
+Exposure exposure_of(const World& world) {
+    const auto* exposure = world.find_resource<Exposure>();
+    return exposure != nullptr ? *exposure : Exposure{};
+}
+
+bool same_light(const Environment& a, const Environment& b) {
+    return a.sky == b.sky && a.zenith == b.zenith && a.horizon == b.horizon && a.ground == b.ground
+           && a.intensity == b.intensity;
+}
+
+layout::ViewBlock
+make_view_block(const RenderView& view, const LightGridShape& grid, int directional) {
+    const auto& r = view.world_from_camera.row;
+    const auto column = [&](int c) { return Vec3(r[0][c], r[1][c], r[2][c]); };
+    const Vec2 size = {view.width, view.height};
+    const Vec2 jitter = 2.0f * view.jitter / size;
+    layout::ViewBlock block{};
+    block.clip_from_world = view.clip_from_world;
+    block.previous_from_world = view.previous_from_world;
+    block.camera_ws = Vec4(column(3), view.near);
+    block.ray_right = Vec4(column(0) * view.tangent.x, jitter.x);
+    block.ray_up = Vec4(column(1) * view.tangent.y, jitter.y);
+    block.ray_forward = Vec4(-column(2), 0);
+    block.size = {size.x, size.y, 1 / size.x, 1 / size.y};
+    block.grid_cells = {grid.columns, grid.rows, grid.slices, grid.tile};
+    block.grid_depth = {grid.depth_scale, grid.depth_bias, directional, 0};
+    return block;
+}
+
+struct Passes {
+    GbufferPass gbuffer;
+    LightPass lights;
+    BlendPass blend;
+    ToneMapPass tone_map;
+    AovPass aovs;
+    ReflectionPass reflection;
+    const gpu::Program* accumulate = nullptr;
+};
+
+/// What a frame's passes made.
+struct FrameTextures {
+    TextureId radiance;
+    TextureId display;
+    std::vector<std::pair<int, TextureId>> aovs;
+};
+
+}  // namespace
+
+class Renderer {
+  public:
+    Renderer(gpu::Device& device, const RenderSettings& settings, Passes passes);
+
+    /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
+    void prepare(const World& world, const RenderView& view, bool velocity);
+    /// The image, as a list.
+    FrameTextures draw_image(const World& world, const FrameRequest& request, bool velocity);
+    TextureId draw_radiance(const Gbuffer& gbuffer);
+    void finish();
+    FrameOutput output(const FrameTextures& textures) const;
+    const gpu::Texture& accumulation(int width, int height);
+
+    gpu::Device& device;
+    FrameGraph graph;
+    Passes passes;
+    FrameScene scene;
+    FrameStatistics statistics;
+
+  private:
+    void update_assets(const World& world);
+    void update_environment(const World& world);
+
+    gpu::RingBuffer ring_;
+    MeshPool meshes_;
+    MaterialPool materials_;
+    InstanceCollector collector_;
+    BufferTexture light_records_;
+    BufferTexture light_indices_;
+    BufferTexture light_cells_;
+    gpu::Texture specular_albedo_;
+    gpu::Texture accumulation_;
+    std::optional<AssetsIdentity> assets_;
+    std::optional<Environment> environment_;  // that the reflection map shows
+    bool reflection_due_ = false;
+};
+
+void RendererDeleter::operator()(Renderer* renderer) const {
+    delete renderer;
+}
+
+Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Passes made)
+    : device(gpu_device), graph(gpu_device), passes(std::move(made)),
+      ring_(gpu_device.caps(), "frame data", kRingBytes),
+      materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
+      light_indices_("light indices", GL_R32UI), light_cells_("light cells", GL_RG32UI),
+      specular_albedo_(
+          "specular albedo",
+          {.format = GL_RG32F, .width = kSpecularAlbedoSize, .height = kSpecularAlbedoSize}) {
+    const std::vector<Vec2> table = make_specular_albedo(kSpecularAlbedoSize);
+    specular_albedo_.upload<Vec2>(table, GL_RG, GL_FLOAT);
+    scene.meshes = &meshes_;
+    scene.materials = &materials_;
+    scene.light_records = &light_records_;
+    scene.light_indices = &light_indices_;
+    scene.light_cells = &light_cells_;
+    scene.environment.reflection = &passes.reflection.map;
+    scene.environment.specular_albedo = &specular_albedo_;
+}
+
+void Renderer::update_assets(const World& world) {
+    static const Assets kNone;
+    const auto* found = world.find_resource<Assets>();
+    const Assets& assets = found != nullptr ? *found : kNone;
+    const bool fresh = !assets_ || *assets_ != assets.identity
+                       || meshes_.meshes().size() > assets.meshes.size()
+                       || materials_.image_count() > assets.images.size();
+    if (fresh) {
+        meshes_.clear();
+        assets_.emplace(assets.identity);
+    }
+    meshes_.append(std::span(assets.meshes).subspan(meshes_.meshes().size()));
+    materials_.update(assets, fresh);
+}
+
+void Renderer::update_environment(const World& world) {
+    const Environment environment = environment_of(world);
+    layout::EnvironmentBlock& block = scene.environment.block;
+    reflection_due_ = !environment_ || !same_light(*environment_, environment);
+    if (reflection_due_) {
+        block = make_environment_block(environment, Vec3(0, 1, 0), Vec3(0));
+        describe_reflection(passes.reflection, block);
+        environment_ = environment;
+    }
+    scene.environment.settings = environment;
+    block.sun_direction = Vec4(scene.lights.sun_direction, 0);
+    block.sun_color = Vec4(scene.lights.sun_color, 0);
+}
+
+void Renderer::prepare(const World& world, const RenderView& view, bool velocity) {
+    update_assets(world);
+    ring_.begin_frame();
+
+    const auto begin = std::chrono::steady_clock::now();
+    scene.view = view;
+    collect_lights(world, view.alpha, scene.lights);
+    update_environment(world);
+    build_light_grid(view, scene.lights, scene.grid);
+    collector_.collect(world, view, meshes_, materials_, velocity, ring_, scene.instances);
+
+    const std::size_t alignment = BufferTexture::alignment();
+    const auto push = [&](const auto& items) {
+        const std::span bytes = std::as_bytes(std::span(items));
+        // A view of a buffer must not be empty.
+        const gpu::RingSlice slice =
+            ring_.allocate(std::max<std::size_t>(bytes.size(), 16), alignment);
+        std::memcpy(slice.data, bytes.data(), bytes.size());
+        return slice;
+    };
+    light_records_.set(push(scene.lights.records));
+    light_indices_.set(push(scene.grid.indices));
+    light_cells_.set(push(scene.grid.cells));
+    scene.view_block =
+        ring_.push_value(make_view_block(view, scene.grid.shape, scene.lights.directional));
+    scene.environment_block = ring_.push_value(scene.environment.block);
+    const auto end = std::chrono::steady_clock::now();
+
+    const InstanceList& list = scene.instances;
+    statistics = {
+        .instances = list.total,
+        .visible_instances = list.visible,
+        .draws = static_cast<int>(list.opaque.size() + list.blended.size()),
+        .triangles = list.triangles,
+        .lights = static_cast<int>(scene.lights.records.size()),
+        .extract_ms = std::chrono::duration<double, std::milli>(end - begin).count()};
+}
+
+TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
+    if (reflection_due_) {
+        draw_reflection(graph, passes.reflection, scene);
+    }
+    TextureId radiance = draw_lights(graph, passes.lights, scene, gbuffer);
+    radiance = draw_sky(graph, passes.lights, scene, radiance, gbuffer);
+    return draw_blended(graph, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
+}
+
+FrameTextures Renderer::draw_image(const World& world, const FrameRequest& request, bool velocity) {
+    FrameTextures made;
+    const Gbuffer gbuffer = draw_gbuffer(graph, passes.gbuffer, scene, velocity);
+    made.radiance = draw_radiance(gbuffer);
+    made.display = tone_map(graph, passes.tone_map, exposure_of(world), made.radiance);
+    for (int i = 0; i < kAovCount; ++i) {
+        if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
+            != request.aovs.end()) {
+            made.aovs.emplace_back(i, draw_aov(graph, passes.aovs, scene, gbuffer, i));
+            graph.keep(made.aovs.back().second);
+        }
+    }
+    graph.keep(made.radiance);
+    graph.keep(made.display);
+    return made;
+}
+
+void Renderer::finish() {
+    graph.execute();
+    ring_.end_frame();
+}
+
+FrameOutput Renderer::output(const FrameTextures& textures) const {
+    FrameOutput out;
+    out.display = graph.texture(textures.display);
+    out.radiance = graph.texture(textures.radiance);
+    for (const auto& [index, texture] : textures.aovs) {
+        out.aovs.push_back(
+            {std::string(kAovs[index].name), kAovs[index].channels, graph.texture(texture)});
+    }
+    out.statistics = statistics;
+    return out;
+}
+
+const gpu::Texture& Renderer::accumulation(int width, int height) {
+    if (!accumulation_ || accumulation_.width() != width || accumulation_.height() != height) {
+        accumulation_ =
+            gpu::Texture("accumulation", {.format = GL_RGBA32F, .width = width, .height = height});
+    }
+    return accumulation_;
+}
+
+Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& settings) {
+    Result<GbufferPass> gbuffer = create_gbuffer_pass(device);
+    if (!gbuffer) {
+        return gbuffer.error();
+    }
+    Result<LightPass> lights = create_light_pass(device);
+    if (!lights) {
+        return lights.error();
+    }
+    Result<BlendPass> blend = create_blend_pass(device);
+    if (!blend) {
+        return blend.error();
+    }
+    Result<ToneMapPass> tone_map = create_tone_map_pass(device);
+    if (!tone_map) {
+        return tone_map.error();
+    }
+    Result<AovPass> aovs = create_aov_pass(device);
+    if (!aovs) {
+        return aovs.error();
+    }
+    Result<ReflectionPass> reflection = create_reflection_pass(device, settings.environment_size);
+    if (!reflection) {
+        return reflection.error();
+    }
+    const Result<const gpu::Program*> accumulate =
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
+    if (!accumulate) {
+        return accumulate.error();
+    }
+    Passes passes = {
+        *std::move(gbuffer),
+        *std::move(lights),
+        *std::move(blend),
+        *std::move(tone_map),
+        *std::move(aovs),
+        *std::move(reflection),
+        *accumulate};
+    return RendererPtr(new Renderer(device, settings, std::move(passes)));
+}
+
+FrameOutput render_frame(
+    Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
+    const bool velocity =
+        std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+    renderer.graph.begin_frame();
+    renderer.prepare(world, view, velocity);
+    const FrameTextures textures = renderer.draw_image(world, request, velocity);
+    renderer.finish();
+    return renderer.output(textures);
+}
+
+FrameOutput render_accumulated(
+    Renderer& renderer,
+    const World& world,
+    const RenderView& view,
+    int samples,
+    const FrameRequest& request) {
+    LIMN_CHECK(samples >= 1);
+    const gpu::Texture& sum = renderer.accumulation(view.width, view.height);
+    FrameGraph& graph = renderer.graph;
+    for (int i = 0; i < samples; ++i) {
+        graph.begin_frame();
+        renderer.prepare(world, with_jitter(view, sample_jitter(i, samples)), false);
+        const TextureId radiance = renderer.draw_radiance(
+            draw_gbuffer(graph, renderer.passes.gbuffer, renderer.scene, false));
+        const TextureId target = graph.import("accumulation", sum);
+        graph.add_pass(
+            "accumulate",
+            {radiance},
+            {i == 0 ? cleared(target) : Use(target)},
+            [program = renderer.passes.accumulate, samples, radiance](PassContext& context) {
+                gpu::PipelineState add = gpu::kFullscreenState;
+                add.blend = gpu::kBlendAdd;
+                context.device().use(gpu::Pipeline{program, add});
+                program->set("weight", 1.0f / static_cast<float>(samples));
+                context.bind_texture(0, radiance);
+                context.device().draw_fullscreen();
+            });
+        renderer.finish();
+    }
+
+    // Once more from the middle of the pixels, for what is no mean; then the mean takes the image's
+    // place.
+    FrameOutput out;
+    graph.begin_frame();
+    const bool velocity =
+        std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+    renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
+    FrameTextures textures = renderer.draw_image(world, request, velocity);
+    textures.display = tone_map(
+        graph, renderer.passes.tone_map, exposure_of(world), graph.import("accumulation", sum));
+    graph.keep(textures.display);
+    renderer.finish();
+    out = renderer.output(textures);
+    out.radiance = &sum;
+    return out;
+}
+
+const std::vector<std::string_view>& aov_names() {
+    static const std::vector<std::string_view> kNames = [] {
+        std::vector<std::string_view> names;
+        for (const Aov& aov : kAovs) {
+            names.push_back(aov.name);
+        }
+        return names;
+    }();
+    return kNames;
+}
+
+int aov_channels(std::string_view name) {
+    for (const Aov& aov : kAovs) {
+        if (aov.name == name) {
+            return aov.channels;
+        }
+    }
+    return 0;
+}
+
+FrameGraph& frame_graph(Renderer& renderer) {
+    return renderer.graph;
+}
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+// Alpha-blended surfaces, lit while they are drawn, from back to front. Opacity dims what the surface scatters
+// but not what it mirrors: glass that is nearly clear still shows the lamps. Premultiplied.
+#version 450
+#include "lib/lighting.glsl"
+#include "lib/material.glsl"
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    vec4 color = surface_color();
+    float opacity = clamp(color.a, 0.0, 1.0);
+    SurfaceSample s = surface_sample(color.rgb);
+    float distance = view_distance(gl_FragCoord.z);
+    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, distance);
+
+    // The mirror hides what it reflects in place of: its share of what lies behind is gone.
+    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    float mirror = dot(r.mirror, vec3(1.0 / 3.0)) * r.lit;
+    radiance = vec4(
+        opacity * (light.diffuse + s.emission) + light.specular, opacity + (1.0 - opacity) * mirror);
+}

@@ -1,0 +1,33 @@
+// The surroundings: what the sky function needs, and the light it sends, projected. std140.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+const uint kStudioLamps = 6u;
+
+// A soft box at infinity: the unit square of (dot(d, u), dot(d, v)) / dot(d, center).
+struct StudioLamp {
+    vec4 center;  // unit, toward it. w: width of its soft edge, share of the half side
+    vec4 u;       // world direction across / tangent of the half width
+    vec4 v;       // world direction up / tangent of the half height
+    vec4 color;   // radiance
+};
+
+struct EnvironmentBlock {
+    vec4 zenith;         // radiance, times the intensity. w: SkyKind
+    vec4 horizon;        // w: intensity
+    vec4 ground;
+    vec4 sun_direction;  // unit, toward the first directional light
+    vec4 sun_color;      // its irradiance [lx]; black: none
+    vec4 reflection;     // x: levels of the reflection map, y: its size [px]
+    vec4 irradiance[9];  // irradiance / pi = sum irradiance[i] Y_i(normal), cosine lobe and Y's constants folded in
+    StudioLamp lamps[kStudioLamps];
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(EnvironmentBlock) == 16 * (6 + 9 + 4 * kStudioLamps));
+}  // namespace limn::layout
+#endif

@@ -1,0 +1,26 @@
+// Opaque surfaces without their light. Definitions of lib/material.glsl, and
+//   ALPHA_MASK  holes where the opacity is below the cutoff
+//   VELOCITY    motion since the moment before, as a difference of texture coordinates (now - before)
+#version 450
+#include "lib/view.glsl"
+#include "lib/material.glsl"
+
+#ifdef VELOCITY
+layout(location = 5) in vec3 before;
+layout(location = 1) out vec2 velocity;
+#endif
+layout(location = 0) out uvec4 surface;
+
+void main() {
+    vec4 color = surface_color();
+#ifdef ALPHA_MASK
+    if (color.a < material_texel(2).w) {
+        discard;
+    }
+#endif
+    surface = pack_surface(surface_sample(color.rgb));
+#ifdef VELOCITY
+    vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
+    velocity = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6));
+#endif
+}

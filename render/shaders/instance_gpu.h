@@ -1,0 +1,21 @@
+// One drawn copy of a mesh, read as instance-rate vertex attributes: the draw's base instance picks the first.
+// Where it was before is a second stream of three rows, filled only when somebody asks for velocity.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+struct InstanceRecord {
+    vec4 row[3];   // world_from_mesh at the moment shown
+    uint material;
+    uint flags;    // bit 0: mirrored, the determinant is negative
+    uint entity;   // its index, for picking
+    uint unused;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(InstanceRecord) == 64);
+}  // namespace limn::layout
+#endif

@@ -1,0 +1,81 @@
+// Radiance of the surroundings by direction. The same functions make the background, the reflections and the
+// ambient light; render/environment_light.cpp says them in C++. SKY_KIND, as numbered by SkyKind, is fixed when
+// the program is compiled.
+
+#include "environment_gpu.h"
+
+layout(std140, binding = 1) uniform Environment {
+    EnvironmentBlock environment;
+};
+
+#ifdef SKY_KIND
+// Between horizon and zenith the color falls off as haze does, fast near the horizon; the ground takes on the
+// haze in the distance. Shape by eye.
+vec3 gradient_sky(vec3 d) {
+    vec3 above = mix(environment.zenith.rgb, environment.horizon.rgb, exp2(-4.5 * max(d.y, 0.0)));
+    vec3 below = mix(environment.ground.rgb, 0.8 * environment.horizon.rgb, exp2(12.0 * min(d.y, 0.0)));
+    return mix(below, above, smoothstep(-0.015, 0.015, d.y));
+}
+
+// A dark room whose wall is lightest behind the object.
+vec3 studio_backdrop(vec3 d) {
+    float wall = 1.0 - abs(d.y - 0.05);
+    float carpet = smoothstep(-0.1, -0.9, d.y);
+    return environment.horizon.w * (mix(0.030, 0.175, wall * wall * wall) * vec3(0.96, 0.98, 1.04) + 0.04 * carpet);
+}
+
+vec3 studio_lamps(vec3 d) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < kStudioLamps; ++i) {
+        StudioLamp lamp = environment.lamps[i];
+        float t = dot(d, lamp.center.xyz);
+        vec2 at = abs(vec2(dot(d, lamp.u.xyz), dot(d, lamp.v.xyz))) / max(t, 1e-4);
+        vec2 inside = 1.0 - smoothstep(vec2(1.0 - lamp.center.w), vec2(1.0 + lamp.center.w), at);
+        sum += t > 0.0 ? lamp.color.rgb * (inside.x * inside.y) : vec3(0.0);
+    }
+    return sum;
+}
+
+// What lights the scene: without the sun, which is a light of its own.
+vec3 sky_radiance(vec3 d) {
+#if SKY_KIND == 0
+    return gradient_sky(d);
+#elif SKY_KIND == 1
+    return studio_backdrop(d) + studio_lamps(d);
+#else
+    return environment.zenith.rgb;
+#endif
+}
+
+const float kSunCosine = 0.99995;        // of the disc's radius, 0.57 degrees: twice the real one reads better
+const float kSunSoftness = 0.00001;
+const float kSunGlow = 0.06;             // radiance of the glow around it per lux, by eye
+const float kMaxSunRadiance = 20000.0;   // half floats end at 65504
+
+// What is seen where no surface is: the sun with its glow, but not the studio's lamps.
+vec3 sky_background(vec3 d) {
+#if SKY_KIND == 0
+    float c = dot(d, environment.sun_direction.xyz);
+    float solid_angle = 2.0 * 3.14159265 * (1.0 - kSunCosine);
+    float disc = smoothstep(kSunCosine - kSunSoftness, kSunCosine + kSunSoftness, c);
+    float glow = kSunGlow * (pow(max(c, 0.0), 24.0) * 0.3 + pow(max(c, 0.0), 600.0));
+    float above = smoothstep(-0.02, 0.02, d.y);
+    vec3 sun = environment.sun_color.rgb * above * (disc / solid_angle + glow);
+    return gradient_sky(d) + min(sun, vec3(kMaxSunRadiance));
+#elif SKY_KIND == 1
+    return studio_backdrop(d);
+#else
+    return environment.zenith.rgb;
+#endif
+}
+#endif
+
+// Irradiance / pi of the surroundings on a plane with this normal: nine spherical harmonics
+// (Ramamoorthi and Hanrahan 2001).
+vec3 environment_irradiance(vec3 n) {
+    vec3 e = environment.irradiance[0].rgb + environment.irradiance[1].rgb * n.y + environment.irradiance[2].rgb * n.z
+             + environment.irradiance[3].rgb * n.x + environment.irradiance[4].rgb * (n.x * n.y)
+             + environment.irradiance[5].rgb * (n.y * n.z) + environment.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0)
+             + environment.irradiance[7].rgb * (n.x * n.z) + environment.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
+    return max(e, vec3(0.0));
+}

@@ -1,0 +1,22 @@
+// From pixels to the world and back.
+
+#include "view_gpu.h"
+
+layout(std140, binding = 0) uniform View {
+    ViewBlock view;
+};
+
+// Ray through a pixel (gl_FragCoord.xy), as long as it takes to get 1 m further along the view axis.
+vec3 view_ray(vec2 pixel) {
+    vec2 ndc = pixel * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
+    return view.ray_forward.xyz + ndc.x * view.ray_right.xyz + ndc.y * view.ray_up.xyz;
+}
+
+// Distance along the view axis [m] of a depth > 0: depth is reversed, the far plane infinite.
+float view_distance(float depth) {
+    return view.camera_ws.w / depth;
+}
+
+vec3 world_position(vec2 pixel, float depth) {
+    return view.camera_ws.xyz + view_ray(pixel) * view_distance(depth);
+}
