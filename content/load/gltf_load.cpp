@@ -7,6 +7,7 @@
 #include "content/load/gltf_node.h"
 #include "ecs/base/log.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 
@@ -14,8 +15,12 @@ namespace limn {
 
 namespace {
 
+constexpr std::size_t kMaxWarnings = 10;  ///< that are logged
+
+/// All meshes; the default material stays only where something uses it.
 Result<GltfParts> build_meshes(GltfDocument& document, GltfScene& scene) {
     const auto default_material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+    bool uses_default = false;
     GltfParts parts(document.model.meshes.size());
     for (std::size_t mesh = 0; mesh < parts.size(); ++mesh) {
         const std::vector<tinygltf::Primitive>& primitives = document.model.meshes[mesh].primitives;
@@ -25,14 +30,17 @@ Result<GltfParts> build_meshes(GltfDocument& document, GltfScene& scene) {
                 return data.error();
             }
             if (data->has_value()) {
+                const int material = primitives[i].material;
+                uses_default = uses_default || material < 0;
                 parts[mesh].push_back(
                     {static_cast<std::uint32_t>(scene.meshes.size()),
-                     primitives[i].material >= 0
-                         ? static_cast<std::uint32_t>(primitives[i].material)
-                         : default_material});
+                     material >= 0 ? static_cast<std::uint32_t>(material) : default_material});
                 scene.meshes.push_back(std::move(**data));
             }
         }
+    }
+    if (!uses_default) {
+        scene.materials.pop_back();
     }
     return parts;
 }
@@ -85,8 +93,12 @@ Result<GltfScene> load_gltf(const std::string& path, const GltfLimits& limits) {
     Result<GltfScene> scene =
         parse_gltf(*bytes, path, folder.empty() ? "." : folder.string(), limits);
     if (scene) {
-        for (const std::string& warning : scene->warnings) {
-            log_warn("{}", warning);
+        const std::size_t shown = std::min(scene->warnings.size(), kMaxWarnings);
+        for (std::size_t i = 0; i < shown; ++i) {
+            log_warn("{}", scene->warnings[i]);
+        }
+        if (scene->warnings.size() > shown) {
+            log_warn("{}: {} more warnings", path, scene->warnings.size() - shown);
         }
     }
     return scene;
