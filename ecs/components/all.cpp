@@ -8,11 +8,13 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
 
 namespace limn {
 
 void register_all_components() {
     register_component<Name>();
+    register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();
     register_component<PreviousWorldTransform>();
@@ -28,6 +30,7 @@ void register_all_components() {
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
 
+    register_resource<SiblingOrder>();
     register_resource<FrameTime>();
     register_resource<RandomSeed>();
     register_resource<Input>();

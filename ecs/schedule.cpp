@@ -1,0 +1,266 @@
+#include "ecs/schedule.h"
+
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace limn {
+
+namespace {
+
+/// What threads must be expected to save before a stage is handed to them [s].
+constexpr double kWorthThreads = 20e-6;
+/// Weight of the newest run in the expectation.
+constexpr double kNewest = 0.25;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::duration duration) {
+    return std::chrono::duration<double>(duration).count();
+}
+
+std::string names_of(const std::vector<ComponentId>& ids) {
+    std::string names;
+    for (const ComponentId id : ids) {
+        names += names.empty() ? "" : ", ";
+        names += component_info(id).name;
+    }
+    return names;
+}
+
+void add_part(std::string& line, std::string_view what, const std::string& names) {
+    if (!names.empty()) {
+        line += fmt::format("  {} {}", what, names);
+    }
+}
+
+std::string access_text(const SystemAccess& access) {
+    std::string line;
+    add_part(line, "reads", names_of(access.reads));
+    add_part(line, "writes", names_of(access.writes));
+    add_part(line, "uses", names_of(access.resource_reads));
+    add_part(line, "changes", names_of(access.resource_writes));
+    line += access.reads_all ? "  reads everything" : "";
+    line += access.commands ? "  commands" : "";
+    line += access.exclusive ? "  alone" : "";
+    return line;
+}
+
+}  // namespace
+
+Schedule& Schedule::add(System system) {
+    timings_.push_back({system.name(), 0, 0, 0});
+    expected_.push_back(0);
+    systems_.push_back(std::move(system));
+    is_built_ = false;
+    return *this;
+}
+
+Schedule& Schedule::sync() {
+    sync_points_.push_back(systems_.size());
+    is_built_ = false;
+    return *this;
+}
+
+void Schedule::reset_timings() {
+    for (SystemTiming& timing : timings_) {
+        timing = {timing.name, 0, 0, 0};
+    }
+}
+
+// ---- stages
+// ----------------------------------------------------------------------------------------
+
+void Schedule::build() const {
+    stages_.clear();
+    for (std::size_t i = 0; i < systems_.size(); ++i) {
+        const bool exclusive = systems_[i].access().exclusive;
+        const bool begins =
+            stages_.empty() || exclusive || stages_.back().is_exclusive
+            || std::find(sync_points_.begin(), sync_points_.end(), i) != sync_points_.end();
+        if (begins) {
+            Stage& stage = stages_.emplace_back();
+            stage.first = i;
+            stage.is_exclusive = exclusive;
+        }
+        ++stages_.back().count;
+    }
+    for (Stage& stage : stages_) {
+        build_stage(stage);
+    }
+    is_built_ = true;
+}
+
+void Schedule::build_stage(Stage& stage) const {
+    // after[i][j]: i comes after j, perhaps by way of others. An arrow is left out where such a way
+    // exists.
+    std::vector<std::vector<bool>> after(stage.count, std::vector<bool>(stage.count, false));
+    for (std::size_t i = 0; i < stage.count; ++i) {
+        std::vector<std::size_t>& waits_for = stage.waits_for.emplace_back();
+        for (std::size_t j = i; j-- > 0;) {
+            const SystemAccess& earlier = systems_[stage.first + j].access();
+            if (after[i][j] || !systems_[stage.first + i].access().conflicts_with(earlier)) {
+                continue;
+            }
+            waits_for.push_back(j);
+            after[i][j] = true;
+            for (std::size_t k = 0; k < j; ++k) {
+                after[i][k] = after[i][k] || after[j][k];
+            }
+        }
+        std::reverse(waits_for.begin(), waits_for.end());
+        stage.graph.add(waits_for);
+        stage.is_chain = stage.is_chain && (i == 0 || after[i][i - 1]);
+    }
+}
+
+bool Schedule::is_worth_threads(const Stage& stage) const {
+    if (stage.is_chain || thread_count() == 1) {
+        return false;
+    }
+    // Systems that wait for each other save nothing; the longest way through the stage takes its
+    // time anyway.
+    std::vector<double> ready(stage.count);
+    double total = 0;
+    double longest = 0;
+    for (std::size_t i = 0; i < stage.count; ++i) {
+        for (const std::size_t before : stage.waits_for[i]) {
+            ready[i] = std::max(ready[i], ready[before]);
+        }
+        ready[i] += expected_[stage.first + i];
+        total += expected_[stage.first + i];
+        longest = std::max(longest, ready[i]);
+    }
+    return always_parallel_ || total - longest > kWorthThreads;
+}
+
+// ---- running
+// ---------------------------------------------------------------------------------------
+
+void Schedule::run(World& world) {
+    if (!is_built_) {
+        build();
+    }
+    for (Stage& stage : stages_) {
+        // Buffers belong to systems that may have been moved since the stage was built.
+        stage.commands.clear();
+        for (std::size_t i = 0; i < stage.count; ++i) {
+            if (CommandBuffer* const buffer = systems_[stage.first + i].commands();
+                buffer != nullptr) {
+                stage.commands.push_back(buffer);
+            }
+        }
+        run_stage(world, stage);
+        apply(world, stage);
+    }
+}
+
+void Schedule::run_stage(World& world, const Stage& stage) {
+    versions_.resize(systems_.size());
+    for (std::size_t i = stage.first; i < stage.first + stage.count; ++i) {
+        versions_[i] = world.begin_run();
+        systems_[i].prepare(world);
+    }
+    if (stage.is_exclusive) {
+        run_timed(world, stage.first, versions_[stage.first]);
+    } else if (is_worth_threads(stage)) {
+        run_task_graph(stage.graph, [&](std::size_t task) {
+            run_timed(world, stage.first + task, versions_[stage.first + task]);
+        });
+    } else {
+        for (std::size_t i = stage.first; i < stage.first + stage.count; ++i) {
+            run_timed(world, i, versions_[i]);
+        }
+    }
+}
+
+void Schedule::run_timed(World& world, std::size_t system, std::uint32_t version) {
+    const Clock::time_point start = Clock::now();
+    systems_[system].run(world, version);
+    const double duration = seconds(Clock::now() - start);
+
+    SystemTiming& timing = timings_[system];
+    ++timing.runs;
+    timing.last = duration;
+    timing.mean += (duration - timing.mean) / static_cast<double>(timing.runs);
+    expected_[system] += (duration - expected_[system]) * (timing.runs == 1 ? 1.0 : kNewest);
+}
+
+void Schedule::apply(World& world, const Stage& stage) {
+    const bool any =
+        std::any_of(stage.commands.begin(), stage.commands.end(), [](const CommandBuffer* buffer) {
+            return !buffer->empty();
+        });
+    if (any) {
+        apply_commands(world, stage.commands);
+    }
+}
+
+// ---- printing
+// --------------------------------------------------------------------------------------
+
+std::string Schedule::to_text() const {
+    if (!is_built_) {
+        build();
+    }
+    std::size_t width = 0;
+    for (const System& system : systems_) {
+        width = std::max(width, system.name().size());
+    }
+    std::string text;
+    for (std::size_t number = 0; number < stages_.size(); ++number) {
+        const Stage& stage = stages_[number];
+        text += fmt::format("stage {}\n", number + 1);
+        for (std::size_t i = 0; i < stage.count; ++i) {
+            const System& system = systems_[stage.first + i];
+            const SystemTiming& timing = timings_[stage.first + i];
+            text += fmt::format("  {:<{}}", system.name(), width);
+            if (timing.runs > 0) {
+                text += fmt::format(
+                    "  {:9.3f} ms  mean {:9.3f} ms", timing.last * 1e3, timing.mean * 1e3);
+            }
+            text += access_text(system.access());
+            std::string before;
+            for (const std::size_t task : stage.waits_for[i]) {
+                before += before.empty() ? "" : ", ";
+                before += systems_[stage.first + task].name();
+            }
+            add_part(text, "after", before);
+            text += '\n';
+        }
+    }
+    return text;
+}
+
+std::string Schedule::to_dot() const {
+    if (!is_built_) {
+        build();
+    }
+    std::string dot = "digraph schedule {\n  rankdir=LR;\n  node [shape=box];\n";
+    for (std::size_t number = 0; number < stages_.size(); ++number) {
+        const Stage& stage = stages_[number];
+        dot += fmt::format(
+            "  subgraph cluster_{} {{\n    label=\"stage {}\";\n", number + 1, number + 1);
+        for (std::size_t i = stage.first; i < stage.first + stage.count; ++i) {
+            dot += fmt::format("    s{} [label=\"{}\"];\n", i, systems_[i].name());
+        }
+        dot += "  }\n";
+        for (std::size_t i = 0; i < stage.count; ++i) {
+            for (const std::size_t before : stage.waits_for[i]) {
+                dot += fmt::format("  s{} -> s{};\n", stage.first + before, stage.first + i);
+            }
+        }
+        if (number > 0) {
+            dot += fmt::format(
+                "  s{} -> s{} [style=dashed, label=\"sync\"];\n",
+                stages_[number - 1].first + stages_[number - 1].count - 1,
+                stage.first);
+        }
+    }
+    return dot + "}\n";
+}
+
+}  // namespace limn

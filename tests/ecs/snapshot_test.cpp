@@ -1,0 +1,409 @@
+#include "ecs/base/hash.h"
+#include "ecs/base/jobs.h"
+#include "ecs/components/all.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/snapshot.h"
+#include "ecs/world.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+namespace snapshot_test {
+
+using namespace limn;
+
+struct SnapGears {
+    std::vector<Entity> teeth;
+    std::string label = "none";
+};
+template <typename Visitor>
+void visit_fields(SnapGears& gears, Visitor&& visit) {
+    visit("teeth", gears.teeth);
+    visit("label", gears.label);
+}
+
+struct SnapMark {
+    int value = 0;
+};
+struct SnapSelected {};
+struct SnapCache {
+    std::vector<float> values;
+};
+struct SnapForgotten {
+    int value = 0;
+};
+struct SnapOpaque {
+    std::vector<float> values;
+};
+struct SnapScore {
+    std::uint64_t points = 0;
+};
+struct SnapEngine {
+    int value = 0;
+};
+
+void register_snapshot_types() {
+    register_all_components();
+    register_component<SnapGears>();
+    register_component<SnapMark>();
+    register_component<SnapSelected>();
+    register_resource<SnapScore>();
+}
+
+/// Tables, tags, strings, lists, sparse components, dead entities, resources of both kinds.
+void fill(World& world) {
+    register_snapshot_types();
+    for (int i = 0; i < 1500; ++i) {
+        world.create(
+            Transform{.position = {static_cast<float>(i), 0, 0}}, PointLight{.intensity = 5});
+    }
+    const Entity lamp = world.create(Transform{}, Name{"lamp"}, SnapCache{{1, 2}});
+    world.create(
+        SnapGears{{lamp, {}, lamp}, "a label that is longer than a small string"}, Teleport{});
+    std::vector<Entity> dead;
+    for (int i = 0; i < 40; ++i) {
+        dead.push_back(world.create(Transform{}));
+    }
+    for (std::size_t i = 0; i < dead.size(); i += 3) {
+        world.destroy(dead[i]);
+    }
+    world.add(lamp, SnapMark{42});
+    world.add(dead[1], SnapMark{43});
+    world.add(lamp, SnapSelected{});
+    world.insert_resource(SnapScore{1234567890123});
+    world.insert_resource(FrameTime{.frame = 77});
+    world.insert_resource(SnapEngine{5});
+}
+
+std::vector<std::byte> save(const World& world) {
+    Result<std::vector<std::byte>> bytes = save_snapshot(world);
+    REQUIRE_MESSAGE(bytes.ok(), (bytes ? "" : bytes.error().message));
+    return *bytes;
+}
+
+/// With a checksum that fits what was altered.
+void seal(std::vector<std::byte>& bytes) {
+    const std::uint64_t size = bytes.size() - 32;
+    const std::uint64_t checksum = hash_bytes(bytes.data() + 32, size);
+    std::memcpy(bytes.data() + 16, &size, 8);
+    std::memcpy(bytes.data() + 24, &checksum, 8);
+}
+
+/// The message of a restore that must fail and change nothing.
+std::string refusal(std::span<const std::byte> bytes) {
+    World world;
+    world.create(Transform{}, Name{"before"});
+    world.insert_resource(SnapScore{1});
+    const std::uint64_t before = state_hash(world);
+    const Status status = restore_snapshot(world, bytes);
+    CHECK_FALSE(status.ok());
+    CHECK(state_hash(world) == before);
+    return status ? "" : status.error().message;
+}
+
+}  // namespace snapshot_test
+
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapMark> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapSelected> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapCache> : DefaultTraits {
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+};
+
+using namespace limn;
+using namespace snapshot_test;
+
+TEST_CASE("snapshot: a restored world is the saved one: values, handles, order, resources") {
+    World world;
+    fill(world);
+    const std::vector<std::byte> bytes = save(world);
+
+    World restored;
+    REQUIRE(restore_snapshot(restored, bytes).ok());
+    CHECK(restored.entity_count() == world.entity_count());
+    CHECK(save(restored) == bytes);
+
+    std::vector<Entity> order;
+    std::vector<Entity> restored_order;
+    world.query<const Transform>().each(
+        [&](Entity entity, const Transform&) { order.push_back(entity); });
+    restored.query<const Transform>().each(
+        [&](Entity entity, const Transform&) { restored_order.push_back(entity); });
+    CHECK(order == restored_order);
+    world.each_entity([&](Entity entity) {
+        REQUIRE(restored.alive(entity));
+        CHECK(restored.has<Name>(entity) == world.has<Name>(entity));
+        CHECK(restored.has<SnapSelected>(entity) == world.has<SnapSelected>(entity));
+        if (const SnapMark* mark = world.find<const SnapMark>(entity); mark != nullptr) {
+            CHECK(restored.get<const SnapMark>(entity).value == mark->value);
+        }
+        if (const SnapGears* gears = world.find<const SnapGears>(entity); gears != nullptr) {
+            CHECK(restored.get<const SnapGears>(entity).teeth == gears->teeth);
+            CHECK(restored.get<const SnapGears>(entity).label == gears->label);
+        }
+        CHECK_FALSE(restored.has<SnapCache>(entity));  // never saved
+    });
+    CHECK(restored.resource<SnapScore>().points == 1234567890123);
+    CHECK(restored.resource<FrameTime>().frame == 77);
+    CHECK(restored.find_resource<SnapEngine>() == nullptr);  // not registered: not saved
+}
+
+TEST_CASE("snapshot: the restored world gives out the same handles from then on") {
+    World world;
+    fill(world);
+    World restored;
+    REQUIRE(restore_snapshot(restored, save(world)).ok());
+    for (int i = 0; i < 3000; ++i) {
+        const Entity a = world.create(Transform{});
+        const Entity b = restored.create(Transform{});
+        REQUIRE(a == b);
+        if (i % 2 == 0) {
+            world.destroy(a);
+            restored.destroy(b);
+        }
+    }
+}
+
+TEST_CASE("snapshot: rolling back undoes whatever happened since") {
+    World world;
+    fill(world);
+    const std::vector<std::byte> bytes = save(world);
+    const std::uint64_t before = state_hash(world);
+    std::vector<Entity> all;
+    world.each_entity([&](Entity entity) { all.push_back(entity); });
+    for (std::size_t i = 0; i < all.size(); i += 2) {
+        world.destroy(all[i]);
+    }
+    world.create_many(100, Transform{}, Name{"new"});
+    world.resource<SnapScore>().points = 0;
+    world.insert_resource(RandomSeed{5});
+    CHECK(state_hash(world) != before);
+    REQUIRE(restore_snapshot(world, bytes).ok());
+    CHECK(save(world) == bytes);
+    CHECK(world.find_resource<RandomSeed>() == nullptr);  // was not there
+    CHECK(world.resource<SnapEngine>().value == 5);       // is not part of it
+    CHECK(world.query<const Transform>().count() == 1500 + 1 + 26);
+}
+
+TEST_CASE("snapshot: observers see the old world go and the new one come") {
+    int added = 0;
+    int removed = 0;
+    World world;
+    fill(world);
+    const std::vector<std::byte> bytes = save(world);
+    world.on_add<PointLight>([&](World&, std::span<const Entity> entities) {
+        added += static_cast<int>(entities.size());
+    });
+    world.on_remove<PointLight>([&](World&, std::span<const Entity> entities) {
+        removed += static_cast<int>(entities.size());
+    });
+    REQUIRE(restore_snapshot(world, bytes).ok());
+    CHECK(removed == 1500);
+    CHECK(added == 1500);
+}
+
+TEST_CASE("snapshot: an empty world is saved and restored") {
+    World empty;
+    const std::vector<std::byte> bytes = save(empty);
+    World world;
+    fill(world);
+    REQUIRE(restore_snapshot(world, bytes).ok());
+    CHECK(world.entity_count() == 0);
+    CHECK(world.find_resource<SnapScore>() == nullptr);
+}
+
+TEST_CASE("snapshot: what cannot be saved is named") {
+    {
+        World world;
+        world.create(SnapForgotten{});
+        CHECK(
+            save_snapshot(world).error().message
+            == "component snap_forgotten: not registered, so it cannot be saved; register it, or "
+               "mark it as not saved");
+    }
+    {
+        register_component<SnapOpaque>();
+        World world;
+        world.create(SnapOpaque{});
+        CHECK(
+            save_snapshot(world).error().message
+            == "component snap_opaque: no known bytes to save; give it visit_fields, or mark it as "
+               "not saved");
+    }
+}
+
+TEST_CASE("snapshot: cut off at any byte, it is refused and changes nothing") {
+    World world;
+    register_snapshot_types();
+    const Entity e = world.create(Transform{}, Name{"x"});
+    world.create(SnapGears{{e}, "y"});
+    world.add(e, SnapMark{3});
+    world.insert_resource(SnapScore{4});
+    const std::vector<std::byte> bytes = save(world);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        std::vector<std::byte> cut(
+            bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+        CHECK_FALSE(refusal(cut).empty());
+        if (size >= 32) {
+            seal(cut);
+            CHECK_FALSE(refusal(cut).empty());
+        }
+    }
+    std::vector<std::byte> longer = bytes;
+    longer.push_back(std::byte{0});
+    CHECK(refusal(longer) == "snapshot: found 277 bytes after the header, expected 276");
+    seal(longer);
+    CHECK(refusal(longer) == "snapshot: 1 bytes too many");
+}
+
+TEST_CASE("snapshot: any altered byte is found out") {
+    World world;
+    register_snapshot_types();
+    world.create(Transform{}, Name{"x"});
+    const std::vector<std::byte> bytes = save(world);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (i >= 12 && i < 16) {
+            continue;  // reserved
+        }
+        std::vector<std::byte> altered = bytes;
+        altered[i] ^= std::byte{0x10};
+        CHECK_FALSE(refusal(altered).empty());
+    }
+    std::vector<std::byte> altered = bytes;
+    altered.back() ^= std::byte{1};
+    CHECK(refusal(altered) == "snapshot: altered: the checksum is wrong");
+    altered = bytes;
+    altered[8] = std::byte{9};
+    CHECK(refusal(altered) == "snapshot: found version 9, expected 1");
+    CHECK(refusal({}) == "snapshot: no snapshot: it does not begin with LIMNSNAP");
+}
+
+TEST_CASE("snapshot: any altered byte with a fitting checksum gives an error or a whole world") {
+    World world;
+    register_snapshot_types();
+    const Entity e = world.create(Transform{}, Name{"x"});
+    world.create(SnapGears{{e}, "y"}, PointLight{});
+    world.destroy(world.create());
+    world.add(e, SnapMark{3});
+    world.insert_resource(SnapScore{4});
+    const std::vector<std::byte> bytes = save(world);
+    int refused = 0;
+    for (std::size_t i = 32; i < bytes.size(); ++i) {
+        for (const int flip : {0x01, 0x80, 0xff}) {
+            std::vector<std::byte> altered = bytes;
+            altered[i] ^= static_cast<std::byte>(flip);
+            seal(altered);
+            World target;
+            const Status status = restore_snapshot(target, altered);
+            if (status) {
+                static_cast<void>(state_hash(target));
+                CHECK(save_snapshot(target).ok());
+                target.create(Transform{});
+            } else {
+                ++refused;
+                CHECK(target.entity_count() == 0);
+            }
+        }
+    }
+    CHECK(refused > 300);
+}
+
+TEST_CASE("snapshot: a component this program does not know, or knows differently, is named") {
+    World world;
+    register_snapshot_types();
+    world.create(Transform{});
+    std::vector<std::byte> bytes = save(world);
+    std::vector<std::byte> renamed = bytes;
+    const char name[] = "transform";
+    const auto at = std::search(
+        renamed.begin(),
+        renamed.end(),
+        reinterpret_cast<const std::byte*>(name),
+        reinterpret_cast<const std::byte*>(name) + 9);
+    REQUIRE(at != renamed.end());
+    *at = std::byte{'T'};
+    seal(renamed);
+    CHECK(refusal(renamed) == "snapshot: component Transform: unknown to this program");
+    at[9] ^= std::byte{1};
+    *at = std::byte{'t'};
+    seal(renamed);
+    CHECK(refusal(renamed) == "snapshot: component transform: was saved with other fields");
+}
+
+TEST_CASE(
+    "state hash: it does not depend on threads, nor on the order in which archetypes came to be") {
+    const int before = thread_count();
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        World world;
+        fill(world);
+        hashes.push_back(state_hash(world));
+    }
+    set_thread_count(before);
+    CHECK(hashes[0] == hashes[1]);
+    CHECK(hashes[0] == hashes[2]);
+
+    World a;
+    World b;
+    b.destroy(b.create(PointLight{}, Transform{}));  // an archetype more, and earlier
+    a.destroy(a.create(Name{}));
+    const Entity ea = a.create(Transform{});
+    const Entity eb = b.create(Transform{});
+    REQUIRE(ea == eb);
+    a.create(PointLight{}, Transform{});
+    b.create(Transform{}, PointLight{});
+    CHECK(state_hash(a) == state_hash(b));
+}
+
+TEST_CASE("state hash: everything that is state counts") {
+    const auto differs = [](auto change) {
+        World world;
+        fill(world);
+        const std::uint64_t before = state_hash(world);
+        change(world);
+        return state_hash(world) != before;
+    };
+    CHECK_FALSE(differs([](World&) {}));
+    CHECK(differs([](World& world) { world.create(); }));
+    CHECK(differs([](World& world) { world.create(Transform{}); }));
+    CHECK(differs([](World& world) {
+        world.query<Transform>().each(
+            [](Transform& t) { t.scale.z += t.position.x == 1100 ? 1e-6f : 0.0f; });
+    }));
+    CHECK(differs(
+        [](World& world) { world.query<Name>().each([](Name& name) { name.text += "s"; }); }));
+    CHECK(differs(
+        [](World& world) { world.query<SnapMark>().each([](SnapMark& mark) { ++mark.value; }); }));
+    CHECK(differs([](World& world) { world.add<SnapSelected>(world.create()); }));
+    CHECK(differs([](World& world) { world.resource<SnapScore>().points ^= 1; }));
+    // What is marked as not hashed, and resources nobody registered, are not.
+    CHECK_FALSE(differs(
+        [](World& world) { world.query<SnapCache>().each([](SnapCache& c) { c.values = {7}; }); }));
+    CHECK_FALSE(differs([](World& world) { world.resource<SnapEngine>().value = 9; }));
+}
+
+TEST_CASE("state hash: two entities that swap their rows are another state") {
+    World a;
+    World b;
+    const Entity first = a.create(Transform{});
+    a.create(Transform{.position = {1, 0, 0}});
+    b.create(Transform{});
+    b.create(Transform{.position = {1, 0, 0}});
+    CHECK(state_hash(a) == state_hash(b));
+    // Away and back: now it is the last row.
+    a.add(first, Name{});
+    a.remove<Name>(first);
+    CHECK(state_hash(a) != state_hash(b));
+}
