@@ -1,0 +1,106 @@
+#include "content/app/undo.h"
+
+#include "ecs/components/surface.h"
+#include "ecs/world.h"
+
+#include <utility>
+
+namespace limn {
+namespace {
+
+bool apply_to_component(World& world, const Edit& edit, const AnyComponent& value) {
+    if (!world.alive(edit.entity)) {
+        return false;
+    }
+    if (value.is_empty()) {
+        const AnyComponent& other = edit.before.is_empty() ? edit.after : edit.before;
+        world.remove(edit.entity, other.info().id);
+    } else {
+        world.add_copy(edit.entity, value.info().id, value.data());
+    }
+    return true;
+}
+
+bool apply_to_resource(World& world, const AnyComponent& value) {
+    if (value.is_empty()) {
+        return false;
+    }
+    const ComponentInfo& info = value.info();
+    void* const resource = world.find_resource(info.id);
+    if (resource == nullptr) {
+        return false;
+    }
+    info.ops.destroy(resource, 1);
+    info.ops.construct_copy(resource, value.data(), 1);
+    return true;
+}
+
+bool apply_to_material(World& world, std::uint32_t index, const AnyComponent& value) {
+    Assets* const assets = world.find_resource<Assets>();
+    if (assets == nullptr || index >= assets->materials.size() || value.is_empty()) {
+        return false;
+    }
+    assets->materials[index] = value.as<Material>();
+    ++assets->material_version;
+    return true;
+}
+
+}  // namespace
+
+bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value) {
+    switch (edit.kind) {
+    case EditKind::Component:
+        return apply_to_component(world, edit, value);
+    case EditKind::Resource:
+        return apply_to_resource(world, value);
+    case EditKind::Material:
+        return apply_to_material(world, edit.material, value);
+    }
+    return false;
+}
+
+void UndoStack::record(Edit edit) {
+    edits_.resize(done_);
+    edits_.push_back(std::move(edit));
+    if (edits_.size() > kMostEdits) {
+        edits_.erase(edits_.begin());
+    }
+    done_ = edits_.size();
+}
+
+void UndoStack::extend(AnyComponent after) {
+    LIMN_CHECK(done_ > 0 && done_ == edits_.size());
+    edits_.back().after = std::move(after);
+}
+
+std::string UndoStack::undo(World& world) {
+    while (done_ > 0) {
+        const Edit& edit = edits_[done_ - 1];
+        if (apply_edit_value(world, edit, edit.before)) {
+            --done_;
+            return edit.label;
+        }
+        --done_;
+        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
+    }
+    return {};
+}
+
+std::string UndoStack::redo(World& world) {
+    while (done_ < edits_.size()) {
+        const Edit& edit = edits_[done_];
+        if (apply_edit_value(world, edit, edit.after)) {
+            ++done_;
+            return edit.label;
+        }
+        edits_.erase(edits_.begin() + static_cast<std::ptrdiff_t>(done_));
+    }
+    return {};
+}
+
+void UndoStack::clear() {
+    edits_.clear();
+    done_ = 0;
+}
+
+}  // namespace limn

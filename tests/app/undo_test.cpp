@@ -1,0 +1,145 @@
+#include "content/app/undo.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/surface.h"
+#include "ecs/world.h"
+
+#include <doctest/doctest.h>
+
+namespace limn {
+namespace {
+
+PointLight bright(float intensity) {
+    PointLight light;
+    light.intensity = intensity;
+    return light;
+}
+
+/// Sets the light's intensity as the inspector does.
+void edit_intensity(World& world, UndoStack& stack, Entity lamp, float intensity) {
+    Edit edit;
+    edit.entity = lamp;
+    edit.before = AnyComponent::of(world.get<const PointLight>(lamp));
+    world.get<PointLight>(lamp).intensity = intensity;
+    edit.after = AnyComponent::of(world.get<const PointLight>(lamp));
+    edit.label = "lamp: point_light.intensity";
+    stack.record(std::move(edit));
+}
+
+}  // namespace
+
+TEST_CASE("undo: goes back edit by edit and forth again") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(1));
+    edit_intensity(world, stack, lamp, 2);
+    edit_intensity(world, stack, lamp, 3);
+
+    CHECK(stack.undo(world) == "lamp: point_light.intensity");
+    CHECK(world.get<const PointLight>(lamp).intensity == 2);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(lamp).intensity == 1);
+    CHECK(stack.undo(world).empty());
+    stack.redo(world);
+    stack.redo(world);
+    CHECK(world.get<const PointLight>(lamp).intensity == 3);
+    CHECK(stack.redo(world).empty());
+}
+
+TEST_CASE("undo: a new edit forgets what was undone") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(1));
+    edit_intensity(world, stack, lamp, 2);
+    stack.undo(world);
+    edit_intensity(world, stack, lamp, 5);
+    CHECK(stack.redo_count() == 0);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(lamp).intensity == 1);
+}
+
+TEST_CASE("undo: a drag that was extended is taken back in one step") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(1));
+    edit_intensity(world, stack, lamp, 2);
+    stack.extend(AnyComponent::of(bright(9)));
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(lamp).intensity == 1);
+    stack.redo(world);
+    CHECK(world.get<const PointLight>(lamp).intensity == 9);
+}
+
+TEST_CASE("undo: a component that was added goes, one that was removed comes back") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(4));
+    Edit removal;
+    removal.entity = lamp;
+    removal.before = AnyComponent::of(world.get<const PointLight>(lamp));
+    world.remove<PointLight>(lamp);
+    stack.record(std::move(removal));
+
+    stack.undo(world);
+    REQUIRE(world.has<PointLight>(lamp));
+    CHECK(world.get<const PointLight>(lamp).intensity == 4);
+    stack.redo(world);
+    CHECK_FALSE(world.has<PointLight>(lamp));
+}
+
+TEST_CASE("undo: edits of an entity that is gone are passed over") {
+    World world;
+    UndoStack stack;
+    const Entity kept = world.create(bright(1));
+    const Entity gone = world.create(bright(1));
+    edit_intensity(world, stack, kept, 2);
+    edit_intensity(world, stack, gone, 3);
+    world.destroy(gone);
+    stack.undo(world);
+    CHECK(world.get<const PointLight>(kept).intensity == 1);
+    CHECK(stack.redo_count() == 1);
+}
+
+TEST_CASE("undo: resources and materials are put back too") {
+    World world;
+    UndoStack stack;
+    world.insert_resource(Exposure{});
+    world.insert_resource(Assets{}).materials.emplace_back();
+
+    Edit exposure;
+    exposure.kind = EditKind::Resource;
+    exposure.before = AnyComponent::of(world.resource<Exposure>());
+    world.resource<Exposure>().ev = 3;
+    exposure.after = AnyComponent::of(world.resource<Exposure>());
+    stack.record(std::move(exposure));
+
+    Assets& assets = world.resource<Assets>();
+    Edit material;
+    material.kind = EditKind::Material;
+    material.before = AnyComponent::of(assets.materials[0]);
+    assets.materials[0].roughness = 0.1f;
+    material.after = AnyComponent::of(assets.materials[0]);
+    stack.record(std::move(material));
+
+    const std::uint64_t version = assets.material_version;
+    stack.undo(world);
+    CHECK(assets.materials[0].roughness == 0.5f);
+    CHECK(assets.material_version > version);  // or the renderer would not see it
+    stack.undo(world);
+    CHECK(world.resource<Exposure>().ev == 0);
+}
+
+TEST_CASE("undo: remembers a thousand edits, not more") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(bright(0));
+    for (int i = 1; i <= 1005; ++i) {
+        edit_intensity(world, stack, lamp, static_cast<float>(i));
+    }
+    CHECK(stack.undo_count() == UndoStack::kMostEdits);
+    while (!stack.undo(world).empty()) {
+    }
+    CHECK(world.get<const PointLight>(lamp).intensity == 5);
+}
+
+}  // namespace limn
