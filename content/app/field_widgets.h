@@ -1,0 +1,32 @@
+#pragma once
+
+#include "ecs/entity.h"
+#include "ecs/reflect.h"
+
+#include <string>
+
+namespace limn {
+
+class World;
+class Hud;
+
+// ImGui widgets for the fields of any component, from its reflection: sliders where a range is
+// known, drags where it is not, degrees for radians, sRGB color pickers for linear colors, combos
+// for enums and assets, yaw-pitch-roll for quaternions. Values stay within their range.
+
+/// What happened to the fields drawn.
+struct FieldChange {
+    bool changed = false;    ///< a value is new since the last frame
+    const char* field = "";  ///< name of the last field that changed; lives as long as the program
+    Entity wanted;           ///< an entity whose link was clicked, or null
+};
+
+/// Draws the fields of `object` as rows of name and widget, and edits it in place. `world` gives
+/// names to entities and assets.
+FieldChange
+edit_fields(const Hud& hud, const World& world, const ComponentInfo& info, void* object);
+
+/// "lamp" or "entity 12".
+[[nodiscard]] std::string entity_label(const World& world, Entity entity);
+
+}  // namespace limn

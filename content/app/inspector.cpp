@@ -1,0 +1,399 @@
+#include "content/app/inspector.h"
+
+#include "content/app/field_widgets.h"
+#include "content/app/hud.h"
+#include "ecs/archetype.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr double kRowsLife = 0.5;  // [s] after which the tree is built anew
+
+/// Whether `text` contains `part`, capital letters or not.
+bool contains(std::string_view text, std::string_view part) {
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a))
+               == std::tolower(static_cast<unsigned char>(b));
+    };
+    return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+/// Has a value that may be copied, shown and put back.
+bool is_editable(const ComponentInfo& info) {
+    return !info.fields.empty() && info.ops.construct_copy != nullptr;
+}
+
+void draw_bar(float share, const char* text) {
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImGui::GetColorU32(ImGuiCol_HeaderActive));
+    ImGui::ProgressBar(share, {-1, 0}, text);
+    ImGui::PopStyleColor();
+}
+
+}  // namespace
+
+void Inspector::reset() {
+    undo_.clear();
+    selected_ = {};
+    rows_.clear();
+    rows_built_at_ = -1.0;
+    collapsed_.clear();
+    dragging_.clear();
+    material_ = 0;
+}
+
+void Inspector::draw(const Hud& hud, World& world) {
+    if (!ImGui::IsAnyItemActive()) {
+        dragging_.clear();
+    }
+    if (!open) {
+        return;
+    }
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float margin = 14.0f * hud.scale();
+    ImGui::SetNextWindowPos({display.x - margin, margin}, ImGuiCond_FirstUseEver, {1, 0});
+    ImGui::SetNextWindowSize(
+        {std::min(390.0f * hud.scale(), 0.5f * display.x), display.y - 2 * margin},
+        ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Inspector", &open, ImGuiWindowFlags_NoCollapse)
+        && ImGui::BeginTabBar("##tabs")) {
+        if (ImGui::BeginTabItem("Entities")) {
+            draw_entities(hud, world);
+            ImGui::EndTabItem();
+        }
+        if (ImGui::BeginTabItem("Resources")) {
+            draw_resources(hud, world);
+            ImGui::EndTabItem();
+        }
+        if (ImGui::BeginTabItem("Materials")) {
+            draw_materials(hud, world);
+            ImGui::EndTabItem();
+        }
+        if (ImGui::BeginTabItem("Storage")) {
+            draw_storage(hud, world);
+            ImGui::EndTabItem();
+        }
+        ImGui::EndTabBar();
+    }
+    ImGui::End();
+}
+
+void Inspector::draw_entities(const Hud& hud, World& world) {
+    const bool was_empty = search_.empty();
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::InputTextWithHint("##search", "search by name or component", &search_)
+        || was_empty != search_.empty()) {
+        rows_built_at_ = -1.0;
+    }
+    const bool has_selected = world.alive(selected_);
+    const float room = ImGui::GetContentRegionAvail().y;
+    ImGui::BeginChild("##tree", {0, has_selected ? 0.36f * room : 0.0f});
+    draw_tree(hud, world);
+    ImGui::EndChild();
+    if (has_selected) {
+        ImGui::Separator();
+        ImGui::BeginChild("##selected");
+        draw_selected(hud, world);
+        ImGui::EndChild();
+    }
+}
+
+void Inspector::add_rows(const Hierarchy& tree, Entity entity, int depth) {
+    const std::span<const Entity> children = tree.children_of(entity);
+    const bool collapsed = collapsed_.contains(entity);
+    rows_.push_back({entity, depth, !children.empty(), collapsed});
+    if (collapsed) {
+        return;
+    }
+    for (const Entity child : children) {
+        add_rows(tree, child, depth + 1);
+    }
+}
+
+void Inspector::rebuild_rows(World& world) {
+    rows_.clear();
+    const Hierarchy& tree = hierarchy(world);
+    world.each_entity([&](Entity entity) {
+        if (search_.empty()) {
+            if (parent_of(world, entity).is_null()) {
+                add_rows(tree, entity, 0);
+            }
+            return;
+        }
+        bool found = contains(entity_label(world, entity), search_);
+        for (const ComponentId id : world.components_of(entity)) {
+            found = found || contains(component_info(id).name, search_);
+        }
+        if (found) {
+            rows_.push_back({.entity = entity});
+        }
+    });
+}
+
+void Inspector::draw_tree(const Hud& hud, World& world) {
+    if (rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLife) {
+        rebuild_rows(world);
+        rows_built_at_ = ImGui::GetTime();
+    }
+    if (reveal_) {
+        const auto row = std::find_if(
+            rows_.begin(), rows_.end(), [this](const Row& r) { return r.entity == selected_; });
+        const float line = ImGui::GetTextLineHeightWithSpacing();
+        if (row != rows_.end()) {
+            ImGui::SetScrollY(static_cast<float>(row - rows_.begin()) * line - 3 * line);
+        }
+        reveal_ = false;
+    }
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(rows_.size()), ImGui::GetTextLineHeightWithSpacing());
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const Row& row = rows_[static_cast<std::size_t>(i)];
+            ImGui::PushID(i);
+            const float indent = static_cast<float>(row.depth) * 14.0f * hud.scale() + 1.0f;
+            ImGui::Indent(indent);
+            if (row.has_children) {
+                ImGui::TextColored(kHudDim, row.collapsed ? "\u25b8" : "\u25be");
+                if (ImGui::IsItemClicked()) {
+                    if (!collapsed_.erase(row.entity)) {
+                        collapsed_.insert(row.entity);
+                    }
+                    rows_built_at_ = -1.0;
+                }
+            } else {
+                ImGui::TextColored(kHudDim, " ");
+            }
+            ImGui::SameLine(0, 4 * hud.scale());
+            const bool alive = world.alive(row.entity);
+            const std::string label = alive ? entity_label(world, row.entity) : "gone";
+            if (ImGui::Selectable(label.c_str(), row.entity == selected_) && alive) {
+                selected_ = row.entity;
+            }
+            ImGui::Unindent(indent);
+            ImGui::PopID();
+        }
+    }
+    if (rows_.empty()) {
+        ImGui::TextDisabled("nothing of that name");
+    }
+}
+
+void Inspector::draw_selected(const Hud& hud, World& world) {
+    ImGui::PushFont(hud.fonts().title);
+    ImGui::TextUnformatted(entity_label(world, selected_).c_str());
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ImGui::TextColored(kHudDim, "%u v%u", selected_.index, selected_.generation);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * hud.scale());
+    draw_add_button(world);
+    for (const ComponentId id : world.components_of(selected_)) {
+        if (!world.alive(selected_)) {
+            return;
+        }
+        draw_component(hud, world, component_info(id));
+    }
+}
+
+void Inspector::draw_add_button(World& world) {
+    if (ImGui::Button("Add ...", {-1, 0})) {
+        ImGui::OpenPopup("##add");
+    }
+    if (!ImGui::BeginPopup("##add")) {
+        return;
+    }
+    for (const ComponentInfo* info : all_components()) {
+        if (world.has(selected_, info->id) || info->ops.construct_default == nullptr) {
+            continue;
+        }
+        if (ImGui::Selectable(info->name.c_str())) {
+            Edit edit;
+            edit.entity = selected_;
+            edit.after = AnyComponent(*info);
+            edit.label = fmt::format("{}: add {}", entity_label(world, selected_), info->name);
+            apply_edit_value(world, edit, edit.after);
+            undo_.record(std::move(edit));
+        }
+    }
+    ImGui::EndPopup();
+}
+
+void Inspector::draw_component(const Hud& hud, World& world, const ComponentInfo& info) {
+    ImGui::PushID(static_cast<int>(info.id));
+    bool keep = true;
+    const bool editable = is_editable(info);
+    const ImGuiTreeNodeFlags flags =
+        info.is_registered && editable ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+    if (info.is_tag || !editable) {
+        ImGui::CollapsingHeader(info.name.c_str(), &keep, flags | ImGuiTreeNodeFlags_Leaf);
+    } else if (ImGui::CollapsingHeader(info.name.c_str(), &keep, flags)) {
+        Edit edit;
+        edit.entity = selected_;
+        const void* value = std::as_const(world).find(selected_, info.id);
+        const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
+        edit_copy(hud, world, std::move(edit), info, value, place);
+    }
+    if (!keep && info.ops.construct_copy != nullptr) {
+        Edit edit;
+        edit.entity = selected_;
+        edit.before = AnyComponent(info, std::as_const(world).find(selected_, info.id));
+        edit.label = fmt::format("{}: remove {}", entity_label(world, selected_), info.name);
+        world.remove(selected_, info.id);
+        undo_.record(std::move(edit));
+    }
+    ImGui::PopID();
+}
+
+void Inspector::edit_copy(
+    const Hud& hud,
+    World& world,
+    Edit edit,
+    const ComponentInfo& info,
+    const void* value,
+    const std::string& place) {
+    edit.before = AnyComponent(info, value);
+    AnyComponent after = edit.before;
+    const FieldChange change = edit_fields(hud, world, info, after.data());
+    if (!change.wanted.is_null()) {
+        select(change.wanted);
+    }
+    if (!change.changed) {
+        return;
+    }
+    apply_edit_value(world, edit, after);
+    edit.label = fmt::format("{}.{}", place, change.field);
+    if (dragging_ == edit.label && undo_.redo_count() == 0 && undo_.undo_count() > 0) {
+        undo_.extend(std::move(after));
+        return;
+    }
+    dragging_ = ImGui::IsAnyItemActive() ? edit.label : "";
+    edit.after = std::move(after);
+    undo_.record(std::move(edit));
+}
+
+void Inspector::draw_resources(const Hud& hud, World& world) {
+    ImGui::BeginChild("##resources");
+    for (const ComponentId id : world.resources()) {
+        const ComponentInfo& info = component_info(id);
+        ImGui::PushID(static_cast<int>(id));
+        if (!is_editable(info)) {
+            ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_Leaf);
+        } else if (ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            Edit edit;
+            edit.kind = EditKind::Resource;
+            edit_copy(
+                hud,
+                world,
+                std::move(edit),
+                info,
+                std::as_const(world).find_resource(id),
+                info.name);
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+}
+
+void Inspector::draw_materials(const Hud& hud, World& world) {
+    const Assets* assets = std::as_const(world).find_resource<Assets>();
+    if (assets == nullptr || assets->materials.empty()) {
+        ImGui::TextDisabled("this level has no materials");
+        return;
+    }
+    const std::uint32_t count = static_cast<std::uint32_t>(assets->materials.size());
+    material_ = std::min(material_, count - 1);
+    ImGui::BeginChild("##list", {0, 0.32f * ImGui::GetContentRegionAvail().y});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Material& material = assets->materials[i];
+        ImGui::PushID(static_cast<int>(i));
+        const ImVec4 swatch = {
+            std::sqrt(material.base_color.x),
+            std::sqrt(material.base_color.y),
+            std::sqrt(material.base_color.z),
+            1.0f};
+        const float side = ImGui::GetTextLineHeight();
+        ImGui::ColorButton("##swatch", swatch, ImGuiColorEditFlags_NoTooltip, {side, side});
+        ImGui::SameLine();
+        const std::string label =
+            material.name.empty() ? fmt::format("material {}", i) : material.name;
+        if (ImGui::Selectable(label.c_str(), i == material_)) {
+            material_ = i;
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+    ImGui::Separator();
+    ImGui::BeginChild("##material");
+    Edit edit;
+    edit.kind = EditKind::Material;
+    edit.material = material_;
+    const Material& material = assets->materials[material_];
+    ImGui::PushID(static_cast<int>(material_));
+    edit_copy(hud, world, std::move(edit), component_info<Material>(), &material, material.name);
+    ImGui::PopID();
+    ImGui::EndChild();
+}
+
+void Inspector::draw_storage(const Hud& hud, const World& world) {
+    std::size_t used = 0;
+    std::size_t bytes = 0;
+    for (const std::unique_ptr<Archetype>& archetype : world.archetypes()) {
+        used += archetype->size() > 0 ? 1 : 0;
+        bytes += archetype->committed();
+    }
+    ImGui::Text("%zu entities in %zu archetypes", world.entity_count(), used);
+    ImGui::TextColored(kHudDim, "%.1f MiB of columns", static_cast<double>(bytes) / (1 << 20));
+    ImGui::Separator();
+    ImGui::BeginChild("##archetypes");
+    for (const std::unique_ptr<Archetype>& archetype : world.archetypes()) {
+        if (archetype->size() == 0) {
+            continue;
+        }
+        ImGui::PushID(static_cast<int>(archetype->index()));
+        std::string names;
+        for (const ComponentId id : archetype->components()) {
+            names += (names.empty() ? "" : "  ") + component_info(id).name;
+        }
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextUnformatted(names.c_str());
+        ImGui::PopTextWrapPos();
+        const std::uint32_t rows = archetype->chunk_count() * kChunkRows;
+        std::array<char, 96> text;
+        *fmt::format_to_n(
+             text.data(),
+             text.size() - 1,
+             "{} rows, {} chunks, {:.0f} KiB",
+             archetype->size(),
+             archetype->chunk_count(),
+             static_cast<double>(archetype->committed()) / 1024.0)
+             .out = '\0';
+        ImGui::PushFont(hud.fonts().numbers);
+        draw_bar(
+            static_cast<float>(archetype->size()) / static_cast<float>(std::max(rows, 1u)),
+            text.data());
+        ImGui::PopFont();
+        ImGui::Spacing();
+        ImGui::PopID();
+    }
+    for (const SparseSet* set : world.sparse_sets()) {
+        if (set->size() > 0) {
+            ImGui::Text("%s (sparse)", set->info().name.c_str());
+            ImGui::SameLine();
+            ImGui::TextColored(kHudDim, "%u values", static_cast<unsigned>(set->size()));
+        }
+    }
+    ImGui::EndChild();
+}
+
+}  // namespace limn

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "content/app/undo.h"
+#include "ecs/any_component.h"
+#include "ecs/entity.h"
+
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+namespace limn {
+
+class Hierarchy;
+class Hud;
+class World;
+
+// F2: the world, open for changes. Entities as a tree with search, every component of the selected
+// one, resources, materials, and how full the archetypes' chunks are. Nothing is touched until a
+// value really changes, so that looking costs no change versions and no uploads.
+
+class Inspector {
+  public:
+    /// The panel; edits go to `world` at once and onto the undo stack.
+    void draw(const Hud& hud, World& world);
+
+    void select(Entity entity) {
+        selected_ = entity;
+        reveal_ = true;
+    }
+    [[nodiscard]] Entity selected() const { return selected_; }
+    [[nodiscard]] UndoStack& undo_stack() { return undo_; }
+    /// Another world: nothing is selected, nothing can be undone.
+    void reset();
+
+    bool open = false;
+
+  private:
+    struct Row {
+        Entity entity;
+        int depth = 0;
+        bool has_children = false;
+        bool collapsed = false;
+    };
+
+    void draw_entities(const Hud& hud, World& world);
+    void draw_tree(const Hud& hud, World& world);
+    void draw_selected(const Hud& hud, World& world);
+    void draw_component(const Hud& hud, World& world, const ComponentInfo& info);
+    void draw_add_button(World& world);
+    void draw_resources(const Hud& hud, World& world);
+    void draw_materials(const Hud& hud, World& world);
+    void draw_storage(const Hud& hud, const World& world);
+
+    void rebuild_rows(World& world);
+    void add_rows(const Hierarchy& tree, Entity entity, int depth);
+    /// Edits a copy of the value; on a change records it under `place` and gives it to the world.
+    void edit_copy(
+        const Hud& hud,
+        World& world,
+        Edit edit,
+        const ComponentInfo& info,
+        const void* value,
+        const std::string& place);
+
+    UndoStack undo_;
+    Entity selected_;
+    std::string search_;
+    std::vector<Row> rows_;
+    std::unordered_set<Entity> collapsed_;
+    double rows_built_at_ = -1.0;  // [s]
+    bool reveal_ = false;          // scroll to the selected entity
+    std::uint32_t material_ = 0;
+    std::string dragging_;  // label of the edit that goes on while the mouse is held
+};
+
+}  // namespace limn
