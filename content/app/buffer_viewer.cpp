@@ -1,0 +1,263 @@
+#include "content/app/buffer_viewer.h"
+
+#include "content/app/hud.h"
+#include "render/gpu/device.h"
+#include "render/gpu/framebuffer.h"
+#include "render/gpu/readback.h"
+#include "render/gpu/shader_library.h"
+#include "render/graph/frame_graph.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace limn {
+namespace {
+
+constexpr int kAllChannels = 4;
+constexpr const char* kChannelNames[] = {"R", "G", "B", "A", "RGB"};
+
+/// Why a texture cannot be shown, or "".
+const char* why_not(const gpu::Texture& texture) {
+    const gpu::FormatInfo& format = gpu::format_info(texture.desc().format);
+    if (texture.target() != GL_TEXTURE_2D) {
+        return "only plain 2D textures are shown";
+    }
+    if (format.integer) {
+        return "integer textures are not shown";
+    }
+    return "";
+}
+
+bool is_unsigned_byte(GLenum format) {
+    return gpu::format_info(format).pixel_type == GL_UNSIGNED_BYTE;
+}
+
+/// One texel, zeros for what the format has not.
+Vec4 read_texel(const gpu::Texture& texture, int x, int y) {
+    std::array<float, 4> texel = {0, 0, 0, 0};
+    const bool depth = gpu::format_info(texture.desc().format).depth;
+    glGetTextureSubImage(
+        texture.id(),
+        0,
+        x,
+        y,
+        0,
+        1,
+        1,
+        1,
+        depth ? GL_DEPTH_COMPONENT : GL_RGBA,
+        GL_FLOAT,
+        sizeof(texel),
+        texel.data());
+    return {texel[0], texel[1], texel[2], texel[3]};
+}
+
+}  // namespace
+
+Result<BufferViewer> BufferViewer::create(gpu::Device& device) {
+    const Result<gpu::Pipeline> pipeline = gpu::create_pipeline(
+        device,
+        {.vertex = "fullscreen.vert", .fragment = "buffer_viewer.frag"},
+        {.depth = {.test = false, .write = false}});
+    if (!pipeline) {
+        return pipeline.error();
+    }
+    return BufferViewer(*pipeline);
+}
+
+void BufferViewer::choose(std::string name) {
+    chosen_ = std::move(name);
+    fit_wanted_ = true;
+    shown_ = false;
+}
+
+void BufferViewer::before_frame(FrameGraph& graph) {
+    const std::string_view wanted = open ? std::string_view(chosen_) : std::string_view();
+    if (kept_ == wanted) {
+        return;
+    }
+    if (!kept_.empty()) {
+        graph.forget_named(kept_);
+    }
+    kept_ = wanted;
+    if (!kept_.empty()) {
+        graph.keep_named(kept_);
+    }
+}
+
+void BufferViewer::after_frame(gpu::Device& device, FrameGraph& graph) {
+    shown_ = false;
+    if (!open) {
+        return;
+    }
+    const TextureId id = graph.find(chosen_);
+    const gpu::Texture* texture = id.valid() ? graph.texture(id) : nullptr;
+    cannot_ = texture == nullptr ? "not part of this frame" : why_not(*texture);
+    if (cannot_[0] != '\0') {
+        return;
+    }
+    chosen_desc_ = texture->desc();
+    if (fit_wanted_) {
+        fit_range(*texture);
+    }
+    const gpu::TextureDesc wanted = {
+        .format = GL_RGBA8, .width = texture->width(), .height = texture->height()};
+    if (!view_ || !(view_.desc() == wanted)) {
+        view_ = gpu::Texture("buffer viewer", wanted);
+    }
+    const gpu::Attachment target = {.texture = &view_};
+    const gpu::Framebuffer framebuffer("buffer viewer", {&target, 1});
+    device.bind_framebuffer(framebuffer);
+    device.use(pipeline_);
+    pipeline_.program->set("shown_range", range_);
+    pipeline_.program->set("shown_channel", channel_);
+    pipeline_.program->set("encode_srgb", srgb_ ? 1 : 0);
+    device.bind_texture(0, *texture);
+    device.draw_fullscreen();
+    shown_ = true;
+}
+
+void BufferViewer::fit_range(const gpu::Texture& texture) {
+    fit_wanted_ = false;
+    const gpu::FormatInfo& format = gpu::format_info(texture.desc().format);
+    channel_ = format.channels >= 3 ? kAllChannels : 0;
+    srgb_ = !is_unsigned_byte(texture.desc().format) && format.channels >= 3;
+    range_ = {0, 1};
+    if (is_unsigned_byte(texture.desc().format)) {
+        return;
+    }
+    // 1st and 99th percentile of what is finite, so that one bright spot does not make all else
+    // black.
+    const gpu::FloatImage image = gpu::read_floats(texture);
+    std::vector<float> values;
+    values.reserve(image.pixels.size());
+    const int channels = std::min(image.channels, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const bool counts =
+            static_cast<int>(i % static_cast<std::size_t>(image.channels)) < channels;
+        if (counts && std::isfinite(image.pixels[i]) && std::abs(image.pixels[i]) < 1e9f) {
+            values.push_back(image.pixels[i]);
+        }
+    }
+    if (values.empty()) {
+        return;
+    }
+    const auto percentile = [&values](std::size_t share) {
+        const auto place =
+            values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * share / 100);
+        std::nth_element(values.begin(), place, values.end());
+        return *place;
+    };
+    const float low = percentile(1);
+    const float high = percentile(99);
+    // Symmetric for what has a sign, from zero for what has none.
+    range_ = low < 0.0f ? Vec2(-std::max(-low, high), std::max(-low, high)) : Vec2(0.0f, high);
+    srgb_ = srgb_ && low >= 0.0f;
+    if (range_.y - range_.x < 1e-12f) {
+        range_ = {0, 1};
+    }
+}
+
+void BufferViewer::draw(const Hud& hud, FrameGraph& graph) {
+    if (!open) {
+        return;
+    }
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float width = std::min(0.56f * display.x, 900.0f * hud.scale());
+    const float height = std::min(0.52f * display.y, 500.0f * hud.scale());
+    ImGui::SetNextWindowSize({width, height}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos(
+        {0.5f * display.x, display.y - 14.0f * hud.scale()}, ImGuiCond_FirstUseEver, {0.5f, 1.0f});
+    if (ImGui::Begin("Buffers", &open, ImGuiWindowFlags_NoCollapse)) {
+        ImGui::BeginChild("##names", {200.0f * hud.scale(), 0});
+        draw_list(hud, graph);
+        ImGui::EndChild();
+        ImGui::SameLine();
+        ImGui::BeginChild("##picture");
+        draw_mapping(hud);
+        draw_picture(hud, graph);
+        ImGui::EndChild();
+    }
+    ImGui::End();
+}
+
+void BufferViewer::draw_list(const Hud& hud, FrameGraph& graph) {
+    ImGui::PushFont(hud.fonts().numbers);
+    std::array<char, 128> label;
+    for (const std::string_view name : graph.texture_names()) {
+        *fmt::format_to_n(label.data(), label.size() - 1, "{}", name).out = '\0';
+        if (ImGui::Selectable(label.data(), name == chosen_) && name != chosen_) {
+            choose(std::string(name));
+        }
+    }
+    ImGui::PopFont();
+}
+
+void BufferViewer::draw_mapping(const Hud& hud) {
+    for (int channel = 0; channel <= kAllChannels; ++channel) {
+        if (channel > 0) {
+            ImGui::SameLine();
+        }
+        ImGui::RadioButton(kChannelNames[channel], &channel_, channel);
+    }
+    ImGui::SameLine(0, 16 * hud.scale());
+    ImGui::Checkbox("linear light", &srgb_);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 64 * hud.scale());
+    const float speed = std::max(std::abs(range_.y - range_.x) * 0.005f, 1e-6f);
+    ImGui::DragFloatRange2(
+        "##range", &range_.x, &range_.y, speed, 0, 0, "black %.4g", "white %.4g");
+    if (range_.y <= range_.x) {
+        range_.y = range_.x + 1e-6f;
+    }
+    ImGui::SameLine();
+    fit_wanted_ = ImGui::Button("Fit", {-1, 0}) || fit_wanted_;
+}
+
+void BufferViewer::draw_picture(const Hud& hud, FrameGraph& graph) {
+    if (!shown_) {
+        ImGui::TextColored(kHudDim, "%s", cannot_);
+        return;
+    }
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const float aspect = static_cast<float>(view_.width()) / static_cast<float>(view_.height());
+    const float width = std::max(std::min(room.x, (room.y - line) * aspect), 16.0f);
+    const ImVec2 size = {width, width / aspect};
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Image(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(view_.id())),
+        size,
+        {0, 1},
+        {1, 0});
+
+    const gpu::FormatInfo& format = gpu::format_info(chosen_desc_.format);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const int x = static_cast<int>((mouse.x - at.x) / size.x * static_cast<float>(view_.width()));
+    const int y = static_cast<int>((mouse.y - at.y) / size.y * static_cast<float>(view_.height()));
+    const bool inside =
+        ImGui::IsItemHovered() && x >= 0 && y >= 0 && x < view_.width() && y < view_.height();
+    const gpu::Texture* texture = graph.texture(graph.find(chosen_));
+    ImGui::PushFont(hud.fonts().numbers);
+    if (inside && texture != nullptr) {
+        const Vec4 texel = read_texel(*texture, x, view_.height() - 1 - y);
+        ImGui::TextColored(
+            kHudAccent,
+            "(%d, %d)  %.5g  %.5g  %.5g  %.5g",
+            x,
+            y,
+            texel.x,
+            texel.y,
+            texel.z,
+            texel.w);
+    } else {
+        ImGui::TextColored(kHudDim, "%d x %d  %s", view_.width(), view_.height(), format.name);
+    }
+    ImGui::PopFont();
+}
+
+}  // namespace limn
