@@ -1,0 +1,58 @@
+#pragma once
+
+#include "content/app/frame_statistics.h"
+#include "render/render_frame.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+class FrameGraph;
+class Hud;
+class Schedule;
+class World;
+
+/// What the profiler is told once a frame.
+struct FrameCost {
+    double frame_ms = 0.0;     ///< from picture to picture
+    double simulate_ms = 0.0;  ///< all systems of all steps of the frame
+    double render_ms = 0.0;    ///< CPU time of drawing
+    FrameStatistics statistics;
+};
+
+// F3: where the time of a frame goes. Systems and passes with their times on the CPU and the GPU, a
+// graph of the last seconds, counts and memory. Collecting costs a few additions a frame.
+
+class ProfilerPanel {
+  public:
+    void add_frame(const FrameCost& cost);
+    void
+    draw(const Hud& hud, const World& world, const Schedule& schedule, const FrameGraph& graph);
+
+    /// Of the last second or so [ms].
+    [[nodiscard]] double median_frame_ms() const { return summary_.median; }
+
+    bool open = false;
+
+  private:
+    void draw_graph(const Hud& hud);
+    void draw_counts(const Hud& hud, const World& world, const FrameGraph& graph);
+    void draw_systems(const Hud& hud, const Schedule& schedule);
+    void draw_passes(const Hud& hud, const FrameGraph& graph);
+
+    static constexpr std::size_t kGraphFrames = 240;
+    FrameHistory history_{kGraphFrames};
+    FrameHistory recent_{60};
+    Summary summary_;
+    FrameCost cost_;
+    std::vector<double> system_ms_;  ///< smoothed, in the order of the schedule
+    double resident_mib_ = 0.0;
+    int frames_until_memory_ = 0;
+};
+
+/// Memory of this process that is in RAM [MiB]; 0 if the system does not say.
+[[nodiscard]] double resident_memory_mib();
+
+}  // namespace limn
