@@ -1,0 +1,159 @@
+#include "content/app/pick.h"
+
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/culling.h"
+#include "render/render_view.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace limn {
+namespace {
+
+/// Distance along the ray at which it enters the box, or nothing. The ray need not be unit.
+std::optional<float> meet_box(const Vec3& origin, const Vec3& direction, const Bounds& box) {
+    float enter = 0.0f;
+    float leave = INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0f) {
+            if (origin[axis] < box.min[axis] || origin[axis] > box.max[axis]) {
+                return std::nullopt;
+            }
+            continue;
+        }
+        const float a = (box.min[axis] - origin[axis]) / direction[axis];
+        const float b = (box.max[axis] - origin[axis]) / direction[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return enter <= leave ? std::optional(enter) : std::nullopt;
+}
+
+/// Moeller and Trumbore 1997; both sides.
+std::optional<float> meet_triangle(
+    const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 edge1 = b - a;
+    const Vec3 edge2 = c - a;
+    const Vec3 p = glm::cross(direction, edge2);
+    const float determinant = glm::dot(edge1, p);
+    if (std::abs(determinant) < 1e-20f) {
+        return std::nullopt;
+    }
+    const Vec3 from_a = origin - a;
+    const float u = glm::dot(from_a, p) / determinant;
+    const Vec3 q = glm::cross(from_a, edge1);
+    const float v = glm::dot(direction, q) / determinant;
+    const float distance = glm::dot(edge2, q) / determinant;
+    return u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance >= 0.0f ? std::optional(distance)
+                                                                       : std::nullopt;
+}
+
+/// A box that the ray meets, in the mesh's own space.
+struct Candidate {
+    Entity entity;
+    const MeshData* mesh = nullptr;
+    Vec3 origin;
+    Vec3 direction;  // scaled so that distances stay those of the world
+    float enter = 0.0f;
+};
+
+std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
+    const MeshData& mesh = *candidate.mesh;
+    std::optional<float> hit;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const std::optional<float> distance = meet_triangle(
+            candidate.origin,
+            candidate.direction,
+            mesh.positions[mesh.indices[i]],
+            mesh.positions[mesh.indices[i + 1]],
+            mesh.positions[mesh.indices[i + 2]]);
+        if (distance && *distance < nearest) {
+            nearest = *distance;
+            hit = distance;
+        }
+    }
+    return hit;
+}
+
+}  // namespace
+
+Ray ray_through(const RenderView& view, const Vec2& point) {
+    const Vec2 ndc = {2.0f * point.x - 1.0f, 1.0f - 2.0f * point.y};
+    const Vec3 direction_vs = {ndc.x * view.tangent.x, ndc.y * view.tangent.y, -1.0f};
+    return {
+        .origin = transform_point(view.world_from_camera, {0, 0, 0}),
+        .direction =
+            normalize_or(transform_vector(view.world_from_camera, direction_vs), {0, 0, -1})};
+}
+
+std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
+    const Assets* assets = world.find_resource<Assets>();
+    if (assets == nullptr) {
+        return std::nullopt;
+    }
+    std::vector<Candidate> candidates;
+    world.query<const WorldTransform, const MeshInstance>().each(
+        [&](Entity entity, const WorldTransform& transform, const MeshInstance& instance) {
+            if (instance.mesh.index >= assets->meshes.size()) {
+                return;
+            }
+            const MeshData& mesh = assets->meshes[instance.mesh.index];
+            const Mat4 world_from_mesh = to_mat4(transform.world);
+            if (is_empty(mesh.bounds) || glm::determinant(Mat3(world_from_mesh)) == 0.0f) {
+                return;
+            }
+            const Affine mesh_from_world = to_affine(glm::inverse(world_from_mesh));
+            Candidate candidate{
+                .entity = entity,
+                .mesh = &mesh,
+                .origin = transform_point(mesh_from_world, ray.origin),
+                .direction = transform_vector(mesh_from_world, ray.direction)};
+            if (const auto enter = meet_box(candidate.origin, candidate.direction, mesh.bounds)) {
+                candidate.enter = *enter;
+                candidates.push_back(candidate);
+            }
+        });
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.enter < b.enter;
+    });
+    std::optional<Hit> nearest;
+    for (const Candidate& candidate : candidates) {
+        if (nearest && candidate.enter >= nearest->distance) {
+            break;  // the others begin behind what was hit
+        }
+        const float limit = nearest ? nearest->distance : INFINITY;
+        if (const std::optional<float> distance = meet_mesh(candidate, limit)) {
+            nearest = Hit{candidate.entity, *distance};
+        }
+    }
+    return nearest;
+}
+
+Bounds entity_bounds(const World& world, Entity entity) {
+    const Assets* assets = world.find_resource<Assets>();
+    const MeshInstance* instance = world.find<MeshInstance>(entity);
+    const WorldTransform* transform = world.find<WorldTransform>(entity);
+    if (assets == nullptr || instance == nullptr || transform == nullptr
+        || instance->mesh.index >= assets->meshes.size()) {
+        return {};
+    }
+    const Bounds& box = assets->meshes[instance->mesh.index].bounds;
+    return is_empty(box) ? Bounds{} : transform_bounds(transform->world, box);
+}
+
+std::optional<Vec3> entity_middle(const World& world, Entity entity) {
+    const Bounds box = entity_bounds(world, entity);
+    if (!is_empty(box)) {
+        return center(box);
+    }
+    const WorldTransform* transform = world.find<WorldTransform>(entity);
+    return transform != nullptr ? std::optional(transform_point(transform->world, {0, 0, 0}))
+                                : std::nullopt;
+}
+
+}  // namespace limn

@@ -1,0 +1,75 @@
+#include "content/app/pick.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/render_view.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+namespace limn {
+namespace {
+
+/// A unit square in the xy plane with its lower right half missing.
+MeshData half_square() {
+    MeshData mesh;
+    mesh.positions = {{-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
+    mesh.indices = {0, 1, 2};
+    for (const Vec3& position : mesh.positions) {
+        grow(mesh.bounds, position);
+    }
+    return mesh;
+}
+
+Entity place(World& world, const Vec3& position, const Vec3& scale = Vec3(1)) {
+    return world.create(
+        WorldTransform{affine_from(position, {1, 0, 0, 0}, scale)}, MeshInstance{{0}, {}});
+}
+
+}  // namespace
+
+TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
+    World world;
+    world.insert_resource(Assets{}).meshes.push_back(half_square());
+    const Entity front = place(world, {0, 0, -1});
+    const Entity back = place(world, {1, 0, -2}, Vec3(4));
+
+    const auto left = pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}});
+    REQUIRE(left);
+    CHECK(left->entity == front);
+    CHECK(left->distance == doctest::Approx(1.0f));
+    // Through the missing half of the front one, inside its box.
+    const auto right = pick_entity(world, {{0.2f, 0.1f, 0}, {0, 0, -1}});
+    REQUIRE(right);
+    CHECK(right->entity == back);
+    const auto shifted = pick_entity(world, {{-0.6f, 0.2f, 0}, {0, 0, -1}});
+    REQUIRE(shifted);
+    CHECK(shifted->entity == back);
+    CHECK(shifted->distance == doctest::Approx(2.0f));
+}
+
+TEST_CASE("pick: nothing behind the eye, nothing without meshes") {
+    World world;
+    CHECK_FALSE(pick_entity(world, {}));
+    world.insert_resource(Assets{}).meshes.push_back(half_square());
+    place(world, {0, 0, 1});
+    CHECK_FALSE(pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}}));
+}
+
+TEST_CASE("pick: the ray through the middle of the picture is where the camera looks") {
+    const Affine pose = look_at({1, 2, 3}, {4, 0, -5});
+    const RenderView view = make_render_view(Camera{}, pose, pose, {.width = 640, .height = 360});
+    const Ray ray = ray_through(view, {0.5f, 0.5f});
+    CHECK(glm::distance(ray.origin, Vec3(1, 2, 3)) < 1e-5f);
+    CHECK(glm::distance(ray.direction, glm::normalize(Vec3(3, -2, -8))) < 1e-5f);
+    // A corner's ray projects back to the corner.
+    const Vec3 point = [&] {
+        const Ray corner = ray_through(view, {0.0f, 0.0f});
+        return corner.origin + corner.direction * 7.0f;
+    }();
+    const Vec4 clip = view.steady_from_world * Vec4(point, 1.0f);
+    CHECK(clip.x / clip.w == doctest::Approx(-1.0f).epsilon(1e-4));
+    CHECK(clip.y / clip.w == doctest::Approx(1.0f).epsilon(1e-4));
+}
+
+}  // namespace limn
