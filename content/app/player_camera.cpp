@@ -1,8 +1,11 @@
 #include "content/app/player_camera.h"
 
 #include "render/render_view.h"
+#include "systems/fly_camera_system.h"
+#include "systems/orbit_camera_system.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,25 +13,20 @@
 namespace limn {
 namespace {
 
-constexpr float kMaxPitch = radians(89.0f);
-constexpr float kFastFactor = 4.0f;       // of Shift
-constexpr float kEaseTime = 0.08f;        // [s] in which speed gets 63 % of the way
-constexpr float kSpeedStep = 1.2f;        // of one wheel step
-constexpr float kZoomStep = 0.88f;        // of one wheel step
-constexpr float kMinDistance = 0.02f;     // [m]
-constexpr float kMaxDistance = 10000.0f;  // [m]
-
-Vec3 backward_of(float yaw, float pitch) {
-    return {std::sin(yaw) * std::cos(pitch), -std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
-}
+constexpr float kMaxElevation = radians(88.8f);  // OrbitCamera::elevation's range
+constexpr float kEaseTime = 0.08f;               // [s] in which speed gets 63 % of the way
+constexpr float kSpeedStep = 1.2f;               // of one wheel step
+constexpr float kZoomStep = 0.88f;               // of one wheel step
+constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
+constexpr float kMinDistance = 0.02f;            // [m]
+constexpr float kMaxDistance = 10000.0f;         // [m]
 
 Vec3 position_of(const Affine& pose) {
-    return {pose.row[0].w, pose.row[1].w, pose.row[2].w};
+    return transform_point(pose, {0, 0, 0});
 }
 
-/// +z of the camera: where it does not look.
-Vec3 backward_of(const Affine& pose) {
-    return normalize_or({pose.row[0].z, pose.row[1].z, pose.row[2].z}, {0, 0, 1});
+Quat rotation_of(const Affine& pose) {
+    return glm::normalize(glm::quat_cast(Mat3(to_mat4(pose))));
 }
 
 }  // namespace
@@ -46,63 +44,51 @@ const char* camera_mode_name(CameraMode mode) {
 }
 
 void start_fly(PlayerCamera& camera, const Affine& pose) {
-    const Vec3 backward = backward_of(pose);
+    const Vec3 position = position_of(pose);
+    const Vec3 ahead = transform_point(pose, {0, 0, -1});
     camera.mode = CameraMode::Fly;
-    camera.position = position_of(pose);
-    camera.pitch =
-        std::clamp(std::asin(std::clamp(-backward.y, -1.0f, 1.0f)), -kMaxPitch, kMaxPitch);
-    camera.yaw = std::atan2(backward.x, backward.z);
-    camera.velocity = {0, 0, 0};
+    camera.place = {.position = position, .rotation = rotation_of(look_at(position, ahead))};
+    camera.glide = {0, 0, 0};
 }
 
 void step_fly(PlayerCamera& camera, const Input& input, float dt) {
-    FlyCamera& fly = camera.fly;
-    fly.speed = std::clamp(fly.speed * std::pow(kSpeedStep, input.zoom), 0.01f, 1000.0f);
-    camera.yaw -= input.look.x * fly.sensitivity;
-    camera.pitch = std::clamp(camera.pitch - input.look.y * fly.sensitivity, -kMaxPitch, kMaxPitch);
-
-    const Vec3 backward = backward_of(camera.yaw, camera.pitch);
-    const Vec3 right = {std::cos(camera.yaw), 0, -std::sin(camera.yaw)};
-    Vec3 wanted = right * input.move.x + Vec3(0, 1, 0) * input.move.y - backward * input.move.z;
-    const float length = glm::length(wanted);
-    wanted *= fly.speed * (input.fast ? kFastFactor : 1.0f) / std::max(length, 1.0f);
-
-    camera.velocity += (wanted - camera.velocity) * (1.0f - std::exp(-dt / kEaseTime));
-    camera.position += camera.velocity * dt;
-    camera.pose = look_at(camera.position, camera.position - backward);
+    camera.fly.speed =
+        std::clamp(camera.fly.speed * std::pow(kSpeedStep, input.zoom), 0.01f, 1000.0f);
+    const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
+    camera.glide += (wanted - camera.glide) * (1.0f - std::exp(-dt / kEaseTime));
+    Input eased = input;
+    eased.move = camera.glide;
+    step_fly_camera(camera.place, camera.fly, eased, dt);
+    camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
 }
 
 void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {
     const Vec3 from_target = position_of(pose) - target;
-    OrbitCamera& orbit = camera.orbit;
-    const float distance = std::clamp(glm::length(from_target), kMinDistance, kMaxDistance);
     const Vec3 direction = normalize_or(from_target, {0, 0, 1});
+    OrbitCamera& orbit = camera.orbit;
     camera.mode = CameraMode::Orbit;
     camera.focus = target;
-    orbit.distance = distance;
+    orbit.distance = std::clamp(glm::length(from_target), kMinDistance, kMaxDistance);
     orbit.azimuth = std::atan2(direction.x, direction.z);
     orbit.elevation =
-        std::clamp(std::asin(std::clamp(direction.y, -1.0f, 1.0f)), -kMaxPitch, kMaxPitch);
+        std::clamp(std::asin(std::clamp(direction.y, -1.0f, 1.0f)), -kMaxElevation, kMaxElevation);
 }
 
 void step_orbit(PlayerCamera& camera, const Input& input, const Vec3& target, float dt) {
     OrbitCamera& orbit = camera.orbit;
     const float sensitivity =
-        camera.fly.sensitivity * 1.5f;  // by eye: circling feels slower than turning
+        1.5f * camera.fly.sensitivity;  // by eye: circling feels slower than turning
+    const float zoom = input.zoom + kZoomKeys * input.move.z * dt;
     orbit.azimuth -= input.look.x * sensitivity;
     orbit.elevation =
-        std::clamp(orbit.elevation + input.look.y * sensitivity, -kMaxPitch, kMaxPitch);
-    orbit.distance = std::clamp(
-        orbit.distance * std::pow(kZoomStep, input.zoom + input.move.z * dt * 8.0f),
-        kMinDistance,
-        kMaxDistance);
+        std::clamp(orbit.elevation + input.look.y * sensitivity, -kMaxElevation, kMaxElevation);
+    orbit.distance =
+        std::clamp(orbit.distance * std::pow(kZoomStep, zoom), kMinDistance, kMaxDistance);
 
-    // engine.camera-lag, in a form that does not depend on the frame rate.
-    const float share = 1.0f - std::pow(1.0f - orbit.follow, dt * 60.0f);
-    camera.focus += (target - camera.focus) * share;
-    const Vec3 direction = backward_of(orbit.azimuth, -orbit.elevation);
-    camera.position = camera.focus + direction * orbit.distance;
-    camera.pose = look_at(camera.position, camera.focus);
+    camera.focus = lag_position(camera.focus, target, orbit.follow, dt);
+    const Affine frame = affine_from(camera.focus, {1, 0, 0, 0}, Vec3(1));
+    const Vec3 position = orbit_position(frame, orbit.azimuth, orbit.elevation, orbit.distance);
+    camera.pose = look_at(position, camera.focus);
 }
 
 }  // namespace limn

@@ -3,15 +3,15 @@
 #include "ecs/base/math.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/input.h"
+#include "ecs/components/transform.h"
 #include "ecs/entity.h"
 
 namespace limn {
 
-class World;
-
 // The camera in the player's hands. It is no entity: it moves while the simulation is paused and
 // never changes what a level does. C goes round its three modes, and each takes over where the one
-// before stood, so the picture never jumps except back to the level's camera.
+// before stood, so the picture never jumps except back to the level's camera. How it moves is in
+// systems/fly_camera_system.h and systems/orbit_camera_system.h.
 
 enum class CameraMode : std::uint8_t {
     Level,  ///< the level's own camera and path
@@ -21,20 +21,15 @@ enum class CameraMode : std::uint8_t {
 
 struct PlayerCamera {
     CameraMode mode = CameraMode::Level;
+    bool started = false;  ///< it has a pose
     Camera lens;
     Affine pose;      ///< world from camera, of this picture
     Affine previous;  ///< of the picture before
     FlyCamera fly;
-    OrbitCamera orbit;  ///< azimuth and elevation in the world's frame; `offset` is the point when
-                        ///< there is no target
-
-    // Where flying left off.
-    Vec3 position = {0, 0, 0};  ///< [m]
-    float yaw = 0.0f;           ///< about +y, 0 looks along -z, > 0 to the left [rad]
-    float pitch = 0.0f;         ///< > 0 up [rad]
-    Vec3 velocity = {0, 0, 0};  ///< [m/s]
-    Vec3 focus = {0, 0, 0};     ///< point that orbit looks at now; follows with a lag [m]
-    bool started = false;       ///< it has a pose
+    OrbitCamera orbit;
+    Transform place;         ///< while flying
+    Vec3 glide = {0, 0, 0};  ///< Input::move, eased in and out
+    Vec3 focus = {0, 0, 0};  ///< point that orbit looks at now; follows its target with a lag [m]
 };
 
 /// The name of the mode for the HUD.
@@ -44,14 +39,14 @@ struct PlayerCamera {
 /// a second; the wheel changes `fly.speed`.
 void step_fly(PlayerCamera& camera, const Input& input, float dt);
 
-/// Turns and zooms a circling camera about `target` (its box's middle), which it follows with
-/// `orbit.follow` (engine.camera-lag).
+/// Turns and zooms a circling camera about `target`, which it follows with `orbit.follow`
+/// (engine.camera-lag).
 void step_orbit(PlayerCamera& camera, const Input& input, const Vec3& target, float dt);
 
-/// Flies on from `pose`.
+/// Flies on from `pose`, upright.
 void start_fly(PlayerCamera& camera, const Affine& pose);
 
-/// Circles `target` from where `pose` is, which turns toward it.
+/// Circles `target` from where `pose` is, and turns toward it.
 void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target);
 
 }  // namespace limn

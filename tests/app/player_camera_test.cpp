@@ -32,7 +32,7 @@ TEST_CASE("player_camera: flying takes over exactly where the camera stood") {
     check_near(forward_of(camera.pose), forward_of(pose));
 }
 
-TEST_CASE("player_camera: W flies forward at the set speed, four times as fast with Shift") {
+TEST_CASE("player_camera: W flies forward at the set speed, five times as fast with Shift") {
     for (const bool fast : {false, true}) {
         PlayerCamera camera;
         camera.fly.speed = 2.0f;
@@ -40,11 +40,13 @@ TEST_CASE("player_camera: W flies forward at the set speed, four times as fast w
         for (int i = 0; i < 60; ++i) {  // until it has got up speed
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
         }
-        const float before = camera.position.z;
+        const float before = camera.place.position.z;
         for (int i = 0; i < 60; ++i) {
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
         }
-        CHECK(camera.position.z - before == doctest::Approx(fast ? -8.0f : -2.0f).epsilon(1e-3));
+        CHECK(
+            camera.place.position.z - before
+            == doctest::Approx(fast ? -10.0f : -2.0f).epsilon(1e-3));
     }
 }
 
@@ -54,13 +56,19 @@ TEST_CASE("player_camera: two keys at once are no faster than one") {
     for (int i = 0; i < 120; ++i) {
         step_fly(camera, {.move = {1, 0, 1}}, 1.0f / 60.0f);
     }
-    CHECK(glm::length(camera.velocity) == doctest::Approx(camera.fly.speed).epsilon(1e-3));
+    const Vec3 before = camera.place.position;
+    step_fly(camera, {.move = {1, 0, 1}}, 1.0f);
+    CHECK(
+        glm::distance(before, camera.place.position)
+        == doctest::Approx(camera.fly.speed).epsilon(1e-3));
 }
 
 TEST_CASE("player_camera: looking up never goes over the head") {
     PlayerCamera camera;
     start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
-    step_fly(camera, {.look = {0, -100000}}, 1.0f / 60.0f);
+    for (int i = 0; i < 100; ++i) {
+        step_fly(camera, {.look = {0, -50}}, 1.0f / 60.0f);
+    }
     CHECK(forward_of(camera.pose).y > 0.99f);
     CHECK(std::isfinite(camera.pose.row[0].x));
     CHECK(camera.pose.row[1].y > 0.0f);  // its up still points up
