@@ -1,0 +1,58 @@
+#include "content/app/render_scale.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr float kInterval = 0.5f;  // [s] between changes
+constexpr float kTooSlow = 1.10f;  // of the target: below it nobody sees the difference
+constexpr float kHeadroom =
+    0.70f;                        // of the target that work may take before the scale stops growing
+constexpr float kMostUp = 1.15f;  // by which the scale grows at once
+constexpr float kMostDown = 0.70f;
+
+}  // namespace
+
+RenderScale make_render_scale(float wanted, bool automatic, bool software_gl, const IVec2& window) {
+    RenderScale scale{.automatic = automatic};
+    const float software =
+        static_cast<float>(kSoftwareHeight) / static_cast<float>(std::max(window.y, 1));
+    if (wanted > 0.0f) {
+        scale.scale = wanted;
+    } else if (software_gl) {
+        scale.scale = std::min(software, 1.0f);
+    }
+    return scale;
+}
+
+IVec2 render_size(const RenderScale& scale, const IVec2& window) {
+    const auto pixels = [&](int side) {
+        const float scaled = static_cast<float>(side) * scale.scale;
+        return std::max(2 * static_cast<int>(std::lround(0.5f * scaled)), 16);
+    };
+    return scale.scale == 1.0f ? glm::max(window, IVec2(1))
+                               : IVec2(pixels(window.x), pixels(window.y));
+}
+
+bool update_render_scale(RenderScale& scale, float frame_ms, float busy_ms, float dt) {
+    scale.patience += dt;
+    if (!scale.automatic || scale.patience < kInterval || frame_ms <= 0.0f) {
+        return false;
+    }
+    scale.patience = 0.0f;
+    // The time of a frame grows with its pixels, the square of the scale.
+    float factor = 1.0f;
+    if (frame_ms > kTooSlow * scale.target_ms) {
+        factor = std::max(std::sqrt(scale.target_ms / frame_ms), kMostDown);
+    } else if (busy_ms < kHeadroom * scale.target_ms) {
+        factor =
+            std::min(std::sqrt(kHeadroom * scale.target_ms / std::max(busy_ms, 0.1f)), kMostUp);
+    }
+    const float before = scale.scale;
+    scale.scale = std::clamp(scale.scale * factor, kMinScale, kMaxAutoScale);
+    return scale.scale != before;
+}
+
+}  // namespace limn

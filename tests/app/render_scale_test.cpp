@@ -1,0 +1,48 @@
+#include "content/app/render_scale.h"
+
+#include <doctest/doctest.h>
+
+namespace limn {
+
+TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all of it") {
+    const IVec2 window = {1280, 720};
+    CHECK(render_size(make_render_scale(0, false, true, window), window) == IVec2(640, 360));
+    CHECK(render_size(make_render_scale(0, false, false, window), window) == window);
+    const IVec2 full = {1920, 1080};
+    CHECK(render_size(make_render_scale(0, false, true, full), full) == IVec2(640, 360));
+    const IVec2 small = {320, 180};
+    CHECK(render_size(make_render_scale(0, false, true, small), small) == small);
+}
+
+TEST_CASE("render_scale: what the user asks for is what is drawn") {
+    const IVec2 window = {1280, 720};
+    CHECK(render_size(make_render_scale(0.5f, false, false, window), window) == IVec2(640, 360));
+    CHECK(render_size(make_render_scale(1.0f, false, true, window), window) == window);
+    CHECK(render_size(make_render_scale(0.1f, false, false, {20, 20}), {20, 20}) == IVec2(16, 16));
+}
+
+TEST_CASE("render_scale: auto settles where the frame time is met, from above and from below") {
+    for (const float start : {0.2f, 1.0f}) {
+        RenderScale scale = make_render_scale(start, true, false, {1280, 720});
+        float busy = 0.0f;
+        int late_changes = 0;
+        for (int i = 0; i < 4000; ++i) {
+            busy = 40.0f * scale.scale * scale.scale;  // a machine that needs 40 ms for all pixels
+            const float frame = std::max(busy, 16.67f);  // the display waits
+            const bool changed = update_render_scale(scale, frame, busy, frame * 1e-3f);
+            late_changes += changed && i > 2000 ? 1 : 0;
+        }
+        CAPTURE(start);
+        CHECK(busy <= 1.10f * 16.67f);
+        CHECK(busy >= 0.6f * 16.67f);
+        CHECK(late_changes == 0);  // it does not swing
+    }
+}
+
+TEST_CASE("render_scale: without auto nothing changes") {
+    RenderScale scale = make_render_scale(0.5f, false, false, {1280, 720});
+    CHECK_FALSE(update_render_scale(scale, 200.0f, 200.0f, 10.0f));
+    CHECK(scale.scale == 0.5f);
+}
+
+}  // namespace limn
