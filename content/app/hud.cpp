@@ -41,7 +41,7 @@ constexpr std::array kKeys = {
     KeyHelp{"Space", "pause, go on"},
     KeyHelp{".", "one step"},
     KeyHelp{"R", "restart the level"},
-    KeyHelp{"PgUp PgDn", "previous, next level"},
+    KeyHelp{"PgUp PgDn", "previous, next level (Tab too)"},
     KeyHelp{nullptr, "Look inside"},
     KeyHelp{"F1", "these keys"},
     KeyHelp{"F2", "inspector: every component, with undo"},
@@ -50,8 +50,8 @@ constexpr std::array kKeys = {
     KeyHelp{"F5", "reload the shaders"},
     KeyHelp{"F9  F10", "save what is shown: PNG, HDR as EXR"},
     KeyHelp{"Ctrl Z  Y", "undo, redo"},
-    KeyHelp{"F11", "full screen"},
-    KeyHelp{"Esc", "close a panel, or quit"},
+    KeyHelp{"F8  F11", "hide the status, full screen"},
+    KeyHelp{"Esc", "quit"},
 };
 
 /// Text in the numbers' face.

@@ -122,6 +122,32 @@ const WindowEvents& Window::poll() {
     return events_;
 }
 
+void Window::wait_events(double seconds) {
+    glfwWaitEventsTimeout(seconds);
+}
+
+void Window::toggle_fullscreen() {
+    if (glfwGetWindowMonitor(window_) != nullptr) {
+        glfwSetWindowMonitor(
+            window_,
+            nullptr,
+            windowed_position_.x,
+            windowed_position_.y,
+            windowed_size_.x,
+            windowed_size_.y,
+            GLFW_DONT_CARE);
+        return;
+    }
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+    if (mode == nullptr) {
+        return;
+    }
+    glfwGetWindowPos(window_, &windowed_position_.x, &windowed_position_.y);
+    glfwGetWindowSize(window_, &windowed_size_.x, &windowed_size_.y);
+    glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
 void Window::swap() {
     glfwSwapBuffers(window_);
 }

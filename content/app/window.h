@@ -50,6 +50,8 @@ class Window {
 
     /// Takes the events since the last call. The reference holds until the next one.
     const WindowEvents& poll();
+    /// Sleeps until something happens, `seconds` at most; the events wait for poll.
+    void wait_events(double seconds);
     /// Shows what was drawn; waits for the display if vsync is on.
     void swap();
 
@@ -66,6 +68,9 @@ class Window {
     void capture_mouse(bool captured);
     [[nodiscard]] bool is_mouse_captured() const { return captured_; }
 
+    /// Between the whole primary screen and the window as it was.
+    void toggle_fullscreen();
+
     void set_title(const std::string& title);
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
@@ -80,6 +85,8 @@ class Window {
     bool mouse_known_ = false;
     Vec2 press_position_ = {0, 0};
     bool captured_ = false;
+    IVec2 windowed_position_ = {60, 60};
+    IVec2 windowed_size_ = {1280, 720};
 };
 
 }  // namespace limn

@@ -1,0 +1,94 @@
+#include "content/app/play_command.h"
+
+#include "content/app/headless.h"
+#include "content/app/picture_file.h"
+#include "content/app/player.h"
+#include "content/app/progress.h"
+#include "content/app/stage.h"
+#include "content/app/window.h"
+#include "content/load/level_list.h"
+#include "ecs/base/log.h"
+#include "render/render_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace limn {
+namespace {
+
+constexpr int kHeadlessSamples = 8;
+constexpr double kStillDuration = 4.0;  // [s] of a scene without a camera path
+
+/// "tour" where there is one, else the gallery, which shows something of everything.
+std::string default_scene() {
+    return find_level("tour") ? "tour" : "gallery";
+}
+
+Status play_headless(const PlayOptions& options, bool no_display) {
+    Result<std::unique_ptr<Stage>> opened = open_stage(options.scene);
+    if (!opened) {
+        return opened.error();
+    }
+    Stage& stage = **opened;
+    const std::string folder = options.out.empty() ? "limn-" + stage.scene.name : options.out;
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code) {
+        return fail("{}: found {}, expected a folder to write to", folder, code.message());
+    }
+    Result<HeadlessRenderer> headless = create_headless_renderer();
+    if (!headless) {
+        return headless.error();
+    }
+    fmt::print(
+        "{}Rendering {} pictures along the camera path of {} on {}.\n",
+        no_display ? "There is no display: no window is opened. " : "",
+        options.frames,
+        stage.scene.name,
+        headless->device->caps().renderer);
+    std::fflush(stdout);
+
+    const double duration = stage.scene.duration > 0.0 ? stage.scene.duration : kStillDuration;
+    Progress progress("picture", options.frames);
+    for (int i = 0; i < options.frames; ++i) {
+        const double time = duration * i / options.frames;
+        const float alpha = advance_stage(stage, time);
+        const RenderView view = make_render_view(
+            stage.world,
+            stage.scene.camera,
+            {.width = options.size.x,
+             .height = options.size.y,
+             .alpha = alpha,
+             .alpha_before = alpha - 1.0f});
+        const FrameOutput frame =
+            render_accumulated(*headless->renderer, stage.world, view, kHeadlessSamples);
+        const std::string path =
+            (std::filesystem::path(folder) / numbered_path("picture_%04d.png", i)).string();
+        const Status written = write_picture(path, frame);
+        if (!written) {
+            return written.error();
+        }
+        progress.update(i + 1);
+    }
+    fmt::print("The pictures are in {}\n", std::filesystem::absolute(folder).string());
+    return Done{};
+}
+
+}  // namespace
+
+Status run_play(const PlayOptions& given) {
+    PlayOptions options = given;
+    if (options.scene.empty()) {
+        options.scene = default_scene();
+    }
+    const bool no_display = !Window::has_display();
+    if (options.headless || no_display) {
+        return play_headless(options, no_display);
+    }
+    Result<std::unique_ptr<Player>> player = Player::create(options);
+    return player ? (*player)->run() : Status(player.error());
+}
+
+}  // namespace limn

@@ -1,0 +1,537 @@
+#include "content/app/player.h"
+
+#include "content/app/outline.h"
+#include "content/app/pick.h"
+#include "content/app/picture_file.h"
+#include "content/load/image_write.h"
+#include "content/load/level_list.h"
+#include "ecs/base/log.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "render/gpu/shader_library.h"
+#include "render/graph/frame_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace limn {
+namespace {
+
+constexpr int kMostSteps = 4;            // a frame; beyond that time slows down
+constexpr double kLongestFrame = 0.25;   // [s] after a pause of the whole program
+constexpr double kShaderInterval = 0.5;  // [s] between looks at the shader files
+
+double seconds_between(
+    std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) {
+    return std::chrono::duration<double>(end - begin).count();
+}
+
+/// The window's pixels, rows from top to bottom, RGB.
+std::vector<std::uint8_t> read_window(const IVec2& size) {
+    const std::size_t row = static_cast<std::size_t>(size.x) * 3;
+    std::vector<std::uint8_t> pixels(row * size.y);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glReadBuffer(GL_BACK);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    for (int y = 0; y < size.y / 2; ++y) {
+        std::swap_ranges(
+            pixels.begin() + static_cast<std::ptrdiff_t>(row) * y,
+            pixels.begin() + static_cast<std::ptrdiff_t>(row) * (y + 1),
+            pixels.end() - static_cast<std::ptrdiff_t>(row) * (y + 1));
+    }
+    return pixels;
+}
+
+}  // namespace
+
+Player::Player(
+    std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device, const PlayOptions& options)
+    : options_(options), window_(std::move(window)), device_(std::move(device)) {
+    hud_ = std::make_unique<Hud>(*window_);
+    scale_ = make_render_scale(
+        options.scale, options.scale_auto, device_->caps().software, window_->framebuffer_size());
+}
+
+Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
+    Result<std::unique_ptr<Window>> window =
+        Window::open({.size = options.size, .fullscreen = options.fullscreen});
+    if (!window) {
+        return window.error();
+    }
+    Result<std::unique_ptr<gpu::Device>> device = gpu::Device::from_current_context();
+    if (!device) {
+        return device.error();
+    }
+    std::unique_ptr<Player> player(new Player(*std::move(window), *std::move(device), options));
+    Result<RendererPtr> renderer = create_renderer(*player->device_);
+    if (!renderer) {
+        return renderer.error();
+    }
+    player->renderer_ = *std::move(renderer);
+    Result<BufferViewer> buffers = BufferViewer::create(*player->device_);
+    if (!buffers) {
+        return buffers.error();
+    }
+    player->buffers_ = *std::move(buffers);
+    const Status loaded = player->load(options.scene);
+    if (!loaded) {
+        return loaded.error();
+    }
+    if (player->device_->caps().software) {
+        const IVec2 window_size = player->window_->framebuffer_size();
+        const IVec2 size = render_size(player->scale_, window_size);
+        log_info(
+            "{} draws on the processor: {} x {} pixels, shown at {} x {}",
+            player->device_->caps().renderer,
+            size.x,
+            size.y,
+            window_size.x,
+            window_size.y);
+    }
+    return player;
+}
+
+// ---- levels -------------------------------------------------------------------------------------
+
+Status Player::load(const std::string& scene) {
+    Result<std::unique_ptr<Stage>> stage = open_stage(scene);
+    if (!stage) {
+        return stage.error();
+    }
+    stage_ = *std::move(stage);
+    options_.scene = scene;
+    inspector_.reset();
+    camera_ = {};
+    const Bounds& bounds = stage_->scene.bounds;
+    if (!is_empty(bounds)) {
+        // Across the scene in some ten seconds.
+        camera_.fly.speed = std::clamp(0.2f * glm::length(half_extent(bounds)), 0.2f, 50.0f);
+    }
+    unsimulated_ = 0.0;
+    shown_time_ = stage_time(*stage_);
+    window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
+    return Done{};
+}
+
+void Player::load_or_say(const std::string& scene) {
+    const Status status = load(scene);
+    if (!status) {
+        log_error("{}", status.error().message);
+        hud_->toast(status.error().message, ToastKind::Bad);
+    }
+}
+
+void Player::load_neighbor(int offset) {
+    const std::vector<LevelEntry> levels = list_levels();
+    if (levels.empty()) {
+        return;
+    }
+    const int count = static_cast<int>(levels.size());
+    int index = offset > 0 ? -1 : 0;
+    for (int i = 0; i < count; ++i) {
+        index = levels[static_cast<std::size_t>(i)].name == stage_->scene.name ? i : index;
+    }
+    const LevelEntry& next = levels[static_cast<std::size_t>((index + offset + count) % count)];
+    load_or_say(next.name);
+    hud_->toast(next.title.empty() ? next.name : next.title);
+}
+
+// ---- what the player does -----------------------------------------------------------------------
+
+void Player::handle_key(const KeyPress& press) {
+    if (press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F12) {
+        if (!press.repeated) {
+            handle_function_key(press.key);
+        }
+        return;
+    }
+    if (hud_->wants_keyboard()) {
+        return;
+    }
+    if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
+        if (press.key == GLFW_KEY_Z || press.key == GLFW_KEY_Y) {
+            undo_or_redo(press.key == GLFW_KEY_Z && (press.modifiers & GLFW_MOD_SHIFT) == 0);
+        }
+        return;
+    }
+    if (press.key == GLFW_KEY_PERIOD) {
+        paused_ = true;
+        step_once_ = true;
+    }
+    if (press.repeated) {
+        return;
+    }
+    switch (press.key) {
+    case GLFW_KEY_ESCAPE:
+        window_->request_close();
+        break;
+    case GLFW_KEY_SPACE:
+        paused_ = !paused_;
+        break;
+    case GLFW_KEY_C:
+        cycle_camera();
+        break;
+    case GLFW_KEY_R:
+        load_or_say(options_.scene);
+        break;
+    case GLFW_KEY_TAB:
+    case GLFW_KEY_PAGE_DOWN:
+        load_neighbor(1);
+        break;
+    case GLFW_KEY_PAGE_UP:
+        load_neighbor(-1);
+        break;
+    default:
+        break;
+    }
+}
+
+void Player::handle_function_key(int key) {
+    switch (key) {
+    case GLFW_KEY_F1:
+        hud_->help_open = !hud_->help_open;
+        break;
+    case GLFW_KEY_F2:
+        inspector_.open = !inspector_.open;
+        break;
+    case GLFW_KEY_F3:
+        profiler_.open = !profiler_.open;
+        break;
+    case GLFW_KEY_F4:
+        buffers_->open = !buffers_->open;
+        break;
+    case GLFW_KEY_F5:
+        reload_shaders(true);
+        break;
+    case GLFW_KEY_F8:
+        hud_->status_shown = !hud_->status_shown;
+        break;
+    case GLFW_KEY_F9:
+        screenshot_wanted_ = true;
+        break;
+    case GLFW_KEY_F10:
+        exr_wanted_ = true;
+        break;
+    case GLFW_KEY_F11:
+        window_->toggle_fullscreen();
+        break;
+    default:
+        break;
+    }
+}
+
+void Player::undo_or_redo(bool undo) {
+    UndoStack& stack = inspector_.undo_stack();
+    const std::string label = undo ? stack.undo(stage_->world) : stack.redo(stage_->world);
+    const char* word = undo ? "undo" : "redo";
+    hud_->toast(
+        label.empty() ? fmt::format("nothing to {}", word) : fmt::format("{}: {}", word, label));
+}
+
+Input Player::read_input(const WindowEvents& events) {
+    Input input;
+    const bool dragging = window_->is_button_down(GLFW_MOUSE_BUTTON_LEFT)
+                          || window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT);
+    const bool on_panel = hud_->wants_mouse() && !window_->is_mouse_captured();
+    window_->capture_mouse(dragging && !on_panel);
+    if (dragging && !on_panel) {
+        input.look = events.mouse_motion;
+    }
+    if (!on_panel) {
+        input.zoom = events.wheel;
+    }
+    if (!hud_->wants_keyboard() && !window_->is_key_down(GLFW_KEY_LEFT_CONTROL)
+        && !window_->is_key_down(GLFW_KEY_RIGHT_CONTROL)) {
+        const auto axis = [this](int plus, int minus, int plus2, int minus2) {
+            const bool more = window_->is_key_down(plus) || window_->is_key_down(plus2);
+            const bool less = window_->is_key_down(minus) || window_->is_key_down(minus2);
+            return static_cast<float>(more) - static_cast<float>(less);
+        };
+        input.move = {
+            axis(GLFW_KEY_D, GLFW_KEY_A, GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
+            axis(GLFW_KEY_E, GLFW_KEY_Q, GLFW_KEY_E, GLFW_KEY_Q),
+            axis(GLFW_KEY_W, GLFW_KEY_S, GLFW_KEY_UP, GLFW_KEY_DOWN)};
+        input.fast =
+            window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
+    }
+    // The level's camera gives way to whoever takes hold of it.
+    const bool moved = input.move != Vec3(0) || input.look != Vec2(0);
+    if (camera_.mode == CameraMode::Level && camera_.started && moved) {
+        start_fly(camera_, camera_.pose);
+    }
+    return input;
+}
+
+void Player::cycle_camera() {
+    switch (camera_.mode) {
+    case CameraMode::Level:
+        start_fly(camera_, camera_.pose);
+        break;
+    case CameraMode::Fly: {
+        const Bounds& bounds = stage_->scene.bounds;
+        const Vec3 middle = is_empty(bounds) ? Vec3(0) : center(bounds);
+        camera_.orbit.target = inspector_.selected();
+        start_orbit(
+            camera_,
+            camera_.pose,
+            entity_middle(stage_->world, camera_.orbit.target).value_or(middle));
+        break;
+    }
+    case CameraMode::Orbit:
+        camera_.mode = CameraMode::Level;
+        break;
+    }
+    hud_->toast(camera_mode_name(camera_.mode));
+}
+
+void Player::select_under_pointer() {
+    const Vec2 point =
+        window_->mouse_position() / Vec2(glm::max(window_->framebuffer_size(), IVec2(1)));
+    const std::optional<Hit> hit = pick_entity(stage_->world, ray_through(view_, point));
+    inspector_.select(hit ? hit->entity : Entity{});
+    camera_.orbit.target = inspector_.selected();
+}
+
+// ---- a frame ------------------------------------------------------------------------------------
+
+void Player::simulate(float dt, const Input& input) {
+    const Clock::time_point begin = Clock::now();
+    if (Input* resource = stage_->world.find_resource<Input>()) {
+        *resource = input;
+    }
+    const double step = stage_step(*stage_);
+    int steps = 0;
+    if (!paused_) {
+        unsimulated_ += dt;
+        steps = static_cast<int>(unsimulated_ / step);
+        unsimulated_ -= steps * step;
+        steps = std::min(steps, kMostSteps);
+    } else if (step_once_) {
+        steps = 1;
+        unsimulated_ = 0.0;
+    }
+    step_once_ = false;
+    for (int i = 0; i < steps; ++i) {
+        step_stage(*stage_);
+    }
+    cost_.simulate_ms = seconds_between(begin, Clock::now()) * 1e3;
+}
+
+RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) {
+    const double step = stage_step(*stage_);
+    // Right after loading there is one moment only.
+    const double steps_done = stage_time(*stage_) / step;
+    const float alpha =
+        paused_ && unsimulated_ == 0.0 ? 1.0f : static_cast<float>(unsimulated_ / step);
+    const double shown = steps_done < 0.5 ? 0.0 : stage_time(*stage_) - step + alpha * step;
+    const ViewRequest request{
+        .width = size.x,
+        .height = size.y,
+        .alpha = alpha,
+        .alpha_before =
+            alpha - static_cast<float>(std::clamp((shown - shown_time_) / step, 0.0, 8.0))};
+    shown_time_ = shown;
+
+    const Entity level_camera = stage_->scene.camera;
+    const Camera* lens = std::as_const(stage_->world).find<Camera>(level_camera);
+    camera_.lens = lens != nullptr ? *lens : camera_.lens;
+    camera_.previous = camera_.pose;
+    if (camera_.mode == CameraMode::Level && lens != nullptr) {
+        const RenderView view = make_render_view(stage_->world, level_camera, request);
+        camera_.pose = view.world_from_camera;
+        camera_.started = true;
+        return view;
+    }
+    if (camera_.mode == CameraMode::Orbit) {
+        const Vec3 target =
+            entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.focus);
+        step_orbit(camera_, input, target, dt);
+    } else {
+        step_fly(camera_, input, dt);
+    }
+    return make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
+}
+
+void Player::draw_frame(float dt, const Input& input) {
+    const IVec2 window_size = window_->framebuffer_size();
+    if (window_size != last_window_size_) {
+        last_window_size_ = window_size;
+        if (!scale_.automatic) {
+            scale_ =
+                make_render_scale(options_.scale, false, device_->caps().software, window_size);
+        }
+    }
+    const Clock::time_point begin = Clock::now();
+    const IVec2 size = render_size(scale_, window_size);
+    view_ = move_camera(dt, input, size);
+    if (exr_wanted_) {
+        exr_wanted_ = false;
+        save_exr(view_);
+    }
+    FrameGraph& graph = frame_graph(*renderer_);
+    buffers_->before_frame(graph);
+    const FrameOutput frame = render_frame(*renderer_, stage_->world, view_);
+    buffers_->after_frame(*device_, graph);
+    gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y);
+    cost_.statistics = frame.statistics;
+    cost_.render_ms = seconds_between(begin, Clock::now()) * 1e3;
+    draw_hud(view_, window_size, dt);
+}
+
+void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt) {
+    FrameGraph& graph = frame_graph(*renderer_);
+    device_->bind_window(window_size.x, window_size.y);
+    hud_->begin_frame(dt);
+    if (inspector_.open || camera_.mode == CameraMode::Orbit) {
+        draw_outline(view);
+    }
+    hud_->draw_status(
+        {.level = stage_->scene.name.c_str(),
+         .camera = camera_mode_name(camera_.mode),
+         .time = shown_time_,
+         .frame_ms = profiler_.median_frame_ms(),
+         .render_size = {view.width, view.height},
+         .window_size = window_size,
+         .software_gl = device_->caps().software,
+         .scale_auto = scale_.automatic,
+         .paused = paused_,
+         .error = shader_error_.c_str()});
+    inspector_.draw(*hud_, stage_->world);
+    profiler_.draw(*hud_, stage_->world, stage_->schedule, graph);
+    buffers_->draw(*hud_, graph);
+    hud_->end_frame();
+    device_->forget_state();
+}
+
+void Player::draw_outline(const RenderView& view) const {
+    const World& world = stage_->world;
+    const MeshInstance* instance = world.find<MeshInstance>(inspector_.selected());
+    const WorldTransform* transform = world.find<WorldTransform>(inspector_.selected());
+    const Assets* assets = world.find_resource<Assets>();
+    if (instance == nullptr || transform == nullptr || assets == nullptr
+        || instance->mesh.index >= assets->meshes.size()) {
+        return;
+    }
+    const PreviousWorldTransform* previous =
+        world.find<PreviousWorldTransform>(inspector_.selected());
+    const Affine shown = previous != nullptr
+                             ? mix_affine(previous->world, transform->world, view.alpha)
+                             : transform->world;
+    draw_box_outline(view, shown, assets->meshes[instance->mesh.index].bounds);
+}
+
+Status Player::run() {
+    Clock::time_point last = Clock::now();
+    while (!window_->wants_to_close()) {
+        const WindowEvents& events = window_->poll();
+        for (const KeyPress& press : events.keys) {
+            handle_key(press);
+        }
+        if (window_->framebuffer_size().x < 1 || window_->framebuffer_size().y < 1) {
+            window_->wait_events(0.1);  // minimized: nothing to draw on
+            last = Clock::now();
+            continue;
+        }
+        const Clock::time_point now = Clock::now();
+        const double real = seconds_between(last, now);
+        const float dt = static_cast<float>(std::min(real, kLongestFrame));
+        last = now;
+
+        if (events.left_clicked && !hud_->wants_mouse()) {
+            select_under_pointer();
+        }
+        const Input input = read_input(events);
+        until_shader_check_ -= dt;
+        if (until_shader_check_ <= 0.0) {
+            until_shader_check_ = kShaderInterval;
+            reload_shaders(false);
+        }
+        simulate(dt, input);
+        draw_frame(dt, input);
+        if (screenshot_wanted_) {
+            screenshot_wanted_ = false;
+            save_screenshot(window_->framebuffer_size());
+        }
+        window_->swap();
+
+        cost_.frame_ms = real * 1e3;
+        profiler_.add_frame(cost_);
+        const double busy =
+            std::max(cost_.simulate_ms + cost_.render_ms, frame_graph(*renderer_).total_gpu_ms());
+        update_render_scale(
+            scale_, static_cast<float>(profiler_.median_frame_ms()), static_cast<float>(busy), dt);
+    }
+    return Done{};
+}
+
+// ---- files --------------------------------------------------------------------------------------
+
+void Player::reload_shaders(bool all) {
+    gpu::ShaderLibrary& shaders = device_->shaders();
+    const gpu::ReloadReport report = all ? shaders.reload_all() : shaders.reload_changed();
+    if (report.reloaded == 0 && report.errors.empty()) {
+        return;
+    }
+    shader_error_ = report.errors.empty() ? "" : report.errors.front();
+    for (const std::string& error : report.errors) {
+        log_error("{}", error);
+    }
+    if (report.errors.empty()) {
+        hud_->toast(fmt::format("{} shader programs reloaded", report.reloaded), ToastKind::Good);
+    }
+}
+
+std::string Player::next_file(const char* ending) {
+    const std::filesystem::path folder = options_.out.empty() ? "." : options_.out;
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::path path;
+    do {
+        path = folder / fmt::format("limn-{}-{:04}{}", stage_->scene.name, ++files_saved_, ending);
+    } while (std::filesystem::exists(path, ignored));
+    return path.lexically_normal().string();
+}
+
+void Player::save_screenshot(const IVec2& size) {
+    const std::string path = next_file(".png");
+    const Status status = write_png(path, size.x, size.y, 3, read_window(size));
+    device_->forget_state();
+    if (!status) {
+        log_error("{}", status.error().message);
+        hud_->toast(status.error().message, ToastKind::Bad);
+        return;
+    }
+    fmt::print("{}\n", path);
+    std::fflush(stdout);
+    hud_->toast("saved " + path, ToastKind::Good);
+}
+
+void Player::save_exr(const RenderView& view) {
+    const std::string path = next_file(".exr");
+    FrameRequest request;
+    for (const std::string_view name : aov_names()) {
+        request.aovs.emplace_back(name);
+    }
+    const FrameOutput frame = render_accumulated(*renderer_, stage_->world, view, 16, request);
+    const Status status = write_picture(path, frame, {{"limn.scene", stage_->scene.name}});
+    if (!status) {
+        log_error("{}", status.error().message);
+        hud_->toast(status.error().message, ToastKind::Bad);
+        return;
+    }
+    fmt::print("{}\n", path);
+    std::fflush(stdout);
+    hud_->toast("saved " + path, ToastKind::Good);
+}
+
+}  // namespace limn

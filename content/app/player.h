@@ -1,0 +1,97 @@
+#pragma once
+
+#include "content/app/buffer_viewer.h"
+#include "content/app/hud.h"
+#include "content/app/inspector.h"
+#include "content/app/play_command.h"
+#include "content/app/player_camera.h"
+#include "content/app/profiler_panel.h"
+#include "content/app/render_scale.h"
+#include "content/app/stage.h"
+#include "content/app/window.h"
+#include "ecs/components/input.h"
+#include "render/gpu/device.h"
+#include "render/render_frame.h"
+#include "render/render_view.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+// The loop of `limn play`: events, simulation in fixed steps, a picture between the last two of
+// them, the HUD over it. Real time is read here and nowhere else; a slow machine shows the world in
+// slow motion rather than in ever longer frames.
+
+class Player {
+  public:
+    /// Opens the window and loads the scene.
+    [[nodiscard]] static Result<std::unique_ptr<Player>> create(const PlayOptions& options);
+    Player(const Player&) = delete;
+    Player& operator=(const Player&) = delete;
+
+    /// Until the window is closed.
+    [[nodiscard]] Status run();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    Player(
+        std::unique_ptr<Window> window,
+        std::unique_ptr<gpu::Device> device,
+        const PlayOptions& options);
+
+    /// Replaces the level; the old one stays if the new one cannot be loaded.
+    [[nodiscard]] Status load(const std::string& scene);
+    void load_or_say(const std::string& scene);
+    void load_neighbor(int offset);
+
+    void handle_key(const KeyPress& press);
+    void handle_function_key(int key);
+    void undo_or_redo(bool undo);
+    [[nodiscard]] Input read_input(const WindowEvents& events);
+    void cycle_camera();
+    void select_under_pointer();
+
+    void simulate(float dt, const Input& input);
+    [[nodiscard]] RenderView move_camera(float dt, const Input& input, const IVec2& size);
+    void draw_frame(float dt, const Input& input);
+    void draw_hud(const RenderView& view, const IVec2& window_size, float dt);
+    void draw_outline(const RenderView& view) const;
+
+    void reload_shaders(bool all);
+    void save_screenshot(const IVec2& size);
+    void save_exr(const RenderView& view);
+    [[nodiscard]] std::string next_file(const char* ending);
+
+    PlayOptions options_;
+    std::unique_ptr<Window> window_;
+    std::unique_ptr<gpu::Device> device_;
+    RendererPtr renderer_;
+    std::unique_ptr<Hud> hud_;
+    std::optional<BufferViewer> buffers_;
+    std::unique_ptr<Stage> stage_;
+
+    Inspector inspector_;
+    ProfilerPanel profiler_;
+    PlayerCamera camera_;
+    RenderScale scale_;
+    RenderView view_;  ///< of the last picture
+    IVec2 last_window_size_ = {0, 0};
+    std::string shader_error_;
+    FrameCost cost_;
+
+    double unsimulated_ = 0.0;         ///< real time that no step covers yet [s]
+    double shown_time_ = 0.0;          ///< of the last picture, in simulated time [s]
+    double until_shader_check_ = 0.0;  ///< [s]
+    bool paused_ = false;
+    bool step_once_ = false;
+    bool screenshot_wanted_ = false;
+    bool exr_wanted_ = false;
+    int files_saved_ = 0;
+};
+
+}  // namespace limn
