@@ -24,19 +24,19 @@ struct BenchSeries {
 };
 
 struct BenchReport {
-    std::string scene;
+    std::string scene = {};
     IVec2 size = {0, 0};  ///< [pixels]
     int frames = 0;
     int warmup = 0;
     int threads = 0;
-    std::string gl_renderer;
-    std::string gl_version;
+    std::string gl_renderer = {};
+    std::string gl_version = {};
     double resident_mib = 0.0;  ///< memory of the process
     double gpu_mib = 0.0;       ///< textures and buffers of the frame graph's pool
     std::int64_t entities = 0;
     std::int64_t draws = 0;      ///< of the last frame
     std::int64_t triangles = 0;  ///< of the last frame
-    std::vector<BenchSeries> series;
+    std::vector<BenchSeries> series = {};
 };
 
 /// The series called so, added at its first use.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 
 namespace limn {
 namespace {
@@ -15,27 +14,6 @@ bool read_all(std::string_view text, Number& number) {
     const char* end = text.data() + text.size();
     const auto [stop, code] = std::from_chars(text.data(), end, number);
     return code == std::errc{} && stop == end;
-}
-
-/// Insertions, deletions, substitutions and swaps of neighbors that turn one word into the other.
-int edit_distance(std::string_view a, std::string_view b) {
-    std::vector<int> before_last(b.size() + 1);
-    std::vector<int> last(b.size() + 1);
-    std::vector<int> row(b.size() + 1);
-    std::iota(last.begin(), last.end(), 0);
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        row[0] = static_cast<int>(i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const int change = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            row[j] = std::min({last[j] + 1, row[j - 1] + 1, change});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = std::min(row[j], before_last[j - 2] + 1);
-            }
-        }
-        std::swap(before_last, last);
-        std::swap(last, row);
-    }
-    return last[b.size()];
 }
 
 }  // namespace
@@ -108,19 +86,6 @@ Result<std::vector<std::string>> parse_list(std::string_view text) {
         begin = comma + 1;
     }
     return parts;
-}
-
-std::string nearest_name(std::string_view typed, std::span<const std::string> candidates) {
-    std::string nearest;
-    int fewest = static_cast<int>(typed.size()) / 3 + 2;  // one more than the most that counts
-    for (const std::string& candidate : candidates) {
-        const int edits = edit_distance(typed, candidate);
-        if (edits < fewest) {
-            fewest = edits;
-            nearest = candidate;
-        }
-    }
-    return nearest;
 }
 
 }  // namespace limn

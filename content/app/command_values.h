@@ -4,7 +4,6 @@
 #include "ecs/base/result.h"
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,10 +47,5 @@ parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 
 /// The parts between the commas; an empty part is an error.
 [[nodiscard]] Result<std::vector<std::string>> parse_list(std::string_view text);
-
-/// The name that `typed` was probably meant to be: fewest edits, at most a third of its length and
-/// one more; empty if none is that near.
-[[nodiscard]] std::string
-nearest_name(std::string_view typed, std::span<const std::string> candidates);
 
 }  // namespace limn

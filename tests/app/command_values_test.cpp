@@ -69,13 +69,4 @@ TEST_CASE("command_values: a list has no empty part") {
     CHECK_FALSE(parse_list("depth,,normal"));
 }
 
-TEST_CASE("command_values: a slip of the pen finds its word, another word does not") {
-    const std::vector<std::string> names = {"gallery", "stress-instances", "water"};
-    CHECK(nearest_name("galery", names) == "gallery");
-    CHECK(nearest_name("stress-instance", names) == "stress-instances");
-    CHECK(nearest_name("wtaer", names) == "water");
-    CHECK(nearest_name("volcano", names).empty());
-    CHECK(nearest_name("", names).empty());
-}
-
 }  // namespace limn

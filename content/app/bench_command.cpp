@@ -1,0 +1,109 @@
+#include "content/app/bench_command.h"
+
+#include "content/app/bench_report.h"
+#include "content/app/headless.h"
+#include "content/app/profiler_panel.h"
+#include "content/app/progress.h"
+#include "content/app/stage.h"
+#include "content/load/atomic_file.h"
+#include "ecs/base/jobs.h"
+#include "render/graph/frame_graph.h"
+#include "render/render_view.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace limn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_between(Clock::time_point begin, Clock::time_point end) {
+    return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
+/// One step and one picture, whose GPU work is waited for: every frame pays for itself.
+void run_frame(Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
+    FrameGraph& graph = frame_graph(*headless.renderer);
+    const Clock::time_point begin = Clock::now();
+    step_stage(stage);
+    const Clock::time_point simulated = Clock::now();
+    const RenderView view =
+        make_render_view(stage.world, stage.scene.camera, {.width = size.x, .height = size.y});
+    const FrameOutput frame = render_frame(*headless.renderer, stage.world, view);
+    const Clock::time_point drawn = Clock::now();
+    graph.wait_for_timings();
+    const Clock::time_point end = Clock::now();
+    if (report == nullptr) {
+        return;
+    }
+    const auto add = [report](BenchKind kind, BenchClock clock, std::string_view name, double ms) {
+        find_series(*report, kind, clock, name).samples.push_back(ms);
+    };
+    add(BenchKind::Frame, BenchClock::Cpu, "frame", ms_between(begin, end));
+    add(BenchKind::Frame, BenchClock::Cpu, "simulate", ms_between(begin, simulated));
+    add(BenchKind::Frame, BenchClock::Cpu, "draw", ms_between(simulated, drawn));
+    add(BenchKind::Frame, BenchClock::Cpu, "extract", frame.statistics.extract_ms);
+    for (const SystemTiming& timing : stage.schedule.timings()) {
+        add(BenchKind::System, BenchClock::Cpu, timing.name, timing.last * 1e3);
+    }
+    double gpu_ms = 0.0;
+    for (const PassTiming& timing : graph.timings()) {
+        add(BenchKind::Pass, BenchClock::Cpu, timing.name, timing.last_cpu_ms);
+        add(BenchKind::Pass, BenchClock::Gpu, timing.name, timing.last_gpu_ms);
+        gpu_ms += timing.last_gpu_ms;
+    }
+    add(BenchKind::Frame, BenchClock::Gpu, "passes", gpu_ms);
+    report->draws = frame.statistics.draws;
+    report->triangles = frame.statistics.triangles;
+}
+
+/// To the file, or to stdout for "-".
+Status write_report(const std::string& path, const std::string& text) {
+    if (path == "-") {
+        fmt::print("{}", text);
+        return Done{};
+    }
+    return path.empty() ? Status(Done{}) : write_file(path, text);
+}
+
+}  // namespace
+
+Status run_bench(const BenchOptions& options) {
+    Result<std::unique_ptr<Stage>> opened = open_stage(options.scene);
+    if (!opened) {
+        return opened.error();
+    }
+    Stage& stage = **opened;
+    Result<HeadlessRenderer> headless = create_headless_renderer();
+    if (!headless) {
+        return headless.error();
+    }
+    BenchReport report{
+        .scene = stage.scene.name,
+        .size = options.size,
+        .frames = options.frames,
+        .warmup = options.warmup,
+        .threads = thread_count(),
+        .gl_renderer = headless->device->caps().renderer,
+        .gl_version = headless->device->caps().version};
+    {
+        Progress progress("frame", options.warmup + options.frames);
+        for (int i = 0; i < options.warmup + options.frames; ++i) {
+            run_frame(stage, *headless, options.size, i < options.warmup ? nullptr : &report);
+            progress.update(i + 1);
+        }
+    }
+    report.entities = static_cast<std::int64_t>(stage.world.entity_count());
+    report.resident_mib = resident_memory_mib();
+    report.gpu_mib =
+        static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
+    if (options.json != "-" && options.csv != "-") {
+        fmt::print("{}", bench_table(report));
+    }
+    const Status json = write_report(options.json, bench_json(report));
+    return json ? write_report(options.csv, bench_csv(report)) : json;
+}
+
+}  // namespace limn

@@ -1,0 +1,385 @@
+#include "content/app/command_line.h"
+
+#include "content/app/bench_command.h"
+#include "content/app/command_values.h"
+#include "content/app/compare_command.h"
+#include "content/app/hash_command.h"
+#include "content/app/info_command.h"
+#include "content/app/list_commands.h"
+#include "content/app/play_command.h"
+#include "content/app/render_command.h"
+#include "ecs/base/type_name.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+constexpr const char* kSceneDoc = "level name, .level.json, .gltf or .glb";
+
+/// A command of the program and what it does once its options are read.
+struct Command {
+    CLI::App* app = nullptr;
+    std::function<Status()> run;
+};
+
+/// An option that `parse` reads strictly; what it refuses is wrong usage.
+template <typename T, typename Parse>
+CLI::Option*
+add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& target, Parse parse) {
+    CLI::Option* option = app.add_option_function<std::string>(
+        name,
+        [&target, parse, name](const std::string& text) {
+            auto value = parse(text);
+            if (!value) {
+                throw CLI::ValidationError(name.substr(name.find("--")), value.error().message);
+            }
+            target = static_cast<T>(*std::move(value));
+        },
+        doc);
+    return option;
+}
+
+CLI::Option* add_size(CLI::App& app, IVec2& size) {
+    return add_parsed(app, "--size", "of the picture in pixels", size, parse_size)
+        ->type_name("WxH")
+        ->default_str(fmt::format("{}x{}", size.x, size.y));
+}
+
+template <typename T>
+CLI::Option* add_integer(
+    CLI::App& app,
+    const std::string& name,
+    const std::string& doc,
+    T& target,
+    std::int64_t min,
+    std::int64_t max) {
+    return add_parsed(
+               app,
+               name,
+               doc,
+               target,
+               [min, max](const std::string& text) { return parse_integer(text, min, max); })
+        ->type_name("N");
+}
+
+template <typename T>
+CLI::Option* add_number(
+    CLI::App& app,
+    const std::string& name,
+    const std::string& doc,
+    T& target,
+    double min,
+    double max) {
+    return add_parsed(
+               app,
+               name,
+               doc,
+               target,
+               [min, max](const std::string& text) { return parse_number(text, min, max); })
+        ->type_name("X");
+}
+
+CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
+    return add_integer(
+        app,
+        "--seed",
+        "of every random number, instead of the level's",
+        seed,
+        0,
+        std::numeric_limits<std::int64_t>::max());
+}
+
+Command add_play(CLI::App& program, PlayOptions& options) {
+    CLI::App* app = program.add_subcommand("play", "Play a level in a window");
+    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; the tour if absent")
+        ->type_name("SCENE");
+    add_size(*app, options.size)->description("of the window");
+    app->add_flag("--fullscreen", options.fullscreen, "on the whole screen");
+    app->add_option_function<std::string>(
+           "--scale",
+           [&options](const std::string& text) {
+               options.scale_auto = text == "auto";
+               if (options.scale_auto) {
+                   return;
+               }
+               const Result<double> scale = parse_number(text, 0.1, 2.0);
+               if (!scale) {
+                   throw CLI::ValidationError("--scale", scale.error().message + ", or auto");
+               }
+               options.scale = static_cast<float>(*scale);
+           },
+           "rendered pixels a window pixel, 0.1 to 2, or auto: holds 60 frames a second")
+        ->type_name("auto|X");
+    app->add_flag(
+        "--headless", options.headless, "write pictures along the camera path, no window");
+    add_integer(*app, "--frames", "pictures of a headless run", options.frames, 1, 10000)
+        ->default_str(std::to_string(options.frames));
+    app->add_option("-o,--out", options.out, "folder for pictures and screenshots")
+        ->type_name("FOLDER");
+    app->footer(
+        "Without a display it writes the pictures of a headless run and says where they are.\n"
+        "In the window: F1 shows the keys.\n\n"
+        "Examples:\n"
+        "  limn play\n"
+        "  limn play gallery --size 1920x1080 --scale auto\n"
+        "  limn play model.glb --fullscreen\n"
+        "  limn play tour --headless --frames 12 -o pictures");
+    return {app, [&options] { return run_play(options); }};
+}
+
+Command add_render(CLI::App& program, RenderOptions& options) {
+    CLI::App* app = program.add_subcommand("render", "Write a picture or a range of them");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    app->add_option("-o,--out", options.out, "OUT.png, OUT.exr, or frame_%04d.png for --frames")
+        ->type_name("FILE")
+        ->required();
+    add_size(*app, options.size);
+    CLI::Option* time =
+        add_number(*app, "--time", "of the picture, simulated from 0 [s]", options.time, 0, 86400);
+    add_parsed(*app, "--frames", "first and last, both drawn", options.frames, parse_frame_range)
+        ->type_name("A:B")
+        ->excludes(time);
+    add_number(*app, "--fps", "frame n of --frames shows time n / fps", options.fps, 0.001, 10000)
+        ->default_str("60");
+    add_seed(*app, options.seed);
+    add_integer(*app, "--spp", "jittered samples a pixel", options.samples, 1, 65536)
+        ->default_str(std::to_string(options.samples));
+    add_parsed(*app, "--aov", "named layers to add to an EXR", options.aovs, parse_list)
+        ->type_name("A,B");
+    app->add_option_function<std::vector<std::string>>(
+           "--set",
+           [&options](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) {
+                   Result<Assignment> assignment = parse_assignment(text);
+                   if (!assignment) {
+                       throw CLI::ValidationError("--set", assignment.error().message);
+                   }
+                   options.assignments.push_back(*std::move(assignment));
+               }
+           },
+           "change a field after loading; may be repeated")
+        ->type_name("PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app->add_option("--camera", options.camera, "by name, instead of the level's")
+        ->type_name("NAME");
+    app->footer(
+        "Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission.\n"
+        "An EXR holds linear radiance, a PNG what a display shows.\n"
+        "A path of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
+        "a value is JSON or a word.\n"
+        "Files appear under their name once they are whole.\n\n"
+        "Examples:\n"
+        "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
+        "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
+        "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
+        "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
+        "materials.gold.roughness=0.4");
+    app->callback([&options] {
+        if (const Status status = check_render_options(options); !status) {
+            throw CLI::ValidationError(status.error().message);
+        }
+    });
+    return {app, [&options] { return run_render(options); }};
+}
+
+Command add_bench(CLI::App& program, BenchOptions& options) {
+    CLI::App* app =
+        program.add_subcommand("bench", "Measure systems, passes and frames of a scene");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    add_integer(*app, "--frames", "measured", options.frames, 1, kMaxFrames)
+        ->default_str(std::to_string(options.frames));
+    add_integer(*app, "--warmup", "run before, not measured", options.warmup, 0, kMaxFrames)
+        ->default_str(std::to_string(options.warmup));
+    add_size(*app, options.size);
+    app->add_option("--json", options.json, "write the numbers as JSON; - is stdout")
+        ->type_name("FILE");
+    app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
+        ->type_name("FILE");
+    app->footer(
+        "Every frame simulates one step and draws; nothing is shown. Times in milliseconds.\n\n"
+        "JSON: {\"scene\", \"size\": [w, h], \"frames\", \"warmup\", \"threads\", \"gl\": "
+        "{\"renderer\",\n"
+        "\"version\"}, \"memory\": {\"resident_mib\", \"gpu_mib\"}, \"counts\": {\"entities\", "
+        "\"draws\",\n"
+        "\"triangles\"}, and arrays \"frame\", \"systems\", \"passes\" of {\"name\", \"clock\": "
+        "\"cpu\" or\n"
+        "\"gpu\", \"median_ms\", \"p95_ms\", \"max_ms\"}}\n"
+        "CSV: kind,name,clock,median_ms,p95_ms,max_ms\n\n"
+        "Examples:\n"
+        "  limn bench gallery --size 640x360\n"
+        "  limn bench stress-instances --frames 600 --json numbers.json");
+    return {app, [&options] { return run_bench(options); }};
+}
+
+Command add_hash(CLI::App& program, HashOptions& options) {
+    CLI::App* app = program.add_subcommand("hash", "Print a hash of the state after every step");
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    add_integer(*app, "--frames", "steps to run", options.frames, 1, kMaxFrames)->required();
+    add_integer(
+        *app, "--threads", "to run on; all of the machine's if absent", options.threads, 1, 256);
+    add_seed(*app, options.seed);
+    app->footer(
+        "One line a step: frame number, then 16 hex digits. They are equal for every number of\n"
+        "threads and every run.\n\n"
+        "Example:\n"
+        "  limn hash stress-instances --frames 600 --threads 2");
+    return {app, [&options] { return run_hash(options); }};
+}
+
+Command add_compare(CLI::App& program, CompareOptions& options) {
+    CLI::App* app = program.add_subcommand("compare", "Measure how different two pictures are");
+    app->add_option("a", options.a, "first picture")->type_name("A")->required();
+    app->add_option("b", options.b, "second picture, of the same size")->type_name("B")->required();
+    app->add_flag("--json", options.json, "print JSON");
+    app->add_option("--diff", options.diff, "write a picture of the difference")
+        ->type_name("FILE.png");
+    app->footer(
+        "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"
+        "channel and, for EXR, the relative mean square error.\n\n"
+        "Example:\n"
+        "  limn compare before.png after.png --diff difference.png");
+    return {app, [&options] { return run_compare(options); }};
+}
+
+Command add_info(CLI::App& program, std::string& file) {
+    CLI::App* app = program.add_subcommand("info", "Tell what is in a file");
+    app->add_option("file", file, ".level.json, .gltf, .glb, .png, .exr ...")
+        ->type_name("FILE")
+        ->required();
+    app->footer("Example:\n  limn info model.glb");
+    return {app, [&file] { return run_info(file); }};
+}
+
+Command add_levels(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("levels", "List the levels");
+    app->footer("Example:\n  limn levels");
+    return {app, [] { return run_levels(); }};
+}
+
+Command add_components(CLI::App& program, bool& schema) {
+    CLI::App* app = program.add_subcommand(
+        "components", "List the components with fields, units, ranges and defaults");
+    app->add_flag("--schema", schema, "print the JSON Schema of a level file instead");
+    app->footer("Examples:\n"
+                "  limn components\n"
+                "  limn components --schema > level.schema.json");
+    return {app, [&schema] { return run_components(schema); }};
+}
+
+/// The options of all commands, at their defaults.
+struct AllOptions {
+    PlayOptions play;
+    RenderOptions render;
+    BenchOptions bench;
+    HashOptions hash;
+    CompareOptions compare;
+    std::string info_file;
+    bool schema = false;
+};
+
+std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
+    return {
+        add_play(program, options.play),
+        add_render(program, options.render),
+        add_bench(program, options.bench),
+        add_hash(program, options.hash),
+        add_compare(program, options.compare),
+        add_info(program, options.info_file),
+        add_levels(program),
+        add_components(program, options.schema)};
+}
+
+/// "render" of "limn render: ..." or just "limn".
+std::string spoken_name(const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+        if (command.app->parsed()) {
+            return "limn " + command.app->get_name();
+        }
+    }
+    return "limn";
+}
+
+/// A first word that is neither option nor command: says so, with the command it resembles.
+bool explain_unknown_command(std::string_view word, const std::vector<Command>& commands) {
+    std::vector<std::string> names;
+    for (const Command& command : commands) {
+        names.push_back(command.app->get_name());
+    }
+    if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) {
+        return false;
+    }
+    const std::string nearest = nearest_name(word, names);
+    const std::string hint = nearest.empty() ? "" : fmt::format(", perhaps {}", nearest);
+    fmt::print(
+        stderr,
+        "limn: found command \"{}\", expected one of {}{}\n",
+        word,
+        fmt::join(names, " "),
+        hint);
+    return true;
+}
+
+/// The message on one line.
+std::string one_line(std::string text) {
+    for (char& c : text) {
+        c = c == '\n' ? ' ' : c;
+    }
+    return text;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    CLI::App program("Limn: a data-oriented ECS engine for game effects.", "limn");
+    program.get_formatter()->column_width(28);
+    program.set_version_flag("--version", "limn " LIMN_VERSION);
+    program.footer("limn COMMAND --help tells more, with examples. Start with: limn play");
+    AllOptions options;
+    const std::vector<Command> commands = add_commands(program, options);
+    program.require_subcommand(0, 1);
+
+    if (argc < 2) {
+        fmt::print("{}", program.help());
+        return kDone;
+    }
+    if (explain_unknown_command(argv[1], commands)) {
+        return kWrongUsage;
+    }
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::Success& wanted) {  // --help, --version
+        return program.exit(wanted);
+    } catch (const CLI::Error& error) {
+        const std::string name = spoken_name(commands);
+        fmt::print(stderr, "{}: {} ({} --help)\n", name, one_line(error.what()), name);
+        return kWrongUsage;
+    }
+    for (const Command& command : commands) {
+        if (!command.app->parsed()) {
+            continue;
+        }
+        const Status status = command.run();
+        if (!status) {
+            fmt::print(stderr, "{}\n", one_line(status.error().message));
+            return kFailed;
+        }
+        return std::fflush(stdout) == 0 ? kDone : kFailed;
+    }
+    return kDone;
+}
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ecs/base/result.h"
+#include "render/gpu/context.h"
+#include "render/gpu/device.h"
+#include "render/render_frame.h"
+
+#include <memory>
+
+namespace limn {
+
+/// What drawing without a window takes; destroyed in the order OpenGL needs.
+struct HeadlessRenderer {
+    std::unique_ptr<gpu::Context> context;
+    std::unique_ptr<gpu::Device> device;
+    RendererPtr renderer;
+};
+
+/// Fails without OpenGL 4.5 or with a shader compiler's message.
+[[nodiscard]] Result<HeadlessRenderer> create_headless_renderer();
+
+}  // namespace limn

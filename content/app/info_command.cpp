@@ -1,0 +1,187 @@
+#include "content/app/info_command.h"
+
+#include "content/load/exr_file.h"
+#include "content/load/image_load.h"
+#include "content/load/scene_load.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <string_view>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kMostLines = 40;  // of a list; the rest is counted
+
+/// The last ending of the name in small letters: ".png".
+std::string ending_of(const std::string& path) {
+    const std::size_t dot = path.rfind('.');
+    std::string ending = dot == std::string::npos ? "" : path.substr(dot);
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return ending;
+}
+
+void print_rest(std::size_t count) {
+    if (count > kMostLines) {
+        fmt::print("    and {} more\n", count - kMostLines);
+    }
+}
+
+void print_components(const World& world) {
+    std::map<std::string, std::size_t> counts;
+    world.each_entity([&](Entity entity) {
+        for (const ComponentId id : world.components_of(entity)) {
+            ++counts[component_info(id).name];
+        }
+    });
+    fmt::print("{} entities\n", world.entity_count());
+    for (const auto& [name, count] : counts) {
+        fmt::print("    {:>8}  {}\n", count, name);
+    }
+}
+
+void print_assets(const Assets& assets) {
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    for (const MeshData& mesh : assets.meshes) {
+        triangles += mesh.indices.size() / 3;
+        vertices += mesh.positions.size();
+    }
+    fmt::print("{} meshes, {} triangles, {} vertices\n", assets.meshes.size(), triangles, vertices);
+    for (std::size_t i = 0; i < std::min(assets.meshes.size(), kMostLines); ++i) {
+        const MeshData& mesh = assets.meshes[i];
+        const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
+        fmt::print(
+            "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n",
+            mesh.indices.size() / 3,
+            size.x,
+            size.y,
+            size.z,
+            mesh.name);
+    }
+    print_rest(assets.meshes.size());
+
+    static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit"};
+    fmt::print("{} materials\n", assets.materials.size());
+    for (std::size_t i = 0; i < std::min(assets.materials.size(), kMostLines); ++i) {
+        const Material& material = assets.materials[i];
+        fmt::print(
+            "    {:<5}  metalness {:.2f}  roughness {:.2f}  {}\n",
+            kShading[static_cast<std::size_t>(material.shading)],
+            material.metalness,
+            material.roughness,
+            material.name);
+    }
+    print_rest(assets.materials.size());
+
+    fmt::print("{} images\n", assets.images.size());
+    for (std::size_t i = 0; i < std::min(assets.images.size(), kMostLines); ++i) {
+        const ImageData& image = assets.images[i];
+        fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
+    }
+    print_rest(assets.images.size());
+}
+
+Status print_scene(const std::string& file) {
+    World world;
+    const Result<LoadedScene> scene = load_scene(world, file);
+    if (!scene) {
+        return scene.error();
+    }
+    fmt::print(
+        "{}{}{}\n{}\n", scene->name, scene->title.empty() ? "" : ": ", scene->title, scene->path);
+    if (!is_empty(scene->bounds)) {
+        const Vec3 size = 2.0f * half_extent(scene->bounds);
+        const Vec3 middle = center(scene->bounds);
+        fmt::print(
+            "{:.3g} x {:.3g} x {:.3g} m about ({:.3g}, {:.3g}, {:.3g})\n",
+            size.x,
+            size.y,
+            size.z,
+            middle.x,
+            middle.y,
+            middle.z);
+    }
+    if (scene->duration > 0.0) {
+        fmt::print("camera path of {:.1f} s\n", scene->duration);
+    }
+    print_components(world);
+    if (const Assets* assets = world.find_resource<Assets>()) {
+        print_assets(*assets);
+    }
+    return Done{};
+}
+
+Status print_exr(const std::string& file) {
+    const Result<ExrImage> image = read_exr(file);
+    if (!image) {
+        return image.error();
+    }
+    fmt::print(
+        "{}\nOpenEXR, {} x {} pixels, {} channels\n",
+        file,
+        image->width,
+        image->height,
+        image->channels.size());
+    for (const ExrChannel& channel : image->channels) {
+        float least = INFINITY;
+        float most = -INFINITY;
+        for (const float value : channel.values) {
+            least = std::min(least, value);
+            most = std::max(most, value);
+        }
+        fmt::print(
+            "    {:<16} {:<5} {:.6g} .. {:.6g}\n",
+            channel.name,
+            channel.half ? "half" : "float",
+            least,
+            most);
+    }
+    for (const auto& [name, value] : image->metadata) {
+        fmt::print("    {} = {}\n", name, value);
+    }
+    return Done{};
+}
+
+Status print_image(const std::string& file) {
+    const Result<ImageData> image = load_image(file, true);
+    if (!image) {
+        return image.error();
+    }
+    static constexpr const char* kFormats[] = {"8 bit", "half", "float"};
+    fmt::print(
+        "{}\n{} x {} pixels, {}\n",
+        file,
+        image->width,
+        image->height,
+        kFormats[static_cast<std::size_t>(image->format)]);
+    return Done{};
+}
+
+}  // namespace
+
+Status run_info(const std::string& file) {
+    const std::string ending = ending_of(file);
+    if (ending == ".exr") {
+        return print_exr(file);
+    }
+    static constexpr std::array<std::string_view, 6> kImages = {
+        ".png", ".jpg", ".jpeg", ".bmp", ".webp", ".hdr"};
+    if (std::find(kImages.begin(), kImages.end(), ending) != kImages.end()) {
+        return print_image(file);
+    }
+    return print_scene(file);
+}
+
+}  // namespace limn

@@ -1,0 +1,110 @@
+#include "content/app/list_commands.h"
+
+#include "content/load/level_list.h"
+#include "content/load/level_schema.h"
+#include "ecs/components/all.h"
+#include "ecs/field_access.h"
+#include "ecs/reflect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+/// One line of `limn components`.
+struct FieldLine {
+    std::string path;
+    std::string type;
+    std::string value;
+    std::string range;
+    std::string doc;
+};
+
+/// Adds the fields of `object`, those of structs in it with their path.
+void add_lines(
+    const std::vector<FieldInfo>& fields,
+    const void* object,
+    const std::string& prefix,
+    std::vector<FieldLine>& lines) {
+    for (const FieldInfo& field : fields) {
+        const void* value = static_cast<const std::byte*>(object) + field.offset;
+        if (field.type == FieldType::Struct && field.shape == FieldShape::One) {
+            add_lines(field.fields, value, prefix + field.name + ".", lines);
+            continue;
+        }
+        lines.push_back(
+            {.path = prefix + field.name,
+             .type = type_text(field),
+             .value = field.shape == FieldShape::List ? "[]" : value_text(field, value),
+             .range = range_text(field.meta),
+             .doc = field.meta.doc});
+    }
+}
+
+void print_component(const ComponentInfo& info) {
+    fmt::print("{}{}\n", info.name, info.is_tag ? "  (tag)" : "");
+    std::vector<FieldLine> lines;
+    if (info.defaults != nullptr) {
+        add_lines(info.fields, info.defaults, "", lines);
+    }
+    std::size_t path = 0;
+    std::size_t type = 0;
+    std::size_t value = 0;
+    std::size_t range = 0;
+    for (const FieldLine& line : lines) {
+        path = std::max(path, line.path.size());
+        type = std::max(type, line.type.size());
+        value = std::max(value, line.value.size());
+        range = std::max(range, line.range.size());
+    }
+    for (const FieldLine& line : lines) {
+        fmt::print(
+            "    {:<{}}  {:<{}}  = {:<{}}  {:<{}}  {}\n",
+            line.path,
+            path,
+            line.type,
+            type,
+            line.value,
+            value,
+            line.range,
+            range,
+            line.doc);
+    }
+    fmt::print("\n");
+}
+
+}  // namespace
+
+Status run_levels() {
+    const std::vector<LevelEntry> levels = list_levels();
+    std::size_t width = 0;
+    for (const LevelEntry& level : levels) {
+        width = std::max(width, level.name.size());
+    }
+    for (const LevelEntry& level : levels) {
+        fmt::print("{:<{}}  {}\n", level.name, width, level.title);
+    }
+    return Done{};
+}
+
+Status run_components(bool schema) {
+    register_all_components();
+    if (schema) {
+        fmt::print("{}\n", write_json(level_schema()));
+        return Done{};
+    }
+    for (const ComponentInfo* info : all_components()) {
+        print_component(*info);
+    }
+    fmt::print("Resources, one of a kind:\n\n");
+    for (const ComponentInfo* info : all_resources()) {
+        print_component(*info);
+    }
+    return Done{};
+}
+
+}  // namespace limn

@@ -1,0 +1,66 @@
+#include "content/app/stage.h"
+
+#include "ecs/components/time.h"
+#include "systems/orbit_camera_system.h"
+#include "systems/script_system.h"
+#include "systems/sway_system.h"
+#include "systems/transform_system.h"
+#include "systems/update_world.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace limn {
+namespace {
+
+// Of a step. A step is a float, so n steps and n / 60 s drift apart: by less than this for nine
+// minutes.
+constexpr double kRounding = 1e-3;
+
+/// Puts everything where it is at time 0, so that the first picture needs no step and the first
+/// step makes no jump: the systems that follow from the time alone, then the matrices.
+void place_everything(World& world) {
+    world.run(update_sways);
+    world.run(update_camera_paths);
+    world.run(add_world_transforms);
+    world.run(update_transforms);
+    world.run(update_orbit_cameras);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Stage>>
+open_stage(const std::string& scene, std::optional<std::uint64_t> seed) {
+    auto stage = std::make_unique<Stage>();
+    Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = seed});
+    if (!loaded) {
+        return loaded.error();
+    }
+    stage->scene = *std::move(loaded);
+    stage->schedule = make_world_schedule();
+    place_everything(stage->world);
+    return stage;
+}
+
+void step_stage(Stage& stage) {
+    step_world(stage.world, stage.schedule);
+}
+
+double stage_time(const Stage& stage) {
+    return stage.world.resource<FrameTime>().time;
+}
+
+double stage_step(const Stage& stage) {
+    return static_cast<double>(stage.world.resource<FrameTime>().step);
+}
+
+float advance_stage(Stage& stage, double time) {
+    const double step = stage_step(stage);
+    while (stage_time(stage) < time - kRounding * step) {
+        step_stage(stage);
+    }
+    const double behind = (stage_time(stage) - time) / step;
+    return behind < kRounding ? 1.0f : static_cast<float>(std::max(1.0 - behind, 0.0));
+}
+
+}  // namespace limn

@@ -1,0 +1,173 @@
+#include "tests/app/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+namespace limn {
+
+using test::count_lines;
+using test::ProgramRun;
+using test::run_limn;
+using test::TemporaryFolder;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string joined(const Words& words) {
+    std::string line = "limn";
+    for (const std::string& word : words) {
+        line += " " + word;
+    }
+    return line;
+}
+
+/// The run failed with `code`, said why in one line, and printed nothing else.
+void check_fails(
+    const TemporaryFolder& folder, const Words& words, int code, const char* says = "") {
+    const ProgramRun run = run_limn(folder, words);
+    CAPTURE(joined(words));
+    CAPTURE(run.err);
+    CHECK(run.exit_code == code);
+    CHECK(count_lines(run.err) == 1);
+    CHECK(run.err.find(says) != std::string::npos);
+    CHECK(run.out.empty());
+}
+
+}  // namespace
+
+TEST_CASE("cli: without arguments it prints a short help") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {});
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.find("render") != std::string::npos);
+    CHECK(run.out.find("components") != std::string::npos);
+    CHECK(count_lines(run.out) < 30);
+    CHECK(run.err.empty());
+}
+
+TEST_CASE("cli: --version names the program and its version") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"--version"});
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.starts_with("limn 0."));
+}
+
+TEST_CASE("cli: every command has help with an example") {
+    const TemporaryFolder folder;
+    for (const char* command :
+         {"play", "render", "bench", "hash", "compare", "info", "levels", "components"}) {
+        const ProgramRun run = run_limn(folder, {command, "--help"});
+        CAPTURE(command);
+        CHECK(run.exit_code == 0);
+        CHECK(run.out.find("Example") != std::string::npos);
+        CHECK(run.out.find(std::string("limn ") + command) != std::string::npos);
+    }
+}
+
+TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
+    const TemporaryFolder folder;
+    check_fails(folder, {"rendr"}, 2, "render");
+    check_fails(folder, {"--what"}, 2);
+    check_fails(folder, {"render"}, 2, "scene");
+    check_fails(folder, {"render", "gallery"}, 2, "--out");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--size", "640"}, 2, "640");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--size", "0x360"}, 2, "0x360");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--frames", "5:2"}, 2, "5:2");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--frames", "0:9"}, 2, "%04d");
+    check_fails(folder, {"render", "gallery", "-o", "a%04d.png"}, 2, "--frames");
+    check_fails(folder, {"render", "gallery", "-o", "a%s.png", "--frames", "0:9"}, 2, "%04d");
+    check_fails(folder, {"render", "gallery", "-o", "a.bmp"}, 2, ".png");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--time", "nan"}, 2, "nan");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--time", "-1"}, 2, "-1");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--spp", "0"}, 2, "0");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--fps", "0"}, 2, "0");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--set", "exposure"}, 2, "exposure");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--aov", "depth"}, 2, ".exr");
+    check_fails(folder, {"render", "gallery", "-o", "a.exr", "--aov", "dept"}, 2, "depth");
+    check_fails(folder, {"bench", "gallery", "--frames", "0"}, 2, "--frames");
+    check_fails(folder, {"hash", "gallery"}, 2, "--frames");
+    check_fails(folder, {"hash", "gallery", "--frames", "two"}, 2, "two");
+    check_fails(folder, {"hash", "gallery", "--frames", "2", "--threads", "0"}, 2, "--threads");
+    check_fails(folder, {"compare", "a.png"}, 2);
+    check_fails(folder, {"play", "--scale", "big"}, 2, "auto");
+    check_fails(folder, {"info"}, 2, "file");
+}
+
+TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one line") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("empty.glb"), "");
+    test::write_text(folder.file("empty.gltf"), "");
+    test::write_text(folder.file("empty.level.json"), "");
+    test::write_text(folder.file("junk.glb"), "this is no GLB file at all, is it");
+    std::filesystem::create_directory(folder.file("folder.glb"));
+    for (const char* scene :
+         {"missing.glb",
+          "missing.level.json",
+          "folder.glb",
+          "empty.glb",
+          "empty.gltf",
+          "empty.level.json",
+          "junk.glb",
+          ".",
+          "no-such-level"}) {
+        check_fails(folder, {"render", scene, "-o", "a.png"}, 1, scene);
+        check_fails(folder, {"hash", scene, "--frames", "1"}, 1, scene);
+        check_fails(folder, {"info", scene}, 1, scene);
+    }
+    check_fails(folder, {"bench", "missing.glb", "--frames", "1"}, 1, "missing.glb");
+    check_fails(folder, {"play", "missing.glb", "--headless"}, 1, "missing.glb");
+    CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
+}
+
+TEST_CASE("cli: a level's misspelled name finds the level that was meant") {
+    const TemporaryFolder folder;
+    check_fails(folder, {"hash", "galery", "--frames", "1"}, 1, "gallery");
+}
+
+TEST_CASE("cli: pictures that cannot be read or compared end with 1 and one line") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("empty.png"), "");
+    check_fails(folder, {"compare", "missing.png", "missing.png"}, 1, "missing.png");
+    check_fails(folder, {"compare", "empty.png", "empty.png"}, 1, "empty.png");
+    check_fails(folder, {"compare", ".", "."}, 1);
+}
+
+TEST_CASE("cli: levels lists the gallery, components their fields with units") {
+    const TemporaryFolder folder;
+    const ProgramRun levels = run_limn(folder, {"levels"});
+    CHECK(levels.exit_code == 0);
+    CHECK(levels.out.find("gallery") != std::string::npos);
+
+    const ProgramRun components = run_limn(folder, {"components"});
+    CHECK(components.exit_code == 0);
+    CHECK(components.out.find("point_light") != std::string::npos);
+    CHECK(components.out.find("intensity") != std::string::npos);
+    CHECK(components.out.find("cd") != std::string::npos);
+
+    const ProgramRun schema = run_limn(folder, {"components", "--schema"});
+    CHECK(schema.exit_code == 0);
+    CHECK(schema.out.find("\"$schema\"") != std::string::npos);
+    CHECK(schema.out.find("\"point_light\"") != std::string::npos);
+}
+
+TEST_CASE("cli: the state hash is the same on one thread, on two, and again") {
+    const TemporaryFolder folder;
+    const Words words = {"hash", "stress-instances", "--frames", "4", "--threads"};
+    Words one = words;
+    one.emplace_back("1");
+    Words two = words;
+    two.emplace_back("2");
+    const ProgramRun first = run_limn(folder, one);
+    CHECK(first.exit_code == 0);
+    CHECK(count_lines(first.out) == 4);
+    CHECK(first.out.starts_with("0 "));
+    CHECK(run_limn(folder, two).out == first.out);
+    CHECK(run_limn(folder, one).out == first.out);
+    // Four steps give four states.
+    const std::string last = first.out.substr(first.out.rfind('\n', first.out.size() - 2) + 1);
+    CHECK(last.substr(last.find(' ')) != first.out.substr(1, first.out.find('\n')));
+}
+
+}  // namespace limn

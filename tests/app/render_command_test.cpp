@@ -1,0 +1,245 @@
+#include "tests/app/run_program.h"
+
+#include <OpenImageIO/imageio.h>
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+namespace limn {
+
+using test::count_lines;
+using test::Program;
+using test::ProgramRun;
+using test::run_limn;
+using test::TemporaryFolder;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A picture as OpenImageIO reads it: not our own code.
+struct Picture {
+    bool whole = false;
+    int width = 0;
+    int height = 0;
+    std::vector<std::string> channels;
+    std::vector<float> values;
+
+    [[nodiscard]] int channel(const std::string& name) const {
+        const auto found = std::find(channels.begin(), channels.end(), name);
+        return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+    }
+};
+
+Picture read_picture(const std::string& path) {
+    Picture picture;
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    if (input == nullptr) {
+        return picture;
+    }
+    const OIIO::ImageSpec& spec = input->spec();
+    picture.width = spec.width;
+    picture.height = spec.height;
+    picture.channels = spec.channelnames;
+    picture.values.resize(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+    picture.whole =
+        input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.values.data());
+    return picture;
+}
+
+/// Small and quick, so that a test renders many.
+Words render_words(const Words& more) {
+    Words words = {"render", "gallery", "--size", "64x36", "--spp", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+void check_ok(const ProgramRun& run) {
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+}
+
+double mean(const Picture& picture) {
+    double sum = 0.0;
+    for (const float value : picture.values) {
+        sum += static_cast<double>(value);
+    }
+    return sum / static_cast<double>(std::max(picture.values.size(), std::size_t{1}));
+}
+
+}  // namespace
+
+TEST_CASE("render_command: a PNG has the asked size and shows something") {
+    const TemporaryFolder folder;
+    check_ok(run_limn(folder, render_words({"-o", "a.png"})));
+    const Picture picture = read_picture(folder.file("a.png"));
+    REQUIRE(picture.whole);
+    CHECK(picture.width == 64);
+    CHECK(picture.height == 36);
+    const auto [least, most] = std::minmax_element(picture.values.begin(), picture.values.end());
+    CHECK(*most - *least > 0.3f);
+}
+
+TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by name") {
+    const TemporaryFolder folder;
+    check_ok(run_limn(
+        folder, render_words({"-o", "a.exr", "--aov", "depth,normal,albedo,velocity,emission"})));
+    const Picture picture = read_picture(folder.file("a.exr"));
+    REQUIRE(picture.whole);
+    for (const char* name :
+         {"R",
+          "G",
+          "B",
+          "depth.Z",
+          "normal.X",
+          "normal.Y",
+          "normal.Z",
+          "albedo.R",
+          "velocity.X",
+          "velocity.Y",
+          "emission.B"}) {
+        CAPTURE(name);
+        CHECK(picture.channel(name) >= 0);
+    }
+    // Normals are unit vectors where there is a surface and zero where there is none.
+    const std::size_t stride = picture.channels.size();
+    const std::size_t x = static_cast<std::size_t>(picture.channel("normal.X"));
+    const std::size_t y = static_cast<std::size_t>(picture.channel("normal.Y"));
+    const std::size_t z = static_cast<std::size_t>(picture.channel("normal.Z"));
+    int surfaces = 0;
+    for (std::size_t i = 0; i < picture.values.size(); i += stride) {
+        const float* texel = picture.values.data() + i;
+        const float length =
+            std::sqrt(texel[x] * texel[x] + texel[y] * texel[y] + texel[z] * texel[z]);
+        surfaces += length > 0.5f ? 1 : 0;
+        CHECK((length < 1e-6f || std::abs(length - 1.0f) < 0.01f));
+    }
+    CHECK(surfaces > 100);
+}
+
+TEST_CASE("render_command: the same command gives the same bytes") {
+    const TemporaryFolder folder;
+    check_ok(run_limn(folder, render_words({"-o", "a.exr", "--time", "0.5"})));
+    check_ok(run_limn(folder, render_words({"-o", "b.exr", "--time", "0.5"})));
+    const std::string a = test::read_text(folder.file("a.exr"));
+    CHECK(a.size() > 1000);
+    CHECK(a == test::read_text(folder.file("b.exr")));
+}
+
+TEST_CASE("render_command: --set and --time change the picture") {
+    const TemporaryFolder folder;
+    check_ok(run_limn(folder, render_words({"-o", "a.png"})));
+    check_ok(run_limn(folder, render_words({"-o", "dark.png", "--set", "exposure.ev=-3"})));
+    check_ok(run_limn(folder, render_words({"-o", "later.png", "--time", "3"})));
+    const double usual = mean(read_picture(folder.file("a.png")));
+    CHECK(mean(read_picture(folder.file("dark.png"))) < 0.7 * usual);
+    CHECK(test::read_text(folder.file("later.png")) != test::read_text(folder.file("a.png")));
+}
+
+TEST_CASE("render_command: a range writes one numbered file a frame, the same as single pictures") {
+    const TemporaryFolder folder;
+    check_ok(
+        run_limn(folder, render_words({"-o", "f_%03d.png", "--frames", "2:4", "--fps", "30"})));
+    for (const char* name : {"f_002.png", "f_003.png", "f_004.png"}) {
+        CHECK(read_picture(folder.file(name)).whole);
+    }
+    CHECK_FALSE(std::filesystem::exists(folder.file("f_001.png")));
+    CHECK_FALSE(std::filesystem::exists(folder.file("f_005.png")));
+    check_ok(run_limn(folder, render_words({"-o", "single.png", "--time", "0.1"})));
+    CHECK(test::read_text(folder.file("f_003.png")) == test::read_text(folder.file("single.png")));
+}
+
+TEST_CASE("render_command: what cannot be done ends with 1, one line and no file") {
+    const TemporaryFolder folder;
+    const std::vector<std::pair<Words, const char*>> cases = {
+        {{"-o", "a.png", "--camera", "nobody"}, "nobody"},
+        {{"-o", "a.png", "--set", "exposure.evv=1"}, "evv"},
+        {{"-o", "a.png", "--set", "exposure.ev=1000"}, "1000"},
+        {{"-o", "a.png", "--set", "no_such_entity.transform.position=1"}, "no_such_entity"},
+        {{"-o", "missing/a.png"}, "missing"},
+        {{"-o", "/proc/a.png"}, "/proc/a.png"}};
+    for (const auto& [words, says] : cases) {
+        const ProgramRun run = run_limn(folder, render_words(words));
+        CAPTURE(run.err);
+        CHECK(run.exit_code == 1);
+        CHECK(count_lines(run.err) == 1);
+        CHECK(run.err.find(says) != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
+    }
+}
+
+TEST_CASE("render_command: killed at any moment, it leaves whole files only") {
+    const TemporaryFolder folder;
+    int pictures = 0;
+    unsigned state = 12345;  // of a small generator: the moments differ, the test repeats itself
+    for (int round = 0; round < 5; ++round) {
+        Program program(folder, render_words({"-o", "frame_%04d.png", "--frames", "0:99"}));
+        // Wait for the first files so that the kill falls among writes, not into the start.
+        for (int i = 0; i < 3000 && program.running(); ++i) {
+            if (std::filesystem::exists(folder.file("frame_0001.png"))) {
+                break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        state = state * 1664525u + 1013904223u;
+        std::this_thread::sleep_for(std::chrono::microseconds(state % 60000u));
+        program.kill(SIGKILL);
+        program.wait();
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+            const std::string name = entry.path().filename().string();
+            if (name == "stdout.txt" || name == "stderr.txt") {
+                continue;
+            }
+            CAPTURE(name);
+            CHECK(name.starts_with("frame_"));
+            CHECK(read_picture(entry.path().string()).whole);
+            std::filesystem::remove(entry.path());
+            ++pictures;
+        }
+    }
+    CHECK(pictures >= 5);
+}
+
+TEST_CASE("render_command: bench writes JSON and CSV that hold a line a pass") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(
+        folder,
+        {"bench",
+         "gallery",
+         "--frames",
+         "3",
+         "--warmup",
+         "1",
+         "--size",
+         "64x36",
+         "--json",
+         "b.json",
+         "--csv",
+         "b.csv"});
+    check_ok(run);
+    CHECK(run.out.find("median") != std::string::npos);
+    const std::string json = test::read_text(folder.file("b.json"));
+    CHECK(json.find("\"passes\"") != std::string::npos);
+    CHECK(json.find("\"systems\"") != std::string::npos);
+    CHECK(count_lines(test::read_text(folder.file("b.csv"))) > 5);
+}
+
+TEST_CASE("render_command: compare finds a picture equal to itself") {
+    const TemporaryFolder folder;
+    check_ok(run_limn(folder, render_words({"-o", "a.png"})));
+    check_ok(run_limn(folder, render_words({"-o", "b.png", "--set", "exposure.ev=1"})));
+    const ProgramRun same = run_limn(folder, {"compare", "a.png", "a.png"});
+    check_ok(same);
+    CHECK(same.out.find("inf") != std::string::npos);
+    const ProgramRun other =
+        run_limn(folder, {"compare", "a.png", "b.png", "--json", "--diff", "d.png"});
+    check_ok(other);
+    CHECK(other.out.find("\"psnr\"") != std::string::npos);
+    CHECK(read_picture(folder.file("d.png")).whole);
+}
+
+}  // namespace limn
