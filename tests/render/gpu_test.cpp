@@ -293,22 +293,22 @@ TEST_CASE_FIXTURE(
     CHECK(glIsEnabled(GL_POLYGON_OFFSET_FILL) == GL_FALSE);
 }
 
-TEST_CASE_FIXTURE(test::RenderTest, "gpu: a name that died and came back is bound again") {
-    auto first = std::make_unique<Texture>("first", gpu::TextureDesc{});
-    const GLuint name = first->id();
-    device().bind_texture(6, *first);
-    first.reset();
-    // Drivers hand the lowest free name out again.
-    std::vector<Texture> again;
-    for (int i = 0; i < 16 && (again.empty() || again.back().id() != name); ++i) {
-        again.emplace_back("again", gpu::TextureDesc{});
-    }
-    REQUIRE(!again.empty());
-    device().bind_texture(6, again.back());
+TEST_CASE_FIXTURE(test::RenderTest, "gpu: after an object died bindings are set again") {
+    // OpenGL unbinds a dying name and hands it out again (Mesa 22.3 happens not to), so that what
+    // is remembered may be another object.
+    const Texture texture("bound", {});
+    auto other = std::make_unique<Texture>("other", gpu::TextureDesc{});
+    device().bind_texture(6, texture);
+    device().reset_stats();
+    device().bind_texture(6, texture);
+    CHECK(device().stats().state_changes == 0);
+    other.reset();
+    device().bind_texture(6, texture);
+    CHECK(device().stats().state_changes > 0);
     glActiveTexture(GL_TEXTURE6);
     GLint bound = 0;
     glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
-    CHECK(static_cast<GLuint>(bound) == again.back().id());
+    CHECK(static_cast<GLuint>(bound) == texture.id());
 }
 
 TEST_CASE_FIXTURE(test::RenderTest, "gpu: what a program expects and nobody bound is named") {
