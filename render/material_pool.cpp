@@ -33,7 +33,7 @@ layout::MaterialRecord make_record(const Material& m) {
     record.base_color = m.base_color;
     record.emission = Vec4(m.emission, m.normal_scale);
     record.factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff};
-    record.specular = Vec4(m.specular, m.shininess);
+    record.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f));
     record.model = {stored_model(m.shading), 0, 0, 0};
     for (int i = 0; i < kMaterialTextures; ++i) {
         const TextureSlot& slot = *slots_of(m, i);

@@ -1,0 +1,96 @@
+// What a surface makes of light that arrives. Lights answer one question - from where and how much - and nothing
+// here asks what they are (light.interface). Definition CLASSIC_MODELS: some surface is Blinn or Phong; it only
+// spares a software OpenGL work that nobody needs.
+
+#include "lib/brdf.glsl"
+#include "lib/gbuffer.glsl"
+#include "material_gpu.h"
+
+layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
+#ifdef CLASSIC_MODELS
+layout(binding = 13) uniform samplerBuffer surface_materials;  // MaterialRecord
+#endif
+
+struct Incoming {
+    vec3 to_light;    // unit
+    vec3 irradiance;  // on a plane that faces the light
+};
+
+// What of a surface stays the same for all lights.
+struct Reflector {
+    vec3 normal;
+    vec3 to_camera;
+    float n_v;
+    float alpha2;      // roughness^4
+    vec3 diffuse;      // albedo of the diffuse part, losses to the specular part taken off
+    vec3 f0;           // reflectance head on; ks of the classic models
+    vec3 given_back;   // factor that returns what single scattering lost
+    vec3 mirror;       // share of uniform surroundings that the specular part returns
+    float lit;         // 0: Unlit
+    float classic;     // 0: Pbr, 1: Blinn, 2: Phong
+    float shininess;
+};
+
+Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
+    Reflector r;
+    r.normal = s.normal_ws;
+    r.to_camera = to_camera;
+    // Normal maps and interpolation turn some normals away from the viewer: taken as seen edge on.
+    r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
+    float roughness = max(s.roughness, kMinRoughness);
+    r.alpha2 = roughness * roughness * roughness * roughness;
+    r.f0 = mix(vec3(0.04), s.albedo, s.metalness);
+
+    vec2 size = vec2(textureSize(specular_albedo, 0));
+    vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
+    // Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
+    r.given_back = 1.0 + r.f0 * (1.0 / (fit.x + fit.y) - 1.0);
+    r.mirror = (r.f0 * fit.x + fit.y) * r.given_back;
+    r.diffuse = s.albedo * (1.0 - s.metalness) * (1.0 - r.mirror);
+    r.lit = s.model == kModelUnlit ? 0.0 : 1.0;
+    r.classic = 0.0;
+    r.shininess = 1.0;
+#ifdef CLASSIC_MODELS
+    if (s.model == kModelBlinn || s.model == kModelPhong) {
+        vec4 specular = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 3);
+        r.classic = s.model == kModelBlinn ? 1.0 : 2.0;
+        r.f0 = specular.rgb;
+        r.shininess = specular.a;
+        r.given_back = vec3(1.0);
+        r.mirror = vec3(0.0);
+        r.diffuse = s.albedo;
+    }
+#endif
+    return r;
+}
+
+// Sums over lights, before the material's factors (light.multi).
+struct LightSum {
+    vec3 diffuse;   // E n.l
+    vec3 specular;  // E lobe, to be multiplied by f0
+    vec3 fresnel;   // E lobe (1 - v.h)^5, to be multiplied by 1 - f0
+};
+
+void add_light(inout LightSum sum, Reflector r, Incoming light) {
+    float n_l = max(dot(r.normal, light.to_light), 0.0);
+    float l_v = dot(light.to_light, r.to_camera);
+    vec2 h = half_cosines(n_l, r.n_v, l_v);  // n.h, v.h
+    float lobe = ggx_lobe(n_l, r.n_v, h.x, r.alpha2);
+    float p = schlick_weight(h.y);
+#ifdef CLASSIC_MODELS
+    float n_v = dot(r.normal, r.to_camera);
+    vec2 true_h = half_cosines(n_l, n_v, l_v);
+    float r_v = 2.0 * n_l * n_v - l_v;
+    float classic = lit(n_l, r.classic > 1.5 ? r_v : true_h.x, r.shininess).z / kPi;
+    lobe = r.classic > 0.5 ? classic : lobe;
+    p = r.classic > 0.5 ? 0.0 : p;
+#endif
+    sum.diffuse += light.irradiance * n_l;
+    sum.specular += light.irradiance * lobe;
+    sum.fresnel += light.irradiance * (lobe * p);
+}
+
+struct Reflected {
+    vec3 diffuse;
+    vec3 specular;
+};
