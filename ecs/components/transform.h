@@ -20,7 +20,7 @@ struct WorldTransform {
 /// world_from_local one simulation step earlier, equal to WorldTransform in the step of the spawn and
 /// after a Teleport: rendering interpolates between the two and takes the velocity from them.
 struct PreviousWorldTransform {
-    Affine world;
+    Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
 
 /// Tag: the entity jumped; its next step has no velocity. Removed by update_transforms.

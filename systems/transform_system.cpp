@@ -1,0 +1,268 @@
+#include "systems/transform_system.h"
+
+#include "ecs/base/jobs.h"
+#include "systems/motion_kernels.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace limn {
+
+namespace {
+
+/// What a chunk needs.
+enum class Work : std::uint8_t {
+    None,     ///< at rest
+    Settle,   ///< came to rest: previous = world
+    Compute,  ///< something moved
+};
+
+/// Per entity slot: what happens to it in this step.
+enum : std::uint8_t { kMoved = 1, kJumped = 2 };
+
+/// Flags by Entity::index; absent entities have none.
+class SlotFlags {
+  public:
+    void set(Entity entity, std::uint8_t flags) {
+        if (entity.index >= flags_.size()) {
+            flags_.resize(entity.index + entity.index / 2 + 64, 0);
+        }
+        flags_[entity.index] |= flags;
+    }
+    [[nodiscard]] std::uint8_t get(Entity entity) const {
+        return entity.index < flags_.size() ? flags_[entity.index] : std::uint8_t{0};
+    }
+
+  private:
+    std::vector<std::uint8_t> flags_;
+};
+
+/// Where a node's components are.
+struct NodeBody {
+    const Transform* local = nullptr;  ///< null: does not move in this step
+    Affine* world = nullptr;
+    Affine* previous = nullptr;
+};
+
+Work work_of(const ChunkView& chunk) {
+    const std::uint32_t world = chunk.version<WorldTransform>();
+    // Computing makes the world newer than all it depends on; anything else at least as new came
+    // later.
+    const bool is_old = !is_newer(world, chunk.version<Transform>())
+                        || !is_newer(world, chunk.structure_version())
+                        || (chunk.has<Parent>() && !is_newer(world, chunk.version<Parent>()));
+    if (is_old) {
+        return Work::Compute;
+    }
+    return is_newer(chunk.version<PreviousWorldTransform>(), world) ? Work::None : Work::Settle;
+}
+
+void settle(std::span<const WorldTransform> world, std::span<PreviousWorldTransform> previous) {
+    for (std::size_t i = 0; i < world.size(); ++i) {
+        previous[i].world = world[i].world;
+    }
+}
+
+/// Steps the world and the past of one entity.
+void step_body(const NodeBody& body, const Affine& world, bool jumped) {
+    const bool fresh = body.previous->row[0] == Vec4(0);
+    *body.previous = jumped || fresh ? world : *body.world;
+    *body.world = world;
+}
+
+Affine local_matrix(const Transform& local) {
+    return affine_from(local.position, local.rotation, local.scale);
+}
+
+/// The node of a hierarchy by entity slot.
+class NodeNumbers {
+  public:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+
+    explicit NodeNumbers(std::span<const HierarchyNode> nodes) {
+        for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+            const std::uint32_t slot = nodes[i].entity.index;
+            if (slot >= node_of_slot_.size()) {
+                node_of_slot_.resize(slot + slot / 2 + 64, kNone);
+            }
+            node_of_slot_[slot] = i;
+        }
+    }
+    /// kNone: a root, or a child whose parent is gone.
+    [[nodiscard]] std::uint32_t of(Entity entity) const {
+        return entity.index < node_of_slot_.size() ? node_of_slot_[entity.index] : kNone;
+    }
+
+  private:
+    std::vector<std::uint32_t> node_of_slot_;
+};
+
+/// A child that became a root without its own components changing: its parent was destroyed.
+bool has_new_orphan(
+    const ChunkView& chunk,
+    const NodeNumbers& numbers,
+    std::span<const Transform> local,
+    std::span<const WorldTransform> world) {
+    const std::span<const Entity> entities = chunk.entities();
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        if (numbers.of(entities[i]) == NodeNumbers::kNone) {
+            const Affine matrix = local_matrix(local[i]);
+            if (!std::equal(matrix.row, matrix.row + 3, world[i].world.row)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// One chunk of children: finds the places of those that move, and steps those whose parent is
+/// gone. Returns whether anything moves.
+bool collect_children(
+    std::span<const Entity> entities,
+    const NodeNumbers& numbers,
+    const SlotFlags& flags,
+    bool compute,
+    std::span<const Transform> local,
+    std::span<WorldTransform> world,
+    std::span<PreviousWorldTransform> previous,
+    std::vector<NodeBody>& node_bodies) {
+    const bool moves = compute || std::any_of(entities.begin(), entities.end(), [&](Entity entity) {
+                           return (flags.get(entity) & kMoved) != 0;
+                       });
+    for (std::size_t i = 0; moves && i < entities.size(); ++i) {
+        const NodeBody body = {&local[i], &world[i].world, &previous[i].world};
+        const std::uint32_t node = numbers.of(entities[i]);
+        const bool moved = (flags.get(entities[i]) & kMoved) != 0;
+        if (node == NodeNumbers::kNone && compute) {
+            step_body(body, local_matrix(local[i]), false);
+        } else if (node != NodeNumbers::kNone && moved) {
+            node_bodies[node] = body;
+        } else {
+            *body.previous = *body.world;
+        }
+    }
+    return moves;
+}
+
+}  // namespace
+
+void add_world_transforms(
+    Query<const Transform, Without<WorldTransform>> bare,
+    Query<const Transform, Without<PreviousWorldTransform>> without_past,
+    Commands commands) {
+    bare.each([&](Entity entity, const Transform&) { commands.add(entity, WorldTransform{}); });
+    without_past.each(
+        [&](Entity entity, const Transform&) { commands.add(entity, PreviousWorldTransform{}); });
+}
+
+void update_transforms(
+    TransformVersions versions,
+    Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
+    Query<const WorldTransform> worlds,
+    Query<const Transform, With<Teleport>> teleports,
+    HierarchyRef hierarchy,
+    Commands commands) {
+    const std::span<const HierarchyNode> nodes = hierarchy->nodes();
+    const NodeNumbers numbers(nodes);
+    SlotFlags flags;
+
+    // What each chunk needs; and, if anything hangs on anything, who moves.
+    std::vector<Work> work(versions.chunk_count(), Work::None);
+    bool any = false;
+    versions.chunks([&](ChunkView chunk,
+                        std::span<const Transform> local,
+                        std::span<const WorldTransform> world,
+                        std::span<const PreviousWorldTransform>) {
+        Work& wanted = work[chunk.index()];
+        wanted = work_of(chunk);
+        if (wanted != Work::Compute && chunk.has<Parent>()
+            && has_new_orphan(chunk, numbers, local, world)) {
+            wanted = Work::Compute;
+        }
+        any = any || wanted != Work::None;
+        if (!nodes.empty() && wanted == Work::Compute) {
+            for (const Entity entity : chunk.entities()) {
+                flags.set(entity, kMoved);
+            }
+        }
+    });
+    teleports.each([&](Entity entity, const Transform&) {
+        flags.set(entity, kMoved | kJumped);
+        commands.remove<Teleport>(entity);
+    });
+    if (!any) {
+        return;
+    }
+    for (const HierarchyNode& node : nodes) {
+        flags.set(node.entity, flags.get(node.parent));
+    }
+
+    // Roots; and the places of the children that move.
+    std::vector<NodeBody> node_bodies(nodes.size());
+    bodies.par_chunks([&](ChunkView chunk,
+                          std::span<const Transform> local,
+                          std::span<WorldTransform> world,
+                          std::span<PreviousWorldTransform> previous) {
+        const Work wanted = work[chunk.index()];
+        if (chunk.has<Parent>()) {
+            if (collect_children(
+                    chunk.entities(),
+                    numbers,
+                    flags,
+                    wanted == Work::Compute,
+                    local,
+                    world,
+                    previous,
+                    node_bodies)) {
+                return;
+            }
+        } else if (wanted == Work::Compute) {
+            compose_worlds(local, world, previous);
+            return;
+        }
+        chunk.mark_unchanged<WorldTransform>();
+        if (wanted == Work::Settle) {
+            settle(world, previous);
+        } else {
+            chunk.mark_unchanged<PreviousWorldTransform>();
+        }
+    });
+
+    // Children, from the roots down. Those of one depth do not depend on each other.
+    for (std::uint32_t depth = 1; depth <= hierarchy->depth_count(); ++depth) {
+        const std::span<const HierarchyNode> level = hierarchy->level(depth);
+        const std::size_t first = static_cast<std::size_t>(level.data() - nodes.data());
+        parallel_for(level.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const NodeBody& body = node_bodies[first + i];
+                if (body.local == nullptr) {
+                    continue;
+                }
+                const HierarchyNode& node = level[i];
+                const Affine local = local_matrix(*body.local);
+                const Affine* above = node.parent_node != HierarchyNode::kRoot
+                                          ? node_bodies[node.parent_node].world
+                                          : nullptr;
+                if (above == nullptr) {  // a root, or a parent that does not move
+                    const auto* parent = worlds.find<const WorldTransform>(node.parent);
+                    above = parent != nullptr ? &parent->world : nullptr;
+                }
+                step_body(
+                    body,
+                    above != nullptr ? *above * local : local,
+                    (flags.get(node.entity) & kJumped) != 0);
+            }
+        });
+    }
+
+    // Roots that jumped have no past.
+    teleports.each([&](Entity entity, const Transform&) {
+        const auto* world = bodies.find<WorldTransform>(entity);
+        auto* previous = bodies.find<PreviousWorldTransform>(entity);
+        if (world != nullptr && previous != nullptr) {
+            previous->world = world->world;
+        }
+    });
+}
+
+}  // namespace limn
