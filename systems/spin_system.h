@@ -1,0 +1,14 @@
+#pragma once
+
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+namespace limn {
+
+/// Turns every Spin by speed * step about its own axis: rotation = rotation * turn. Nothing moves
+/// in a step of length 0.
+void update_spins(Query<const Spin, Transform> spinning, Res<const FrameTime> time);
+
+}  // namespace limn

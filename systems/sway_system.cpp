@@ -1,0 +1,15 @@
+#include "systems/sway_system.h"
+
+#include "systems/motion_kernels.h"
+
+namespace limn {
+
+void update_sways(Query<const Sway, Transform> swaying, Res<const FrameTime> time) {
+    const double now = time->time;
+    swaying.par_chunks(
+        [now](ChunkView, std::span<const Sway> sway, std::span<Transform> transform) {
+            sway_positions(sway, now, transform);
+        });
+}
+
+}  // namespace limn
