@@ -1,0 +1,139 @@
+#include "systems/orbit_camera_system.h"
+
+#include "systems/motion_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+constexpr float kRadiansPerPixel = 0.005f;  // by eye
+constexpr float kZoomPerStep = 0.9f;        // by eye
+constexpr float kMaxElevation =
+    1.55f;  // just short of the pole, where left and right have no meaning
+constexpr float kReferenceRate = 60.0f;  // what OrbitCamera::follow refers to [Hz]
+
+/// Axis `i` of the target, unit however it is scaled.
+Vec3 axis_of(const Affine& target, int i) {
+    Vec3 fallback(0);
+    fallback[i] = 1;
+    return normalize_or({target.row[0][i], target.row[1][i], target.row[2][i]}, fallback);
+}
+
+Vec3 origin_of(const Affine& target) {
+    return {target.row[0].w, target.row[1].w, target.row[2].w};
+}
+
+void turn_by_hand(OrbitCamera& orbit, const Input& input) {
+    orbit.azimuth -= input.look.x * kRadiansPerPixel;
+    orbit.elevation = std::clamp(
+        orbit.elevation + input.look.y * kRadiansPerPixel, -kMaxElevation, kMaxElevation);
+    orbit.distance =
+        std::clamp(orbit.distance * std::pow(kZoomPerStep, input.zoom), 0.01f, 10000.0f);
+}
+
+}  // namespace
+
+OrbitDirection orbit_direction(float azimuth, float elevation) {
+    const float across = cosine(static_cast<double>(elevation));
+    return {
+        sine(static_cast<double>(azimuth)) * across,
+        cosine(static_cast<double>(azimuth)) * across,
+        sine(static_cast<double>(elevation))};
+}
+
+Vec3 orbit_position_z_up(const Affine& target, float azimuth, float elevation, float distance) {
+    const OrbitDirection to = orbit_direction(azimuth, elevation);
+    return origin_of(target)
+           + distance
+                 * (axis_of(target, 0) * to.side + axis_of(target, 1) * to.ahead
+                    + axis_of(target, 2) * to.above);
+}
+
+Vec3 orbit_position(const Affine& target, float azimuth, float elevation, float distance) {
+    const OrbitDirection to = orbit_direction(azimuth, elevation);
+    return origin_of(target)
+           + distance
+                 * (axis_of(target, 0) * to.side + axis_of(target, 1) * to.above
+                    + axis_of(target, 2) * to.ahead);
+}
+
+float lag_share(float follow, float dt) {
+    return 1.0f - std::pow(1.0f - std::clamp(follow, 0.0f, 1.0f), dt * kReferenceRate);
+}
+
+Vec3 lag_position(const Vec3& position, const Vec3& wanted, float follow, float dt) {
+    return wanted - (wanted - position) * (1.0f - lag_share(follow, dt));
+}
+
+Vec3 lag_position_legacy(const Vec3& position, const Vec3& wanted, float factor, float dt) {
+    return position + (wanted - position) * factor * dt;
+}
+
+Mat3 look_at_frame(const Vec3& z, const Vec3& up) {
+    const Vec3 backward = normalize_or(z, {0, 0, 1});
+    Vec3 upward = up - backward * glm::dot(up, backward);
+    if (glm::dot(upward, upward) < 1e-8f * glm::dot(up, up) || up == Vec3(0)) {
+        const Vec3 size = glm::abs(backward);
+        const Vec3 other = size.y <= size.x && size.y <= size.z ? Vec3(0, 1, 0)
+                           : size.z <= size.x                   ? Vec3(0, 0, 1)
+                                                                : Vec3(1, 0, 0);
+        upward = other - backward * glm::dot(other, backward);
+    }
+    const Vec3 y = glm::normalize(upward);
+    return {glm::cross(y, backward), y, backward};
+}
+
+void update_orbit_cameras(
+    Query<
+        OrbitCamera,
+        Transform,
+        WorldTransform,
+        PreviousWorldTransform,
+        Optional<const Camera>,
+        Without<Parent>> cameras,
+    Query<const WorldTransform> bodies,
+    Query<const WorldTransform, With<Teleport>> jumping,
+    Res<const Input> input,
+    Res<const FrameTime> time) {
+    cameras.each([&](Entity entity,
+                     OrbitCamera& orbit,
+                     Transform& transform,
+                     WorldTransform& world,
+                     PreviousWorldTransform& previous,
+                     const Camera* camera) {
+        if (camera != nullptr && camera->active) {
+            turn_by_hand(orbit, *input);
+        }
+        Affine target;
+        if (!orbit.target.is_null()) {
+            const auto* body = bodies.find<const WorldTransform>(orbit.target);
+            if (body == nullptr) {
+                return;  // gone: hold
+            }
+            target = body->world;
+        }
+        const Vec3 point = transform_point(target, orbit.offset);
+        target.row[0].w = point.x;
+        target.row[1].w = point.y;
+        target.row[2].w = point.z;
+        const Vec3 wanted = orbit_position(target, orbit.azimuth, orbit.elevation, orbit.distance);
+
+        const bool jumps =
+            time->frame == 0 || jumping.contains(entity) || jumping.contains(orbit.target);
+        transform.position =
+            jumps ? wanted : lag_position(transform.position, wanted, orbit.follow, time->step);
+        const Vec3 back = transform.position - point;
+        if (back != Vec3(0)) {
+            transform.rotation = glm::quat_cast(look_at_frame(back, axis_of(target, 1)));
+        }
+        world.world = affine_from(transform.position, transform.rotation, transform.scale);
+        if (jumps) {
+            previous.world = world.world;
+        }
+    });
+}
+
+}  // namespace limn

@@ -1,0 +1,49 @@
+#include "systems/update_world.h"
+
+#include "ecs/components/input.h"
+#include "ecs/components/time.h"
+#include "systems/fly_camera_system.h"
+#include "systems/orbit_camera_system.h"
+#include "systems/script_system.h"
+#include "systems/spin_system.h"
+#include "systems/sway_system.h"
+#include "systems/transform_system.h"
+
+namespace limn {
+
+Schedule make_world_schedule() {
+    Schedule schedule;
+    schedule.add<run_events>();  // first: everything else sees what the level wants now
+    schedule.add<add_world_transforms>();
+    schedule.sync();
+    schedule.add<update_spins>();
+    schedule.add<update_sways>();
+    schedule.add<update_camera_paths>();
+    schedule.add<update_fly_cameras>();
+    schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
+    schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
+    return schedule;
+}
+
+namespace {
+
+template <typename T>
+T& resource_or_default(World& world) {
+    T* found = world.find_resource<T>();
+    return found != nullptr ? *found : world.insert_resource(T{});
+}
+
+}  // namespace
+
+void step_world(World& world, Schedule& schedule) {
+    resource_or_default<RandomSeed>(world);
+    resource_or_default<Input>(world);
+    FrameTime& time = resource_or_default<FrameTime>(world);
+    if (time.time > 0) {
+        ++time.frame;
+    }
+    time.time = static_cast<double>(time.frame + 1) * static_cast<double>(time.step);
+    schedule.run(world);
+}
+
+}  // namespace limn

@@ -1,0 +1,107 @@
+#include "ecs/base/jobs.h"
+#include "ecs/components/all.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/input.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/snapshot.h"
+#include "systems/update_world.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+/// Boxes that turn and sway, some of them on others, with two cameras.
+void fill(World& world) {
+    for (int i = 0; i < 3000; ++i) {
+        const auto x = static_cast<float>(i);
+        const Entity e = world.create(
+            Transform{.position = {x, 0, 0}},
+            Spin{.axis = {1, x, 2}, .speed = 0.1f * x},
+            Sway{.center = {x, 1, 0}, .phase = {x, 0, 1}});
+        if (i % 10 == 0) {
+            world.create(Transform{.position = {0, 1, 0}}, Parent{e}, Spin{});
+        }
+        if (i == 500) {
+            world.create(Transform{}, Camera{}, OrbitCamera{.target = e});
+            world.create(Transform{}, FlyCamera{});
+        }
+    }
+}
+
+std::vector<std::uint64_t> hashes(int threads, int steps) {
+    set_thread_count(threads);
+    World world;
+    fill(world);
+    Schedule schedule = make_world_schedule();
+    schedule.set_always_parallel(threads > 1);
+    std::vector<std::uint64_t> all;
+    for (int i = 0; i < steps; ++i) {
+        step_world(world, schedule);
+        world.resource<Input>().look = {static_cast<float>(i % 7), 1};
+        world.resource<Input>().move = {0, 0, 1};
+        all.push_back(state_hash(world));
+    }
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("update_world: time is the number of steps times their length, without drift") {
+    World world;
+    Schedule schedule = make_world_schedule();
+    for (int i = 0; i < 600; ++i) {
+        step_world(world, schedule);
+        CHECK(world.resource<FrameTime>().frame == static_cast<std::uint64_t>(i));
+    }
+    CHECK(world.resource<FrameTime>().time == doctest::Approx(10.0).epsilon(1e-7));
+}
+
+TEST_CASE("update_world: what was spawned is where it belongs after one step") {
+    World world;
+    Schedule schedule = make_world_schedule();
+    const Entity parent = world.create(Transform{.position = {1, 0, 0}});
+    const Entity child = world.create(Transform{.position = {0, 2, 0}}, Parent{parent});
+    step_world(world, schedule);
+    const Affine pose = world.get<WorldTransform>(child).world;
+    CHECK(Vec3(pose.row[0].w, pose.row[1].w, pose.row[2].w) == Vec3(1, 2, 0));
+    CHECK(world.has<PreviousWorldTransform>(child));
+}
+
+TEST_CASE("update_world: the same start gives the same worlds, from run to run and on any number "
+          "of threads") {
+    const int before = thread_count();
+    const std::vector<std::uint64_t> one = hashes(1, 12);
+    CHECK(hashes(1, 12) == one);
+    CHECK(hashes(2, 12) == one);
+    CHECK(hashes(4, 12) == one);
+    CHECK(one[0] != one[1]);
+    set_thread_count(before);
+}
+
+TEST_CASE("update_world: a world put back from a snapshot goes on as it would have") {
+    register_all_components();
+    register_component<Parent>();
+    World world;
+    fill(world);
+    Schedule schedule = make_world_schedule();
+    for (int i = 0; i < 5; ++i) {
+        step_world(world, schedule);
+    }
+    const Result<std::vector<std::byte>> image = save_snapshot(world);
+    REQUIRE(image.ok());
+    World other;
+    const Status restored = restore_snapshot(other, *image);
+    REQUIRE(restored.ok());
+    Schedule other_schedule = make_world_schedule();
+    for (int i = 0; i < 5; ++i) {
+        step_world(world, schedule);
+        step_world(other, other_schedule);
+        REQUIRE(state_hash(other) == state_hash(world));
+    }
+}
