@@ -396,11 +396,14 @@ create_pipeline(Device& device, const ProgramDesc& desc, const PipelineState& st
 }
 
 void blit_to_window(Device& device, const Texture& texture, int width, int height, GLenum filter) {
-    const Attachment color = {&texture};
-    const Framebuffer source("blit source", std::span(&color, 1));
+    if (device.blit_serial_ != texture.serial()) {
+        const Attachment color = {&texture};
+        device.blit_source_ = Framebuffer("blit source", std::span(&color, 1));
+        device.blit_serial_ = texture.serial();
+    }
     device.disable_scissor();
     glBlitNamedFramebuffer(
-        source.id(),
+        device.blit_source_.id(),
         0,
         0,
         0,

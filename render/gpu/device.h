@@ -104,7 +104,9 @@ class Device {
     void reset_stats() { stats_ = {}; }
 
   private:
-    Device(const DeviceCaps& caps);
+    explicit Device(const DeviceCaps& caps);
+    friend void
+    blit_to_window(Device& device, const Texture& texture, int width, int height, GLenum filter);
 
     static constexpr std::size_t kUnits = 32;
     struct BufferBinding {
@@ -135,6 +137,8 @@ class Device {
     DebugOutput debug_output_;
     std::unique_ptr<ShaderLibrary> shaders_;
     VertexArray no_vertices_;
+    Framebuffer blit_source_;  // of the texture that blit_to_window() showed last
+    std::uint64_t blit_serial_ = 0;
     DeviceStats stats_;
 
     // What is set; kUnknown marks what must be set again.

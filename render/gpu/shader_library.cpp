@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 namespace limn::gpu {
 
 struct ShaderLibrary::Entry {
     ProgramDesc desc;
     Program program;
-    std::vector<WatchedFile> watched;
+    std::vector<ShaderFileVersion> watched;
 };
 
 namespace {
@@ -137,12 +138,17 @@ ReloadReport ShaderLibrary::reload_all() {
 
 ReloadReport ShaderLibrary::reload(bool all) {
     ReloadReport report;
+    // Programs share most of their files: ask for each once.
+    std::map<std::string, std::uint64_t> versions;
+    const auto changed = [&](const ShaderFileVersion& file) {
+        const auto [found, fresh] = versions.try_emplace(file.path, 0);
+        if (fresh) {
+            found->second = files_.version(file.path);
+        }
+        return found->second != file.version;
+    };
     for (const std::unique_ptr<Entry>& entry : entries_) {
-        const bool changed =
-            std::any_of(entry->watched.begin(), entry->watched.end(), [&](const WatchedFile& file) {
-                return files_.version(file.path) != file.version;
-            });
-        if (!all && !changed) {
+        if (!all && std::none_of(entry->watched.begin(), entry->watched.end(), changed)) {
             continue;
         }
         Result<Program> program = build(entry->desc, entry->watched);
@@ -158,7 +164,7 @@ ReloadReport ShaderLibrary::reload(bool all) {
 }
 
 Result<Program>
-ShaderLibrary::build(const ProgramDesc& desc, std::vector<WatchedFile>& watched) const {
+ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& watched) const {
     const std::array<std::pair<GLenum, const std::string*>, 4> stages = {{
         {GL_VERTEX_SHADER, &desc.vertex},
         {GL_GEOMETRY_SHADER, &desc.geometry},
@@ -167,23 +173,18 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<WatchedFile>& watched)
     }};
     // All files first: what fails to compile must be watched too, or its repair would go unseen.
     std::vector<std::pair<GLenum, ShaderSource>> sources;
-    std::vector<std::string> seen;
+    watched.clear();
     Status assembled = Done{};
     for (const auto& [stage, path] : stages) {
         if (path->empty() || !assembled) {
             continue;
         }
-        Result<ShaderSource> source = assemble_shader(files_, *path, desc.defines, &seen);
+        Result<ShaderSource> source = assemble_shader(files_, *path, desc.defines, &watched);
         if (source) {
             sources.emplace_back(stage, *std::move(source));
         } else {
             assembled = source.error();
         }
-    }
-    watched.clear();
-    for (std::string& path : seen) {
-        const std::uint64_t version = files_.version(path);
-        watched.push_back({std::move(path), version});
     }
     if (!assembled) {
         return assembled.error();

@@ -57,12 +57,8 @@ class ShaderLibrary {
 
   private:
     struct Entry;
-    struct WatchedFile {
-        std::string path;
-        std::uint64_t version;
-    };
     [[nodiscard]] Result<Program>
-    build(const ProgramDesc& desc, std::vector<WatchedFile>& watched) const;
+    build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& watched) const;
     ReloadReport reload(bool all);
 
     const DeviceCaps& caps_;

@@ -65,7 +65,7 @@ class Assembler {
     Assembler(
         const ShaderFiles& files,
         const std::vector<ShaderDefine>& defines,
-        std::vector<std::string>* seen)
+        std::vector<ShaderFileVersion>* seen)
         : files_(files), defines_(defines), seen_(seen) {}
 
     Result<ShaderSource> run(std::string_view path) {
@@ -79,8 +79,8 @@ class Assembler {
   private:
     /// `place` begins the message if the file is missing.
     Status add_file(std::string_view path, const std::string& place) {
-        if (seen_ != nullptr && std::find(seen_->begin(), seen_->end(), path) == seen_->end()) {
-            seen_->emplace_back(path);
+        if (seen_ != nullptr) {
+            seen_->push_back({std::string(path), files_.version(path)});
         }
         const std::optional<std::string> body = files_.read(path);
         if (!body) {
@@ -265,7 +265,7 @@ class Assembler {
 
     const ShaderFiles& files_;
     const std::vector<ShaderDefine>& defines_;
-    std::vector<std::string>* seen_;
+    std::vector<ShaderFileVersion>* seen_;
     ShaderSource source_;
     std::vector<std::string> open_;  // files that are being read, outermost first
 };
@@ -335,7 +335,7 @@ Result<ShaderSource> assemble_shader(
     const ShaderFiles& files,
     std::string_view path,
     const std::vector<ShaderDefine>& defines,
-    std::vector<std::string>* files_seen) {
+    std::vector<ShaderFileVersion>* files_seen) {
     return Assembler(files, defines, files_seen).run(path);
 }
 

@@ -58,14 +58,21 @@ struct ShaderSource {
     std::vector<Place> places;       ///< of each line of `text`
 };
 
+/// A file and its ShaderFiles::version() from before it was read: an edit in between is noticed
+/// later.
+struct ShaderFileVersion {
+    std::string path;
+    std::uint64_t version = 0;
+};
+
 /// Fails with "file:line: ..." for a missing file, a cycle, a bad #include or a missing #version.
-/// `files_seen`, if given, receives every path that was asked for, also on failure: reload watches
+/// `files_seen`, if given, receives every file that was asked for, also on failure: reload watches
 /// them.
 [[nodiscard]] Result<ShaderSource> assemble_shader(
     const ShaderFiles& files,
     std::string_view path,
     const std::vector<ShaderDefine>& defines = {},
-    std::vector<std::string>* files_seen = nullptr);
+    std::vector<ShaderFileVersion>* files_seen = nullptr);
 
 /// A compiler's log with its "0:line" (Mesa, AMD) or "0(line)" (NVIDIA) turned into "file:line".
 [[nodiscard]] std::string name_files_in_log(std::string_view log, const ShaderSource& source);
