@@ -63,7 +63,6 @@ using Floats = hn::ScalableTag<float>;
 using V = hn::Vec<Floats>;
 using HalfFloats = hn::Half<Floats>;
 using Doubles = hn::Rebind<double, HalfFloats>;
-using Indices = hn::RebindToSigned<Floats>;
 constexpr Floats d;
 
 /// Sine and cosine of the rest, and how many quarter turns were taken off, modulo 4.
@@ -132,12 +131,16 @@ HWY_INLINE V pick_cosine(const SinCos& parts) {
     return hn::IfThenElse(negative, hn::Neg(value), value);
 }
 
-/// Element `field` of every struct of `Stride` floats, from `first` on.
+/// Four neighboring floats of structs of `Stride` floats, from `first` on, one vector a field.
+/// Through the stack in pieces of 16 bytes: quicker than gather instructions.
 template <int Stride>
-HWY_INLINE V gather(const float* first, int field) {
-    const Indices di;
-    const auto index = hn::Mul(hn::Iota(di, 0), hn::Set(di, Stride));
-    return hn::GatherIndex(d, first + field, index);
+HWY_INLINE void load_fields(const float* first, V& a, V& b, V& c, V& e) {
+    HWY_ALIGN float staged[4 * hn::MaxLanes(Floats())];
+    const hn::FixedTag<float, 4> d4;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+        hn::Store(hn::LoadU(d4, first + Stride * lane), d4, staged + 4 * lane);
+    }
+    hn::LoadInterleaved4(d, staged, a, b, c, e);
 }
 
 std::size_t compose_worlds_vector(
@@ -151,13 +154,19 @@ std::size_t compose_worlds_vector(
     std::size_t first = 0;
     for (; first + lanes <= local.size(); first += lanes) {
         const float* in = reinterpret_cast<const float*>(&local[first]);
-        const V qx = gather<10>(in, 3);
-        const V qy = gather<10>(in, 4);
-        const V qz = gather<10>(in, 5);
-        const V qw = gather<10>(in, 6);
-        const V sx = gather<10>(in, 7);
-        const V sy = gather<10>(in, 8);
-        const V sz = gather<10>(in, 9);
+        V px;
+        V py;
+        V pz;
+        V qx;
+        V qy;
+        V qz;
+        V qw;
+        V sx;
+        V sy;
+        V sz;
+        load_fields<10>(in, px, py, pz, qx);
+        load_fields<10>(in + 3, qx, qy, qz, qw);
+        load_fields<10>(in + 6, qw, sx, sy, sz);
 
         // The operations of glm::mat3_cast, in their order.
         const V xx = hn::Mul(qx, qx);
@@ -173,21 +182,21 @@ std::size_t compose_worlds_vector(
             hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(yy, zz))), sx),
             hn::Mul(hn::Mul(two, hn::Sub(xy, wz)), sy),
             hn::Mul(hn::Mul(two, hn::Add(xz, wy)), sz),
-            gather<10>(in, 0),
+            px,
             d,
             rows[0]);
         hn::StoreInterleaved4(
             hn::Mul(hn::Mul(two, hn::Add(xy, wz)), sx),
             hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(xx, zz))), sy),
             hn::Mul(hn::Mul(two, hn::Sub(yz, wx)), sz),
-            gather<10>(in, 1),
+            py,
             d,
             rows[1]);
         hn::StoreInterleaved4(
             hn::Mul(hn::Mul(two, hn::Sub(xz, wy)), sx),
             hn::Mul(hn::Mul(two, hn::Add(yz, wx)), sy),
             hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(xx, yy))), sz),
-            gather<10>(in, 2),
+            pz,
             d,
             rows[2]);
 
@@ -241,10 +250,11 @@ turn_rotations_vector(std::span<const Spin> spin, float dt, std::span<Transform>
         const V bz = hn::Mul(az, share);
 
         const float* in = reinterpret_cast<const float*>(&transform[first]);
-        const V qx = gather<10>(in, 3);
-        const V qy = gather<10>(in, 4);
-        const V qz = gather<10>(in, 5);
-        const V qw = gather<10>(in, 6);
+        V qx;
+        V qy;
+        V qz;
+        V qw;
+        load_fields<10>(in + 3, qx, qy, qz, qw);
         const V rx = hn::Sub(
             hn::Add(hn::Add(hn::Mul(qw, bx), hn::Mul(qx, bw)), hn::Mul(qy, bz)), hn::Mul(qz, by));
         const V ry = hn::Sub(
@@ -272,12 +282,17 @@ sway_positions_vector(std::span<const Sway> sway, double time, std::span<Transfo
     std::size_t first = 0;
     for (; first + lanes <= sway.size(); first += lanes) {
         const float* in = reinterpret_cast<const float*>(&sway[first]);
+        V center[3];
+        V amplitude[3];
+        V frequency[3];
+        V phase[3];
+        load_fields<12>(in, center[0], center[1], center[2], amplitude[0]);
+        load_fields<12>(in + 4, amplitude[1], amplitude[2], frequency[0], frequency[1]);
+        load_fields<12>(in + 8, frequency[2], phase[0], phase[1], phase[2]);
         V position[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const SinCos parts =
-                sin_cos_parts(gather<12>(in, 6 + axis), time, gather<12>(in, 9 + axis));
-            position[axis] =
-                hn::Add(gather<12>(in, axis), hn::Mul(gather<12>(in, 3 + axis), pick_sine(parts)));
+            const SinCos parts = sin_cos_parts(frequency[axis], time, phase[axis]);
+            position[axis] = hn::Add(center[axis], hn::Mul(amplitude[axis], pick_sine(parts)));
         }
         hn::StoreInterleaved3(position[0], position[1], position[2], d, moved);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
