@@ -325,7 +325,7 @@ class Query {
     template <typename Visit, typename... Ts>
     static void each_written(const QueryMatch& match, const Visit& visit, detail::TypeList<Ts...>) {
         std::size_t position = 0;
-        const auto one = [&]<typename Term>() {
+        [[maybe_unused]] const auto one = [&]<typename Term>() {
             if constexpr (detail::TermTraits<Term>::is_write) {
                 if (match.columns[position] >= 0) {
                     visit(match.archetype->column(match.columns[position]));
@@ -367,7 +367,7 @@ class Query {
         const QueryMatch& match,
         std::uint32_t begin,
         std::uint32_t end,
-        std::uint32_t version,
+        [[maybe_unused]] std::uint32_t version,
         F& function,
         detail::TypeList<Ts...>,
         std::index_sequence<Positions...>) const {
@@ -400,7 +400,7 @@ class Query {
         const std::uint32_t begin = task.chunk * kChunkRows;
         const std::uint32_t size = chunk_end(begin, match.archetype->size()) - begin;
         std::uint32_t previous[Data::size + 1] = {};
-        const auto save = [&](std::size_t position) {
+        [[maybe_unused]] const auto save = [&](std::size_t position) {
             const int column = match.columns[position];
             if (column >= 0) {
                 previous[position] = match.archetype->column(column).versions[task.chunk];
@@ -504,7 +504,7 @@ class Query {
     T*
     find_in(const Place& place, detail::TypeList<Ts...>, std::index_sequence<Positions...>) const {
         T* found = nullptr;
-        const auto one = [&]<typename Term>(std::size_t position) {
+        [[maybe_unused]] const auto one = [&]<typename Term>(std::size_t position) {
             if constexpr (std::is_same_v<typename detail::TermTraits<Term>::Value, T>) {
                 if constexpr (!std::is_const_v<T>) {
                     place.match->archetype->touch_row(

@@ -1,0 +1,185 @@
+#include "ecs/column.h"
+#include "ecs/world.h"
+#include "tests/ecs/test_components.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+using namespace limn;
+using namespace limn::test;
+
+namespace {
+
+/// 64 types of different sizes and alignments.
+template <std::size_t N>
+struct alignas(N % 8 == 7 ? 256 : (N % 8 == 3 ? 32 : (N % 2 == 1 ? 8 : 1))) Cell {
+    unsigned char bytes[1 + N * 5 % 43] = {};
+};
+
+template <std::size_t... N>
+std::vector<ComponentId> cell_ids(std::index_sequence<N...>) {
+    return {component_id<Cell<N>>...};
+}
+
+bool is_aligned(const void* address, std::size_t alignment) {
+    return reinterpret_cast<std::uintptr_t>(address) % alignment == 0;
+}
+
+/// Whether all columns are aligned and their padding can be written without changing another
+/// column's rows.
+bool has_sound_columns(World& world, Archetype& rows) {
+    const std::uint32_t size = rows.size();
+    const std::uint32_t padded = (size + 15) / 16 * 16;
+    bool sound = padded <= rows.capacity();
+    const auto columns = rows.columns();
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        sound = sound && is_aligned(columns[i].data, 64)
+                && is_aligned(columns[i].data, columns[i].info->align);
+        std::memset(columns[i].data, static_cast<int>(i + 1), std::size_t{size} * columns[i].size);
+    }
+    for (const Column& column : columns) {
+        std::memset(column.at(size), 0xee, std::size_t{padded - size} * column.size);
+    }
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        for (std::size_t byte = 0; byte < std::size_t{size} * columns[i].size; ++byte) {
+            sound = sound && columns[i].data[byte] == static_cast<std::byte>(i + 1);
+        }
+    }
+    for (std::uint32_t row = 0; row < size; ++row) {
+        sound = sound && world.alive(rows.entities()[row]);
+    }
+    return sound;
+}
+
+}  // namespace
+
+TEST_CASE("column: a range keeps its base and its contents while it grows") {
+    VirtualRange range(std::size_t{1} << 30);
+    range.commit(1);
+    std::byte* base = range.data();
+    base[0] = std::byte{7};
+    std::size_t before = range.committed();
+    for (std::size_t bytes = 1; bytes <= (std::size_t{1} << 25); bytes *= 3) {
+        range.commit(bytes);
+        CHECK(range.committed() >= bytes);
+        CHECK(range.committed() >= before);
+        CHECK(range.data()[range.committed() - 1] == std::byte{0});
+        before = range.committed();
+    }
+    CHECK(range.data() == base);
+    CHECK(base[0] == std::byte{7});
+}
+
+TEST_CASE("column: a range commits little at first and never far more than asked") {
+    VirtualRange range(std::size_t{1} << 30);
+    range.commit(1);
+    CHECK(range.committed() == 64 * 1024);
+    for (std::size_t bytes = 1 << 20; bytes <= (std::size_t{1} << 27); bytes += 12'345'678) {
+        range.commit(bytes);
+        CHECK(range.committed() < bytes + (std::size_t{2} << 20));
+    }
+}
+
+TEST_CASE("column: a moved range has one owner") {
+    VirtualRange a(4096);
+    a.commit(10);
+    VirtualRange b(std::move(a));
+    CHECK(a.data() == nullptr);
+    CHECK(b.data() != nullptr);
+    a = std::move(b);
+    CHECK(b.reserved() == 0);
+    a.data()[9] = std::byte{1};
+}
+
+TEST_CASE("column: the pool gives a freed block out again and counts what is used") {
+    BlockPool pool;
+    std::byte* small = pool.allocate(4096);
+    std::byte* large = pool.allocate(65536);
+    CHECK(small != large);
+    CHECK(is_aligned(large, 4096));
+    CHECK(pool.used() == 4096 + 65536);
+    pool.free(small, 4096);
+    CHECK(pool.used() == 65536);
+    CHECK(pool.allocate(4096) == small);
+}
+
+TEST_CASE("column: every table of 1 to 64 columns is aligned and padded, in blocks and in ranges") {
+    const std::vector<ComponentId> ids = cell_ids(std::make_index_sequence<64>());
+    for (const std::uint32_t count : {1u, 15u, 16u, 17u, 100u}) {
+        World world;
+        std::vector<Entity> entities;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            entities.push_back(world.create());
+        }
+        for (std::size_t width = 1; width <= ids.size(); ++width) {
+            for (const Entity entity : entities) {
+                world.add(entity, ids[width - 1]);
+            }
+            Archetype& rows = *world.core().archetypes.back();
+            REQUIRE(rows.columns().size() == width);
+            REQUIRE(rows.size() == count);
+            CHECK(has_sound_columns(world, rows));
+        }
+    }
+}
+
+TEST_CASE("column: tables around multiples of 1024 rows are aligned and padded") {
+    for (const std::uint32_t k : {1u, 2u, 5u}) {
+        for (const std::uint32_t count : {k * 1024 - 1, k * 1024, k * 1024 + 1}) {
+            World world;
+            world.create_many(count, Cell<3>{}, Cell<7>{}, Cell<8>{}, Cell<20>{}, Cell<31>{});
+            Archetype& rows = *world.core().archetypes.back();
+            CHECK(rows.is_promoted());
+            CHECK(rows.chunk_count() == (count + 1023) / 1024);
+            CHECK(has_sound_columns(world, rows));
+            world.create(Cell<3>{}, Cell<7>{}, Cell<8>{}, Cell<20>{}, Cell<31>{});
+            CHECK(has_sound_columns(world, rows));
+        }
+    }
+}
+
+TEST_CASE("column: small archetypes share the pool, large ones are promoted once and stay") {
+    World world;
+    world.create(Position{}, Velocity{});
+    Archetype& rows = *world.core().archetypes.back();
+    CHECK_FALSE(rows.is_promoted());
+    world.create_many(1024, Position{}, Velocity{});
+    CHECK(rows.is_promoted());
+    const std::byte* base = rows.columns()[0].data;
+    world.create_many(200'000, Position{}, Velocity{});
+    CHECK(rows.columns()[0].data == base);
+    world.clear();
+    world.create_many(10, Position{}, Velocity{});
+    CHECK(rows.columns()[0].data == base);
+}
+
+TEST_CASE("column: values survive every growth, those that own memory too") {
+    World world;
+    std::vector<Entity> entities;
+    for (int i = 0; i < 3000; ++i) {
+        entities.push_back(world.create(
+            Label{std::to_string(i), {i}}, Wide{}, Position{static_cast<float>(i), 0, 0}));
+    }
+    for (int i = 0; i < 3000; ++i) {
+        const Entity entity = entities[static_cast<std::size_t>(i)];
+        REQUIRE(world.get<Label>(entity).text == std::to_string(i));
+        REQUIRE(world.get<Label>(entity).numbers == std::vector<int>{i});
+        REQUIRE(world.get<Position>(entity).x == static_cast<float>(i));
+        REQUIRE(is_aligned(&world.get<Wide>(entity), 128));
+    }
+}
+
+TEST_CASE("column: a component larger than a block has columns of its own from the first row") {
+    struct Huge {
+        std::array<unsigned char, 100'000> bytes{};
+    };
+    World world;
+    const Entity entity = world.create(Huge{});
+    world.get<Huge>(entity).bytes[99'999] = 3;
+    CHECK(world.core().archetypes.back()->is_promoted());
+    CHECK(world.get<Huge>(entity).bytes[99'999] == 3);
+}
