@@ -15,6 +15,9 @@ struct DebugOutput::State {
     std::atomic<bool> muted = false;
     std::mutex mutex;  // drivers may report from their own threads
     std::vector<std::string> kept;
+    // Who took the messages before; gets them back.
+    void* previous_callback = nullptr;
+    void* previous_user = nullptr;
 };
 
 namespace {
@@ -71,11 +74,14 @@ DebugOutput::DebugOutput(bool synchronous) : state_(std::make_unique<State>()) {
     }
     glDebugMessageControl(
         GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
+    glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &state_->previous_callback);
+    glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &state_->previous_user);
     glDebugMessageCallback(receive_message, state_.get());
 }
 
 DebugOutput::~DebugOutput() {
-    glDebugMessageCallback(nullptr, nullptr);
+    glDebugMessageCallback(
+        reinterpret_cast<GLDEBUGPROC>(state_->previous_callback), state_->previous_user);
 }
 
 std::uint64_t DebugOutput::error_count() const {

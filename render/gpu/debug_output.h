@@ -16,7 +16,8 @@ namespace limn::gpu {
 
 class DebugOutput {
   public:
-    /// Installs itself in the context that is current and takes its messages until destroyed.
+    /// Installs itself in the context that is current and takes its messages until destroyed; then
+    /// whoever had them before gets them again.
     explicit DebugOutput(bool synchronous);
     ~DebugOutput();
     DebugOutput(const DebugOutput&) = delete;

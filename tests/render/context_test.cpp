@@ -74,6 +74,24 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    test::RenderTest, "context: a second device gives the messages back when it goes") {
+    const std::uint64_t before = device().debug_output().error_count();
+    {
+        Result<std::unique_ptr<gpu::Device>> second = gpu::Device::from_current_context();
+        REQUIRE(second.ok());
+        (*second)->debug_output().set_muted(true);
+        glBindTextureUnit(0, 0xdeadu);
+        CHECK((*second)->debug_output().error_count() == 1);
+        CHECK(device().debug_output().error_count() == before);
+    }
+    device().debug_output().set_muted(true);
+    glBindTextureUnit(0, 0xdeadu);
+    device().debug_output().set_muted(false);
+    CHECK(device().debug_output().error_count() == before + 1);
+    CHECK(device().debug_output().take_errors().size() == 1);
+}
+
+TEST_CASE_FIXTURE(
     test::RenderTest, "context: another thread's shared context sees the same buffers") {
     // The shared context is the test's own pair, as the fixture's context is not handed out.
     std::uint32_t seen = 0;
