@@ -145,9 +145,9 @@ TEST_CASE("observer: on_remove must not change the structure") {
 TEST_CASE(
     "observer: a sync point tells each observer once, entities in the order of the commands") {
     Log log;
+    std::vector<Entity> removed;  // outlives the world, whose end calls observers
     World world;
     const std::vector<Entity> entities = world.create_many(10, Label{}, Heat{});
-    std::vector<Entity> removed;
     world.on_remove<Label>([&](World& w, std::span<const Entity> span) {
         CHECK(w.has<Label>(span[0]));
         removed.assign(span.begin(), span.end());
