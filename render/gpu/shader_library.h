@@ -14,8 +14,8 @@ struct DeviceCaps;
 
 // Every program of a device, compiled once and reloaded when a file it is made of changes.
 //
-//     Result<const Program*> program = device.shaders().load({.vertex = "water.vert", .fragment =
-//     "water.frag"});
+//     Result<const Program*> program =
+//         device.shaders().load({.vertex = "water.vert", .fragment = "water.frag"});
 
 /// Which files make a program, and with what definitions. Give either `compute` or `vertex` (with
 /// the others).

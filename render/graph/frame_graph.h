@@ -18,8 +18,7 @@ namespace limn {
 // One frame as a list of passes. A pass says which textures and buffers it reads and writes and
 // brings the code that draws; the graph does the rest:
 //
-// - a pass that nothing needs is not run. Needed are what keep() names and what is imported from
-// outside;
+// - a pass that nothing needs is not run; needed are what keep() names and what is imported;
 // - transient textures come from a pool and share memory when their lifetimes do not overlap;
 // - targets are attached, cleared and bound, memory barriers set, debug groups opened;
 // - every pass is timed on the CPU and the GPU (smoothed, some frames late, never waiting).
@@ -28,8 +27,8 @@ namespace limn {
 // mistake and stops.
 //
 //     graph.begin_frame();
-//     const TextureId hdr = graph.create({.name = "hdr", .format = GL_RGBA16F, .width = w, .height
-//     = h}); graph.add_pass("sky", {depth}, {cleared(hdr)}, [=, &pass](PassContext& context) {
+//     const TextureId hdr = graph.create({.name = "hdr", .width = w, .height = h});
+//     graph.add_pass("sky", {depth}, {cleared(hdr)}, [=, &pass](PassContext& context) {
 //         context.device().use(pass.draw);
 //         context.bind_texture(0, depth);
 //         context.device().draw_fullscreen();
@@ -75,8 +74,7 @@ struct Use {
         Plain,  ///< read: any kind of fetch. Written: a target (texture), a storage block (buffer)
         Cleared,    ///< a target, cleared first
         Discarded,  ///< a target of which every pixel is written
-        DepthTest,  ///< read as depth attachment that is tested, not written; may be sampled as
-                    ///< well
+        DepthTest,  ///< a depth attachment tested but not written; may be sampled as well
         Image,      ///< written as a shader image or a copy: not attached
     };
 
@@ -144,7 +142,8 @@ class PassContext {
     IVec2 size_ = {0, 0};
 };
 
-/// What a pass costs. GPU times are of a frame some frames ago.
+/// What a pass costs. GPU times are of a frame some frames ago. Where the CPU draws (llvmpipe) a
+/// driver call may wait for the passes before, and that time counts as this pass's CPU time.
 struct PassTiming {
     std::string_view name = {};
     double cpu_ms = 0;       ///< smoothed over some 20 frames

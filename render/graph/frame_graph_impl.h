@@ -5,6 +5,7 @@
 #include "render/graph/target_pool.h"
 
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -76,7 +77,7 @@ struct FrameGraph::Impl {
 
     gpu::Device& device;
     TargetPool pool;
-    std::vector<std::string> names;
+    std::deque<std::string> names;  // of passes and resources; never move, as timings view them
     std::unordered_map<std::string, std::uint32_t, TextHash, std::equal_to<>> name_index;
     std::unordered_set<std::string, TextHash, std::equal_to<>> kept_names;
 

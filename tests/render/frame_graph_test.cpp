@@ -397,6 +397,23 @@ TEST_CASE_FIXTURE(
     CHECK(graph.timings()[0].last_cpu_ms + graph.timings()[1].last_cpu_ms <= last_frame_ms);
 }
 
+TEST_CASE_FIXTURE(test::RenderTest, "frame graph: names of the last frame outlive new ones") {
+    FrameGraph graph(device());
+    graph.begin_frame();
+    const TextureId a = graph.create(spec("a"));
+    graph.add_pass("first", {}, {a}, nothing);
+    graph.keep(a);
+    graph.execute();
+    const std::vector<std::string_view> textures = graph.texture_names();
+    graph.begin_frame();
+    for (int i = 0; i < 100; ++i) {
+        const TextureId other = graph.create(spec("other" + std::to_string(i)));
+        graph.add_pass("pass" + std::to_string(i), {}, {other}, nothing);
+    }
+    CHECK(graph.timings()[0].name == "first");
+    CHECK(textures == std::vector<std::string_view>{"a"});
+}
+
 TEST_CASE_FIXTURE(test::RenderTest, "frame graph: captures of passes are destroyed, run or not") {
     const auto token = std::make_shared<int>(1);
     {
