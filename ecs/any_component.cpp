@@ -1,7 +1,11 @@
 #include "ecs/any_component.h"
 
+#include "ecs/field_access.h"
+
 #include <algorithm>
+#include <cstring>
 #include <new>
+#include <string>
 #include <utility>
 
 namespace limn {
@@ -46,6 +50,26 @@ AnyComponent::~AnyComponent() {
     if (data_ != nullptr) {
         info_->ops.destroy(data_, 1);
         ::operator delete (data_, std::align_val_t{info_->align});
+    }
+}
+
+void copy_field(const FieldInfo& field, void* to, const void* from) {
+    const std::size_t count = element_count(field, from);
+    if (field.shape == FieldShape::List) {
+        field.list.resize(to, count);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        void* const target = element_ptr(field, to, i);
+        const void* const source = element_ptr(field, from, i);
+        if (field.type == FieldType::String) {
+            *static_cast<std::string*>(target) = *static_cast<const std::string*>(source);
+        } else if (field.type == FieldType::Struct) {
+            for (const FieldInfo& inner : field.fields) {
+                copy_field(inner, field_ptr(target, inner), field_ptr(source, inner));
+            }
+        } else {
+            std::memcpy(target, source, field.size);
+        }
     }
 }
 

@@ -2,8 +2,6 @@
 
 #include "ecs/reflect.h"
 
-#include <cstddef>
-
 namespace limn {
 
 /// The value of a component or resource whose type is known at run time only: what a level or a
@@ -47,5 +45,8 @@ class AnyComponent {
     const ComponentInfo* info_ = nullptr;
     void* data_ = nullptr;
 };
+
+/// Makes the field at `to`, all elements of it, equal to that at `from`.
+void copy_field(const FieldInfo& field, void* to, const void* from);
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "ecs/components/all.h"
 
 #include "ecs/components/camera.h"
+#include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
@@ -29,6 +30,7 @@ void register_all_components() {
     register_component<Camera>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
+    register_component<CameraPath>();
 
     register_resource<SiblingOrder>();
     register_resource<FrameTime>();

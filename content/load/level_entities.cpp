@@ -1,0 +1,471 @@
+#include "content/load/level_entities.h"
+
+#include "ecs/base/log.h"
+#include "ecs/component_bytes.h"
+#include "ecs/components/name.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+constexpr std::uint32_t kUseGeneration = 0xfffffffdu;  // of an Entity that stands for a NameUse
+constexpr std::size_t kMaxLayers = 64;
+
+const std::vector<std::string_view> kNodeKeys = {"name", "prefab", "gltf", "repeat", "children"};
+
+bool is_node_key(std::string_view key) {
+    return std::find(kNodeKeys.begin(), kNodeKeys.end(), key) != kNodeKeys.end();
+}
+
+/// The key in the last layer that has it; null: in none.
+const JsonValue* find_in_layers(const std::vector<const JsonValue*>& layers, std::string_view key) {
+    for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
+        if (const JsonValue* const value = (*layer)->find(key)) {
+            return value;
+        }
+    }
+    return nullptr;
+}
+
+/// What it costs to read a value, in values.
+std::size_t weight(const JsonValue& json) {
+    std::size_t sum = 1 + json.text.size() / 16;
+    for (const JsonValue& item : json.items) {
+        sum += weight(item);
+    }
+    for (const JsonMember& member : json.members) {
+        sum += weight(member.value);
+    }
+    return sum;
+}
+
+AnyComponent* find_component_in(std::vector<AnyComponent>& components, ComponentId id) {
+    const auto found =
+        std::find_if(components.begin(), components.end(), [id](const AnyComponent& c) {
+            return c.info().id == id;
+        });
+    return found == components.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+LevelEntities::LevelEntities(
+    std::string file, const JsonValue* prefabs, FindNames names, const EntityLimits& limits)
+    : file_(std::move(file)), names_(std::move(names)), limits_(limits) {
+    if (prefabs != nullptr) {
+        for (const JsonMember& prefab : prefabs->members) {
+            prefabs_[prefab.key].json = &prefab.value;
+        }
+    }
+}
+
+Status LevelEntities::add(const JsonValue& node, const std::string& path) {
+    return add_node(level_, node, {}, path);
+}
+
+Status LevelEntities::add_node(
+    List& list, const JsonValue& json, const Around& around, const std::string& path) {
+    Node node;
+    node.json = &json;
+    node.path = path;
+    if (json.kind != JsonKind::Object) {
+        return refuse(path, json.at, describe(json), "an entity: an object");
+    }
+    if (around.depth >= limits_.max_depth) {
+        return refuse(
+            path,
+            json.at,
+            fmt::format("more than {} entities in each other", limits_.max_depth),
+            "fewer");
+    }
+    const std::size_t open_before = open_.size();
+    Status status = read_own_keys(node);
+    if (status) {
+        status = find_layers(node);
+    }
+    if (status) {
+        status = add_copies(list, node, around);
+    }
+    open_.resize(open_before);
+    return status;
+}
+
+Status LevelEntities::read_own_keys(Node& node) const {
+    const JsonValue* const name = node.json->find("name");
+    if (name == nullptr) {
+        return Done{};
+    }
+    const bool good = name->kind == JsonKind::String && !name->text.empty()
+                      && name->text.find('.') == std::string::npos;
+    if (!good) {
+        return refuse(
+            node.path,
+            name->at,
+            describe(*name),
+            "a name: a string that is not empty, without '.'");
+    }
+    node.name = name->text;
+    node.path = "entity " + in_quotes(name->text);
+    return Done{};
+}
+
+/// Follows "prefab" to the prefab that uses no other one.
+Status LevelEntities::find_layers(Node& node) {
+    const JsonValue* layer = node.json;
+    node.layers.push_back(layer);
+    while (const JsonValue* const used = layer->find("prefab")) {
+        const auto prefab =
+            used->kind == JsonKind::String ? prefabs_.find(used->text) : prefabs_.end();
+        if (prefab == prefabs_.end()) {
+            std::vector<std::string_view> known;
+            for (const auto& [name, ignored] : prefabs_) {
+                known.emplace_back(name);
+            }
+            return refuse(
+                node.path,
+                used->at,
+                used->kind == JsonKind::String ? "the prefab " + in_quotes(used->text)
+                                               : describe(*used),
+                "the name of one of \"prefabs\"" + did_you_mean(used->text, known));
+        }
+        if (std::find(open_.begin(), open_.end(), used->text) != open_.end()) {
+            return refuse(
+                node.path,
+                used->at,
+                fmt::format(
+                    "the prefab {} inside itself ({} > {})",
+                    in_quotes(used->text),
+                    fmt::join(open_, " > "),
+                    used->text),
+                "one that does not contain itself");
+        }
+        layer = prefab->second.json;
+        prefab->second.is_used = true;
+        if (layer->kind != JsonKind::Object) {
+            return refuse(
+                "prefabs." + used->text, layer->at, describe(*layer), "an entity: an object");
+        }
+        if (const JsonValue* const name = layer->find("name")) {
+            return refuse(
+                "prefabs." + used->text,
+                name->at,
+                "a name",
+                "none: the entities that use it have names");
+        }
+        open_.push_back(used->text);
+        node.layers.push_back(layer);
+        if (node.layers.size() > kMaxLayers) {
+            return refuse(
+                node.path,
+                used->at,
+                fmt::format("more than {} prefabs of prefabs", kMaxLayers),
+                "fewer");
+        }
+    }
+    std::reverse(node.layers.begin(), node.layers.end());
+    node.is_copy = node.layers.size() > 1;
+    node.has_children = std::any_of(node.layers.begin(), node.layers.end(), [](const JsonValue* l) {
+        const JsonValue* const children = l->find("children");
+        return children != nullptr && !children->items.empty();
+    });
+    return Done{};
+}
+
+/// Refuses to go on when the level as a whole becomes too large.
+Status LevelEntities::spend(const Node& node, std::uint64_t copies) {
+    std::size_t values = 1;
+    for (const JsonValue* const layer : node.layers) {
+        for (const JsonMember& member : layer->members) {
+            values += member.key == "children" ? 0 : weight(member.value);
+        }
+    }
+    if (copies > limits_.max_entities - entities_) {
+        return refuse(
+            node.path,
+            node.json->at,
+            fmt::format("{} entities here", copies),
+            fmt::format("at most {} in all", limits_.max_entities));
+    }
+    if (copies > (limits_.max_values - values_) / values) {
+        return refuse(
+            node.path,
+            node.json->at,
+            fmt::format("{} copies of {} values", copies, values),
+            fmt::format("at most {} in all entities", limits_.max_values));
+    }
+    entities_ += copies;
+    values_ += copies * values;
+    return Done{};
+}
+
+FindNames LevelEntities::names_in(List& list) const {
+    FindNames names = names_;
+    names.entity = [&list](std::string_view name, SourcePosition at) -> std::optional<Entity> {
+        list.uses.push_back({std::string(name), at});
+        return Entity{static_cast<std::uint32_t>(list.uses.size() - 1), kUseGeneration};
+    };
+    return names;
+}
+
+Status LevelEntities::add_copies(List& list, Node& node, const Around& around) {
+    Status status = spend(node, 1);
+    if (!status) {
+        return status;
+    }
+    Result<std::vector<AnyComponent>> components = read_components(list, node);
+    if (!components) {
+        return components.error();
+    }
+    const JsonValue* const json = find_in_layers(node.layers, "repeat");
+    if (json == nullptr || json->kind == JsonKind::Null) {
+        return add_copy(list, node, around, *std::move(components), node.name);
+    }
+    node.is_copy = true;
+    const Result<Repeat> repeat =
+        read_repeat(*json, *components, {file_, node.path + ".repeat"}, names_in(list));
+    if (!repeat) {
+        return repeat.error();
+    }
+    const std::uint64_t count = repeat_count(*repeat);
+    status = spend(node, count - 1);
+    for (std::uint64_t i = 0; i < count && status; ++i) {
+        std::vector<AnyComponent> copy = *components;
+        apply_repeat(*repeat, i, copy);
+        const std::string name = node.name.empty() ? "" : fmt::format("{}[{}]", node.name, i);
+        status = add_copy(list, node, around, std::move(copy), name);
+    }
+    return status;
+}
+
+Status LevelEntities::add_copy(
+    List& list,
+    const Node& node,
+    const Around& around,
+    std::vector<AnyComponent> components,
+    const std::string& name) {
+    const auto index = static_cast<std::uint32_t>(list.entities.entities.size());
+    if (around.parent >= 0) {
+        components.push_back(
+            AnyComponent::of(Parent{prefab_entity(static_cast<std::uint32_t>(around.parent)), 0}));
+    }
+    if (!name.empty()) {
+        components.push_back(AnyComponent::of(Name{name}));
+        const auto [place, is_new] = list.scopes[around.scope].names.try_emplace(name, index);
+        if (!is_new) {
+            return refuse(
+                node.path,
+                node.json->find("name")->at,
+                "the name " + in_quotes(name) + " for the second time",
+                "each name once");
+        }
+    }
+    list.entities.entities.push_back({std::move(components)});
+    std::uint32_t scope = around.scope;
+    if (node.is_copy && node.has_children) {
+        scope = static_cast<std::uint32_t>(list.scopes.size());
+        list.scopes.push_back({around.scope, {}});
+    }
+    list.scope_of.push_back(scope);
+
+    if (const JsonValue* const gltf = find_in_layers(node.layers, "gltf")) {
+        if (gltf->kind != JsonKind::String) {
+            return refuse(node.path, gltf->at, describe(*gltf), "the path of a .gltf or .glb file");
+        }
+        const auto known =
+            std::find_if(list.gltfs.begin(), list.gltfs.end(), [&](const GltfUse& use) {
+                return use.file == gltf->text;
+            });
+        GltfUse& use = known != list.gltfs.end()
+                           ? *known
+                           : list.gltfs.emplace_back(GltfUse{gltf->text, gltf->at, {}});
+        use.entities.push_back(index);
+    }
+    for (const JsonValue* const layer : node.layers) {
+        const JsonValue* const children = layer->find("children");
+        if (children == nullptr) {
+            continue;
+        }
+        if (children->kind != JsonKind::Array) {
+            return refuse(node.path, children->at, describe(*children), "an array of entities");
+        }
+        for (std::size_t i = 0; i < children->items.size(); ++i) {
+            const Status status = add_node(
+                list,
+                children->items[i],
+                {index, scope, around.depth + 1},
+                fmt::format("{}.children[{}]", node.path, i));
+            if (!status) {
+                return status;
+            }
+        }
+    }
+    return Done{};
+}
+
+Result<std::vector<AnyComponent>> LevelEntities::read_components(List& list, const Node& node) {
+    std::vector<AnyComponent> components;
+    components.push_back(AnyComponent::of(Transform{}));
+    bool has_center = false;
+    for (const JsonValue* const layer : node.layers) {
+        const Status status = read_layer(list, *layer, node, components);
+        if (!status) {
+            return status.error();
+        }
+        const JsonValue* const sway = layer->find("sway");
+        has_center = has_center || (sway != nullptr && sway->find("center") != nullptr);
+    }
+    AnyComponent* const transform = find_component_in(components, component_id<Transform>);
+    AnyComponent* const sway = find_component_in(components, component_id<Sway>);
+    if (transform != nullptr && sway != nullptr && !has_center) {
+        sway->as<Sway>().center = transform->as<Transform>().position;
+    }
+    return components;
+}
+
+Status LevelEntities::read_layer(
+    List& list, const JsonValue& layer, const Node& node, std::vector<AnyComponent>& components) {
+    const FindNames names = names_in(list);
+    for (const JsonMember& member : layer.members) {
+        if (is_node_key(member.key)) {
+            continue;
+        }
+        const ComponentInfo* const info = find_component(member.key);
+        const bool is_ours = info == &component_info<Parent>();  // "children" says it
+        if (info == nullptr || is_ours || info->ops.construct_default == nullptr
+            || info->ops.construct_copy == nullptr) {
+            std::vector<std::string_view> known = kNodeKeys;
+            const std::vector<const ComponentInfo*> all = all_components();
+            for (const ComponentInfo* const component : all) {
+                known.emplace_back(component->name);
+            }
+            return refuse(
+                node.path,
+                member.at,
+                "the component " + in_quotes(member.key),
+                "one of `limn components`, or one of name prefab gltf repeat children"
+                    + did_you_mean(member.key, known));
+        }
+        AnyComponent* component = find_component_in(components, info->id);
+        if (member.value.kind == JsonKind::Null) {
+            std::erase_if(components, [info](const AnyComponent& c) { return &c.info() == info; });
+            continue;
+        }
+        if (component == nullptr) {
+            component = &components.emplace_back(*info);
+        }
+        const Status status = read_component(
+            member.value, *info, component->data(), {file_, node.path + ": " + member.key}, names);
+        if (!status) {
+            return status;
+        }
+    }
+    return Done{};
+}
+
+Status LevelEntities::resolve_names() {
+    return resolve(level_, true);
+}
+
+Status LevelEntities::resolve(List& list, bool is_level) const {
+    const auto find_use = [&](const NameUse& use, std::uint32_t scope) -> std::optional<Entity> {
+        while (true) {
+            const auto found = list.scopes[scope].names.find(use.name);
+            if (found != list.scopes[scope].names.end()) {
+                return prefab_entity(found->second);
+            }
+            if (scope == 0) {
+                break;
+            }
+            scope = list.scopes[scope].outer;
+        }
+        const std::int64_t outside = is_level ? -1 : find(use.name);
+        return outside < 0 ? std::nullopt
+                           : std::optional(level_entity(static_cast<std::uint32_t>(outside)));
+    };
+    for (std::size_t i = 0; i < list.entities.entities.size(); ++i) {
+        const NameUse* unknown = nullptr;
+        for (AnyComponent& component : list.entities.entities[i].components) {
+            if (!component.info().has_entities) {
+                continue;
+            }
+            for_each_entity(component.info().fields, component.data(), [&](Entity& entity) {
+                if (entity.generation != kUseGeneration) {
+                    return;
+                }
+                const NameUse& use = list.uses[entity.index];
+                const std::optional<Entity> named = find_use(use, list.scope_of[i]);
+                unknown = named ? unknown : &use;
+                entity = named.value_or(Entity{});
+            });
+        }
+        if (unknown != nullptr) {
+            std::vector<std::string_view> known = names();
+            for (const auto& [name, index] : list.scopes[list.scope_of[i]].names) {
+                known.emplace_back(name);
+            }
+            return refuse(
+                "",
+                unknown->at,
+                "the entity " + in_quotes(unknown->name),
+                "the name of one that exists" + did_you_mean(unknown->name, known));
+        }
+    }
+    return Done{};
+}
+
+std::int64_t LevelEntities::find(std::string_view name) const {
+    const auto found = level_.scopes[0].names.find(std::string(name));
+    return found == level_.scopes[0].names.end() ? -1 : std::int64_t{found->second};
+}
+
+std::vector<std::string_view> LevelEntities::names() const {
+    std::vector<std::string_view> all;
+    for (const auto& [name, index] : level_.scopes[0].names) {
+        all.emplace_back(name);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+Result<Prefab> LevelEntities::read_prefab(const JsonValue& node, const std::string& path) {
+    List list;
+    Status status = add_node(list, node, {}, path);
+    if (status) {
+        status = resolve(list, false);
+    }
+    if (!status) {
+        return status.error();
+    }
+    if (!list.gltfs.empty()) {
+        return refuse(
+            path, list.gltfs[0].at, "a glTF file", "none: events spawn what the level has loaded");
+    }
+    return std::move(list.entities);
+}
+
+Status LevelEntities::check_unused_prefabs() {
+    for (const auto& [name, prefab] : prefabs_) {
+        if (prefab.is_used) {
+            continue;
+        }
+        JsonValue node =
+            json_object({{"prefab", prefab.json->at, json_of(std::string_view(name))}});
+        node.at = prefab.json->at;
+        node.members[0].value.at = prefab.json->at;
+        List list;
+        Status status = add_node(list, node, {}, "prefabs." + name);
+        if (status) {
+            status = resolve(list, false);
+        }
+        if (!status) {
+            return status;
+        }
+    }
+    return Done{};
+}
+
+}  // namespace limn

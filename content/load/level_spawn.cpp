@@ -1,0 +1,158 @@
+#include "content/load/component_json.h"
+#include "content/load/gltf_spawn.h"
+#include "content/load/level_load.h"
+#include "ecs/command_buffer.h"
+#include "ecs/commands.h"
+#include "ecs/component_bytes.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <iterator>
+
+namespace limn {
+
+namespace {
+
+/// How many assets stood in the world before those of the level.
+struct AssetOffsets {
+    std::uint32_t mesh = 0;
+    std::uint32_t image = 0;
+    std::uint32_t material = 0;
+};
+
+template <typename T>
+std::uint32_t append(std::vector<T>& target, std::vector<T>& source) {
+    const auto offset = static_cast<std::uint32_t>(target.size());
+    std::move(source.begin(), source.end(), std::back_inserter(target));
+    return offset;
+}
+
+void shift_assets(const ComponentInfo& info, void* object, const AssetOffsets& offsets) {
+    for_each_asset(info.fields, object, [&](std::string_view kind, std::uint32_t& index) {
+        if (index != kNoAsset) {
+            index += kind == "mesh"    ? offsets.mesh
+                     : kind == "image" ? offsets.image
+                                       : offsets.material;
+        }
+    });
+}
+
+AssetOffsets append_assets(Assets& assets, Assets& level) {
+    AssetOffsets offsets;
+    offsets.image = static_cast<std::uint32_t>(assets.images.size());
+    for (Material& material : level.materials) {
+        shift_assets(component_info<Material>(), &material, offsets);
+    }
+    (void)append(assets.images, level.images);
+    offsets.mesh = append(assets.meshes, level.meshes);
+    offsets.material = append(assets.materials, level.materials);
+    return offsets;
+}
+
+/// Numbers of the level's entities become handles. In what an event spawns, `is_outside`, numbers
+/// of its own entities stay.
+void set_entities(AnyComponent& component, const std::vector<Entity>& entities, bool is_outside) {
+    const std::uint32_t generation =
+        is_outside ? level_entity(0).generation : prefab_entity(0).generation;
+    for_each_entity(component.info().fields, component.data(), [&](Entity& entity) {
+        if (entity.generation == generation && entity.index < entities.size()) {
+            entity = entities[entity.index];
+        }
+    });
+}
+
+void localize(
+    Prefab& prefab,
+    const AssetOffsets& offsets,
+    const std::vector<Entity>& entities,
+    bool is_outside) {
+    for (PrefabEntity& entity : prefab.entities) {
+        for (AnyComponent& component : entity.components) {
+            shift_assets(component.info(), component.data(), offsets);
+            if (component.info().has_entities) {
+                set_entities(component, entities, is_outside);
+            }
+        }
+    }
+}
+
+void localize(EventList& list, const AssetOffsets& offsets, const std::vector<Entity>& entities) {
+    for (ScriptEvent& event : list.events) {
+        for (ScriptAction& action : event.actions) {
+            if (action.entity.generation == prefab_entity(0).generation) {
+                action.entity = entities[action.entity.index];
+            }
+            if (!action.value.is_empty()) {
+                shift_assets(action.value.info(), action.value.data(), offsets);
+                set_entities(action.value, entities, false);
+            }
+            localize(action.prefab, offsets, entities, true);
+        }
+    }
+}
+
+/// All entities at once: Commands move each one time, however many components it gets.
+std::vector<Entity> create_entities(World& world, Prefab& prefab, const AssetOffsets& offsets) {
+    const std::vector<Entity> entities = world.create_many(prefab.entities.size());
+    localize(prefab, offsets, entities, false);
+    CommandBuffer buffer;
+    const Commands commands(buffer);
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        for (const AnyComponent& component : prefab.entities[i].components) {
+            commands.add_copy(entities[i], component.info().id, component.data());
+        }
+    }
+    CommandBuffer* const buffers[] = {&buffer};
+    apply_commands(world, buffers);
+    return entities;
+}
+
+/// The first use brings the file's assets; the others are copies of its entities.
+void spawn_scene(
+    World& world,
+    Assets& assets,
+    GltfScene scene,
+    const GltfUse& use,
+    const std::vector<Entity>& entities) {
+    const std::vector<Entity> roots =
+        spawn_gltf(world, assets, std::move(scene), entities[use.entities.front()]);
+    for (const Entity root : roots) {
+        const Prefab prefab = make_prefab(world, root);
+        for (std::size_t i = 1; i < use.entities.size(); ++i) {
+            (void)spawn(world, prefab, 1, entities[use.entities[i]]);
+        }
+    }
+}
+
+void set_resource(World& world, const AnyComponent& resource) {
+    const ComponentInfo& info = resource.info();
+    void* target = world.find_resource(info.id);
+    if (target == nullptr) {
+        target = world.insert_default_resource(info.id);
+    }
+    for (const FieldInfo& field : info.fields) {
+        copy_field(field, field_ptr(target, field), field_ptr(resource.data(), field));
+    }
+}
+
+}  // namespace
+
+std::vector<Entity> spawn_level(World& world, Level level) {
+    if (world.find_resource<Assets>() == nullptr) {
+        world.insert_resource(Assets{});
+    }
+    Assets& assets = world.resource<Assets>();
+    const AssetOffsets offsets = append_assets(assets, level.assets);
+    for (const AnyComponent& resource : level.resources) {
+        set_resource(world, resource);
+    }
+    std::vector<Entity> entities = create_entities(world, level.entities, offsets);
+    for (std::size_t i = 0; i < level.scenes.size(); ++i) {
+        spawn_scene(world, assets, std::move(level.scenes[i]), level.gltfs[i], entities);
+    }
+    localize(level.events, offsets, entities);
+    world.insert_resource(std::move(level.events));
+    return entities;
+}
+
+}  // namespace limn

@@ -1,0 +1,199 @@
+#include "content/load/scene_load.h"
+
+#include "content/load/gltf_load.h"
+#include "content/load/gltf_spawn.h"
+#include "content/load/level_list.h"
+#include "content/load/level_load.h"
+#include "ecs/base/log.h"
+#include "ecs/components/all.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/camera_path.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <unordered_map>
+
+namespace limn {
+
+namespace {
+
+constexpr float kFramingAspect = 16.0f / 9.0f;
+
+bool ends_with_any(std::string_view text, std::initializer_list<std::string_view> endings) {
+    std::string lower(text);
+    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
+        return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    });
+    return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
+        return lower.ends_with(ending);
+    });
+}
+
+template <typename T>
+void insert_missing(World& world) {
+    if (world.find_resource<T>() == nullptr) {
+        world.insert_resource(T{});
+    }
+}
+
+/// The first camera that is active, else the first; null: none.
+Entity find_camera(World& world) {
+    Entity camera;
+    bool is_active = false;
+    world.query<const Camera>().each([&](Entity entity, const Camera& candidate) {
+        if (camera.is_null() || (candidate.active && !is_active)) {
+            camera = entity;
+            is_active = candidate.active;
+        }
+    });
+    return camera;
+}
+
+Entity add_framing_camera(World& world, const Bounds& bounds) {
+    Camera camera{.fov_y = radians(35.0f)};  // a portrait lens: little distortion
+    const float size = is_empty(bounds) ? 1.0f : glm::length(half_extent(bounds));
+    camera.near = std::clamp(0.005f * size, 1e-4f, 0.1f);
+    return world.create(
+        Name{"framing camera"}, frame_bounds(bounds, camera.fov_y, kFramingAspect), camera);
+}
+
+/// Three lights as a photographer sets them, seen from the camera: a warm key from the upper left,
+/// a weak cool fill from the right, a rim from behind that parts the model from the dark.
+void add_light_rig(World& world, const Quat& camera) {
+    struct RigLight {
+        const char* name;
+        Vec3 from;  ///< camera space: right, up, toward the camera
+        Vec3 color;
+        float illuminance;
+    };
+    constexpr RigLight kRig[] = {
+        {"key light", {-0.7f, 0.8f, 0.8f}, {1.0f, 0.93f, 0.84f}, 2.6f},
+        {"fill light", {0.9f, 0.1f, 0.7f}, {0.75f, 0.86f, 1.0f}, 0.5f},
+        {"rim light", {0.6f, 0.7f, -0.9f}, {0.9f, 0.95f, 1.0f}, 2.0f}};
+    for (const RigLight& light : kRig) {
+        Transform transform;
+        transform.rotation = look_along(camera * -light.from);
+        world.create(
+            Name{light.name},
+            transform,
+            DirectionalLight{.color = light.color, .illuminance = light.illuminance});
+    }
+}
+
+bool has_lights(World& world) {
+    return !world.query<const PointLight>().empty() || !world.query<const SpotLight>().empty()
+           || !world.query<const DirectionalLight>().empty();
+}
+
+/// Around everything that is drawn where the Transforms are now: the WorldTransforms are not yet.
+Bounds find_bounds(World& world) {
+    const auto local = [&](Entity entity) {
+        const Transform* const t = std::as_const(world).find<Transform>(entity);
+        return t == nullptr ? Affine{} : affine_from(t->position, t->rotation, t->scale);
+    };
+    std::unordered_map<Entity, Affine> matrices;  // of those with a parent
+    for (const HierarchyNode& node : hierarchy(world).nodes()) {
+        const auto parent = matrices.find(node.parent);
+        matrices[node.entity] =
+            (parent == matrices.end() ? local(node.parent) : parent->second) * local(node.entity);
+    }
+    Bounds bounds;
+    const Assets& assets = world.resource<Assets>();
+    world.query<const MeshInstance>().each([&](Entity entity, const MeshInstance& instance) {
+        if (instance.mesh.index >= assets.meshes.size()) {
+            return;
+        }
+        const auto matrix = matrices.find(entity);
+        const Bounds box = transform_bounds(
+            matrix == matrices.end() ? local(entity) : matrix->second,
+            assets.meshes[instance.mesh.index].bounds);
+        if (!is_empty(box)) {
+            grow(bounds, box);
+        }
+    });
+    return bounds;
+}
+
+/// What every scene has, its camera among it.
+void complete_scene(World& world, const SceneOptions& options, LoadedScene& scene) {
+    insert_missing<Assets>(world);
+    insert_missing<Environment>(world);
+    insert_missing<Exposure>(world);
+    insert_missing<FrameTime>(world);
+    insert_missing<RandomSeed>(world);
+    insert_missing<EventList>(world);
+    if (options.seed) {
+        world.resource<RandomSeed>().seed = *options.seed;
+    }
+    scene.bounds = find_bounds(world);
+    scene.camera = find_camera(world);
+    if (scene.camera.is_null()) {
+        scene.camera = add_framing_camera(world, scene.bounds);
+    }
+    world.query<const CameraPath>().each([&](const CameraPath& path) {
+        scene.duration = std::max(scene.duration, camera_duration(path));
+    });
+}
+
+Result<LoadedScene>
+load_gltf_scene(World& world, const std::string& path, const SceneOptions& options) {
+    Result<GltfScene> gltf = load_gltf(path);
+    if (!gltf) {
+        return gltf.error();
+    }
+    LoadedScene scene;
+    scene.name = gltf->name;
+    scene.path = path;
+    insert_missing<Assets>(world);
+    (void)spawn_gltf(world, world.resource<Assets>(), *std::move(gltf));
+    world.insert_resource(Environment{.sky = SkyKind::Studio});
+    complete_scene(world, options, scene);
+    if (!has_lights(world)) {
+        // A camera of the file may be anywhere; the rig stands as if one looked at the model.
+        add_light_rig(world, frame_bounds(scene.bounds, radians(35.0f), kFramingAspect).rotation);
+    }
+    return scene;
+}
+
+Result<LoadedScene>
+load_level_scene(World& world, const std::string& path, const SceneOptions& options) {
+    Result<Level> level = load_level(path);
+    if (!level) {
+        return level.error();
+    }
+    LoadedScene scene;
+    scene.name = level->name;
+    scene.title = level->title;
+    scene.path = path;
+    (void)spawn_level(world, *std::move(level));
+    complete_scene(world, options, scene);
+    return scene;
+}
+
+}  // namespace
+
+Result<LoadedScene>
+load_scene(World& world, const std::string& scene, const SceneOptions& options) {
+    register_all_components();
+    if (ends_with_any(scene, {".gltf", ".glb"})) {
+        return load_gltf_scene(world, scene, options);
+    }
+    const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;
+    if (is_path) {
+        return load_level_scene(world, scene, options);
+    }
+    const Result<std::string> path = find_level(scene);
+    if (!path) {
+        return path.error();
+    }
+    return load_level_scene(world, *path, options);
+}
+
+}  // namespace limn

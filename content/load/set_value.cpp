@@ -1,0 +1,253 @@
+#include "content/load/set_value.h"
+
+#include "ecs/base/log.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/field_access.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+/// Calls visit(index, name) for the assets of a kind.
+template <typename Visit>
+void for_each_name(const Assets& assets, std::string_view kind, const Visit& visit) {
+    const auto visit_all = [&](const auto& list) {
+        for (std::uint32_t i = 0; i < list.size(); ++i) {
+            visit(i, list[i].name);
+        }
+    };
+    if (kind == "mesh") {
+        visit_all(assets.meshes);
+    } else if (kind == "image") {
+        visit_all(assets.images);
+    } else {
+        visit_all(assets.materials);
+    }
+}
+
+std::vector<Entity> find_entities(const World& world, std::string_view name) {
+    std::vector<Entity> entities;
+    world.query<const Name>().each([&](Entity entity, const Name& candidate) {
+        if (candidate.text == name) {
+            entities.push_back(entity);
+        }
+    });
+    return entities;
+}
+
+JsonValue parse_value(std::string_view text) {
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+    while (!text.empty() && is_blank(text.front())) {
+        text.remove_prefix(1);
+    }
+    while (!text.empty() && is_blank(text.back())) {
+        text.remove_suffix(1);
+    }
+    Result<JsonValue> json = parse_json(text, "");
+    return json ? *std::move(json) : json_of(text);
+}
+
+/// Sets the field in a copy, which takes the place of `object` if all is well. Whole structs may be
+/// set, too, and keep what the value does not name.
+Status set_field(
+    const ComponentInfo& info,
+    void* object,
+    std::string_view field_path,
+    const JsonValue& value,
+    const JsonPlace& place,
+    const FindNames& names) {
+    AnyComponent copy(info, object);
+    const Result<FieldRef> field = field_at(info, copy.data(), field_path);
+    if (!field) {
+        return fail("{}: {}", place.file, field.error().message);
+    }
+    FieldInfo target = *field->field;
+    void* data = field->element;
+    const bool is_indexed = field_path.back() >= '0' && field_path.back() <= '9';
+    if (target.shape == FieldShape::List && field_path == target.name) {
+        data = field_ptr(copy.data(), target);  // the list itself, which may be empty
+    } else if (target.shape == FieldShape::List && !is_indexed) {
+        return fail(
+            "{}: found a list inside a list, expected the number of an element", place.file);
+    } else if (is_indexed) {
+        target.shape = FieldShape::One;
+    }
+    const Status status = read_field(value, target, data, place, names);
+    if (!status) {
+        return status;
+    }
+    for (const FieldInfo& changed : info.fields) {
+        copy_field(changed, field_ptr(object, changed), field_ptr(copy.data(), changed));
+    }
+    return status;
+}
+
+Status set_in_entities(
+    World& world,
+    const std::vector<Entity>& entities,
+    const ComponentInfo& info,
+    std::string_view field_path,
+    const JsonValue& value,
+    const JsonPlace& place) {
+    bool is_set = false;
+    for (const Entity entity : entities) {
+        void* const component = world.find(entity, info.id);
+        if (component == nullptr) {
+            continue;
+        }
+        const Status status =
+            set_field(info, component, field_path, value, place, find_names_in(world));
+        if (!status) {
+            return status;
+        }
+        is_set = true;
+    }
+    if (!is_set) {
+        return fail("{}: found no {} there, expected one", place.file, info.name);
+    }
+    return Done{};
+}
+
+Status set_in_material(
+    World& world, std::string_view rest, const JsonValue& value, const JsonPlace& place) {
+    Assets* const assets = world.find_resource<Assets>();
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
+        Material& material = assets->materials[i];
+        names.emplace_back(material.name);
+        // Names of materials from glTF may have dots in them.
+        if (!rest.starts_with(material.name + '.')) {
+            continue;
+        }
+        const std::string_view field = rest.substr(material.name.size() + 1);
+        const Status status = set_field(
+            component_info<Material>(), &material, field, value, place, find_names_in(world));
+        ++assets->material_version;
+        return status;
+    }
+    const std::string_view name = rest.substr(0, rest.find('.'));
+    return fail(
+        "{}: found the material {}, expected one of the scene and a field{}",
+        place.file,
+        in_quotes(name),
+        did_you_mean(name, names));
+}
+
+/// `path` split at a dot such that what is before it is an entity's name and what is behind it
+/// begins with a component.
+Status
+set_in_named(World& world, std::string_view path, const JsonValue& value, const JsonPlace& place) {
+    for (std::size_t dot = path.find('.'); dot != std::string_view::npos;
+         dot = path.find('.', dot + 1)) {
+        const std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
+        if (entities.empty()) {
+            continue;
+        }
+        const std::string_view rest = path.substr(dot + 1);
+        const std::size_t end = std::min(rest.find('.'), rest.size());
+        const std::string_view component = rest.substr(0, end);
+        const ComponentInfo* const info = find_component(component);
+        if (info == nullptr) {
+            return fail(
+                "{}: found the component {}, expected one of `limn components`{}",
+                place.file,
+                in_quotes(component),
+                component_suggestion(component));
+        }
+        if (end + 1 >= rest.size()) {
+            return fail("{}: found no field behind {}, expected one", place.file, info->name);
+        }
+        return set_in_entities(world, entities, *info, rest.substr(end + 1), value, place);
+    }
+    const std::string_view name = path.substr(0, path.find('.'));
+    std::vector<std::string_view> known = find_names_in(world).all("entity");
+    for (const ComponentInfo* const resource : all_resources()) {
+        known.emplace_back(resource->name);
+    }
+    return fail(
+        "{}: found {}, expected an entity, a resource or materials before the first dot{}",
+        place.file,
+        in_quotes(name),
+        did_you_mean(name, known));
+}
+
+}  // namespace
+
+Status set_value(World& world, std::string_view path, std::string_view value) {
+    const std::string name = "--set " + std::string(path);
+    const JsonPlace place{name, ""};
+    JsonValue json = parse_value(value);
+    json.at = {};
+    const std::size_t dot = path.find('.');
+    if (dot == std::string_view::npos || dot + 1 >= path.size()) {
+        return fail("{}: found no field, expected ENTITY.COMPONENT.FIELD or RESOURCE.FIELD", name);
+    }
+    const std::string_view first = path.substr(0, dot);
+    if (first == "materials") {
+        return set_in_material(world, path.substr(dot + 1), json, place);
+    }
+    const ComponentInfo* const resource = find_resource(first);
+    if (resource != nullptr && find_entities(world, first).empty()) {
+        void* const object = world.find_resource(resource->id);
+        if (object == nullptr) {
+            return fail("{}: found no {} in this scene, expected one", name, resource->name);
+        }
+        return set_field(
+            *resource, object, path.substr(dot + 1), json, place, find_names_in(world));
+    }
+    return set_in_named(world, path, json, place);
+}
+
+FindNames find_names_in(const World& world) {
+    FindNames names;
+    names.asset =
+        [&world](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
+        std::optional<std::uint32_t> found;
+        if (const Assets* const assets = world.find_resource<Assets>()) {
+            for_each_name(*assets, kind, [&](std::uint32_t index, const std::string& candidate) {
+                found = !found && candidate == name ? index : found;
+            });
+        }
+        return found;
+    };
+    names.entity = [&world](std::string_view name, SourcePosition) -> std::optional<Entity> {
+        const std::vector<Entity> entities = find_entities(world, name);
+        return entities.empty() ? std::nullopt : std::optional(entities.front());
+    };
+    names.all = [&world](std::string_view kind) {
+        std::vector<std::string_view> all;
+        if (kind == "entity") {
+            world.query<const Name>().each([&](const Name& name) { all.emplace_back(name.text); });
+        } else if (const Assets* const assets = world.find_resource<Assets>()) {
+            for_each_name(*assets, kind, [&](std::uint32_t, const std::string& name) {
+                all.emplace_back(name);
+            });
+        }
+        return all;
+    };
+    return names;
+}
+
+GiveNames give_names_of(const World& world) {
+    GiveNames names;
+    names.asset = [&world](std::string_view kind, std::uint32_t index) {
+        std::string found;
+        if (const Assets* const assets = world.find_resource<Assets>()) {
+            for_each_name(*assets, kind, [&](std::uint32_t i, const std::string& name) {
+                found = i == index ? name : found;
+            });
+        }
+        return found;
+    };
+    names.entity = [&world](Entity entity) {
+        const Name* const name = world.find<Name>(entity);
+        return name != nullptr ? name->text : std::string();
+    };
+    return names;
+}
+
+}  // namespace limn

@@ -1,0 +1,116 @@
+#include "systems/script_system.h"
+
+#include "ecs/field_access.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+/// Where the action's component is; added if it is to be set and missing. Null: nothing to do.
+void* find_target(World& world, const ScriptAction& action) {
+    const ComponentId id = action.value.info().id;
+    if (action.is_resource) {
+        return world.find_resource(id);
+    }
+    if (!world.alive(action.entity)) {
+        return nullptr;
+    }
+    return action.action == EventAction::Set ? world.add(action.entity, id)
+                                             : world.find(action.entity, id);
+}
+
+/// The field at `to` grows by the one at `by`.
+void add_to_field(const FieldInfo& field, void* to, const void* by) {
+    if (field.shape == FieldShape::List) {
+        return;
+    }
+    for (std::size_t i = 0; i < element_count(field, to); ++i) {
+        void* const target = element_ptr(field, to, i);
+        const void* const amount = element_ptr(field, by, i);
+        if (field.type == FieldType::Quat) {
+            Quat& rotation = *static_cast<Quat*>(target);
+            rotation = glm::normalize(*static_cast<const Quat*>(amount) * rotation);
+            continue;
+        }
+        for (int lane = 0; lane < number_count(field.type); ++lane) {
+            const double sum = get_number(field, target, lane) + get_number(field, amount, lane);
+            const double clamped = std::clamp(sum, field.meta.min, field.meta.max);
+            // Beyond what the type holds, the number stays.
+            (void)set_number(field, target, clamped, lane).ok();
+        }
+    }
+}
+
+void apply_edits(const ScriptAction& action, void* target) {
+    for (const FieldEdit& edit : action.edits) {
+        void* const to = static_cast<std::byte*>(target) + edit.offset;
+        const void* const from = static_cast<const std::byte*>(action.value.data()) + edit.offset;
+        if (action.action == EventAction::Set) {
+            copy_field(*edit.field, to, from);
+        } else {
+            add_to_field(*edit.field, to, from);
+        }
+    }
+}
+
+void run_action(World& world, const ScriptAction& action) {
+    switch (action.action) {
+    case EventAction::Set:
+    case EventAction::Impulse:
+        if (void* const target = find_target(world, action)) {
+            apply_edits(action, target);
+        }
+        break;
+    case EventAction::Spawn:
+        (void)spawn(world, action.prefab);
+        break;
+    case EventAction::Destroy:
+        if (world.alive(action.entity)) {
+            destroy_tree(world, action.entity);
+        }
+        break;
+    }
+}
+
+}  // namespace
+
+void run_events(World& world) {
+    const FrameTime* const time = std::as_const(world).find_resource<FrameTime>();
+    const EventList* const list = std::as_const(world).find_resource<EventList>();
+    if (time == nullptr || list == nullptr) {
+        return;
+    }
+    for (const ScriptEvent& event : list->events) {
+        if (is_due(event, time->frame, time->step)) {
+            for (const ScriptAction& action : event.actions) {
+                run_action(world, action);
+            }
+        }
+    }
+}
+
+void update_camera_paths(
+    Query<const CameraPath, Transform> cameras,
+    Query<const WorldTransform> targets,
+    Res<const FrameTime> time) {
+    cameras.each([&](const CameraPath& path, Transform& transform) {
+        if (!path.enabled || path.keys.empty()) {
+            return;
+        }
+        Vec3 target(0);
+        if (path.aim == CameraAim::Target) {
+            const WorldTransform* const followed = targets.find<const WorldTransform>(path.target);
+            target = followed != nullptr ? transform_point(followed->world, Vec3(0))
+                                         : path.keys.front().look_at;
+        }
+        const CameraPose pose = camera_pose(path, time->time, target);
+        transform.position = pose.position;
+        transform.rotation = pose.rotation;
+    });
+}
+
+}  // namespace limn
