@@ -6,6 +6,7 @@
 #include "render/gpu/readback.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
+#include "render/render_frame.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -31,6 +32,22 @@ const char* why_not(const gpu::Texture& texture) {
         return "integer textures are not shown";
     }
     return "";
+}
+
+bool is_aov(std::string_view name) {
+    const std::vector<std::string_view>& names = aov_names();
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+const gpu::Texture*
+find_texture(std::string_view name, const FrameGraph& graph, const FrameOutput& frame) {
+    for (const AovOutput& aov : frame.aovs) {
+        if (aov.name == name) {
+            return aov.texture;
+        }
+    }
+    const TextureId id = graph.find(name);
+    return id.valid() ? graph.texture(id) : nullptr;
 }
 
 bool is_unsigned_byte(GLenum format) {
@@ -73,11 +90,15 @@ Result<BufferViewer> BufferViewer::create(gpu::Device& device) {
 void BufferViewer::choose(std::string name) {
     chosen_ = std::move(name);
     fit_wanted_ = true;
-    shown_ = false;
 }
 
-void BufferViewer::before_frame(FrameGraph& graph) {
-    const std::string_view wanted = open ? std::string_view(chosen_) : std::string_view();
+void BufferViewer::before_frame(FrameGraph& graph, FrameRequest& request) {
+    request.aovs.clear();
+    if (open && is_aov(chosen_)) {
+        request.aovs.push_back(chosen_);
+    }
+    const std::string_view wanted =
+        open && !is_aov(chosen_) ? std::string_view(chosen_) : std::string_view();
     if (kept_ == wanted) {
         return;
     }
@@ -90,18 +111,17 @@ void BufferViewer::before_frame(FrameGraph& graph) {
     }
 }
 
-void BufferViewer::after_frame(gpu::Device& device, FrameGraph& graph) {
-    shown_ = false;
+void BufferViewer::after_frame(
+    gpu::Device& device, const FrameGraph& graph, const FrameOutput& frame) {
+    source_ = nullptr;
     if (!open) {
         return;
     }
-    const TextureId id = graph.find(chosen_);
-    const gpu::Texture* texture = id.valid() ? graph.texture(id) : nullptr;
+    const gpu::Texture* texture = find_texture(chosen_, graph, frame);
     cannot_ = texture == nullptr ? "not part of this frame" : why_not(*texture);
     if (cannot_[0] != '\0') {
         return;
     }
-    chosen_desc_ = texture->desc();
     if (fit_wanted_) {
         fit_range(*texture);
     }
@@ -119,7 +139,7 @@ void BufferViewer::after_frame(gpu::Device& device, FrameGraph& graph) {
     pipeline_.program->set("encode_srgb", srgb_ ? 1 : 0);
     device.bind_texture(0, *texture);
     device.draw_fullscreen();
-    shown_ = true;
+    source_ = texture;
 }
 
 void BufferViewer::fit_range(const gpu::Texture& texture) {
@@ -163,7 +183,7 @@ void BufferViewer::fit_range(const gpu::Texture& texture) {
     }
 }
 
-void BufferViewer::draw(const Hud& hud, FrameGraph& graph) {
+void BufferViewer::draw(const Hud& hud, const FrameGraph& graph) {
     if (!open) {
         return;
     }
@@ -180,19 +200,32 @@ void BufferViewer::draw(const Hud& hud, FrameGraph& graph) {
         ImGui::SameLine();
         ImGui::BeginChild("##picture");
         draw_mapping(hud);
-        draw_picture(hud, graph);
+        draw_picture(hud);
         ImGui::EndChild();
     }
     ImGui::End();
 }
 
-void BufferViewer::draw_list(const Hud& hud, FrameGraph& graph) {
-    ImGui::PushFont(hud.fonts().numbers);
+void BufferViewer::draw_list(const Hud& hud, const FrameGraph& graph) {
     std::array<char, 128> label;
-    for (const std::string_view name : graph.texture_names()) {
+    const auto entry = [&](std::string_view name) {
         *fmt::format_to_n(label.data(), label.size() - 1, "{}", name).out = '\0';
         if (ImGui::Selectable(label.data(), name == chosen_) && name != chosen_) {
             choose(std::string(name));
+        }
+    };
+    ImGui::TextColored(kHudDim, "Surfaces");
+    ImGui::PushFont(hud.fonts().numbers);
+    for (const std::string_view name : aov_names()) {
+        entry(name);
+    }
+    ImGui::PopFont();
+    ImGui::Spacing();
+    ImGui::TextColored(kHudDim, "Frame graph");
+    ImGui::PushFont(hud.fonts().numbers);
+    for (const std::string_view name : graph.texture_names()) {
+        if (!name.starts_with("aov")) {
+            entry(name);
         }
     }
     ImGui::PopFont();
@@ -218,8 +251,8 @@ void BufferViewer::draw_mapping(const Hud& hud) {
     fit_wanted_ = ImGui::Button("Fit", {-1, 0}) || fit_wanted_;
 }
 
-void BufferViewer::draw_picture(const Hud& hud, FrameGraph& graph) {
-    if (!shown_) {
+void BufferViewer::draw_picture(const Hud& hud) {
+    if (source_ == nullptr) {
         ImGui::TextColored(kHudDim, "%s", cannot_);
         return;
     }
@@ -235,16 +268,15 @@ void BufferViewer::draw_picture(const Hud& hud, FrameGraph& graph) {
         {0, 1},
         {1, 0});
 
-    const gpu::FormatInfo& format = gpu::format_info(chosen_desc_.format);
+    const gpu::FormatInfo& format = gpu::format_info(source_->desc().format);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const int x = static_cast<int>((mouse.x - at.x) / size.x * static_cast<float>(view_.width()));
     const int y = static_cast<int>((mouse.y - at.y) / size.y * static_cast<float>(view_.height()));
     const bool inside =
         ImGui::IsItemHovered() && x >= 0 && y >= 0 && x < view_.width() && y < view_.height();
-    const gpu::Texture* texture = graph.texture(graph.find(chosen_));
     ImGui::PushFont(hud.fonts().numbers);
-    if (inside && texture != nullptr) {
-        const Vec4 texel = read_texel(*texture, x, view_.height() - 1 - y);
+    if (inside) {
+        const Vec4 texel = read_texel(*source_, x, view_.height() - 1 - y);
         ImGui::TextColored(
             kHudAccent,
             "(%d, %d)  %.5g  %.5g  %.5g  %.5g",

@@ -17,6 +17,8 @@ class Device;
 }
 class FrameGraph;
 class Hud;
+struct FrameOutput;
+struct FrameRequest;
 
 // F4: the intermediate pictures of the frame. The one that is chosen is kept past its last use by
 // the frame graph, mapped to what a screen can show, and drawn large; the pixel under the pointer
@@ -28,11 +30,11 @@ class BufferViewer {
     [[nodiscard]] static Result<BufferViewer> create(gpu::Device& device);
 
     /// Before render_frame: asks for the chosen texture.
-    void before_frame(FrameGraph& graph);
+    void before_frame(FrameGraph& graph, FrameRequest& request);
     /// After render_frame: draws the chosen texture into the viewer's own.
-    void after_frame(gpu::Device& device, FrameGraph& graph);
+    void after_frame(gpu::Device& device, const FrameGraph& graph, const FrameOutput& frame);
     /// The panel.
-    void draw(const Hud& hud, FrameGraph& graph);
+    void draw(const Hud& hud, const FrameGraph& graph);
 
     /// Shows the texture of that name.
     void choose(std::string name);
@@ -42,21 +44,20 @@ class BufferViewer {
   private:
     explicit BufferViewer(gpu::Pipeline pipeline) : pipeline_(pipeline) {}
     void fit_range(const gpu::Texture& texture);
-    void draw_list(const Hud& hud, FrameGraph& graph);
+    void draw_list(const Hud& hud, const FrameGraph& graph);
     void draw_mapping(const Hud& hud);
-    void draw_picture(const Hud& hud, FrameGraph& graph);
+    void draw_picture(const Hud& hud);
 
     gpu::Pipeline pipeline_;
     gpu::Texture view_;
-    gpu::TextureDesc chosen_desc_;
-    std::string chosen_ = "gbuffer.normal";
+    const gpu::Texture* source_ = nullptr;  // the chosen texture of this frame, or null
+    std::string chosen_ = "normal";
     std::string kept_;         // what the graph was asked to keep
     const char* cannot_ = "";  // why the chosen texture is not shown
     Vec2 range_ = {0, 1};      // values shown black and white
     int channel_ = 4;          // 0 .. 3, or 4 for RGB
     bool srgb_ = true;
     bool fit_wanted_ = true;
-    bool shown_ = false;  // view_ holds the chosen texture
 };
 
 }  // namespace limn

@@ -48,7 +48,7 @@ Vec3 degrees_from_rotation(const Quat& q) {
     const float pitch = std::asin(std::clamp(-r[2][1], -1.0f, 1.0f));
     const float yaw = std::atan2(r[2][0], r[2][2]);
     const float roll = std::atan2(r[0][1], r[1][1]);
-    return Vec3(yaw, pitch, roll) * kDegrees;
+    return Vec3(yaw, pitch, roll) * kDegrees + Vec3(0.0f);  // -0 becomes 0
 }
 
 /// Limits in the widget's unit, finite; `scale` turns the field's unit into it.
@@ -355,50 +355,88 @@ void draw_name(const FieldInfo& field, const char* name) {
     ImGui::EndTooltip();
 }
 
+/// A table of names and widgets, open only while fields without a heading of their own follow each
+/// other.
+class FieldTable {
+  public:
+    FieldTable() = default;
+    FieldTable(const FieldTable&) = delete;
+    FieldTable& operator=(const FieldTable&) = delete;
+    ~FieldTable() { close(); }
+
+    [[nodiscard]] bool row() {
+        if (!open_) {
+            open_ = ImGui::BeginTable("##fields", 2, ImGuiTableFlags_SizingStretchProp);
+            if (open_) {
+                ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.36f);
+                ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.64f);
+            }
+        }
+        return open_;
+    }
+    void close() {
+        if (open_) {
+            ImGui::EndTable();
+        }
+        open_ = false;
+    }
+
+  private:
+    bool open_ = false;
+};
+
 void edit_field_rows(Context& context, const std::vector<FieldInfo>& fields, void* around);
 
-void edit_one(Context& context, const FieldInfo& field, const char* name, void* element) {
+void edit_one(
+    Context& context, FieldTable& table, const FieldInfo& field, const char* name, void* element) {
     if (field.type == FieldType::Struct) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
+        table.close();
         if (ImGui::TreeNodeEx(name, ImGuiTreeNodeFlags_SpanFullWidth)) {
             edit_field_rows(context, field.fields, element);
             ImGui::TreePop();
         }
         return;
     }
+    if (!table.row()) {
+        return;
+    }
     draw_name(field, name);
     ImGui::TableNextColumn();
+    ImGui::PushID(name);
     if (edit_element(context, field, element)) {
         context.change.changed = true;
         context.change.field = field.name;
     }
+    ImGui::PopID();
+}
+
+void edit_elements(Context& context, FieldTable& table, const FieldInfo& field, void* data) {
+    const std::size_t count = element_count(field, data);
+    std::array<char, 96> name;
+    *fmt::format_to_n(name.data(), name.size() - 1, "{} ({})###{}", field.name, count, field.name)
+         .out = '\0';
+    table.close();
+    if (!ImGui::TreeNodeEx(name.data(), ImGuiTreeNodeFlags_SpanFullWidth)) {
+        return;
+    }
+    FieldTable elements;
+    for (std::size_t i = 0; i < std::min(count, kMostElements); ++i) {
+        *fmt::format_to_n(name.data(), name.size() - 1, "{}", i).out = '\0';
+        edit_one(context, elements, field, name.data(), element_ptr(field, data, i));
+    }
+    elements.close();
+    ImGui::TreePop();
 }
 
 void edit_field_rows(Context& context, const std::vector<FieldInfo>& fields, void* around) {
+    FieldTable table;
     for (const FieldInfo& field : fields) {
         void* const data = field_ptr(around, field);
-        ImGui::PushID(field.name);
         if (field.shape == FieldShape::One) {
-            edit_one(context, field, field.name, data);
+            edit_one(context, table, field, field.name, data);
         } else {
-            const std::size_t count = element_count(field, data);
-            std::array<char, 96> name;
-            *fmt::format_to_n(name.data(), name.size() - 1, "{} ({})###list", field.name, count)
-                 .out = '\0';
-            ImGui::TableNextRow();
-            ImGui::TableNextColumn();
-            if (ImGui::TreeNodeEx(name.data(), ImGuiTreeNodeFlags_SpanFullWidth)) {
-                for (std::size_t i = 0; i < std::min(count, kMostElements); ++i) {
-                    ImGui::PushID(static_cast<int>(i));
-                    *fmt::format_to_n(name.data(), name.size() - 1, "{}", i).out = '\0';
-                    edit_one(context, field, name.data(), element_ptr(field, data, i));
-                    ImGui::PopID();
-                }
-                ImGui::TreePop();
-            }
+            edit_elements(context, table, field, data);
         }
-        ImGui::PopID();
     }
 }
 
@@ -407,12 +445,7 @@ void edit_field_rows(Context& context, const std::vector<FieldInfo>& fields, voi
 FieldChange
 edit_fields(const Hud& hud, const World& world, const ComponentInfo& info, void* object) {
     Context context{.hud = hud, .world = world, .change = {}};
-    if (ImGui::BeginTable("##fields", 2, ImGuiTableFlags_SizingStretchProp)) {
-        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.36f);
-        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.64f);
-        edit_field_rows(context, info.fields, object);
-        ImGui::EndTable();
-    }
+    edit_field_rows(context, info.fields, object);
     return context.change;
 }
 

@@ -174,7 +174,7 @@ void Hud::draw_status(const HudStatus& status) {
         numbers_text(
             fonts_,
             kHudText,
-            format("{:5.1f} fps  {:6.2f} ms  t {:7.2f} s", rate, status.frame_ms, status.time));
+            format("{:<5.1f} fps   {:<6.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
         numbers_text(
             fonts_,
             kHudDim,
@@ -193,6 +193,7 @@ void Hud::draw_status(const HudStatus& status) {
         if (!help_open) {
             ImGui::TextColored(kHudDim, "F1 keys");
         }
+        status_bottom_ = ImGui::GetWindowPos().y + ImGui::GetWindowHeight();
     }
     ImGui::End();
     if (status.error[0] != '\0') {

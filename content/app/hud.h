@@ -55,6 +55,9 @@ class Hud {
     /// Pixels a unit of the layout.
     [[nodiscard]] float scale() const { return scale_; }
 
+    /// Where the status line ends: panels below it begin there [pixels].
+    [[nodiscard]] float status_bottom() const { return status_bottom_; }
+
     bool help_open = false;  ///< F1
     bool status_shown = true;
 
@@ -71,6 +74,7 @@ class Hud {
     Window& window_;
     HudFonts fonts_;
     float scale_ = 1.0f;
+    float status_bottom_ = 0.0f;
     std::vector<Toast> toasts_;
 };
 

@@ -164,7 +164,9 @@ void Inspector::draw_tree(const Hud& hud, World& world) {
             ImGui::PushID(i);
             const float indent = static_cast<float>(row.depth) * 14.0f * hud.scale() + 1.0f;
             ImGui::Indent(indent);
+            const float arrow_width = 13.0f * hud.scale();
             if (row.has_children) {
+                const float x = ImGui::GetCursorPosX();
                 ImGui::TextColored(kHudDim, row.collapsed ? "\u25b8" : "\u25be");
                 if (ImGui::IsItemClicked()) {
                     if (!collapsed_.erase(row.entity)) {
@@ -172,10 +174,11 @@ void Inspector::draw_tree(const Hud& hud, World& world) {
                     }
                     rows_built_at_ = -1.0;
                 }
+                ImGui::SameLine();
+                ImGui::SetCursorPosX(x + arrow_width);
             } else {
-                ImGui::TextColored(kHudDim, " ");
+                ImGui::SetCursorPosX(ImGui::GetCursorPosX() + arrow_width);
             }
-            ImGui::SameLine(0, 4 * hud.scale());
             const bool alive = world.alive(row.entity);
             const std::string label = alive ? entity_label(world, row.entity) : "gone";
             if (ImGui::Selectable(label.c_str(), row.entity == selected_) && alive) {

@@ -379,9 +379,9 @@ void Player::draw_frame(float dt, const Input& input) {
         save_exr(view_);
     }
     FrameGraph& graph = frame_graph(*renderer_);
-    buffers_->before_frame(graph);
-    const FrameOutput frame = render_frame(*renderer_, stage_->world, view_);
-    buffers_->after_frame(*device_, graph);
+    buffers_->before_frame(graph, request_);
+    const FrameOutput frame = render_frame(*renderer_, stage_->world, view_, request_);
+    buffers_->after_frame(*device_, graph, frame);
     gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y);
     cost_.statistics = frame.statistics;
     cost_.render_ms = seconds_between(begin, Clock::now()) * 1e3;

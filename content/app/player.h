@@ -80,6 +80,7 @@ class Player {
     PlayerCamera camera_;
     RenderScale scale_;
     RenderView view_;  ///< of the last picture
+    FrameRequest request_;
     IVec2 last_window_size_ = {0, 0};
     std::string shader_error_;
     FrameCost cost_;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <initializer_list>
 #include <string_view>
 #include <unistd.h>
 
@@ -34,6 +35,20 @@ void number_cell(const HudFonts& fonts, const ImVec4& color, const char* format,
     ImGui::PopFont();
 }
 
+/// Headings: the first names the rows, the others stand over numbers.
+void heading_row(const char* name, std::initializer_list<const char*> numbers) {
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    ImGui::TableNextColumn();
+    ImGui::TextColored(kHudDim, "%s", name);
+    for (const char* text : numbers) {
+        ImGui::TableNextColumn();
+        const float width = ImGui::CalcTextSize(text).x;
+        ImGui::SetCursorPosX(
+            ImGui::GetCursorPosX() + std::max(ImGui::GetContentRegionAvail().x - width, 0.0f));
+        ImGui::TextColored(kHudDim, "%s", text);
+    }
+}
+
 /// A name with a bar behind it that shows its share of the whole.
 void name_cell(std::string_view name, double share) {
     ImGui::TableNextRow();
@@ -44,7 +59,7 @@ void name_cell(std::string_view name, double share) {
     ImGui::GetWindowDrawList()->AddRectFilled(
         at,
         {at.x + length, at.y + ImGui::GetTextLineHeight()},
-        ImGui::GetColorU32(ImGuiCol_Header),
+        ImGui::GetColorU32(ImGuiCol_HeaderHovered),
         2.0f);
     ImGui::TextUnformatted(name.data(), name.data() + name.size());
 }
@@ -88,7 +103,7 @@ void ProfilerPanel::draw(
     }
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const float margin = 14.0f * hud.scale();
-    const float top = 118.0f * hud.scale();
+    const float top = std::max(hud.status_bottom(), 110.0f * hud.scale()) + 8.0f * hud.scale();
     ImGui::SetNextWindowPos({margin, top}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(
         {std::min(372.0f * hud.scale(), 0.45f * display.x), display.y - top - margin},
@@ -179,7 +194,7 @@ void ProfilerPanel::draw_passes(const Hud& hud, const FrameGraph& graph) {
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch, 0.5f);
     ImGui::TableSetupColumn("cpu ms", ImGuiTableColumnFlags_WidthStretch, 0.25f);
     ImGui::TableSetupColumn("gpu ms", ImGuiTableColumnFlags_WidthStretch, 0.25f);
-    ImGui::TableHeadersRow();
+    heading_row("pass", {"cpu ms", "gpu ms"});
     const double whole = std::max(graph.total_gpu_ms(), 1e-6);
     for (const PassTiming& timing : graph.timings()) {
         name_cell(timing.name, timing.gpu_ms / whole);
@@ -204,7 +219,7 @@ void ProfilerPanel::draw_systems(const Hud& hud, const Schedule& schedule) {
     }
     ImGui::TableSetupColumn("system", ImGuiTableColumnFlags_WidthStretch, 0.75f);
     ImGui::TableSetupColumn("cpu ms", ImGuiTableColumnFlags_WidthStretch, 0.25f);
-    ImGui::TableHeadersRow();
+    heading_row("system", {"cpu ms"});
     const std::span<const SystemTiming> timings = schedule.timings();
     system_ms_.resize(timings.size(), 0.0);
     double whole = 1e-6;

@@ -1,5 +1,6 @@
 #include "content/app/stage.h"
 
+#include "ecs/components/input.h"
 #include "ecs/components/time.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/script_system.h"
@@ -20,6 +21,9 @@ constexpr double kRounding = 1e-3;
 /// Puts everything where it is at time 0, so that the first picture needs no step and the first
 /// step makes no jump: the systems that follow from the time alone, then the matrices.
 void place_everything(World& world) {
+    if (world.find_resource<Input>() == nullptr) {
+        world.insert_resource(Input{});
+    }
     world.run(update_sways);
     world.run(update_camera_paths);
     world.run(add_world_transforms);
