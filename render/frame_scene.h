@@ -53,6 +53,7 @@ struct FrameScene {
     LightGrid grid;
     SceneEnvironment environment;
     RenderView view;
+    GLenum radiance_format = GL_RGBA16F;
     gpu::RingSlice view_block;
     gpu::RingSlice environment_block;
     const BufferTexture* light_records = nullptr;

@@ -131,6 +131,10 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
           {.format = GL_RG32F, .width = kSpecularAlbedoSize, .height = kSpecularAlbedoSize}) {
     const std::vector<Vec2> table = make_specular_albedo(kSpecularAlbedoSize);
     specular_albedo_.upload<Vec2>(table, GL_RG, GL_FLOAT);
+    // A software OpenGL writes 32-bit floats faster than 16-bit ones, which it also cuts off
+    // instead of rounding.
+    scene.radiance_format =
+        settings.full_float || gpu_device.caps().software ? GL_RGBA32F : GL_RGBA16F;
     scene.meshes = &meshes_;
     scene.materials = &materials_;
     scene.light_records = &light_records_;

@@ -31,7 +31,8 @@ class World;
 
 /// Chosen once.
 struct RenderSettings {
-    float anisotropy = 8.0f;     ///< of texture filters, clamped to what the device has
+    float anisotropy = 8.0f;  ///< of texture filters, clamped to what the device has
+    bool full_float = false;  ///< radiance in 32-bit floats on a GPU, too; without one it always is
     int environment_size = 256;  ///< of the reflected surroundings [px], a power of two, 16 .. 1024
 };
 

@@ -61,7 +61,7 @@ struct ImageData {
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
 
-/// One use of an image by a material. uv' = scale * rotate(uv) + offset (KHR_texture_transform).
+/// One use of an image by a material. uv' = rotate(scale * uv) + offset (KHR_texture_transform).
 struct TextureSlot {
     ImageId image;
     Wrap wrap_u = Wrap::Repeat;
@@ -83,7 +83,7 @@ enum class ShadingModel : std::uint8_t {
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
 struct Material {
-    std::string name;
+    std::string name = {};
     ShadingModel shading = ShadingModel::Pbr;
     AlphaMode alpha_mode = AlphaMode::Opaque;
     bool double_sided = false;
@@ -96,11 +96,11 @@ struct Material {
     float shininess = 50.0f;                  ///< n of Blinn and Phong, > 0
     float normal_scale = 1.0f;
     float occlusion_strength = 1.0f;          ///< 0 .. 1
-    TextureSlot base_color_texture;           ///< sRGB, alpha = opacity
-    TextureSlot metal_rough_texture;          ///< g = roughness, b = metalness
-    TextureSlot normal_texture;               ///< tangent space, green up
-    TextureSlot occlusion_texture;            ///< r
-    TextureSlot emission_texture;             ///< sRGB
+    TextureSlot base_color_texture = {};           ///< sRGB, alpha = opacity
+    TextureSlot metal_rough_texture = {};          ///< g = roughness, b = metalness
+    TextureSlot normal_texture = {};               ///< tangent space, green up
+    TextureSlot occlusion_texture = {};            ///< r
+    TextureSlot emission_texture = {};             ///< sRGB
 };
 
 /// Tells one Assets from every other of this run, even from one that lives where it did: the renderer keeps

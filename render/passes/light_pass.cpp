@@ -35,7 +35,7 @@ TextureId
 draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const Gbuffer& gbuffer) {
     const TextureId radiance = graph.create(
         {.name = "radiance",
-         .format = GL_RGBA16F,
+         .format = scene.radiance_format,
          .width = scene.view.width,
          .height = scene.view.height});
     graph.add_pass(

@@ -22,7 +22,7 @@ namespace limn::test {
 /// One renderer for all tests of the program, beside the shared device.
 inline Renderer& shared_renderer() {
     static const RendererPtr renderer = [] {
-        Result<RendererPtr> made = create_renderer(shared_device());
+        Result<RendererPtr> made = create_renderer(shared_device(), {.full_float = true});
         if (!made) {
             std::fprintf(stderr, "%s\n", made.error().message.c_str());
             std::exit(1);
