@@ -8,7 +8,13 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <memory>
+#include <regex>
+#include <set>
 
 namespace reflect_test {
 
@@ -173,6 +179,29 @@ TEST_CASE("reflect: every field of every registered component has a description 
             CHECK_MESSAGE(status.ok(), (status ? "" : status.error().message));
         }
     }
+}
+
+TEST_CASE(
+    "reflect: every type that a component header describes is registered, or part of one that is") {
+    register_all_components();
+    const std::set<std::string> parts = {"attenuation", "camera_key", "material", "texture_slot"};
+    int described = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/ecs/components")) {
+        std::ifstream header(entry.path());
+        const std::string text(std::istreambuf_iterator<char>(header), {});
+        const std::regex declaration("visit_fields\\((\\w+)&");
+        for (std::sregex_iterator match(text.begin(), text.end(), declaration), end; match != end;
+             ++match) {
+            const std::string name = snake_case((*match)[1].str());
+            CAPTURE(name);
+            CHECK(
+                (find_component(name) != nullptr || find_resource(name) != nullptr
+                 || parts.contains(name)));
+            ++described;
+        }
+    }
+    CHECK(described > 15);
 }
 
 TEST_CASE("reflect: fields know type, place and shape") {
