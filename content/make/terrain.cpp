@@ -25,7 +25,7 @@ float eroded_hills(Vec2 p, std::uint32_t seed, const TerrainShape& shape) {
         // Doubled and turned (by the angle of the 3-4-5 triangle) so that octaves do not line up.
         p = 2.0f * Vec2(0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y);
     }
-    return 0.5f + 0.45f * sum;
+    return 0.5f + 0.6f * sum;
 }
 
 float landscape(const TerrainShape& shape, float x, float z) {
@@ -33,29 +33,50 @@ float landscape(const TerrainShape& shape, float x, float z) {
     const Vec2 p = Vec2(x, z) / shape.feature_size;
     const Vec2 bend = {gradient_noise(0.7f * p, seed + 40), gradient_noise(0.7f * p, seed + 41)};
     const Vec2 bent = p + shape.warp * bend;
-    const float hills = shape.ridges < 1 ? eroded_hills(bent, seed, shape) : 0.0f;
+    // Where hills end and mountains begin: the more ridges, the more of the land they take.
+    const float region = 0.5f + 0.7f * gradient_noise(0.6f * p + 31.5f, seed + 42);
+    const float mountains =
+        shape.ridges >= 1 ? 1.0f : glm::smoothstep(0.9f, 1.5f, region + 1.2f * shape.ridges);
+    const float hills = mountains < 1 ? eroded_hills(bent, seed, shape) : 0.0f;
     const float crests =
-        shape.ridges > 0
-            ? ridged_noise(0.5f * bent, seed + 20, {.count = shape.octaves, .gain = 0.5f})
-            : 0.0f;
-    return shape.height * glm::mix(hills, crests, shape.ridges);
+        mountains > 0 ? ridged_noise(0.5f * bent, seed + 20, {.count = shape.octaves, .gain = 0.5f})
+                      : 0.0f;
+    return shape.height * glm::mix(hills, crests, mountains);
 }
 
-}  // namespace
+/// The height of the clearing: the mean of the land around it.
+float clearing_height(const TerrainShape& shape) {
+    constexpr int kSamples = 16;
+    float sum = 0;
+    for (int i = 0; i < kSamples; ++i) {
+        const float angle = 2.0f * kPi * static_cast<float>(i) / kSamples;
+        const float radius = 1.5f * shape.clearing;
+        sum += landscape(shape, radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return sum / kSamples;
+}
 
-float terrain_height(const TerrainShape& shape, float x, float z) {
+/// `level` is clearing_height(), or anything without a clearing.
+float height_at(const TerrainShape& shape, float level, float x, float z) {
     if (shape.clearing <= 0) {
         return landscape(shape, x, z);
     }
     const float wild =
         glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z));
-    const float level = landscape(shape, 0, 0);
     return wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level;
+}
+
+}  // namespace
+
+float terrain_height(const TerrainShape& shape, float x, float z) {
+    return height_at(shape, shape.clearing > 0 ? clearing_height(shape) : 0.0f, x, z);
 }
 
 MeshData make_terrain(const TerrainShape& shape) {
     LIMN_CHECK(shape.size.x > 0 && shape.size.y > 0 && shape.feature_size > 0);
     LIMN_CHECK(shape.divisions >= 1 && shape.octaves >= 1);
+
+    const float level = shape.clearing > 0 ? clearing_height(shape) : 0.0f;
 
     // One row and column more on each side, for the normals at the rim.
     const int n = shape.divisions;
@@ -72,7 +93,7 @@ MeshData make_terrain(const TerrainShape& shape) {
         for (int j = static_cast<int>(begin) - 1; j < static_cast<int>(end) - 1; ++j) {
             for (int i = -1; i <= n + 1; ++i) {
                 const Vec2 p = place(i, j);
-                at(i, j) = terrain_height(shape, p.x, p.y);
+                at(i, j) = height_at(shape, level, p.x, p.y);
             }
         }
     });

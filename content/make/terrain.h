@@ -11,8 +11,9 @@ namespace limn {
 //
 // Rolling hills are a fractal sum of noise in which an octave counts less the steeper the ground
 // already is: debris fills the slopes while crests and valley floors keep their detail, as erosion
-// would have it (I. Quilez, "Value noise derivatives", 2008). Mountains are ridged noise; both are
-// bent by a slow noise, so that ridges wander. No water runs here: valleys need not lead anywhere.
+// would have it (I. Quilez, "Value noise derivatives", 2008). Mountains are ridged noise and
+// take the place of hills in some regions; both are bent by a slow noise, so that ridges wander. No
+// water runs here: valleys need not lead anywhere.
 
 struct TerrainShape {
     Vec2 size = {100, 100};      ///< along x and z [m], > 0
@@ -20,7 +21,7 @@ struct TerrainShape {
     float height = 14.0f;        ///< from the lowest valleys to the highest crests, about [m]
     float feature_size = 45.0f;  ///< from hill to hill [m], > 0
     int octaves = 8;             ///< detail: each halves the size, 1 .. 16
-    float ridges = 0.5f;         ///< 0 = rolling hills .. 1 = mountain ridges
+    float ridges = 0.5f;         ///< share of the land that is mountains, 0 .. 1
     float erosion = 1.0f;        ///< how much slopes lose detail, 0 = none .. 4
     float warp = 0.35f;          ///< how much ridges wander, in feature sizes, 0 .. 2
     float clearing = 0.0f;       ///< radius of a level place in the middle [m], 0 = none
@@ -48,7 +49,9 @@ void visit_fields(TerrainShape& shape, Visitor&& visit) {
         {.doc = "from hill to hill", .unit = "m", .min = 0.01, .max = 1e5});
     visit("octaves", shape.octaves, {.doc = "levels of detail", .min = 1, .max = 16});
     visit(
-        "ridges", shape.ridges, {.doc = "0 rolling hills, 1 mountain ridges", .min = 0, .max = 1});
+        "ridges",
+        shape.ridges,
+        {.doc = "share of the land that is mountains, not hills", .min = 0, .max = 1});
     visit("erosion", shape.erosion, {.doc = "how much slopes lose detail", .min = 0, .max = 4});
     visit(
         "warp",

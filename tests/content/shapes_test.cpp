@@ -1,3 +1,4 @@
+#include "content/bake/tangents.h"
 #include "content/make/make_mesh.h"
 #include "content/make/shapes.h"
 #include "mesh_laws.h"
@@ -48,6 +49,23 @@ TEST_CASE(
     CHECK(worst_tangent(make_disc({.segments = 16, .divisions = 3})) > 0.9999f);
     CHECK(worst_facing(make_sphere({.segments = 256, .rings = 128})) > 0.999f);
     CHECK(worst_facing(make_torus({.segments = 256, .sides = 128})) > 0.999f);
+}
+
+TEST_CASE(
+    "shapes: tangents from the formula are those that would be generated from the triangles") {
+    for (const char* name : {"box", "cylinder", "disc", "plane", "sphere", "terrain", "torus"}) {
+        INFO(std::string(name));
+        const MeshData mesh = make_default(*find_mesh_kind(name));
+        MeshData generated = mesh;
+        generate_tangents(generated);
+        REQUIRE(generated.positions.size() == mesh.positions.size());  // nothing is mirrored
+        float sum = 0;
+        for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+            REQUIRE(generated.tangents[i].w == mesh.tangents[i].w);
+            sum += glm::dot(Vec3(generated.tangents[i]), Vec3(mesh.tangents[i]));
+        }
+        CHECK(sum / static_cast<float>(mesh.tangents.size()) > 0.99f);
+    }
 }
 
 TEST_CASE("shapes: closed shapes are watertight") {
