@@ -147,7 +147,9 @@ MeshData make_box(const BoxShape& shape) {
         {{1, 0, 0}, {0, 1, 0}},
         {{-1, 0, 0}, {0, 1, 0}}};
     MeshData mesh;
-    for (const auto& [right, up] : sides) {
+    for (const auto& side : sides) {
+        const Vec3& right = side[0];
+        const Vec3& up = side[1];
         const Vec3 out = glm::cross(right, up);
         const float half_right = glm::dot(glm::abs(right), half);
         const float half_up = glm::dot(glm::abs(up), half);
