@@ -2,6 +2,7 @@
 // line.
 
 #include "content/load/gltf_load.h"
+#include "ecs/components/all.h"
 
 #include <cstdlib>
 #include <span>
@@ -64,6 +65,11 @@ void check_scene(const limn::GltfScene& scene) {
 }
 
 }  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    limn::register_all_components();  // for extras.limn
+    return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span(data, size));
