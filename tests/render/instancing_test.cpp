@@ -1,0 +1,143 @@
+#include "ecs/base/jobs.h"
+#include "tests/render/scene_fixture.h"
+
+#include <random>
+
+namespace limn::test {
+namespace {
+
+struct CrowdScene : Scene {
+    /// `count` little balls in a wall before the camera.
+    void crowd(int count, MeshId mesh, MaterialId material) {
+        const int side = static_cast<int>(std::ceil(std::sqrt(count)));
+        for (int i = 0; i < count; ++i) {
+            const float x = (static_cast<float>(i % side) + 0.5f) / static_cast<float>(side);
+            const float y = (static_cast<float>(i / side) + 0.5f) / static_cast<float>(side);
+            place(
+                mesh,
+                material,
+                affine_from(
+                    {2 * x - 1, 2 * y - 1, 0},
+                    {1, 0, 0, 0},
+                    Vec3(0.6f / static_cast<float>(side))));
+        }
+    }
+    [[nodiscard]] RenderView view() const { return look({0, 0, 1.2f}, {0, 0, 0}, 128, 128); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: ten thousand equal meshes are one draw") {
+    crowd(10000, add(make_ball(4)), add(Material{}));
+    const FrameOutput out = draw(view());
+    CHECK(out.statistics.instances == 10000);
+    CHECK(out.statistics.visible_instances == 10000);
+    CHECK(out.statistics.draws == 1);
+    CHECK(out.statistics.triangles == 10000 * 4 * 8 * 2);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures share a draw") {
+    const MeshId ball = add(make_ball(4));
+    const MeshId square = add(make_square());
+    for (int i = 0; i < 20; ++i) {
+        crowd(
+            50, i % 2 == 0 ? ball : square, add(Material{.roughness = static_cast<float>(i) / 20}));
+    }
+    CHECK(draw(view()).statistics.draws == 1);
+    // Another set of textures, the other winding, both sides and blending each need their own.
+    crowd(10, ball, add(Material{.double_sided = true}));
+    CHECK(draw(view()).statistics.draws == 2);
+    place(ball, {0}, affine_from({0, 0, 0}, {1, 0, 0, 0}, {-0.1f, 0.1f, 0.1f}));
+    CHECK(draw(view()).statistics.draws == 3);
+    crowd(10, ball, add(Material{.alpha_mode = AlphaMode::Blend}));
+    CHECK(draw(view()).statistics.draws == 4);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: what is not seen is not drawn") {
+    const MeshId ball = add(make_ball(4));
+    const MaterialId gray = add(Material{});
+    crowd(100, ball, gray);
+    for (int i = 0; i < 300; ++i) {
+        place(ball, gray, at({0, 0, 10.0f + static_cast<float>(i)}));  // behind the camera
+    }
+    const FrameOutput out = draw(view());
+    CHECK(out.statistics.instances == 400);
+    CHECK(out.statistics.visible_instances == 100);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and material") {
+    // A board of squares, each with the color of its place.
+    const MeshId square = add(make_square());
+    constexpr int kCells = 40;
+    for (int i = 0; i < kCells * kCells; ++i) {
+        const auto x = static_cast<float>(i % kCells);
+        const auto y = static_cast<float>(i / kCells);
+        Material material = {.shading = ShadingModel::Unlit};
+        material.base_color = {x / kCells, y / kCells, 0.5f, 1};
+        const Vec3 corner = {(2 * x + 1) / kCells - 1, (2 * y + 1) / kCells - 1, 0};
+        place(square, add(material), affine_from(corner, {1, 0, 0, 0}, Vec3(1.0f / kCells)));
+    }
+    const gpu::FloatImage image = radiance(look({0, 0, 1}, {0, 0, 0}, 4 * kCells, 4 * kCells));
+    for (int y = 0; y < kCells; ++y) {
+        for (int x = 0; x < kCells; ++x) {
+            const Vec3 color = rgb_at(image, 4 * x + 2, 4 * (kCells - 1 - y) + 2);
+            CHECK(color.x == doctest::Approx(static_cast<float>(x) / kCells).epsilon(4e-3));
+            CHECK(color.y == doctest::Approx(static_cast<float>(y) / kCells).epsilon(4e-3));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    CrowdScene, "instancing: the picture has the same bits for any number of threads") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const MeshId meshes[] = {add(make_ball(4)), add(make_square())};
+    std::vector<MaterialId> materials;
+    for (int i = 0; i < 9; ++i) {
+        materials.push_back(add(Material{
+            .alpha_mode = i > 6 ? AlphaMode::Blend : AlphaMode::Opaque,
+            .base_color = {unit(random) * 0.5f + 0.5f, 0.5f, 0.5f, 0.5f}}));
+    }
+    for (int i = 0; i < 5000; ++i) {
+        place(
+            meshes[i % 2],
+            materials[i % 9],
+            affine_from(
+                {unit(random), unit(random), unit(random) - 0.5f}, {1, 0, 0, 0}, Vec3(0.03f)));
+    }
+    shine(PointLight{}, at({0, 0, 1}));
+    const int threads = thread_count();
+    set_thread_count(1);
+    const gpu::FloatImage one = radiance(view());
+    set_thread_count(4);
+    const gpu::FloatImage four = radiance(view());
+    set_thread_count(threads);
+    CHECK(one.pixels == four.pixels);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: broken instances are not drawn and break nothing") {
+    const MeshId ball = add(make_ball(4));
+    const MaterialId gray = add(Material{});
+    place(ball, gray, at({NAN, 0, 0}));
+    place(ball, gray, affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(INFINITY)));
+    place({99}, gray, at({0, 0, 0}));
+    place({}, gray, at({0, 0, 0}));
+    place(add(MeshData{}), gray, at({0, 0, 0}));
+    CHECK(draw(view()).statistics.visible_instances == 0);
+    MeshData beyond = make_square();
+    beyond.indices[3] = 4;
+    place(add(beyond), gray, at({0, 0, 0}));
+    CHECK(draw(view()).statistics.visible_instances == 0);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: an unknown material is magenta, none is gray") {
+    const MeshId square = add(make_square());
+    place(square, {77}, at({0, 0, 0}));
+    CHECK(rgb_at(radiance(look({0, 0, 1}, {0, 0, 0})), 32, 32) == Vec3(1, 0, 1));
+    world.clear();
+    place(square, {}, at({0, 0, 0}));
+    const Vec3 albedo = rgb_at(aov(look({0, 0, 1}, {0, 0, 0}), "albedo"), 32, 32);
+    CHECK(albedo.x == doctest::Approx(0.8f).epsilon(1e-3));
+}
+
+}  // namespace limn::test

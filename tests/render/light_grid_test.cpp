@@ -1,0 +1,181 @@
+#include "bench/oracles/light_oracle.h"
+#include "render/light_grid.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <random>
+
+namespace limn::test {
+namespace {
+
+class RandomLights {
+  public:
+    explicit RandomLights(unsigned seed) : random_(seed) {}
+    float signed_unit() { return unit_(random_); }
+    Vec3 in_cube(float half) { return half * Vec3(signed_unit(), signed_unit(), signed_unit()); }
+    Vec3 direction() { return normalize_or(in_cube(1), {0, 1, 0}); }
+
+    /// Point lights and, every third, a spot.
+    LightReach reach() {
+        LightReach light = {in_cube(25), std::exp2(3 * signed_unit())};
+        if (++made_ % 3 == 0) {
+            light.axis = direction();
+            light.cosine = std::cos(radians(45 + 44 * signed_unit()));
+        }
+        return light;
+    }
+    RenderView view() {
+        const Affine pose = look_at(in_cube(15), in_cube(15));
+        return make_render_view(
+            {.fov_y = radians(70 + 40 * signed_unit()), .near = 0.1f},
+            pose,
+            pose,
+            {.width = 333, .height = 190, .jitter = {0.3f * signed_unit(), 0.4f}});
+    }
+
+  private:
+    std::mt19937 random_;
+    std::uniform_real_distribution<float> unit_{-1, 1};
+    int made_ = 0;
+};
+
+bool reaches(const LightReach& light, const Vec3& p) {
+    const Vec3 offset = p - light.center;
+    const float d = glm::length(offset);
+    return d < light.radius
+           && (light.cosine <= -1 || glm::dot(offset, light.axis) > light.cosine * d);
+}
+
+LightList list_of(std::vector<LightReach> reach, int directional = 0) {
+    LightList list;
+    list.reach = std::move(reach);
+    list.directional = directional;
+    return list;
+}
+
+std::span<const layout::uint> lights_of(const LightGrid& grid, int cell) {
+    return std::span(grid.indices).subspan(grid.cells[cell].x, grid.cells[cell].y);
+}
+
+}  // namespace
+
+TEST_CASE("light grid: no light that reaches a visible point is missing, in 1e5 random tests") {
+    RandomLights random(5);
+    int tests = 0;
+    int reached = 0;
+    while (tests < 100000 || reached < 10000) {
+        const RenderView view = random.view();
+        std::vector<LightReach> reach;
+        for (int i = 0; i < 60; ++i) {
+            reach.push_back(random.reach());
+        }
+        const LightList lights = list_of(reach, 2);
+        LightGrid grid;
+        build_light_grid(view, lights, grid);
+        for (int k = 0; k < 400; ++k) {
+            // A point that some light reaches, so that the test is not wasted on the dark.
+            const LightReach& chosen = reach[k % reach.size()];
+            const Vec3 p = chosen.center + random.in_cube(chosen.radius);
+            const Vec4 clip = view.clip_from_world * Vec4(p, 1);
+            if (clip.w < view.near || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w) {
+                continue;
+            }
+            const float x = (clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(view.width);
+            const float y = (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(view.height);
+            const auto listed = lights_of(grid, cell_of(grid.shape, x, y, clip.w));
+            for (std::size_t i = 0; i < reach.size(); ++i) {
+                ++tests;
+                if (reaches(reach[i], p)) {
+                    ++reached;
+                    REQUIRE(std::find(listed.begin(), listed.end(), i + 2) != listed.end());
+                }
+            }
+        }
+    }
+    CHECK(tests >= 100000);
+}
+
+TEST_CASE("light grid: most cells know few of many small lights, each list in order") {
+    RandomLights random(9);
+    const Affine pose = look_at({0, 0, 30}, {0, 0, 0});
+    const RenderView view = make_render_view({}, pose, pose, {.width = 640, .height = 360});
+    std::vector<LightReach> reach;
+    for (int i = 0; i < 400; ++i) {
+        reach.push_back({random.in_cube(20), 1.5f});
+    }
+    LightGrid grid;
+    build_light_grid(view, list_of(reach), grid);
+    for (std::size_t cell = 0; cell < grid.cells.size(); ++cell) {
+        const auto listed = lights_of(grid, static_cast<int>(cell));
+        CHECK(std::is_sorted(listed.begin(), listed.end()));
+    }
+    const double mean =
+        static_cast<double>(grid.indices.size()) / static_cast<double>(grid.cells.size());
+    CHECK(mean < 8);
+    LightGrid again;
+    build_light_grid(view, list_of(reach), again);
+    CHECK(grid.indices == again.indices);
+}
+
+TEST_CASE("light grid: a light without an end is in every cell, no light is in none") {
+    const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
+    const RenderView view = make_render_view({}, pose, pose, {.width = 100, .height = 70});
+    LightGrid grid;
+    build_light_grid(view, list_of({{{1e3f, 0, 0}, INFINITY}}), grid);
+    CHECK(grid.indices.size() == grid.cells.size());
+    build_light_grid(view, list_of({}), grid);
+    CHECK(grid.indices.empty());
+    CHECK(!grid.cells.empty());
+    build_light_grid(view, list_of({{{0, 0, 50}, 3}}), grid);  // behind the camera
+    CHECK(grid.indices.empty());
+}
+
+TEST_CASE_FIXTURE(Scene, "light grid: the picture equals the sum of all lights at every pixel") {
+    const Material matte = {
+        .shading = ShadingModel::Blinn, .base_color = {0.8f, 0.8f, 0.8f, 1}, .specular = {0, 0, 0}};
+    place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {40, 40, 1}));
+    RandomLights random(21);
+    std::vector<std::pair<PointLight, Vec3>> lights;
+    for (int i = 0; i < 150; ++i) {
+        Vec3 p = random.in_cube(10);
+        p.z = 0.3f + std::abs(p.z) * 0.1f;
+        const Vec3 color = Vec3(0.5f) + 0.5f * random.direction();
+        lights.push_back({{.color = color, .intensity = 3, .radius = 2 + random.signed_unit()}, p});
+        shine(lights.back().first, at(p));
+    }
+    // Slanting, so that the plane crosses many slices.
+    const Vec3 eye = {0, -12, 4};
+    const RenderView view = look(eye, {0, 0, 0}, 160, 100);
+    const gpu::FloatImage image = radiance(view);
+    const Mat4 world_from_clip = glm::inverse(view.clip_from_world);
+    double worst = 0;
+    int lit = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const Vec2 ndc = {
+                (static_cast<float>(x) + 0.5f) / 80 - 1, 1 - (static_cast<float>(y) + 0.5f) / 50};
+            const Vec4 p4 = world_from_clip * Vec4(ndc, 1, 1);
+            const glm::dvec3 through = glm::dvec3(p4) / static_cast<double>(p4.w) - glm::dvec3(eye);
+            const glm::dvec3 p = glm::dvec3(eye) + through * (-eye.z / through.z);
+            if (through.z >= 0 || std::abs(p.x) > 39 || std::abs(p.y) > 39) {
+                continue;
+            }
+            glm::dvec3 sum(0);
+            for (const auto& [light, place] : lights) {
+                const oracle::Arriving one = oracle::arrive(light, place, p, {0, 0, 1});
+                sum += 0.8 * one.color * std::max(one.to_light.z, 0.0);
+            }
+            const Vec3 got = rgb_at(image, x, y);
+            for (int c = 0; c < 3; ++c) {
+                worst = std::max(worst, std::abs(got[c] - sum[c]) / (0.05 + sum[c]));
+            }
+            lit += sum.x > 0.01 ? 1 : 0;
+        }
+    }
+    CHECK(lit > 1000);
+    CHECK(worst < 4e-3);
+}
+
+}  // namespace limn::test
