@@ -249,7 +249,9 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
         ->type_name("FILE.png");
     app->footer(
         "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"
-        "channel and, for EXR, the relative mean square error.\n\n"
+        "channel, color correctness and the scanline of A's brightest point; of two EXR files the\n"
+        "relative mean square error too. --diff raises differences to the power 1/10: one step of\n"
+        "255 shows as 57 % gray. In JSON, \"psnr\" is null where the pictures are equal.\n\n"
         "Example:\n"
         "  limn compare before.png after.png --diff difference.png");
     return {app, [&options] { return run_compare(options); }};

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <initializer_list>
+
 namespace limn {
 
 TEST_CASE("command_values: a size is two whole numbers of pixels") {

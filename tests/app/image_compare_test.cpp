@@ -394,6 +394,9 @@ TEST_CASE("image_compare: the largest difference names its pixel and channel, an
     CHECK(found.difference == doctest::Approx(0.25f));
     CHECK(found.pixel == IVec2(7, 3));
     CHECK(found.channel == 1);
+    CHECK(
+        largest_difference(flat(10, 8, Vec3(0)), flat(10, 8, Vec3(1))).pixel
+        == IVec2(0, 0));  // the first
     b.pixels[9].x = std::numeric_limits<float>::quiet_NaN();
     CHECK(largest_difference(a, b).pixel == IVec2(9, 0));
     CHECK(std::isinf(largest_difference(a, b).difference));

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <initializer_list>
+
 namespace limn {
 
 TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all of it") {
