@@ -1,3 +1,4 @@
+#include "ecs/base/check.h"
 #include "ecs/command_buffer.h"
 #include "ecs/component_bytes.h"
 #include "ecs/world_internals.h"
@@ -102,6 +103,15 @@ class CommandFlush {
         std::stable_sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) {
             return a.sequence != b.sequence ? a.sequence < b.sequence : a.chunk < b.chunk;
         });
+
+        for (std::size_t i = 1; i < segments.size(); ++i) {
+            LIMN_CHECK_NOTE(
+                segments[i - 1].stream == segments[i].stream
+                    || segments[i - 1].sequence != segments[i].sequence
+                    || segments[i - 1].chunk != segments[i].chunk,
+                "several threads recorded commands without par_chunks or par_each: no order is "
+                "defined");
+        }
 
         std::vector<std::vector<Entity>> created(buffer.streams_.size());
         for (const auto& stream : buffer.streams_) {

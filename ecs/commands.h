@@ -10,10 +10,11 @@
 
 namespace limn {
 
-// Structural changes for later: a system records them, also from the tasks of par_chunks, and the
-// next sync point applies them. The order is that of the systems in the schedule, then chunks, then
-// calls, for any number of threads; so the entities get the same handles everywhere. All commands
-// for one entity become at most one move; commands for an entity that is gone by then are dropped.
+// Structural changes for later: a system records them, also from the tasks of par_chunks and
+// par_each (threads of your own have no order, and the sync point refuses them), and the next sync
+// point applies them. The order is that of the systems in the schedule, then chunks, then calls,
+// for any number of threads; so the entities get the same handles everywhere. All commands for one
+// entity become at most one move; commands for an entity that is gone by then are dropped.
 //
 //     void update_spray(Query<const Nozzle> nozzles, Commands commands) {
 //         nozzles.par_each([&](const Nozzle& nozzle) {

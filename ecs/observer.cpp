@@ -7,6 +7,11 @@
 namespace limn {
 
 void World::observe(Observer observer) {
+    if (observer.component >= observed_.size()) {
+        observed_.resize(component_count());
+    }
+    observed_[observer.component] |=
+        static_cast<std::uint8_t>(1u << static_cast<unsigned>(observer.event));
     internals_->observers.push_back(std::make_unique<Observer>(std::move(observer)));
     refresh_observer_flags();
 }
@@ -25,13 +30,6 @@ void World::refresh_observer_flags() {
         set->observes_add = observes(set->info().id, ObserverEvent::Add);
         set->observes_remove = observes(set->info().id, ObserverEvent::Remove);
     }
-}
-
-bool World::observes(ComponentId id, ObserverEvent event) const {
-    return std::any_of(
-        internals_->observers.begin(), internals_->observers.end(), [&](const auto& observer) {
-            return observer->component == id && observer->event == event;
-        });
 }
 
 void World::notify(

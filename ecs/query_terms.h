@@ -232,8 +232,8 @@ using RowArgument = std::conditional_t<
 template <typename... Terms>
 [[nodiscard]] std::vector<QueryTerm> query_terms() {
     std::vector<QueryTerm> terms;
-    std::uint8_t group = 0;
-    const auto one = [&]<typename Term>() {
+    [[maybe_unused]] std::uint8_t group = 0;
+    [[maybe_unused]] const auto one = [&]<typename Term>() {
         TermTraits<Term>::add([&](TermKind kind, ComponentId id) {
             terms.push_back({kind, id, group, false});
         });

@@ -50,7 +50,11 @@ std::size_t World::entity_count() const {
 void World::destroy(Entity entity) {
     core_.check_unlocked();
     const EntitySlot slot = require(entity);
-    if (!internals_->observers.empty()) {
+    bool observed = archetype(slot.archetype).observes_remove;
+    for (const SparseSet* set : core_.sparse_list) {
+        observed = observed || (set->observes_remove && set->has(entity));
+    }
+    if (observed) {
         notify(ObserverEvent::Remove, components_of(entity), {&entity, 1});
     }
     destroy_now(entity, slot);

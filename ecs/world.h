@@ -236,7 +236,9 @@ class World {
 
     void observe(Observer observer);
     void refresh_observer_flags();
-    [[nodiscard]] bool observes(ComponentId id, ObserverEvent event) const;
+    [[nodiscard]] bool observes(ComponentId id, ObserverEvent event) const {
+        return id < observed_.size() && (observed_[id] & (1u << static_cast<unsigned>(event))) != 0;
+    }
     void notify(
         ObserverEvent event,
         std::span<const ComponentId> components,
@@ -259,6 +261,7 @@ class World {
     mutable std::vector<std::unique_ptr<QueryState>> queries_;
     std::vector<std::unique_ptr<ResourceSlot>> resources_;
     std::vector<ComponentId> resource_order_;
+    std::vector<std::uint8_t> observed_;  ///< by component, a bit an event
     std::uint32_t versions_forgotten_at_ = 0;
     std::unique_ptr<Internals> internals_;
 };

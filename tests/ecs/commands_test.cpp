@@ -1,9 +1,12 @@
 #include "ecs/base/jobs.h"
 #include "ecs/world.h"
+#include "tests/ecs/stop_message.h"
 #include "tests/ecs/test_components.h"
 
 #include <doctest/doctest.h>
 
+#include <string>
+#include <thread>
 #include <vector>
 
 using namespace limn;
@@ -319,4 +322,15 @@ TEST_CASE("commands: without types they do the same") {
     const Entity made = world.query<With<Label, Mass, Marked>, Without<Heat>>().single_entity();
     CHECK(world.get<Label>(made).text == "copied");
     CHECK(world.get<Mass>(made).value == 1);
+}
+
+TEST_CASE(
+    "commands: recorded by threads of one's own, they have no order, and the sync point says so") {
+    World world;
+    CommandBuffer buffer;
+    const Commands commands(buffer);
+    commands.create(Mass{1});
+    std::thread([&] { commands.create(Mass{2}); }).join();
+    CHECK(stop_message([&] { apply(world, buffer); }).find("no order") != std::string::npos);
+    buffer.discard();
 }

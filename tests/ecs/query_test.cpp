@@ -73,6 +73,16 @@ TEST_CASE("query: visits exactly the entities that its terms describe") {
     check_matches<const Label>(world, all, [](int) { return false; });
 }
 
+TEST_CASE("query: without terms it visits every entity") {
+    World world;
+    fill(world, 100);
+    world.create();
+    std::size_t visited = 0;
+    world.query<>().each([&](Entity entity) { visited += world.alive(entity) ? 1 : 0; });
+    CHECK(visited == 101);
+    CHECK(world.query<>().count() == 101);
+}
+
 TEST_CASE("query: archetypes that appear later are found") {
     World world;
     world.create(Position{});
