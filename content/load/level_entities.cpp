@@ -31,6 +31,28 @@ const JsonValue* find_in_layers(const std::vector<const JsonValue*>& layers, std
     return nullptr;
 }
 
+/// "repeat" of all layers: later ones replace single keys, as with components, or all of it by null.
+JsonValue merged_repeat(const std::vector<const JsonValue*>& layers) {
+    JsonValue merged;
+    for (const JsonValue* const layer : layers) {
+        const JsonValue* const repeat = layer->find("repeat");
+        if (repeat == nullptr) {
+            continue;
+        }
+        if (repeat->kind != JsonKind::Object || merged.kind != JsonKind::Object) {
+            merged = *repeat;
+            continue;
+        }
+        merged.at = repeat->at;
+        for (const JsonMember& member : repeat->members) {
+            std::erase_if(
+                merged.members, [&](const JsonMember& old) { return old.key == member.key; });
+            merged.members.push_back(member);
+        }
+    }
+    return merged;
+}
+
 /// What it costs to read a value, in values.
 std::size_t weight(const JsonValue& json) {
     std::size_t sum = 1 + json.text.size() / 16;
@@ -220,13 +242,13 @@ Status LevelEntities::add_copies(List& list, Node& node, const Around& around) {
     if (!components) {
         return components.error();
     }
-    const JsonValue* const json = find_in_layers(node.layers, "repeat");
-    if (json == nullptr || json->kind == JsonKind::Null) {
+    const JsonValue json = merged_repeat(node.layers);
+    if (json.kind == JsonKind::Null) {
         return add_copy(list, node, around, *std::move(components), node.name);
     }
     node.is_copy = true;
     const Result<Repeat> repeat =
-        read_repeat(*json, *components, {file_, node.path + ".repeat"}, names_in(list));
+        read_repeat(json, *components, {file_, node.path + ".repeat"}, names_in(list));
     if (!repeat) {
         return repeat.error();
     }

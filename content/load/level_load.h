@@ -68,11 +68,11 @@ class World;
 
 /// What a file may cost.
 struct LevelLimits {
-    JsonLimits json;
-    EntityLimits entities;
+    JsonLimits json = {};
+    EntityLimits entities = {};
     std::uint64_t max_vertices = std::uint64_t{1} << 25;  ///< of the meshes made
     std::uint64_t max_pixels = std::uint64_t{1} << 27;    ///< of all images
-    GltfLimits gltf;
+    GltfLimits gltf = {};
 };
 
 /// A mesh to make.

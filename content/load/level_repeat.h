@@ -25,6 +25,8 @@ namespace limn {
 //       }
 //     }
 //
+// What uses a prefab that is repeated may change single keys of its "repeat", or end it with null.
+//
 // With "radius" in place of spacing, the copies along x stand on a circle about +y and turn with
 // it: what faced -z faces its middle.
 //

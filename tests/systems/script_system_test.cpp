@@ -1,0 +1,226 @@
+#include "ecs/components/camera_path.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+#include "systems/script_system.h"
+
+#include <doctest/doctest.h>
+
+#include <string_view>
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+constexpr float kStep = 1.0f / 60.0f;
+
+/// Runs the step with this number.
+void run_step(World& world, std::uint64_t frame) {
+    world.insert_resource(FrameTime{
+        .step = kStep,
+        .time = static_cast<double>(frame + 1) * static_cast<double>(kStep),
+        .frame = frame});
+    run_events(world);
+}
+
+const FieldInfo& field_of(const ComponentInfo& info, std::string_view name) {
+    for (const FieldInfo& field : info.fields) {
+        if (field.name == name) {
+            return field;
+        }
+    }
+    REQUIRE(false);
+    return info.fields.front();
+}
+
+/// An action on one field of a component.
+template <typename T>
+ScriptAction
+change(EventAction action, Entity entity, const T& value, std::string_view field_name) {
+    ScriptAction change;
+    change.action = action;
+    change.entity = entity;
+    change.value = AnyComponent::of(value);
+    const FieldInfo& field = field_of(component_info<T>(), field_name);
+    change.edits.push_back({&field, field.offset});
+    return change;
+}
+
+ScriptEvent event_at(double time, ScriptAction action) {
+    ScriptEvent event;
+    event.time = time;
+    event.actions.push_back(std::move(action));
+    return event;
+}
+
+}  // namespace
+
+TEST_CASE("script: an event happens once, in the step that begins at its time") {
+    ScriptEvent event;
+    event.time = 0.5;
+    std::vector<std::uint64_t> due;
+    for (std::uint64_t frame = 0; frame < 100; ++frame) {
+        if (is_due(event, frame, kStep)) {
+            due.push_back(frame);
+        }
+    }
+    CHECK(due == std::vector<std::uint64_t>{30});
+}
+
+TEST_CASE("script: a repeated event keeps its distance and ends after its times") {
+    ScriptEvent event;
+    event.time = 0.1;
+    event.every = 0.05;
+    event.times = 4;
+    std::vector<std::uint64_t> due;
+    for (std::uint64_t frame = 0; frame < 100; ++frame) {
+        if (is_due(event, frame, kStep)) {
+            due.push_back(frame);
+        }
+    }
+    CHECK(due == std::vector<std::uint64_t>{6, 9, 12, 15});
+    event.every = 1e-6;  // never more than once a step
+    due.clear();
+    for (std::uint64_t frame = 0; frame < 100; ++frame) {
+        if (is_due(event, frame, kStep)) {
+            due.push_back(frame);
+        }
+    }
+    CHECK(due == std::vector<std::uint64_t>{6, 7, 8, 9});
+    event.times = 0;
+    CHECK_FALSE(is_due(event, 6, kStep));
+}
+
+TEST_CASE("script: set changes the named fields and no others") {
+    World world;
+    const Entity lamp = world.create(PointLight{.intensity = 3, .radius = 7});
+    const PointLight wanted{.intensity = 9, .radius = 1};
+    world.insert_resource(
+        EventList{{event_at(0, change(EventAction::Set, lamp, wanted, "intensity"))}});
+    run_step(world, 0);
+    CHECK(world.get<const PointLight>(lamp).intensity == 9.0f);
+    CHECK(world.get<const PointLight>(lamp).radius == 7.0f);
+}
+
+TEST_CASE("script: set adds the component that is missing, impulse does not") {
+    World world;
+    const Entity a = world.create(Transform{});
+    const Entity b = world.create(Transform{});
+    world.insert_resource(EventList{
+        {event_at(0, change(EventAction::Set, a, Spin{.speed = 2}, "speed")),
+         event_at(0, change(EventAction::Impulse, b, Spin{.speed = 2}, "speed"))}});
+    run_step(world, 0);
+    CHECK(world.get<const Spin>(a).speed == 2.0f);
+    CHECK(world.find<Spin>(b) == nullptr);
+}
+
+TEST_CASE("script: set replaces strings, lists and resources") {
+    World world;
+    CameraPath path;
+    path.keys.resize(3);
+    path.keys[2].time = 5;
+    const Entity entity = world.create(Name{"old"}, CameraPath{});
+    ScriptAction resource = change(EventAction::Set, Entity{}, Exposure{.ev = 4}, "ev");
+    resource.is_resource = true;
+    world.insert_resource(Exposure{.curve = ToneCurve::Linear});
+    world.insert_resource(EventList{
+        {event_at(0, change(EventAction::Set, entity, Name{"new"}, "text")),
+         event_at(0, change(EventAction::Set, entity, path, "keys")),
+         event_at(0, std::move(resource))}});
+    run_step(world, 0);
+    CHECK(world.get<const Name>(entity).text == "new");
+    REQUIRE(world.get<const CameraPath>(entity).keys.size() == 3);
+    CHECK(world.get<const CameraPath>(entity).keys[2].time == 5.0f);
+    CHECK(world.resource<Exposure>().ev == 4.0f);
+    CHECK(world.resource<Exposure>().curve == ToneCurve::Linear);
+}
+
+TEST_CASE("script: an impulse adds within the range, and turns rotations further") {
+    World world;
+    const Quat quarter = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0));
+    const Entity entity = world.create(
+        Transform{.position = {1, 2, 3}, .rotation = quarter}, PointLight{.intensity = 3});
+    ScriptEvent event;
+    event.actions.push_back(
+        change(EventAction::Impulse, entity, Transform{.position = {0, -5, 1}}, "position"));
+    event.actions.push_back(
+        change(EventAction::Impulse, entity, Transform{.rotation = quarter}, "rotation"));
+    event.actions.push_back(
+        change(EventAction::Impulse, entity, PointLight{.intensity = -10}, "intensity"));
+    world.insert_resource(EventList{{event}});
+    run_step(world, 0);
+    const Transform& t = world.get<const Transform>(entity);
+    CHECK(t.position == Vec3(1, -3, 4));
+    CHECK(std::abs(glm::dot(t.rotation, quarter * quarter)) == doctest::Approx(1.0f));
+    CHECK(world.get<const PointLight>(entity).intensity == 0.0f);  // not below its range
+}
+
+TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes what is below") {
+    World world;
+    Prefab prefab;
+    prefab.entities.resize(2);
+    prefab.entities[0].components.push_back(AnyComponent::of(Name{"stone"}));
+    prefab.entities[1].components.push_back(AnyComponent::of(Parent{prefab_entity(0), 0}));
+    ScriptEvent spawn;
+    spawn.every = static_cast<double>(kStep);
+    spawn.times = 3;
+    spawn.actions.emplace_back();
+    spawn.actions[0].action = EventAction::Spawn;
+    spawn.actions[0].prefab = prefab;
+    const Entity old = world.create(Transform{});
+    const Entity below = world.create(Transform{}, Parent{old});
+    ScriptEvent destroy;
+    destroy.every = static_cast<double>(kStep);
+    destroy.times = 2;  // the second time there is nothing left
+    destroy.actions.emplace_back();
+    destroy.actions[0].action = EventAction::Destroy;
+    destroy.actions[0].entity = old;
+    world.insert_resource(EventList{{spawn, destroy}});
+    for (std::uint64_t frame = 0; frame < 10; ++frame) {
+        run_step(world, frame);
+    }
+    CHECK(world.query<const Name>().count() == 3);
+    CHECK(world.query<const Parent>().count() == 3);
+    CHECK_FALSE(world.alive(old));
+    CHECK_FALSE(world.alive(below));
+}
+
+TEST_CASE("script: what is aimed at an entity that is gone does nothing") {
+    World world;
+    const Entity entity = world.create(Spin{});
+    world.insert_resource(
+        EventList{{event_at(0, change(EventAction::Set, entity, Spin{.speed = 2}, "speed"))}});
+    world.destroy(entity);
+    run_step(world, 0);
+    CHECK(world.entity_count() == 0);
+    World empty;
+    run_events(empty);  // without a list or a time
+}
+
+TEST_CASE("script: a camera follows its path and its target, and rests when told to") {
+    World world;
+    CameraPath path;
+    path.keys.resize(2);
+    path.keys[1].time = 2;
+    path.keys[1].position = {4, 0, 0};
+    path.aim = CameraAim::Target;
+    WorldTransform there;
+    there.world = affine_from({2, 0, -9}, Quat(1, 0, 0, 0), Vec3(1));
+    path.target = world.create(there);
+    const Entity camera = world.create(Transform{.scale = {2, 2, 2}}, path);
+    path.enabled = false;
+    const Entity resting = world.create(Transform{.position = {7, 7, 7}}, path);
+    world.insert_resource(FrameTime{.time = 1.0});
+    world.run(update_camera_paths);
+    const Transform& t = world.get<const Transform>(camera);
+    CHECK(t.position.x == doctest::Approx(2.0f));
+    CHECK((t.rotation * Vec3(0, 0, -1)).z == doctest::Approx(-1.0f));
+    CHECK(t.scale == Vec3(2));
+    CHECK(world.get<const Transform>(resting).position == Vec3(7));
+    world.destroy(path.target);
+    world.run(update_camera_paths);  // then it looks where the first key does
+    CHECK(std::isfinite(world.get<const Transform>(camera).rotation.w));
+}
