@@ -1,3 +1,4 @@
+#include "content/bake/tangents.h"
 #include "content/load/atomic_file.h"
 #include "content/load/gltf_load.h"
 #include "content/load/gltf_spawn.h"
@@ -108,14 +109,14 @@ TEST_CASE("gltf: a node graph arrives with names, parents and transforms") {
 }
 
 TEST_CASE("gltf: a matrix becomes position, rotation and scale, mirrored ones too") {
-    // Columns: x -> 2z, y -> -3y, z -> x, moved by (5, 6, 7): rotation, scale and a mirror.
+    // Columns: x -> 2z, y -> 3y, z -> x, moved by (5, 6, 7): rotation, scale and a mirror.
     const GltfScene scene = load_square(
-        {{R"("translation": [1, 2, 3])", R"("matrix": [0,0,2,0, 0,-3,0,0, 1,0,0,0, 5,6,7,1])"}});
+        {{R"("translation": [1, 2, 3])", R"("matrix": [0,0,2,0, 0,3,0,0, 1,0,0,0, 5,6,7,1])"}});
     const Transform& t = scene.nodes[1].transform;
     const Affine matrix = affine_from(t.position, t.rotation, t.scale);
     CHECK(near(transform_point(matrix, {0, 0, 0}), {5, 6, 7}));
     CHECK(near(transform_vector(matrix, {1, 0, 0}), {0, 0, 2}));
-    CHECK(near(transform_vector(matrix, {0, 1, 0}), {0, -3, 0}));
+    CHECK(near(transform_vector(matrix, {0, 1, 0}), {0, 3, 0}));
     CHECK(near(transform_vector(matrix, {0, 0, 1}), {1, 0, 0}));
     CHECK(scene.warnings.empty());
     const GltfScene sheared = load_square(
@@ -406,6 +407,21 @@ TEST_CASE("gltf: a scene spawns as entities with the hierarchy of the file, behi
     CHECK(assets.meshes[3].name == "square");
 }
 
+TEST_CASE("gltf: the images of a spawned scene stand behind those that were there") {
+    World world;
+    Assets assets;
+    assets.images.resize(4);
+    GltfScene scene;
+    scene.images.resize(2);
+    scene.images[1].name = "bark";
+    scene.materials.resize(1);
+    scene.materials[0].occlusion_texture.image.index = 1;
+    spawn_gltf(world, assets, std::move(scene));
+    REQUIRE(assets.images.size() == 6);
+    CHECK(assets.images[assets.materials[0].occlusion_texture.image.index].name == "bark");
+    CHECK(assets.materials[0].normal_texture.image.index == kNoAsset);
+}
+
 TEST_CASE("gltf: a mesh of several primitives spawns a child for each") {
     register_all_components();
     World world;
@@ -489,6 +505,15 @@ TEST_CASE("gltf: FlightHelmet has six textured parts whose tangents agree with g
     CHECK(scene->warnings.empty());
     for (const MeshData& mesh : scene->meshes) {
         check_mesh(mesh);
+        MeshData generated = mesh;
+        generate_tangents(generated);
+        std::size_t differ = 0;
+        for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
+            const Vec4& theirs = mesh.tangents[mesh.indices[corner]];
+            const Vec4& ours = generated.tangents[generated.indices[corner]];
+            differ += glm::dot(Vec3(theirs), Vec3(ours)) < 0.97f || theirs.w != ours.w;
+        }
+        CHECK(static_cast<double>(differ) < 0.02 * static_cast<double>(mesh.indices.size()));
     }
     for (const Material& material : scene->materials) {
         REQUIRE(material.normal_texture.image.index < scene->images.size());
