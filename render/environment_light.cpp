@@ -128,23 +128,38 @@ float radical_inverse(std::uint32_t bits) {
     return value;
 }
 
-/// GGX with height-correlated Smith masking integrated over half vectors (Karis 2013).
+/// The normal of a microfacet that is seen from `v`, drawn by two uniform numbers (Heitz, "Sampling
+/// the GGX Distribution of Visible Normals", 2018).
+Vec3 visible_normal(const Vec3& v, float alpha, float u1, float u2) {
+    const Vec3 stretched = glm::normalize(Vec3(alpha * v.x, alpha * v.y, v.z));
+    const float across2 = square(stretched.x) + square(stretched.y);
+    const Vec3 t1 =
+        across2 > 0 ? Vec3(-stretched.y, stretched.x, 0) / std::sqrt(across2) : Vec3(1, 0, 0);
+    const Vec3 t2 = glm::cross(stretched, t1);
+    const float radius = std::sqrt(u1);
+    const float a = radius * std::cos(2 * kPi * u2);
+    const float s = 0.5f * (1 + stretched.z);
+    const float b = (1 - s) * std::sqrt(1 - a * a) + s * radius * std::sin(2 * kPi * u2);
+    const Vec3 n = a * t1 + b * t2 + std::sqrt(std::max(1 - a * a - b * b, 0.0f)) * stretched;
+    return glm::normalize(Vec3(alpha * n.x, alpha * n.y, std::max(n.z, 1e-6f)));
+}
+
+/// GGX with height-correlated Smith masking, integrated over the microfacets that are seen.
 Vec2 integrate_specular(float n_v, float roughness, int samples) {
-    const float alpha2 = square(square(roughness));
+    const float alpha = square(roughness);
+    const float alpha2 = square(alpha);
     const Vec3 v = {std::sqrt(1 - n_v * n_v), 0, n_v};
+    const float smith_v = std::sqrt(alpha2 + (1 - alpha2) * n_v * n_v);
     Vec2 sum = {0, 0};
     for (int i = 0; i < samples; ++i) {
         const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples);
-        const float phi = 2 * kPi * radical_inverse(static_cast<std::uint32_t>(i));
-        const float cosine = std::sqrt((1 - u) / (1 + (alpha2 - 1) * u));
-        const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f));
-        const float v_h = v.x * sine * std::cos(phi) + v.z * cosine;
-        const float n_l = 2 * v_h * cosine - n_v;
-        if (n_l > 0 && v_h > 0) {
-            const float smith = n_l * std::sqrt(n_v * n_v * (1 - alpha2) + alpha2)
-                                + n_v * std::sqrt(n_l * n_l * (1 - alpha2) + alpha2);
-            const float weight = 2 * n_l * v_h / (smith * cosine);
-            const float fresnel = std::pow(1 - std::min(v_h, 1.0f), 5.0f);
+        const Vec3 h = visible_normal(v, alpha, u, radical_inverse(static_cast<std::uint32_t>(i)));
+        const float v_h = glm::dot(v, h);
+        const float n_l = 2 * v_h * h.z - n_v;
+        if (n_l > 0) {
+            const float smith_l = std::sqrt(alpha2 + (1 - alpha2) * n_l * n_l);
+            const float weight = n_l * (n_v + smith_v) / (n_v * smith_l + n_l * smith_v);
+            const float fresnel = std::pow(1 - std::clamp(v_h, 0.0f, 1.0f), 5.0f);
             sum += weight * Vec2(1 - fresnel, fresnel);
         }
     }
@@ -199,7 +214,7 @@ Vec3 irradiance(const layout::EnvironmentBlock& block, const Vec3& normal) {
 }
 
 std::vector<Vec2> make_specular_albedo(int size) {
-    constexpr int kSamples = 512;
+    constexpr int kSamples = 256;
     std::vector<Vec2> table(static_cast<std::size_t>(size) * size);
     parallel_for(size, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {

@@ -7,10 +7,13 @@ layout(binding = 0) uniform sampler2D scene_radiance;
 
 uniform float exposure;  // 2^ev
 
+const float kMaxExposed = 1e6;  // white by any curve, and far from overflow
+
 layout(location = 0) out vec4 display;
 
 void main() {
     vec3 color = max(texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0).rgb, vec3(0.0)) * exposure;
+    color = min(color, vec3(kMaxExposed));
 #if TONE_CURVE == 0
     color = tone_neutral(color);
 #elif TONE_CURVE == 1

@@ -65,14 +65,18 @@ vec3 surface_normal(float strength) {
     return n;
 }
 
-// Where the normal changes within a pixel, the lobe is widened by as much: no sparkle.
+// Where a normal map changes within a pixel, the lobe is widened by as much: no sparkle. Curved meshes are left
+// sharp, since the same roughness blurs what they mirror.
 // Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
 float widen_roughness(float roughness, vec3 normal) {
+#ifdef NORMAL_MAP
     vec3 dx = dFdx(normal);
     vec3 dy = dFdy(normal);
-    float variance = 0.25 * (dot(dx, dx) + dot(dy, dy));
+    float variance = 0.159 * (dot(dx, dx) + dot(dy, dy));
     float alpha = roughness * roughness;
-    return sqrt(sqrt(clamp(alpha * alpha + min(2.0 * variance, 0.18), 0.0, 1.0)));
+    roughness = sqrt(sqrt(clamp(alpha * alpha + min(2.0 * variance, 0.18), 0.0, 1.0)));
+#endif
+    return roughness;
 }
 
 SurfaceSample surface_sample(vec3 albedo) {

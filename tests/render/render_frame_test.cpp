@@ -1,0 +1,157 @@
+#include "ecs/components/name.h"
+#include "render/graph/frame_graph.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+namespace limn::test {
+
+TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black picture of the asked size") {
+    for (const IVec2& size : {IVec2(1, 1), IVec2(3, 200), IVec2(257, 65)}) {
+        const FrameOutput out = draw(look({0, 0, 1}, {0, 0, 0}, size.x, size.y));
+        const gpu::FloatImage image = gpu::read_floats(*out.radiance);
+        CHECK(image.width == size.x);
+        CHECK(image.height == size.y);
+        for (const float value : image.pixels) {
+            CHECK(value == 0);
+        }
+        CHECK(out.statistics.draws == 0);
+    }
+}
+
+TEST_CASE("render frame: a world without any resource is drawn, too") {
+    World world;
+    const Affine pose = look_at({0, 0, 1}, {0, 0, 0});
+    const FrameOutput out = render_frame(
+        shared_renderer(), world, make_render_view({}, pose, pose, {.width = 8, .height = 8}));
+    CHECK(out.display != nullptr);
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "render frame: AOVs come by name, in their order, unknown ones are left out") {
+    const FrameOutput out =
+        draw(look({0, 0, 1}, {0, 0, 0}, 8, 8), {.aovs = {"velocity", "nonsense", "depth"}});
+    REQUIRE(out.aovs.size() == 2);
+    CHECK(out.aovs[0].name == "depth");
+    CHECK(out.aovs[0].channels == 1);
+    CHECK(out.aovs[1].name == "velocity");
+    CHECK(out.aovs[1].channels == 2);
+    CHECK(aov_names().size() == 5);
+    CHECK(aov_channels("normal") == 3);
+    CHECK(aov_channels("nonsense") == 0);
+}
+
+TEST_CASE_FIXTURE(Scene, "render frame: velocity costs nothing unless it is asked for") {
+    place(add(make_square()), add(Material{}), at({0, 0, 0}));
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
+    static_cast<void>(draw(view));
+    CHECK(!frame_graph(shared_renderer()).find("gbuffer.velocity").valid());
+    static_cast<void>(draw(view, {.aovs = {"velocity"}}));
+    CHECK(frame_graph(shared_renderer()).find("gbuffer.velocity").valid());
+}
+
+TEST_CASE("render frame: another world's assets are noticed, even where the old ones were") {
+    // Worlds of the same shape one after the other: everything lies at the same addresses.
+    for (const Vec3& color : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+        Scene scene;
+        MeshData mesh = make_square();
+        if (color.z == 1) {
+            for (Vec3& p : mesh.positions) {
+                p *= 0.5f;
+            }
+        }
+        Material material = {.shading = ShadingModel::Unlit, .base_color = Vec4(color, 1)};
+        scene.place(scene.add(mesh), scene.add(material), at({0, 0, 0}));
+        const gpu::FloatImage image = scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 32, 32));
+        CHECK(rgb_at(image, 16, 16) == color);
+        CHECK(rgb_at(image, 2, 2) == (color.z == 1 ? Vec3(0) : color));
+    }
+}
+
+TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is drawn") {
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Unlit}),
+        affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(3)));
+    const Vec3 before = rgb_at(radiance(view), 4, 4);
+    // Large enough for the vertex buffers to grow.
+    place(
+        add(make_ball(300)),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 1, 0, 1}}),
+        at({0, 0, -0.5f}));
+    CHECK(rgb_at(radiance(view), 4, 4) == Vec3(0, 1, 0));
+    CHECK(before != Vec3(0, 1, 0));
+    CHECK(rgb_at(radiance(view), 0, 0) == before);  // what was there before is still right
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "render frame: accumulated samples smooth an edge into the share it covers") {
+    // The square covers the left 37.5 % of the column of pixels 16 .. 23: pixel 19 is half covered.
+    const Material white = {.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}};
+    place(add(make_square()), add(white), at({-1 + (19.5f / 16 - 1), 0, 0}));
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
+    const gpu::FloatImage one =
+        gpu::read_floats(*render_accumulated(shared_renderer(), world, view, 1).radiance);
+    CHECK((one.at(19, 16, 0) == 0 || one.at(19, 16, 0) == 1));
+    const FrameOutput out =
+        render_accumulated(shared_renderer(), world, view, 64, {.aovs = {"emission"}});
+    const gpu::FloatImage many = gpu::read_floats(*out.radiance);
+    CHECK(many.at(18, 16, 0) == doctest::Approx(1));
+    CHECK(many.at(19, 16, 0) == doctest::Approx(0.5).epsilon(0.06));
+    CHECK(many.at(20, 16, 0) == doctest::Approx(0));
+    CHECK(gpu::read_floats(*out.aovs[0].texture).at(5, 16, 0) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(gpu::read_bytes(*out.display).width == 32);
+}
+
+TEST_CASE_FIXTURE(Scene, "render frame: the same world twice is the same picture, bit for bit") {
+    world.insert_resource(Environment{.sky = SkyKind::Studio});
+    place(add(make_ball()), add(Material{.metalness = 1, .roughness = 0.2f}), at({0, 0, 0}));
+    shine(PointLight{}, at({1, 1, 2}));
+    const RenderView view = look({0, 0, 2}, {0, 0, 0});
+    const gpu::ByteImage first = gpu::read_bytes(*draw(view).display);
+    const gpu::ByteImage second = gpu::read_bytes(*draw(view).display);
+    CHECK(first.pixels == second.pixels);
+}
+
+TEST_CASE("render view: sample positions fill the pixel evenly, one sample is its middle") {
+    CHECK(sample_jitter(0, 1) == Vec2(0));
+    for (const int count : {16, 64, 256}) {
+        Vec2 sum = {0, 0};
+        int quadrants[4] = {};
+        for (int i = 0; i < count; ++i) {
+            const Vec2 j = sample_jitter(i, count);
+            CHECK(std::abs(j.x) <= 0.5f);
+            CHECK(std::abs(j.y) <= 0.5f);
+            sum += j;
+            ++quadrants[(j.x > 0 ? 1 : 0) + (j.y > 0 ? 2 : 0)];
+        }
+        CHECK(glm::length(sum / static_cast<float>(count)) < 0.08f);
+        for (const int n : quadrants) {
+            CHECK(std::abs(n - count / 4) <= 2);
+        }
+    }
+}
+
+TEST_CASE("render view: cameras are found by name, else the first active one") {
+    World world;
+    CHECK(!find_camera(world));
+    const Entity off = world.create(Camera{.active = false}, WorldTransform{}, Name{"off"});
+    const Entity on = world.create(Camera{}, WorldTransform{}, Name{"on"});
+    world.create(Camera{}, WorldTransform{});
+    CHECK(find_camera(world) == on);
+    CHECK(find_camera(world, "off") == off);
+    CHECK(!find_camera(world, "none"));
+}
+
+TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") {
+    const Affine pose = look_at({1, 2, 3}, {0, 0, 0});
+    const Affine scaled = pose * affine_from({0, 0, 0}, {1, 0, 0, 0}, {3, 0.5f, 2});
+    const RenderView a = make_render_view({}, pose, pose);
+    const RenderView b = make_render_view({}, scaled, scaled);
+    for (int i = 0; i < 4; ++i) {
+        CHECK(glm::length(a.clip_from_world[i] - b.clip_from_world[i]) < 1e-5f);
+    }
+}
+
+}  // namespace limn::test
