@@ -180,6 +180,10 @@ TEST_CASE("change: sparse components have versions too") {
     CHECK(seen_by(world, look_at_heat) == 0);
     world.get<Heat>(entities[0]).degrees = 1;
     CHECK(seen_by(world, look_at_heat) == 1024);
+    static_cast<void>(std::as_const(world).find(entities[2999], component_id<Heat>));
+    CHECK(seen_by(world, look_at_heat) == 0);
+    static_cast<void>(world.find(entities[2999], component_id<Heat>));
+    CHECK(seen_by(world, look_at_heat) == 3000 - 2048);
     world.query<Heat>().each([](Heat&) {});
     CHECK(seen_by(world, look_at_heat) == 3000);
     world.get<Position>(entities[0]).x = 2;
@@ -268,4 +272,23 @@ TEST_CASE("change: what changed very long ago never becomes new again") {
     }
     world.get<Position>(entity).x = 1;
     CHECK(seen_by(world, look) == 1);
+}
+
+TEST_CASE("change: a value that commands replace has changed") {
+    static constexpr auto replace_both = [](Query<const Position> query, Commands commands) {
+        query.each([&](Entity entity, const Position&) {
+            commands.set(entity, Position{1, 2, 3});
+            commands.add(entity, Heat{5});
+        });
+    };
+    World world;
+    world.insert_resource(Seen{});
+    world.create(Position{}, Heat{});
+    world.run(look);
+    world.run(look_at_heat);
+    CHECK(seen_by(world, look) + seen_by(world, look_at_heat) == 0);
+    world.run(replace_both);
+    CHECK(seen_by(world, look) == 1);
+    CHECK(seen_by(world, look_at_heat) == 1);
+    CHECK(seen_by(world, look) + seen_by(world, look_at_heat) == 0);
 }

@@ -1,10 +1,12 @@
 #include "ecs/base/jobs.h"
+#include "ecs/task_scope.h"
 #include "ecs/world.h"
 #include "tests/ecs/stop_message.h"
 #include "tests/ecs/test_components.h"
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <string>
 #include <thread>
 #include <vector>
@@ -192,6 +194,8 @@ TEST_CASE("commands: recorded in parallel, they give the same world for any numb
     static constexpr auto split = [](Query<const Mass> query, Commands commands) {
         commands.create(Label{"first", {}});
         query.par_chunks([&](ChunkView chunk, std::span<const Mass> masses) {
+            std::this_thread::sleep_for(
+                std::chrono::microseconds(50));  // so that all threads take part
             for (std::uint32_t i = 0; i < chunk.size(); ++i) {
                 const int value = static_cast<int>(masses[i].value);
                 if (value % 3 == 0) {
@@ -333,4 +337,34 @@ TEST_CASE(
     std::thread([&] { commands.create(Mass{2}); }).join();
     CHECK(stop_message([&] { apply(world, buffer); }).find("no order") != std::string::npos);
     buffer.discard();
+}
+
+TEST_CASE("commands: what several threads recorded is put into the order of its chunks") {
+    World world;
+    CommandBuffer buffer;
+    const Commands commands(buffer);
+    const auto record = [&](TaskScope place, int value) {
+        const TaskScopeGuard scope(place);
+        commands.create(Heat{value});
+        commands.create(Heat{value + 1});
+    };
+    const auto elsewhere = [&](TaskScope place, int value) {
+        std::thread([&] { record(place, value); }).join();
+    };
+    record({0, 0}, 0);
+    elsewhere({1, 3}, 50);
+    record({1, 2}, 40);
+    elsewhere({3, 1}, 70);
+    elsewhere({1, 1}, 30);
+    record({2, 0}, 60);
+    record({3, 2}, 80);
+    apply(world, buffer);
+    Entity previous;
+    std::vector<int> order;
+    world.query<const Heat>().each([&](Entity entity, const Heat& heat) {
+        CHECK((order.empty() || entity.index == previous.index + 1));
+        previous = entity;
+        order.push_back(heat.degrees);
+    });
+    CHECK(order == std::vector<int>{0, 1, 30, 31, 40, 41, 50, 51, 60, 61, 70, 71, 80, 81});
 }
