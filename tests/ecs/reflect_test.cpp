@@ -13,7 +13,6 @@
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <regex>
 #include <set>
 
 namespace reflect_test {
@@ -190,10 +189,11 @@ TEST_CASE(
          std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/ecs/components")) {
         std::ifstream header(entry.path());
         const std::string text(std::istreambuf_iterator<char>(header), {});
-        const std::regex declaration("visit_fields\\((\\w+)&");
-        for (std::sregex_iterator match(text.begin(), text.end(), declaration), end; match != end;
-             ++match) {
-            const std::string name = snake_case((*match)[1].str());
+        const std::string key = "visit_fields(";
+        for (std::size_t at = text.find(key); at != std::string::npos;
+             at = text.find(key, at + 1)) {
+            const std::size_t type = at + key.size();
+            const std::string name = snake_case(text.substr(type, text.find('&', type) - type));
             CAPTURE(name);
             CHECK(
                 (find_component(name) != nullptr || find_resource(name) != nullptr
