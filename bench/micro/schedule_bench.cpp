@@ -43,7 +43,7 @@ void fill(World& world, std::size_t count) {
     world.create_many(count, Transform{}, WorldTransform{}, PreviousWorldTransform{}, Spin{});
 }
 
-/// 148 bytes an entity.
+/// 152 bytes of components and 8 of the handle, an entity.
 void BM_StateHash(benchmark::State& state) {
     World world;
     fill(world, static_cast<std::size_t>(state.range(0)));
