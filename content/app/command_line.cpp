@@ -123,20 +123,23 @@ Command add_play(CLI::App& program, PlayOptions& options) {
            },
            "rendered pixels a window pixel, 0.1 to 2, or auto: holds 60 frames a second")
         ->type_name("auto|X");
-    app->add_flag(
-        "--headless", options.headless, "write pictures along the camera path, no window");
-    add_integer(*app, "--frames", "pictures of a headless run", options.frames, 1, 10000)
-        ->default_str(std::to_string(options.frames));
+    add_integer(
+        *app,
+        "--headless-frames",
+        "write so many pictures along the camera path; no window",
+        options.headless_frames,
+        1,
+        10000);
     app->add_option("-o,--out", options.out, "folder for pictures and screenshots")
         ->type_name("FOLDER");
     app->footer(
-        "Without a display it writes the pictures of a headless run and says where they are.\n"
+        "Without a display it writes pictures along the camera path and says where they are.\n"
         "In the window: F1 shows the keys.\n\n"
         "Examples:\n"
         "  limn play\n"
         "  limn play gallery --size 1920x1080 --scale auto\n"
         "  limn play model.glb --fullscreen\n"
-        "  limn play tour --headless --frames 12 -o pictures");
+        "  limn play gallery --headless-frames 12 -o pictures");
     return {app, [&options] { return run_play(options); }};
 }
 

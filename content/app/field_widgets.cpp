@@ -2,6 +2,8 @@
 
 #include "content/app/hud.h"
 #include "content/load/component_json.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"
@@ -454,7 +456,19 @@ std::string entity_label(const World& world, Entity entity) {
     if (name != nullptr && !name->text.empty()) {
         return name->text;
     }
-    return fmt::format("entity {}", entity.index);
+    // Nameless: by what it shows or does.
+    const char* kind = world.has<PointLight>(entity)         ? "point light"
+                       : world.has<SpotLight>(entity)        ? "spot light"
+                       : world.has<DirectionalLight>(entity) ? "sun"
+                       : world.has<Camera>(entity)           ? "camera"
+                                                             : "entity";
+    const MeshInstance* instance = world.find<MeshInstance>(entity);
+    const Assets* assets = world.find_resource<Assets>();
+    const std::string* mesh = instance != nullptr && assets != nullptr
+                                  ? asset_name(*assets, "mesh", instance->mesh.index)
+                                  : nullptr;
+    return fmt::format(
+        "{} {}", mesh != nullptr && !mesh->empty() ? mesh->c_str() : kind, entity.index);
 }
 
 }  // namespace limn

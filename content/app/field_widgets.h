@@ -26,7 +26,7 @@ struct FieldChange {
 FieldChange
 edit_fields(const Hud& hud, const World& world, const ComponentInfo& info, void* object);
 
-/// "lamp" or "entity 12".
+/// Its name, or what it shows or does with its number: "teapot 12", "point light 3", "entity 7".
 [[nodiscard]] std::string entity_label(const World& world, Entity entity);
 
 }  // namespace limn

@@ -174,7 +174,7 @@ void Hud::draw_status(const HudStatus& status) {
         numbers_text(
             fonts_,
             kHudText,
-            format("{:<5.1f} fps   {:<6.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
+            format("{:.1f} fps   {:.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
         numbers_text(
             fonts_,
             kHudDim,

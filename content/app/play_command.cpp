@@ -18,6 +18,7 @@
 namespace limn {
 namespace {
 
+constexpr int kHeadlessFrames = 8;  // where there is no display
 constexpr int kHeadlessSamples = 8;
 constexpr double kStillDuration = 4.0;  // [s] of a scene without a camera path
 
@@ -45,15 +46,15 @@ Status play_headless(const PlayOptions& options, bool no_display) {
     fmt::print(
         "{}Rendering {} pictures along the camera path of {} on {}.\n",
         no_display ? "There is no display: no window is opened. " : "",
-        options.frames,
+        options.headless_frames,
         stage.scene.name,
         headless->device->caps().renderer);
     std::fflush(stdout);
 
     const double duration = stage.scene.duration > 0.0 ? stage.scene.duration : kStillDuration;
-    Progress progress("picture", options.frames);
-    for (int i = 0; i < options.frames; ++i) {
-        const double time = duration * i / options.frames;
+    Progress progress("picture", options.headless_frames);
+    for (int i = 0; i < options.headless_frames; ++i) {
+        const double time = duration * i / options.headless_frames;
         const float alpha = advance_stage(stage, time);
         const RenderView view = make_render_view(
             stage.world,
@@ -83,8 +84,11 @@ Status run_play(const PlayOptions& given) {
     if (options.scene.empty()) {
         options.scene = default_scene();
     }
-    const bool no_display = !Window::has_display();
-    if (options.headless || no_display) {
+    const bool no_display = options.headless_frames == 0 && !Window::has_display();
+    if (no_display) {
+        options.headless_frames = kHeadlessFrames;
+    }
+    if (options.headless_frames > 0) {
         return play_headless(options, no_display);
     }
     Result<std::unique_ptr<Player>> player = Player::create(options);

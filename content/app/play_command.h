@@ -15,8 +15,7 @@ struct PlayOptions {
     bool fullscreen = false;
     float scale = 0.0f;       ///< rendered pixels a window pixel; 0 = by the machine
     bool scale_auto = false;  ///< changes the scale to hold 60 frames a second
-    bool headless = false;    ///< pictures even if there is a display
-    int frames = 8;           ///< pictures of a headless run
+    int headless_frames = 0;  ///< > 0: so many pictures along the camera path, and no window
     std::string out;  ///< folder of pictures and screenshots; empty = limn-<level> for pictures,
                       ///< the current one for screenshots
 };

@@ -93,6 +93,7 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     check_fails(folder, {"hash", "gallery", "--frames", "2", "--threads", "0"}, 2, "--threads");
     check_fails(folder, {"compare", "a.png"}, 2);
     check_fails(folder, {"play", "--scale", "big"}, 2, "auto");
+    check_fails(folder, {"play", "--headless-frames", "0"}, 2, "--headless-frames");
     check_fails(folder, {"info"}, 2, "file");
 }
 
@@ -118,7 +119,7 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
         check_fails(folder, {"info", scene}, 1, scene);
     }
     check_fails(folder, {"bench", "missing.glb", "--frames", "1"}, 1, "missing.glb");
-    check_fails(folder, {"play", "missing.glb", "--headless"}, 1, "missing.glb");
+    check_fails(folder, {"play", "missing.glb", "--headless-frames", "1"}, 1, "missing.glb");
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
 }
 
