@@ -47,9 +47,8 @@ struct NodeBody {
 Work work_of(const ChunkView& chunk) {
     const std::uint32_t world = chunk.version<WorldTransform>();
     // Computing makes the world newer than all it depends on; anything else at least as new came
-    // later.
+    // later. Rows that come, go or move count as changes of all their columns.
     const bool is_old = !is_newer(world, chunk.version<Transform>())
-                        || !is_newer(world, chunk.structure_version())
                         || (chunk.has<Parent>() && !is_newer(world, chunk.version<Parent>()));
     if (is_old) {
         return Work::Compute;

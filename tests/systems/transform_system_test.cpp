@@ -196,6 +196,43 @@ TEST_CASE("transform: a new parent moves the child, and without its parent it is
     CHECK(written(world, since) == 0);
 }
 
+TEST_CASE("transform: a new parent moves a child that was at rest") {
+    World world;
+    Schedule schedule = make_schedule();
+    const Entity a = world.create(at(10, 0, 0));
+    const Entity b = world.create(at(0, 20, 0));
+    const Entity child = world.create(at(0, 0, 1), Parent{a});
+    for (int i = 0; i < 5; ++i) {
+        schedule.run(world);
+    }
+    world.get<Parent>(child).entity = b;
+    schedule.run(world);
+    CHECK(world_of(world, child).row[0].w == 0);
+    CHECK(world_of(world, child).row[1].w == 20);
+    CHECK(previous_of(world, child).row[0].w == 10);
+}
+
+TEST_CASE("transform: a child comes to rest while its neighbor in memory moves") {
+    World world;
+    Schedule schedule = make_schedule();
+    const Entity a = world.create(at(0, 0, 0), Spin{});  // not in the chunk of b
+    const Entity b = world.create(at(0, 0, 0));
+    const Entity on_a = world.create(at(0, 0, 1), Parent{a});
+    const Entity on_b = world.create(at(0, 0, 2), Parent{b});
+    for (int i = 0; i < 5; ++i) {
+        schedule.run(world);
+    }
+    world.get<Transform>(a).position.x = 1;
+    schedule.run(world);
+    CHECK(previous_of(world, on_a).row[0].w == 0);
+    CHECK(world_of(world, on_a).row[0].w == 1);
+    world.get<Transform>(b).position.x = 7;
+    schedule.run(world);
+    CHECK(previous_of(world, on_a).row[0].w == 1);
+    CHECK(world_of(world, on_b).row[0].w == 7);
+    CHECK(previous_of(world, on_b).row[0].w == 0);
+}
+
 TEST_CASE("transform: after a teleport there is no velocity, for what hangs on it neither") {
     World world;
     Schedule schedule = make_schedule();
