@@ -90,6 +90,31 @@ TEST_CASE("patterns: no seam shows where an image meets itself") {
     }
 }
 
+TEST_CASE("patterns: a bump at one edge of the image bends the normals at the other") {
+    const PatternMaps maps = make_pattern_maps(32, [](const Vec2& uv) {
+        return PatternTexel{.height = uv.x < 1.0f / 32 || uv.y < 1.0f / 32 ? 0.02f : 0.0f};
+    });
+    CHECK(channel(maps.normal, 31, 16, 0) < 120);  // it rises to the right, into column 0
+    CHECK(channel(maps.normal, 16, 31, 1) > 136);  // and downwards, into row 0
+    CHECK(channel(maps.normal, 16, 16, 0) == 128);
+}
+
+TEST_CASE("patterns: a brick that is cut by the edge of the image goes on at the other edge") {
+    const PatternMaps wall = make_bricks({.image = {.size = 256}, .variation = 1});
+    double seam = 0;
+    double joint = 0;
+    for (int row = 1; row < 8; row += 2) {  // every other row begins with half a brick
+        const int y = 32 * row + 16;
+        for (int c = 0; c < 3; ++c) {
+            seam +=
+                std::abs(channel(wall.base_color, 255, y, c) - channel(wall.base_color, 0, y, c));
+            joint +=
+                std::abs(channel(wall.base_color, 4, y, c) - channel(wall.base_color, 60, y, c));
+        }
+    }
+    CHECK(seam < 0.5 * joint);
+}
+
 TEST_CASE("patterns: normals are unit, point outwards and have no lean") {
     for (const PatternKind& kind : pattern_kinds()) {
         INFO(std::string(kind.name));

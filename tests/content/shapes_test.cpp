@@ -153,6 +153,45 @@ TEST_CASE("shapes: a rounded box has one normal at a point, so that swelling it 
     CHECK(normals.size() < box.positions.size());
 }
 
+TEST_CASE("shapes: the normals of a rounded edge turn by equal angles, and a bevel ends at half "
+          "the size") {
+    const MeshData box = make_box({.bevel = 0.2f, .bevel_segments = 2});
+    int halfway = 0;
+    for (const Vec3& n : box.normals) {
+        if (std::abs(n.z) < 1e-6f && n.x > 1e-3f && n.y > 1e-3f) {
+            const float angle = std::atan2(n.y, n.x) / radians(22.5f);
+            CHECK(std::abs(angle - std::round(angle)) < 1e-4f);
+            ++halfway;
+        }
+    }
+    CHECK(halfway > 0);
+    const MeshData ball = make_box({.size = {2, 2, 2}, .bevel = 9, .bevel_segments = 16});
+    CHECK(ball.bounds.max == Vec3(1));
+    CHECK(signed_volume(ball) == doctest::Approx(kPiD * 4 / 3).epsilon(0.01));
+}
+
+TEST_CASE("shapes: at a pole each triangle has its own vertex, half way between its columns") {
+    const MeshData ball = make_sphere({.segments = 8, .rings = 4});
+    const MeshData cone = make_cone({.segments = 8, .caps = false});
+    for (const MeshData* mesh : {&ball, &cone}) {
+        for (std::size_t t = 0; t < mesh->indices.size(); t += 3) {
+            float u[3];
+            float apex = -1;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 p = corner(*mesh, t + k);
+                u[k] = mesh->uvs[mesh->indices[t + k]].x;
+                apex = p.x == 0 && p.z == 0 ? u[k] : apex;
+            }
+            if (apex >= 0) {
+                const float low = std::min({u[0], u[1], u[2]});
+                const float high = std::max({u[0], u[1], u[2]});
+                CHECK(apex == doctest::Approx(0.5f * (low + high)));
+                CHECK(high - low == doctest::Approx(1.0f / 8));
+            }
+        }
+    }
+}
+
 TEST_CASE("shapes: an image stands upright and unmirrored on the front of a sphere") {
     // Seen from +z with +y up: u grows toward +x, v toward -y.
     const MeshData ball = make_sphere({.radius = 1.0f});

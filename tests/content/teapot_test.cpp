@@ -32,6 +32,30 @@ TEST_CASE("teapot: 32 patches, 28 without the bottom") {
     CHECK(teapot_patches(false).size() == 28);
 }
 
+TEST_CASE("teapot: the control points are those of the public data") {
+    // Moments of its 32 x 16 points with y up, spout along +x.
+    glm::dvec3 sum(0);
+    glm::dvec3 squares(0);
+    double mixed = 0;
+    for (const TeapotPatch& patch : teapot_patches(true)) {
+        for (const auto& row : patch.surface.p) {
+            for (const Vec3& point : row) {
+                const glm::dvec3 p = point;
+                sum += p;
+                squares += p * p;
+                mixed += p.x * p.y;
+            }
+        }
+    }
+    CHECK(sum.x == doctest::Approx(18.9).epsilon(1e-6));
+    CHECK(sum.y == doctest::Approx(883.275).epsilon(1e-6));
+    CHECK(std::abs(sum.z) < 1e-5);
+    CHECK(squares.x == doctest::Approx(1335.8293).epsilon(1e-6));
+    CHECK(squares.y == doctest::Approx(2062.7902).epsilon(1e-6));
+    CHECK(squares.z == doctest::Approx(420.9316).epsilon(1e-6));
+    CHECK(mixed == doctest::Approx(111.9469).epsilon(1e-6));
+}
+
 TEST_CASE("teapot: n divisions make 64 n^2 triangles") {
     for (const int n : {1, 4, 10}) {
         CHECK(
