@@ -32,8 +32,9 @@ TEST_CASE(
         INFO(std::string(kind.name));
         const MeshData mesh = make_default(kind);
         check_arrays(mesh);
-        const bool bends_sharply = std::string(kind.name) == "teapot";  // the lip of its spout
-        CHECK(worst_facing(mesh) > (bends_sharply ? 0.2f : 0.95f));
+        // The lip of the teapot's spout and the rocks of the terrain are sharper than their quads.
+        const std::string name = kind.name;
+        CHECK(worst_facing(mesh) > (name == "teapot" ? 0.2f : name == "terrain" ? 0.5f : 0.95f));
     }
 }
 
