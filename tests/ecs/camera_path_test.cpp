@@ -105,7 +105,25 @@ TEST_CASE("camera path: a loop repeats and goes through its seam without a step"
             glm::length(camera_pose(path, t).position - camera_pose(path, t + 16).position)
             < 1e-4f);
     }
+    CHECK(glm::length(velocity(path, 8, 0.002)) > 1.5f);
     CHECK(glm::length(velocity(path, 8, -0.002) - velocity(path, 8, 0.002)) < 0.03f);
+}
+
+TEST_CASE("camera path: along a curve it neither stops nor hurries between keys of even distance") {
+    std::vector<Vec3> corners;
+    std::vector<float> times;
+    for (int i = 0; i <= 5; ++i) {
+        const float angle = 2.0f * kPi * static_cast<float>(i) / 5.0f;
+        corners.emplace_back(3.0f * std::cos(angle), 0.0f, 3.0f * std::sin(angle));
+        times.push_back(2.0f * static_cast<float>(i));
+    }
+    CameraPath path = path_through(corners, times);
+    path.loop = true;
+    const float speed = glm::length(velocity(path, 1.0, 0.01));
+    CHECK(speed > 1.8f);  // a circle's would be 1.885
+    for (double t = 0; t < 10; t += 0.13) {
+        CHECK(glm::length(velocity(path, t, 0.01)) == doctest::Approx(speed).epsilon(0.01));
+    }
 }
 
 TEST_CASE("camera path: aims look where they should, with a level horizon") {
@@ -161,6 +179,15 @@ TEST_CASE("camera path: interpolated rotations are set upright without turning t
     path.keys[0].rotation = Quat(1, 0, 0, 0);
     path.keys[1].rotation = end;
     CHECK(std::abs(right(camera_pose(path, 1).rotation).y) < 1e-6f);
+    for (CameraKey& key : path.keys) {
+        key.roll = radians(30.0f);
+    }
+    CHECK(
+        right(camera_pose(path, 1).rotation).y
+        == doctest::Approx(0.5f * std::sqrt(1.0f - square(ahead(half).y))).epsilon(1e-3));
+    for (CameraKey& key : path.keys) {
+        key.roll = 0.0f;
+    }
     path.upright = false;
     CHECK(right(camera_pose(path, 1).rotation).y == doctest::Approx(-0.219275f).epsilon(1e-4));
 }
