@@ -25,8 +25,9 @@
 namespace limn {
 namespace {
 
-constexpr int kMostSteps = 4;            // a frame; beyond that time slows down
-constexpr double kLongestFrame = 0.25;   // [s] after a pause of the whole program
+constexpr int kMostSteps = 4;           // a frame; beyond that time slows down
+constexpr double kLongestFrame = 0.25;  // [s] after a pause of the whole program
+constexpr int kExrSamples = 16;
 constexpr double kShaderInterval = 0.5;  // [s] between looks at the shader files
 
 double seconds_between(
@@ -506,14 +507,7 @@ void Player::save_screenshot(const IVec2& size) {
     const std::string path = next_file(".png");
     const Status status = write_png(path, size.x, size.y, 3, read_window(size));
     device_->forget_state();
-    if (!status) {
-        log_error("{}", status.error().message);
-        hud_->toast(status.error().message, ToastKind::Bad);
-        return;
-    }
-    fmt::print("{}\n", path);
-    std::fflush(stdout);
-    hud_->toast("saved " + path, ToastKind::Good);
+    report_saved(path, status);
 }
 
 void Player::save_exr(const RenderView& view) {
@@ -522,8 +516,12 @@ void Player::save_exr(const RenderView& view) {
     for (const std::string_view name : aov_names()) {
         request.aovs.emplace_back(name);
     }
-    const FrameOutput frame = render_accumulated(*renderer_, stage_->world, view, 16, request);
-    const Status status = write_picture(path, frame, {{"limn.scene", stage_->scene.name}});
+    const FrameOutput frame =
+        render_accumulated(*renderer_, stage_->world, view, kExrSamples, request);
+    report_saved(path, write_picture(path, frame, {{"limn.scene", stage_->scene.name}}));
+}
+
+void Player::report_saved(const std::string& path, const Status& status) {
     if (!status) {
         log_error("{}", status.error().message);
         hud_->toast(status.error().message, ToastKind::Bad);

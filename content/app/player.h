@@ -65,6 +65,8 @@ class Player {
     void reload_shaders(bool all);
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
+    /// On stdout and as a message, or why not.
+    void report_saved(const std::string& path, const Status& status);
     [[nodiscard]] std::string next_file(const char* ending);
 
     PlayOptions options_;

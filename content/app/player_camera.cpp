@@ -15,6 +15,7 @@ namespace {
 
 constexpr float kMaxElevation = radians(88.8f);  // OrbitCamera::elevation's range
 constexpr float kEaseTime = 0.08f;               // [s] in which speed gets 63 % of the way
+constexpr float kStill = 1e-3f;                  // share of full speed that counts as none
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
 constexpr float kZoomStep = 0.88f;               // of one wheel step
 constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
@@ -56,6 +57,9 @@ void step_fly(PlayerCamera& camera, const Input& input, float dt) {
         std::clamp(camera.fly.speed * std::pow(kSpeedStep, input.zoom), 0.01f, 1000.0f);
     const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
     camera.glide += (wanted - camera.glide) * (1.0f - std::exp(-dt / kEaseTime));
+    if (input.move == Vec3(0) && glm::length(camera.glide) < kStill) {
+        camera.glide = {0, 0, 0};
+    }
     Input eased = input;
     eased.move = camera.glide;
     step_fly_camera(camera.place, camera.fly, eased, dt);

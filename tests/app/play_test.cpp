@@ -102,12 +102,13 @@ class VirtualDisplay {
             _exit(127);
         }
         close(ends[1]);
-        char text[16] = {};
-        const ssize_t length = read(ends[0], text, sizeof(text) - 1);
-        close(ends[0]);
-        if (length > 1) {
-            name_ = ":" + std::string(text, static_cast<std::size_t>(length - 1));
+        // The display's number and a line feed, which may come apart.
+        std::string number;
+        for (char digit = 0; read(ends[0], &digit, 1) == 1 && digit != '\n';) {
+            number += digit;
         }
+        close(ends[0]);
+        name_ = ":" + number;
     }
     VirtualDisplay(const VirtualDisplay&) = delete;
     VirtualDisplay& operator=(const VirtualDisplay&) = delete;
@@ -210,6 +211,7 @@ struct PlaySession {
             return !program->running()
                    || count_different(display.grab(), empty) > kWidth * kHeight / 2;
         }));
+        CAPTURE(program->error_text());
         REQUIRE(program->running());
     }
     ~PlaySession() { unsetenv("DISPLAY"); }
@@ -218,14 +220,16 @@ struct PlaySession {
     bool changes_from(const Pixels& before, int pixels) const {
         return wait_for([&] { return count_different(display.grab(), before) > pixels; }, 20.0);
     }
-    /// Waits until two looks a moment apart are the same, and returns the last.
+    /// Waits until six looks in a row are the same: a busy machine may take long for a picture.
     [[nodiscard]] Pixels wait_until_still() const {
-        Pixels last;
+        Pixels last = display.grab();
+        int same = 0;
         CHECK(wait_for([&] {
+            sleep_ms(250);
             Pixels now = display.grab();
-            sleep_ms(400);
-            last = display.grab();
-            return now == last;
+            same = now == last ? same + 1 : 0;
+            last = std::move(now);
+            return same >= 5;
         }));
         return last;
     }
