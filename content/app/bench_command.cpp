@@ -80,6 +80,9 @@ Status run_bench(const BenchOptions& options) {
     if (!headless) {
         return headless.error();
     }
+    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
+        return fits.error();
+    }
     BenchReport report{
         .scene = stage.scene.name,
         .size = options.size,

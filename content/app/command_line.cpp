@@ -6,6 +6,7 @@
 #include "content/app/hash_command.h"
 #include "content/app/info_command.h"
 #include "content/app/list_commands.h"
+#include "content/app/picture_file.h"
 #include "content/app/play_command.h"
 #include "content/app/render_command.h"
 #include "ecs/base/type_name.h"
@@ -90,6 +91,14 @@ CLI::Option* add_number(
                target,
                [min, max](const std::string& text) { return parse_number(text, min, max); })
         ->type_name("X");
+}
+
+Result<std::string> parse_png_path(const std::string& text) {
+    const Result<PictureKind> kind = picture_kind(text);
+    if (!kind || *kind != PictureKind::Png) {
+        return Error{fmt::format("found \"{}\", expected a name that ends in .png", text)};
+    }
+    return text;
 }
 
 CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
@@ -248,7 +257,7 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
     app->add_option("a", options.a, "first picture")->type_name("A")->required();
     app->add_option("b", options.b, "second picture, of the same size")->type_name("B")->required();
     app->add_flag("--json", options.json, "print JSON");
-    app->add_option("--diff", options.diff, "write a picture of the difference")
+    add_parsed(*app, "--diff", "write a picture of the difference", options.diff, parse_png_path)
         ->type_name("FILE.png");
     app->footer(
         "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"

@@ -23,11 +23,12 @@ Result<IVec2> parse_size(std::string_view text) {
     IVec2 size = {0, 0};
     if (cross == std::string_view::npos || !read_all(text.substr(0, cross), size.x)
         || !read_all(text.substr(cross + 1), size.y) || size.x < 1 || size.y < 1
-        || size.x > kMaxImageSide || size.y > kMaxImageSide) {
+        || size.x > kMaxImageSide || size.y > kMaxImageSide || size.x * size.y > kMaxImagePixels) {
         return fail(
-            "found \"{}\", expected WIDTHxHEIGHT such as 1280x720, each 1 to {}",
+            "found \"{}\", expected WIDTHxHEIGHT such as 1280x720, each 1 to {}, {} pixels at most",
             text,
-            kMaxImageSide);
+            kMaxImageSide,
+            kMaxImagePixels);
     }
     return size;
 }

@@ -26,10 +26,12 @@ struct Assignment {
     std::string value;  ///< JSON, or a bare word
 };
 
-inline constexpr int kMaxImageSide = 16384;  ///< pixels
+inline constexpr int kMaxImageSide = 16384;      ///< pixels
+inline constexpr int kMaxImagePixels = 1 << 26;  ///< 1 GiB of radiance
 inline constexpr int kMaxFrames = 1'000'000;
 
-/// "1280x720": width and height, each 1 .. kMaxImageSide.
+/// "1280x720": width and height, each 1 .. kMaxImageSide, together at most
+/// kMaxImagePixels.
 [[nodiscard]] Result<IVec2> parse_size(std::string_view text);
 
 /// "A:B" with 0 <= A <= B < kMaxFrames, or "A" for one frame.

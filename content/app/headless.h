@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "render/gpu/context.h"
 #include "render/gpu/device.h"
@@ -15,6 +16,9 @@ struct HeadlessRenderer {
     std::unique_ptr<gpu::Device> device;
     RendererPtr renderer;
 };
+
+/// Fails if the device cannot draw a picture of that size.
+[[nodiscard]] Status check_picture_size(const gpu::Device& device, const IVec2& size);
 
 /// Fails without OpenGL 4.5 or with a shader compiler's message.
 [[nodiscard]] Result<HeadlessRenderer> create_headless_renderer();

@@ -22,6 +22,8 @@ namespace {
 
 constexpr double kRowsLife = 0.5;  // [s] after which the tree is built anew
 
+constexpr ImGuiTreeNodeFlags kNoFields = ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_Bullet;
+
 /// Whether `text` contains `part`, capital letters or not.
 bool contains(std::string_view text, std::string_view part) {
     const auto same = [](char a, char b) {
@@ -239,7 +241,7 @@ void Inspector::draw_component(const Hud& hud, World& world, const ComponentInfo
     const ImGuiTreeNodeFlags flags =
         info.is_registered && editable ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
     if (info.is_tag || !editable) {
-        ImGui::CollapsingHeader(info.name.c_str(), &keep, flags | ImGuiTreeNodeFlags_Leaf);
+        ImGui::CollapsingHeader(info.name.c_str(), &keep, flags | kNoFields);
     } else if (ImGui::CollapsingHeader(info.name.c_str(), &keep, flags)) {
         Edit edit;
         edit.entity = selected_;
@@ -291,7 +293,7 @@ void Inspector::draw_resources(const Hud& hud, World& world) {
         const ComponentInfo& info = component_info(id);
         ImGui::PushID(static_cast<int>(id));
         if (!is_editable(info)) {
-            ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_Leaf);
+            ImGui::CollapsingHeader(info.name.c_str(), kNoFields);
         } else if (ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
             Edit edit;
             edit.kind = EditKind::Resource;

@@ -43,6 +43,9 @@ Status play_headless(const PlayOptions& options, bool no_display) {
     if (!headless) {
         return headless.error();
     }
+    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
+        return fits.error();
+    }
     fmt::print(
         "{}Rendering {} pictures along the camera path of {} on {}.\n",
         no_display ? "There is no display: no window is opened. " : "",

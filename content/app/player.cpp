@@ -118,6 +118,7 @@ Status Player::load(const std::string& scene) {
         // Across the scene in some ten seconds.
         camera_.fly.speed = std::clamp(0.2f * glm::length(half_extent(bounds)), 0.2f, 50.0f);
     }
+    paused_ = false;
     unsimulated_ = 0.0;
     shown_time_ = stage_time(*stage_);
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));

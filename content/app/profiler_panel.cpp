@@ -141,8 +141,13 @@ void ProfilerPanel::draw_graph(const Hud& hud) {
     }
     const float line = at.y + size.y - height_of(kGoodFrame);
     list->AddLine({at.x, line}, {at.x + size.x, line}, ImGui::GetColorU32(ImGuiCol_Separator));
-    list->AddText(
-        {at.x + 4, line - ImGui::GetTextLineHeight()}, ImGui::GetColorU32(kHudDim), "60/s");
+    const ImVec2 label = ImGui::CalcTextSize("60/s");
+    list->AddRectFilled(
+        {at.x, line - label.y},
+        {at.x + label.x + 8, line},
+        ImGui::GetColorU32(ImGuiCol_PopupBg),
+        3.0f);
+    list->AddText({at.x + 4, line - label.y}, ImGui::GetColorU32(kHudDim), "60/s");
     ImGui::Dummy(size);
 
     std::array<char, 96> text;

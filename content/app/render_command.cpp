@@ -126,6 +126,9 @@ Status run_render(const RenderOptions& options) {
     if (!headless) {
         return headless.error();
     }
+    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
+        return fits.error();
+    }
     if (!options.frames) {
         const double step = stage_step(stage);
         return render_picture(

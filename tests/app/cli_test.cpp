@@ -92,6 +92,7 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     check_fails(folder, {"hash", "gallery", "--frames", "two"}, 2, "two");
     check_fails(folder, {"hash", "gallery", "--frames", "2", "--threads", "0"}, 2, "--threads");
     check_fails(folder, {"compare", "a.png"}, 2);
+    check_fails(folder, {"compare", "a.png", "b.png", "--diff", "d.exr"}, 2, "d.exr");
     check_fails(folder, {"play", "--scale", "big"}, 2, "auto");
     check_fails(folder, {"play", "--headless-frames", "0"}, 2, "--headless-frames");
     check_fails(folder, {"info"}, 2, "file");

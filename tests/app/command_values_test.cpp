@@ -21,6 +21,7 @@ TEST_CASE("command_values: a size is two whole numbers of pixels") {
           "0x360",
           "-1x5",
           "640x99999",
+          "16384x16384",
           "99999999999x1",
           "6e2x360",
           "640X360"}) {
