@@ -262,6 +262,11 @@ TEST_CASE("bad level: what would grow without bound is refused before it does") 
                 large + R"(]}, "repeat": {"count": [1000, 1, 1]}}]})",
                 {.entities = {.max_values = 100'000}}),
             "copies of"));
+    std::string many = R"({"entities": [{"spin": {}})";
+    for (int i = 0; i < 1000; ++i) {
+        many += R"(, {"spin": {"axis": [0, 1, 0], "speed": 1}})";
+    }
+    CHECK(has(error_of(many + "]}", {.entities = {.max_values = 5'000}}), "copies of"));
     // Deeper than the stack is.
     std::string deep = R"({"prefabs": {"p0": {})";
     for (int i = 1; i < 5000; ++i) {
@@ -287,6 +292,13 @@ TEST_CASE("bad level: too many pixels or vertices are refused") {
     CHECK(
         has(load_level_assets(*level, "", {.max_pixels = 1000}).error().message,
             "found 12288 pixels, expected at most 1000"));
+    level = parse_level(
+        R"({"images": {"a": {"make": "wood", "size": 16}, "b": {"make": "wood", "size": 16}}})",
+        "t.level.json");
+    REQUIRE(level.ok());
+    CHECK(
+        has(load_level_assets(*level, "", {.max_pixels = 1000}).error().message,
+            "images.b: found 768 pixels, expected at most 232"));
     level = parse_level(R"({"meshes": {"a": {"make": "sphere"}}})", "t.level.json");
     REQUIRE(level.ok());
     CHECK(

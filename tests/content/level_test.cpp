@@ -111,6 +111,8 @@ TEST_CASE("level: a pattern gives a material all its maps, tiled") {
     CHECK_FALSE(assets.images[2].srgb);
     const Material& m = assets.materials[0];
     CHECK(m.base_color == Vec4(1));
+    CHECK(m.roughness == 1.0f);
+    CHECK(m.metalness == 1.0f);
     CHECK(m.normal_texture.image.index == 1);
     CHECK(m.metal_rough_texture.image.index == 2);
     CHECK(m.occlusion_texture.image.index == 2);
@@ -197,6 +199,16 @@ TEST_CASE("level: names mean the copy's own entity first, and may be used before
     CHECK(named<OrbitCamera>(world, "third").target == find_named(world, "second"));
 }
 
+TEST_CASE("level: a prefab inside a prefab knows the names around it") {
+    World world;
+    spawn_into(world, R"({
+        "prefabs": {"eye": {"orbit_camera": {"target": "head"}, "children": [{"name": "lid"}]},
+                    "body": {"children": [{"name": "head"}, {"name": "left eye", "prefab": "eye"}]}},
+        "entities": [{"name": "head"}, {"name": "one", "prefab": "body"}]})");
+    const Entity target = named<OrbitCamera>(world, "left eye").target;
+    CHECK(parent_of(world, target) == find_named(world, "one"));
+}
+
 TEST_CASE("level: a sway without a center swings about where its entity stands") {
     World world;
     spawn_into(world, R"({"entities": [
@@ -263,7 +275,9 @@ TEST_CASE("level: copies differ as asked: in between, picked, at random, and the
         CHECK(sway.phase.x <= 6.0f);
         phases.insert(sway.phase.x);
         const Transform& transform = named<Transform>(world, name);
-        CHECK(std::abs(transform.position.x - 2.0f * static_cast<float>(i - 2)) <= 0.5f);
+        const float moved = std::abs(transform.position.x - 2.0f * static_cast<float>(i - 2));
+        CHECK(moved <= 0.5f);
+        CHECK(moved > 0.0f);
         CHECK(sway.center == transform.position);
         CHECK(named<Sway>(again, name).phase == sway.phase);
         CHECK(named<Transform>(again, name).position == transform.position);
@@ -296,12 +310,47 @@ TEST_CASE("level: numbers by radius, angle and with times cover their range") {
             CHECK(light.intensity == doctest::Approx(expected));
             CHECK(light.radius >= 0.0f);
             CHECK(light.radius <= 1.0f);
-            CHECK(spin.speed < 1.0f);
+            const float turns = 4.0f * (t.position.x + 4.0f) / 8.0f;
+            CHECK(spin.speed == doctest::Approx(turns - std::floor(turns)));
             most = std::max(most, light.intensity);
             least = std::min(least, light.intensity);
         });
     CHECK(most == doctest::Approx(1.0f));
     CHECK(least == 0.0f);
+}
+
+TEST_CASE("level: noise blurs where one item of a pick ends and the next begins") {
+    const auto count_strays = [](const char* noise) {
+        World world;
+        spawn_into(
+            world,
+            std::string(R"({"entities": [{"point_light": {}, "repeat": {"count": [200, 1, 1],
+            "vary": {"point_light.intensity": {"by": "x", "pick": [1, 2], "noise": )")
+                + noise + "}}}}]}");
+        int strays = 0;
+        world.query<const Transform, const PointLight>().each(
+            [&](const Transform& t, const PointLight& light) {
+                strays += (t.position.x < 0) != (light.intensity == 1.0f) ? 1 : 0;
+            });
+        return strays;
+    };
+    CHECK(count_strays("0") == 0);
+    CHECK(count_strays("0.2") > 4);
+    CHECK(count_strays("0.2") < 40);
+}
+
+TEST_CASE("level: who uses a repeated prefab changes single keys of the repetition, or ends it") {
+    World world;
+    spawn_into(world, R"({
+        "prefabs": {"row": {"repeat": {"count": [3, 1, 1], "spacing": [2, 0, 0], "jitter": [0.1, 0, 0], "seed": 1}}},
+        "entities": [{"name": "a", "prefab": "row"}, {"name": "b", "prefab": "row", "repeat": {"seed": 2}},
+                     {"name": "c", "prefab": "row", "repeat": {"count": [2, 1, 1], "jitter": [0, 0, 0]}},
+                     {"name": "d", "prefab": "row", "repeat": null}]})");
+    CHECK(named<Transform>(world, "a[2]").position != named<Transform>(world, "b[2]").position);
+    CHECK(named<Transform>(world, "b[2]").position.x == doctest::Approx(2.0f).epsilon(0.1));
+    CHECK(named<Transform>(world, "c[1]").position == Vec3(1, 0, 0));
+    CHECK(named<Transform>(world, "d").position == Vec3(0));
+    CHECK(world.entity_count() == 3 + 3 + 2 + 1);
 }
 
 TEST_CASE("level: repeated entities keep their children, and repetitions multiply") {
@@ -349,7 +398,7 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
              "set_resources": {"exposure": {"ev": -1}},
              "impulse": {"lamp": {"transform": {"position": [0, -1, 0]}, "point_light": {"intensity": -3}}},
              "spawn": [{"prefab": "stone"}], "destroy": ["target"]},
-            {"at": 1, "every": 1}]})");
+            {"at": 1, "every": 1, "set": {"lamp": {"orbit_camera": {"target": "lamp"}}}}]})");
     const EventList& list = world.resource<EventList>();
     REQUIRE(list.events.size() == 2);
     const ScriptEvent& event = list.events[0];
@@ -368,6 +417,7 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
     }
     CHECK(event.actions[5].entity == find_named(world, "target"));
     CHECK(list.events[1].times > 1'000'000);  // without times: for ever
+    CHECK(list.events[1].actions[0].value.as<OrbitCamera>().target == find_named(world, "lamp"));
 }
 
 TEST_CASE("level: files are found below its own folder, and glTF files share their meshes") {
@@ -447,6 +497,7 @@ TEST_CASE("set: one field of an entity, a resource or a material changes") {
     CHECK(set_value(world, "eye.camera_path.keys.1.time", "4").ok());
     CHECK(set_value(world, "exposure.ev", " -2 ").ok());
     CHECK(set_value(world, "materials.gold.roughness", "0.125").ok());
+    CHECK(world.resource<Assets>().material_version == 2);  // so that the renderer sees it
     CHECK(set_value(world, "materials.v1.2 brass.roughness", "0.25").ok());
     const PointLight& light = named<PointLight>(world, "lamp");
     CHECK(light.intensity == 3.5f);
