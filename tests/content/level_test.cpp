@@ -534,9 +534,9 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
         {"materials.silver.roughness", "1"},
         {"materials.gold", "1"},
         {"exposure.ev", "1"}};
-    for (const auto& [path, value] : bad) {
-        CAPTURE(path);
-        const Status status = set_value(world, path, value);
+    for (const std::pair<const char*, const char*>& assignment : bad) {
+        CAPTURE(assignment.first);
+        const Status status = set_value(world, assignment.first, assignment.second);
         REQUIRE_FALSE(status.ok());
         CHECK(status.error().message.starts_with("--set "));
         CHECK(status.error().message.find('\n') == std::string::npos);
