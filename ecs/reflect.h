@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -319,30 +320,50 @@ void describe_fields(T& instance, std::vector<FieldInfo>& fields) {
     visit_fields(instance, DescribeVisitor{&instance, fields});
 }
 
-/// Whether every byte of a T is part of its value. The compiler refuses to read padding in a
-/// constant expression, which is how this finds it.
+#if defined(__clang__)
+/// The compiler refuses to read padding in a constant expression.
 template <typename T>
 consteval bool reads_all_bytes() {
-    const auto bytes = std::bit_cast<std::array<unsigned char, sizeof(T)>>(T{});
     unsigned sum = 0;
-    for (const unsigned char byte : bytes) {
+    for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof(T)>>(T{})) {
         sum += byte;
     }
     return sum < 0xffffffffu;
 }
 template <typename T>
-concept HasNoPadding = std::has_unique_object_representations_v<T> ||(
-    std::is_trivially_copyable_v<T>&& std::is_default_constructible_v<T>&& requires {
-        typename std::bool_constant<reads_all_bytes<T>()>;
-    });
+concept ReadsAllBytes = requires {
+    typename std::bool_constant<reads_all_bytes<T>()>;
+};
+#endif
+
+/// Whether every byte of a trivially copyable T is part of its value.
+template <typename T>
+bool has_no_padding() {
+#if defined(__clang__)
+    return ReadsAllBytes<T>;
+#else
+    alignas(T) unsigned char bytes[sizeof(T)];
+    std::memset(bytes, 0xff, sizeof(T));
+    __builtin_clear_padding(reinterpret_cast<T*>(bytes));
+    for (const unsigned char byte : bytes) {
+        if (byte != 0xff) {
+            return false;
+        }
+    }
+    return true;
+#endif
+}
 
 template <typename T>
-consteval ValueBytes value_bytes_of() {
+ValueBytes value_bytes_of() {
     if constexpr (std::is_empty_v<T>) {
         return ValueBytes::All;
-    } else if constexpr (std::is_trivially_copyable_v<T> && HasNoPadding<T>) {
-        return ValueBytes::All;
     } else {
+        if constexpr (std::is_trivially_copyable_v<T>) {
+            if (has_no_padding<T>()) {
+                return ValueBytes::All;
+            }
+        }
         return HasFields<T> ? ValueBytes::Fields : ValueBytes::Opaque;
     }
 }
