@@ -18,7 +18,11 @@ constexpr FeatureName kFeatureNames[] = {
     {kNormalMap, "NORMAL_MAP"},
     {kOcclusionMap, "OCCLUSION_MAP"},
     {kEmissionMap, "EMISSION_MAP"},
+    {kOcclusionShared, "OCCLUSION_SHARED"},
+    {kUvMap, "UV_MAP"},
     {kUvMaps, "UV_MAPS"},
+    {kSrgbBaseColor, "SRGB_BASE_COLOR"},
+    {kSrgbEmission, "SRGB_EMISSION"},
     {kAlphaMask, "ALPHA_MASK"},
     {kDoubleSided, "DOUBLE_SIDED"},
     {kVertexColor, "VERTEX_COLOR"},
@@ -64,17 +68,21 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
 
 std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
     std::vector<gpu::ShaderDefine> defines;
-    if (scene.lights.spots > 0) {
-        defines.push_back({"SPOT_LIGHTS"});
-    }
-    if (scene.materials->has_classic()) {
-        defines.push_back({"CLASSIC_MODELS"});
+    const std::uint32_t key = lighting_key(scene);
+    constexpr const char* kNames[] = {
+        "DIRECTIONAL_LIGHTS", "SPOT_LIGHTS", "SPOT_ANGLES", "CLASSIC_MODELS", "LINEAR_FADE"};
+    for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
+        if ((key >> i & 1) != 0) {
+            defines.push_back({kNames[i]});
+        }
     }
     return defines;
 }
 
 std::uint32_t lighting_key(const FrameScene& scene) {
-    return (scene.lights.spots > 0 ? 1u : 0u) | (scene.materials->has_classic() ? 2u : 0u);
+    return (scene.lights.directional > 0 ? 1u : 0u) | (scene.lights.spots > 0 ? 2u : 0u)
+           | (scene.lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
+           | (scene.lights.linear_fade ? 16u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

@@ -65,7 +65,7 @@ struct FrameScene {
 void bind_view(gpu::Device& device, const FrameScene& scene);
 void bind_lighting(gpu::Device& device, const FrameScene& scene);
 
-/// The definitions that lib/lighting.glsl wants for this scene: SPOT_LIGHTS, CLASSIC_MODELS.
+/// The definitions that lib/lighting.glsl and lib/reflector.glsl want for this scene.
 [[nodiscard]] std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene);
 /// A number that tells those apart.
 [[nodiscard]] std::uint32_t lighting_key(const FrameScene& scene);

@@ -4,9 +4,12 @@
 #include "ecs/world.h"
 #include "render/shaders/instance_gpu.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <tuple>
 
 namespace limn {
 namespace {
@@ -95,26 +98,29 @@ class InstanceCollector::KeyTable {
         keys_.clear();
         slots_.fill(kHidden);
     }
-    /// Counts one more of `key`; returns its place in the list.
-    std::uint16_t count(std::uint64_t key) {
-        if (!keys_.empty() && keys_[last_].key == key) {
-            ++keys_[last_].count;
-            return last_;
+    /// Counts one more of `key`, `distance` away; returns its place in the list.
+    std::uint16_t count(std::uint64_t key, float distance) {
+        if (keys_.empty() || keys_[last_].key != key) {
+            last_ = find(key);
         }
+        ++keys_[last_].count;
+        keys_[last_].distance = std::min(keys_[last_].distance, distance);
+        return last_;
+    }
+
+  private:
+    std::uint16_t find(std::uint64_t key) {
         std::size_t slot = (key * 0x9e3779b97f4a7c15ull) >> 53;
         while (slots_[slot] != kHidden && keys_[slots_[slot]].key != key) {
             slot = (slot + 1) & (slots_.size() - 1);
         }
         if (slots_[slot] == kHidden) {
             slots_[slot] = static_cast<std::uint16_t>(keys_.size());
-            keys_.push_back({key, 0, 0});
+            keys_.push_back({.key = key});
         }
-        last_ = slots_[slot];
-        ++keys_[last_].count;
-        return last_;
+        return slots_[slot];
     }
 
-  private:
     std::vector<KeyCount>& keys_;
     std::array<std::uint16_t, 2048> slots_;  // twice the rows of a chunk: always room
     std::uint16_t last_ = 0;
@@ -134,6 +140,9 @@ void InstanceCollector::collect(
         const WorldTransform,
         Optional<const PreviousWorldTransform>>();
     const Frustum frustum = make_frustum(view.clip_from_world);
+    const auto& camera = view.world_from_camera.row;
+    const Vec3 eye = {camera[0].w, camera[1].w, camera[2].w};
+    const Vec3 forward = {-camera[0].z, -camera[1].z, -camera[2].z};
     list.total = static_cast<int>(query.count());
     chunks_.resize(query.chunk_count());
 
@@ -153,8 +162,13 @@ void InstanceCollector::collect(
             if (visible[i] != 0) {
                 const std::uint32_t batch =
                     materials.batch_of(materials.record_of(surfaces[i].material));
-                work.local[i] = table.count(make_key(
-                    materials.batch(batch).blend, batch, mirrored[i] != 0, surfaces[i].mesh.index));
+                // To the far side of its box: floors and walls, which surround all, come last.
+                const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
+                const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
+                const float far_side = glm::dot(forward, c - eye) + glm::dot(glm::abs(forward), h);
+                const std::uint64_t key = make_key(
+                    materials.batch(batch).blend, batch, mirrored[i] != 0, surfaces[i].mesh.index);
+                work.local[i] = table.count(key, far_side);
             }
         }
     });
@@ -168,11 +182,6 @@ void InstanceCollector::collect(
 
     auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
     auto* moments_before = reinterpret_cast<Affine*>(list.before.data);
-    const Vec4 forward = -Vec4(
-        view.world_from_camera.row[0].z,
-        view.world_from_camera.row[1].z,
-        view.world_from_camera.row[2].z,
-        0);
     query.par_chunks([&](ChunkView chunk,
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
@@ -186,10 +195,11 @@ void InstanceCollector::collect(
             KeyCount& kind = work.keys[work.local[i]];
             const std::uint32_t place = kind.place++;
             const Affine a = rows.at(i, view.alpha);
+            const std::uint32_t record = materials.record_of(surfaces[i].material);
             instances[place] = {
                 {a.row[0], a.row[1], a.row[2]},
-                materials.record_of(surfaces[i].material),
-                is_mirrored(kind.key) ? 1u : 0u,
+                record,
+                (is_mirrored(kind.key) ? 1u : 0u) | materials.model_of(record) << 8,
                 chunk.entities()[i].index,
                 0};
             if (velocity) {
@@ -198,8 +208,7 @@ void InstanceCollector::collect(
             if (is_blended(kind.key)) {
                 const Vec3 middle =
                     transform_point(a, center(meshes.meshes()[mesh_of(kind.key)].bounds));
-                blended_[place - opaque_count_] = {
-                    glm::dot(forward, Vec4(middle, 0)), place, kind.key};
+                blended_[place - opaque_count_] = {glm::dot(forward, middle), place, kind.key};
             }
         }
     });
@@ -211,8 +220,9 @@ void InstanceCollector::collect(
     }
 }
 
-void InstanceCollector::place_keys(
-    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+/// Groups in the order they are drawn: near ones first, so that they hide the rest before it is
+/// shaded, but what is drawn with the same program and textures stays together; blended ones last.
+void InstanceCollector::group_keys() {
     entries_.clear();
     for (std::uint32_t c = 0; c < chunks_.size(); ++c) {
         for (std::uint32_t k = 0; k < chunks_[c].keys.size(); ++k) {
@@ -222,19 +232,47 @@ void InstanceCollector::place_keys(
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
         return a.key != b.key ? a.key < b.key : a.chunk < b.chunk;
     });
+    groups_.clear();
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const Entry& entry = entries_[i];
+        if (groups_.empty() || groups_.back().key != entry.key) {
+            groups_.push_back({.key = entry.key, .first_entry = i, .end_entry = i});
+        }
+        Group& group = groups_.back();
+        ++group.end_entry;
+        group.distance = std::min(group.distance, chunks_[entry.chunk].keys[entry.local].distance);
+    }
+    const auto run_of = [](const Group& group) { return group.key >> 32; };
+    for (std::size_t begin = 0; begin < groups_.size();) {
+        std::size_t end = begin;
+        float nearest = INFINITY;
+        for (; end < groups_.size() && run_of(groups_[end]) == run_of(groups_[begin]); ++end) {
+            nearest = std::min(nearest, groups_[end].distance);
+        }
+        for (; begin < end; ++begin) {
+            groups_[begin].run_distance = nearest;
+        }
+    }
+    std::sort(groups_.begin(), groups_.end(), [&](const Group& a, const Group& b) {
+        return std::tuple(is_blended(a.key), a.run_distance, run_of(a), a.distance, a.key)
+               < std::tuple(is_blended(b.key), b.run_distance, run_of(b), b.distance, b.key);
+    });
+}
 
+void InstanceCollector::place_keys(
+    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+    group_keys();
     std::uint32_t place = 0;
     opaque_count_ = 0;
-    for (std::size_t i = 0; i < entries_.size();) {
-        const std::uint64_t key = entries_[i].key;
+    for (const Group& group : groups_) {
         const std::uint32_t first = place;
-        for (; i < entries_.size() && entries_[i].key == key; ++i) {
+        for (std::size_t i = group.first_entry; i < group.end_entry; ++i) {
             KeyCount& kind = chunks_[entries_[i].chunk].keys[entries_[i].local];
             kind.place = place;
             place += kind.count;
         }
-        if (!is_blended(key)) {
-            add_command(key, first, place - first, meshes, materials, list.opaque);
+        if (!is_blended(group.key)) {
+            add_command(group.key, first, place - first, meshes, materials, list.opaque);
             opaque_count_ = place;
         }
     }

@@ -68,6 +68,7 @@ class InstanceCollector {
         std::uint64_t key = 0;
         std::uint32_t count = 0;
         std::uint32_t place = 0;
+        float distance = INFINITY;  ///< to the far side of the nearest [m]
     };
     struct ChunkWork {
         std::vector<KeyCount> keys;
@@ -78,6 +79,14 @@ class InstanceCollector {
         std::uint32_t chunk;
         std::uint32_t local;
     };
+    /// All instances of a key.
+    struct Group {
+        std::uint64_t key = 0;
+        std::size_t first_entry = 0;
+        std::size_t end_entry = 0;
+        float distance = INFINITY;      ///< of the nearest [m]
+        float run_distance = INFINITY;  ///< of the nearest of all that is drawn with it
+    };
     struct Blended {
         float distance;
         std::uint32_t instance;
@@ -85,6 +94,7 @@ class InstanceCollector {
     };
     class KeyTable;
 
+    void group_keys();
     void place_keys(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
     void order_blended(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
     void add_command(
@@ -97,6 +107,7 @@ class InstanceCollector {
 
     std::vector<ChunkWork> chunks_;
     std::vector<Entry> entries_;
+    std::vector<Group> groups_;
     std::vector<DrawCommand> commands_;
     std::vector<Blended> blended_;
     std::uint32_t opaque_count_ = 0;

@@ -178,8 +178,13 @@ void build_light_grid(const RenderView& view, const LightList& lights, LightGrid
     // Count, sum, fill: every list ends in the order of the lights.
     grid.cells.assign(
         static_cast<std::size_t>(grid.shape.columns) * grid.shape.rows * grid.shape.slices, {0, 0});
-    for (const LightReach& reach : lights.reach) {
-        builder.each_cell(reach, [&](int cell) { ++grid.cells[cell].y; });
+    grid.touched.clear();
+    for (std::size_t i = 0; i < lights.reach.size(); ++i) {
+        builder.each_cell(lights.reach[i], [&](int cell) {
+            ++grid.cells[cell].y;
+            grid.touched.push_back(
+                {static_cast<layout::uint>(cell), first + static_cast<layout::uint>(i)});
+        });
     }
     layout::uint total = 0;
     for (layout::uvec2& cell : grid.cells) {
@@ -188,11 +193,9 @@ void build_light_grid(const RenderView& view, const LightList& lights, LightGrid
         cell.y = 0;
     }
     grid.indices.resize(total);
-    for (std::size_t i = 0; i < lights.reach.size(); ++i) {
-        builder.each_cell(lights.reach[i], [&](int cell) {
-            layout::uvec2& list = grid.cells[cell];
-            grid.indices[list.x + list.y++] = first + static_cast<layout::uint>(i);
-        });
+    for (const layout::uvec2& found : grid.touched) {
+        layout::uvec2& list = grid.cells[found.x];
+        grid.indices[list.x + list.y++] = found.y;
     }
 }
 

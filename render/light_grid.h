@@ -24,7 +24,7 @@ struct LightGridShape {
     int tile = 32;    ///< side of a tile [px]
     int columns = 1;  ///< tiles across
     int rows = 1;     ///< tiles up
-    int slices = 16;  ///< in depth; slice = depth_scale log2(distance) + depth_bias, clamped
+    int slices = 32;  ///< in depth; slice = depth_scale log2(distance) + depth_bias, clamped
     float depth_scale = 1;
     float depth_bias = 0;
 };
@@ -34,6 +34,8 @@ struct LightGrid {
     std::vector<layout::uvec2>
         cells;  ///< begin, length; cell = (slice * rows + row) * columns + column
     std::vector<layout::uint> indices;  ///< into LightList::records
+    std::vector<layout::uvec2>
+        touched;  ///< cell and light as they were found; memory for the next frame
 };
 
 /// Slices that divide the distances from the near plane to the end of the farthest light.

@@ -130,6 +130,8 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     list.records.clear();
     list.reach.clear();
     list.sun_color = Vec3(0);
+    list.spot_angles = false;
+    list.linear_fade = false;
     const auto* frame = world.find_resource<FrameTime>();
     const double time =
         frame == nullptr ? 0.0 : frame->time - (1.0 - alpha) * static_cast<double>(frame->step);
@@ -151,6 +153,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
         world, time, alpha, [&](const PointLight& light, const Affine& a, float factor) {
             const layout::LightRecord record = make_record(light, position_of(a), factor);
             if (shines(record)) {
+                list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                 list.records.push_back(record);
                 list.reach.push_back({position_of(a), reach_radius(record)});
             }
@@ -162,6 +165,8 @@ void collect_lights(const World& world, float alpha, LightList& list) {
             const layout::LightRecord record =
                 make_record(light, position_of(a), axis_of(a), factor);
             if (shines(record)) {
+                list.linear_fade = list.linear_fade || record.polynomial.y != 0;
+                list.spot_angles = list.spot_angles || light.profile == SpotProfile::LinearAngle;
                 list.records.push_back(record);
                 list.reach.push_back(
                     {position_of(a),

@@ -9,8 +9,8 @@ namespace limn {
 namespace {
 
 /// Stored models of lib/gbuffer.glsl.
-float stored_model(ShadingModel model) {
-    return static_cast<float>(model) + 1.0f;
+std::uint8_t stored_model(ShadingModel model) {
+    return static_cast<std::uint8_t>(static_cast<int>(model) + 1);
 }
 
 const TextureSlot* slots_of(const Material& m, int i) {
@@ -23,9 +23,45 @@ const TextureSlot* slots_of(const Material& m, int i) {
     return slots[i];
 }
 
-bool plain_uv(const TextureSlot& slot) {
-    return slot.uv_set == 0 && slot.offset == Vec2(0) && slot.scale == Vec2(1)
-           && slot.rotation == 0;
+bool same_uv(const TextureSlot& a, const TextureSlot& b) {
+    return a.uv_set == b.uv_set && a.offset == b.offset && a.scale == b.scale
+           && a.rotation == b.rotation;
+}
+
+/// Whether one fetch serves occlusion, roughness and metalness, as most exporters have it.
+bool shares_occlusion(const Material& m) {
+    const TextureSlot& a = m.occlusion_texture;
+    const TextureSlot& b = m.metal_rough_texture;
+    return a.image.index != kNoAsset && a.image == b.image && a.wrap_u == b.wrap_u
+           && a.wrap_v == b.wrap_v && a.nearest == b.nearest && same_uv(a, b);
+}
+
+/// kUvMap, kUvMaps or 0.
+std::uint32_t uv_feature(const Material& m) {
+    const TextureSlot plain;
+    const TextureSlot* first = nullptr;
+    bool shared = true;
+    for (int i = 0; i < kMaterialTextures; ++i) {
+        const TextureSlot& slot = *slots_of(m, i);
+        if (slot.image.index != kNoAsset) {
+            first = first == nullptr ? &slot : first;
+            shared = shared && same_uv(slot, *first);
+        }
+    }
+    return !shared ? kUvMaps : first == nullptr || same_uv(*first, plain) ? 0u : kUvMap;
+}
+
+/// What slot `i` of a record holds: when all textures share their uv map, that of any which is
+/// there.
+const TextureSlot& uv_slot(const Material& m, int i) {
+    if (uv_feature(m) == kUvMap) {
+        for (int k = 0; k < kMaterialTextures; ++k) {
+            if (slots_of(m, k)->image.index != kNoAsset) {
+                return *slots_of(m, k);
+            }
+        }
+    }
+    return *slots_of(m, i);
 }
 
 layout::MaterialRecord make_record(const Material& m) {
@@ -34,9 +70,8 @@ layout::MaterialRecord make_record(const Material& m) {
     record.emission = Vec4(m.emission, m.normal_scale);
     record.factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff};
     record.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f));
-    record.model = {stored_model(m.shading), 0, 0, 0};
     for (int i = 0; i < kMaterialTextures; ++i) {
-        const TextureSlot& slot = *slots_of(m, i);
+        const TextureSlot& slot = uv_slot(m, i);
         // Counter-clockwise as the viewer of the Khronos Group has it; v runs down the image.
         const float c = std::cos(slot.rotation);
         const float s = std::sin(slot.rotation);
@@ -75,7 +110,10 @@ ImageFormat image_format(const ImageData& image) {
 
 MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
     : device_(device),
-      anisotropy_(std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
+      anisotropy_(
+          device.caps().software
+              ? 1.0f
+              : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
       magenta_("magenta", {.format = GL_RGBA8}), record_texture_("materials", GL_RGBA32F) {
     const std::uint8_t pixel[4] = {255, 0, 255, 255};
     magenta_.upload(std::span<const std::uint8_t>(pixel), GL_RGBA, GL_UNSIGNED_BYTE);
@@ -87,10 +125,11 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
         material_count_ = 0;
         material_version_ = 0;
     }
+    const bool more_images = images_.size() < assets.images.size();
     for (std::size_t i = images_.size(); i < assets.images.size(); ++i) {
         upload_image(assets.images[i]);
     }
-    if (!fresh && material_version_ == assets.material_version
+    if (!fresh && !more_images && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {
         return;
     }
@@ -98,6 +137,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     records_.clear();
     batches_.clear();
     batch_of_.clear();
+    models_.clear();
     sets_.clear();
     has_classic_ = false;
     add_material(Material{});
@@ -141,23 +181,46 @@ void MaterialPool::upload_image(const ImageData& image) {
     // The first row of the image is row 0 of the texture, where v = 0: as glTF has it.
     texture.upload<std::uint8_t>(std::span(image.pixels).first(needed), GL_RGBA, format.type);
     texture.generate_mipmaps();
-    images_.push_back(std::move(texture));
+    gpu::GlObject<gpu::ObjectKind::Texture> encoded;
+    if (device_.caps().software && format.format == GL_SRGB8_ALPHA8) {
+        GLuint id = 0;
+        glGenTextures(1, &id);
+        glTextureView(
+            id,
+            GL_TEXTURE_2D,
+            texture.id(),
+            GL_RGBA8,
+            0,
+            static_cast<GLuint>(texture.desc().levels),
+            0,
+            1);
+        encoded = gpu::GlObject<gpu::ObjectKind::Texture>(id, image.name);
+    }
+    images_.push_back({std::move(texture), std::move(encoded)});
+}
+
+bool MaterialPool::reads_encoded(ImageId image) const {
+    return image.index < images_.size() && static_cast<bool>(images_[image.index].encoded);
 }
 
 void MaterialPool::add_material(const Material& material) {
     SurfaceBatch batch;
     batch.blend = material.alpha_mode == AlphaMode::Blend;
     TextureSet set;
-    bool own_uvs = false;
     for (int i = 0; i < kMaterialTextures; ++i) {
         const TextureSlot& slot = *slots_of(material, i);
         if (slot.image.index != kNoAsset) {
             batch.features |= kBaseColorMap << i;
-            set[i] = {slot.image.index, sampler_of(slot)};
-            own_uvs = own_uvs || !plain_uv(slot);
+            set[i] = {slot.image.index, sampler_of(slot, i == 0 || !device_.caps().software)};
         }
     }
-    batch.features |= own_uvs ? kUvMaps : 0u;
+    if (shares_occlusion(material)) {
+        batch.features = (batch.features & ~kOcclusionMap) | kOcclusionShared;
+        set[3] = {};
+    }
+    batch.features |= uv_feature(material);
+    batch.features |= reads_encoded(material.base_color_texture.image) ? kSrgbBaseColor : 0u;
+    batch.features |= reads_encoded(material.emission_texture.image) ? kSrgbEmission : 0u;
     batch.features |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features |= material.double_sided ? kDoubleSided : 0u;
     batch.textures = texture_set(set);
@@ -172,19 +235,23 @@ void MaterialPool::add_material(const Material& material) {
         batches_.push_back(batch);
     }
     records_.push_back(make_record(material));
+    models_.push_back(stored_model(material.shading));
     has_classic_ = has_classic_ || material.shading == ShadingModel::Blinn
                    || material.shading == ShadingModel::Phong;
 }
 
-std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot) {
+std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {
     const std::uint32_t key = static_cast<std::uint32_t>(slot.wrap_u)
                               | static_cast<std::uint32_t>(slot.wrap_v) << 4
-                              | static_cast<std::uint32_t>(slot.nearest) << 8;
+                              | static_cast<std::uint32_t>(slot.nearest) << 8
+                              | static_cast<std::uint32_t>(trilinear) << 9;
     const auto found = std::find(sampler_keys_.begin(), sampler_keys_.end(), key);
     if (found == sampler_keys_.end()) {
         gpu::Sampler sampler(
             "material",
-            {.magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
+            {.minify = static_cast<GLenum>(
+                 trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST),
+             .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
              .wrap = wrap_mode(slot.wrap_u),
              .anisotropy = slot.nearest ? 1.0f : anisotropy_});
         glSamplerParameteri(
@@ -210,8 +277,14 @@ void MaterialPool::bind_textures(std::uint32_t textures) const {
     for (unsigned i = 0; i < set.size(); ++i) {
         const std::uint32_t image = set[i].image;
         if (image != kNoAsset) {
-            const bool there = image < images_.size() && images_[image];
-            device_.bind_texture(i, there ? images_[image] : magenta_, &samplers_[set[i].sampler]);
+            const gpu::Sampler* sampler = &samplers_[set[i].sampler];
+            if (image >= images_.size() || !images_[image].texture) {
+                device_.bind_texture(i, magenta_, sampler);
+            } else if (images_[image].encoded) {
+                device_.bind_texture_name(i, images_[image].encoded.id(), sampler);
+            } else {
+                device_.bind_texture(i, images_[image].texture, sampler);
+            }
         }
     }
 }

@@ -20,6 +20,10 @@ class Device;
 // that need the same program, the same fixed state and the same textures share a batch: instances
 // of a batch are drawn together, whatever their mesh and material. An image that is missing, broken
 // or too large is magenta.
+//
+// A software OpenGL pays for what a GPU gives away: there sRGB is decoded after filtering (a third
+// of the cost), only the base color is filtered between mip levels, and nothing anisotropically
+// (five times the cost).
 
 inline constexpr int kMaterialTextures =
     5;  ///< base color, metal-rough, normal, occlusion, emission
@@ -32,11 +36,15 @@ enum SurfaceFeature : std::uint32_t {
     kNormalMap = 1u << 2,
     kOcclusionMap = 1u << 3,
     kEmissionMap = 1u << 4,
-    kUvMaps = 1u << 5,
-    kAlphaMask = 1u << 6,
-    kDoubleSided = 1u << 7,
-    kVertexColor = 1u << 8,  // added by the mesh
-    kVelocity = 1u << 9,     // added by the frame
+    kOcclusionShared = 1u << 13,  // the occlusion is the red of the metal-rough texture
+    kUvMap = 1u << 5,
+    kUvMaps = 1u << 6,
+    kAlphaMask = 1u << 7,
+    kDoubleSided = 1u << 8,
+    kSrgbBaseColor = 1u << 9,
+    kSrgbEmission = 1u << 10,
+    kVertexColor = 1u << 11,  // added by the mesh
+    kVelocity = 1u << 12,     // added by the frame
 };
 
 /// Materials that are drawn alike.
@@ -59,6 +67,8 @@ class MaterialPool {
         return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
     }
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
+    /// kModel* of lib/gbuffer.glsl.
+    [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
     /// Whether a material is Blinn or Phong.
@@ -74,22 +84,29 @@ class MaterialPool {
         std::uint32_t sampler = 0;
         bool operator==(const BoundTexture&) const = default;
     };
+    /// On a software OpenGL sRGB images are read through a view that does not decode them.
+    struct Image {
+        gpu::Texture texture;
+        gpu::GlObject<gpu::ObjectKind::Texture> encoded;
+    };
     using TextureSet = std::array<BoundTexture, kMaterialTextures>;
 
     void upload_image(const ImageData& image);
     void add_material(const Material& material);
-    [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot);
+    [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
+    [[nodiscard]] bool reads_encoded(ImageId image) const;
     [[nodiscard]] std::uint32_t texture_set(const TextureSet& set);
 
     gpu::Device& device_;
     float anisotropy_;
     gpu::Texture magenta_;
-    std::vector<gpu::Texture> images_;
+    std::vector<Image> images_;
     std::vector<gpu::Sampler> samplers_;
     std::vector<std::uint32_t> sampler_keys_;
     std::vector<TextureSet> sets_;
     std::vector<SurfaceBatch> batches_;
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0 the default material, 1 the missing one
+    std::vector<std::uint8_t> models_;     ///< by record
     std::vector<layout::MaterialRecord> records_;
     gpu::Buffer record_buffer_;
     BufferTexture record_texture_;

@@ -112,7 +112,7 @@ class Renderer {
     BufferTexture light_cells_;
     gpu::Texture specular_albedo_;
     gpu::Texture accumulation_;
-    std::optional<AssetsIdentity> assets_;
+    std::uint64_t assets_ = 0;                // identity of those that were uploaded
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
 };
@@ -148,12 +148,12 @@ void Renderer::update_assets(const World& world) {
     static const Assets kNone;
     const auto* found = world.find_resource<Assets>();
     const Assets& assets = found != nullptr ? *found : kNone;
-    const bool fresh = !assets_ || *assets_ != assets.identity
+    const bool fresh = assets_ != assets.identity.value()
                        || meshes_.meshes().size() > assets.meshes.size()
                        || materials_.image_count() > assets.images.size();
     if (fresh) {
         meshes_.clear();
-        assets_.emplace(assets.identity);
+        assets_ = assets.identity.value();
     }
     meshes_.append(std::span(assets.meshes).subspan(meshes_.meshes().size()));
     materials_.update(assets, fresh);
@@ -190,6 +190,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         // A view of a buffer must not be empty.
         const gpu::RingSlice slice =
             ring_.allocate(std::max<std::size_t>(bytes.size(), 16), alignment);
+        std::memset(slice.data, 0, 16);
         std::memcpy(slice.data, bytes.data(), bytes.size());
         return slice;
     };

@@ -118,7 +118,8 @@ public:
         std::swap(value_, other.value_);
         return *this;
     }
-    bool operator==(const AssetsIdentity&) const = default;
+    /// Never 0; no two living values are equal.
+    [[nodiscard]] std::uint64_t value() const { return value_; }
 
 private:
     static std::uint64_t next() {

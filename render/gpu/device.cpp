@@ -226,14 +226,14 @@ void Device::bind_texture(unsigned unit, const Texture& texture, const Sampler* 
     }
 }
 
-void Device::bind_texture_name(unsigned unit, GLuint texture) {
+void Device::bind_texture_name(unsigned unit, GLuint texture, const Sampler* sampler) {
     LIMN_CHECK(unit < kUnits);
     forget_dead_objects();
     if (change(textures_[unit], texture)) {
         glBindTextureUnit(unit, texture);
     }
-    if (change(samplers_[unit], 0u)) {
-        glBindSampler(unit, 0);
+    if (change(samplers_[unit], sampler != nullptr ? sampler->id() : 0u)) {
+        glBindSampler(unit, samplers_[unit]);
     }
 }
 

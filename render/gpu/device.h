@@ -64,7 +64,7 @@ class Device {
     /// Without a sampler the texture's own filter and wrap are used.
     void bind_texture(unsigned unit, const Texture& texture, const Sampler* sampler = nullptr);
     /// An OpenGL texture that is not a Texture, such as a buffer texture; 0 for none.
-    void bind_texture_name(unsigned unit, GLuint texture);
+    void bind_texture_name(unsigned unit, GLuint texture, const Sampler* sampler = nullptr);
     /// One level as an image; `layer` < 0 binds all layers.
     void
     bind_image(unsigned unit, const Texture& texture, GLenum access, int level = 0, int layer = -1);

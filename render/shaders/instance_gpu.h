@@ -10,7 +10,7 @@ namespace limn::layout {
 struct InstanceRecord {
     vec4 row[3];   // world_from_mesh at the moment shown
     uint material;
-    uint flags;    // bit 0: mirrored, the determinant is negative
+    uint flags;    // bit 0: mirrored, the determinant is negative; from bit 8: kModel* of lib/gbuffer.glsl
     uint entity;   // its index, for picking
     uint unused;
 };

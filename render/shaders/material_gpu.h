@@ -11,9 +11,8 @@ struct MaterialRecord {
     vec4 emission;    // w: strength of the normal map
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
     vec4 specular;    // ks of Blinn and Phong; w: shininess
-    vec4 model;       // x: kModel* of lib/gbuffer.glsl
-    vec4 uv_map[10];  // of texture i: 2 i = first rows (u: xy, v: zw) of its 2x3 map, 2 i + 1 = offset xy, uv set z
-    vec4 unused;
+    vec4 uv_map[10];  // of texture i: 2 i = rows (u: xy, v: zw) of its 2x3 map, 2 i + 1 = offset xy, uv set z
+    vec4 unused[2];
 };
 
 const uint kMaterialTexels = 16u;

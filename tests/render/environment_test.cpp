@@ -1,6 +1,8 @@
+// clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
+#include "tests/render/scene_fixture.h"
+// clang-format on
 #include "bench/oracles/pbr_oracle.h"
 #include "render/environment_light.h"
-#include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
 

@@ -68,6 +68,19 @@ TEST_CASE("render frame: another world's assets are noticed, even where the old 
     }
 }
 
+TEST_CASE_FIXTURE(Scene, "render frame: assets that did not change are not uploaded again") {
+    ImageData image = {.name = "white", .width = 1, .height = 1, .pixels = {255, 255, 255, 255}};
+    Material material;
+    material.base_color_texture.image = add(image);
+    place(add(make_square()), add(material), at({0, 0, 0}));
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
+    static_cast<void>(draw(view));
+    static_cast<void>(draw(view));
+    const std::uint64_t deaths = gpu::object_deaths();
+    static_cast<void>(draw(view));
+    CHECK(gpu::object_deaths() == deaths);
+}
+
 TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is drawn") {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
     place(

@@ -1,6 +1,9 @@
 // All light that reaches a surface and what the surface sends on: every light of the pixel's cell and the
-// surroundings. Definition SPOT_LIGHTS: some light is a spot; it only spares a software OpenGL work that nobody
-// needs.
+// surroundings. Definitions, which only spare a software OpenGL work that nobody needs:
+//   DIRECTIONAL_LIGHTS  there are directional lights
+//   SPOT_LIGHTS         some light is a spot
+//   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
+//   LINEAR_FADE         some polynomial has a linear term
 
 #include "lib/light.glsl"
 #include "lib/reflection_map.glsl"
@@ -50,15 +53,24 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
     Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
 
+    // The loops ask after their body: a software OpenGL runs a body that is asked before once too often, masked.
+    // An empty list reads some light, or zeros, and counts it not at all.
+#ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
-    for (int i = 0; i < directional; ++i) {
-        add_light(sum, r, incoming_directional(i));
-    }
+    int n = 0;
+    do {
+        add_light(sum, r, incoming_directional(n));
+    } while (++n < directional);
+#endif
     uvec2 list = texelFetch(light_cells, light_cell(pixel, distance)).xy;
-    for (uint i = 0u; i < list.y; ++i) {
+    float counts = list.y > 0u ? 1.0 : 0.0;
+    uint i = 0u;
+    do {
         int index = int(texelFetch(light_indices, int(list.x + i)).x);
-        add_light(sum, r, incoming_local(index, position_ws, r.normal));
-    }
+        Incoming light = incoming_local(index, position_ws, r.normal);
+        light.irradiance *= counts;
+        add_light(sum, r, light);
+    } while (++i < list.y);
 
     vec3 mirrored = reflected_radiance(
         reflection_map, environment.reflection.xy, reflect(-r.to_camera, r.normal), s.roughness);

@@ -1,8 +1,12 @@
 // The surface of a material at a point: factors times textures. Which textures there are is fixed when the
 // program is compiled, since a software OpenGL pays for both sides of every branch:
 //   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP
+//   OCCLUSION_SHARED  the occlusion is the red of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
-//   UV_MAPS        a texture has its own uv set or transform; otherwise all use the first set as it is
+//   UV_MAP         all textures share a uv set or transform; otherwise they use the first set as it is
+//   UV_MAPS        each has its own
+//   SRGB_BASE_COLOR SRGB_EMISSION   the image is still encoded: filtered as it is, decoded here, because a software
+//                  OpenGL is slow at decoding every texel it filters; its mip levels were made in linear light
 //   DOUBLE_SIDED   seen from behind, the normal turns to the viewer
 
 #include "lib/gbuffer.glsl"
@@ -27,9 +31,12 @@ vec4 material_texel(int i) {
 
 // Texture coordinates of texture `slot` (base color 0 .. emission 4).
 vec2 slot_uv(int slot) {
-#ifdef UV_MAPS
-    vec4 rows = material_texel(5 + 2 * slot);
-    vec4 offset = material_texel(6 + 2 * slot);
+#if defined(UV_MAPS) || defined(UV_MAP)
+#ifdef UV_MAP
+    slot = 0;  // all are the same
+#endif
+    vec4 rows = material_texel(4 + 2 * slot);
+    vec4 offset = material_texel(5 + 2 * slot);
     vec2 set = offset.z > 0.5 ? uv.zw : uv.xy;
     return vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy;
 #else
@@ -37,10 +44,19 @@ vec2 slot_uv(int slot) {
 #endif
 }
 
+// sRGB to linear to 0.002, without a power.
+vec3 srgb_decode(vec3 c) {
+    return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878);
+}
+
 vec4 surface_color() {
     vec4 color = material_texel(0);
 #ifdef BASE_COLOR_MAP
-    color *= texture(base_color_map, slot_uv(0));
+    vec4 texel = texture(base_color_map, slot_uv(0));
+#ifdef SRGB_BASE_COLOR
+    texel.rgb = srgb_decode(texel.rgb);
+#endif
+    color *= texel;
 #endif
 #ifdef VERTEX_COLOR
     color *= vertex_color;
@@ -90,17 +106,24 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.roughness = factors.y;
     s.occlusion = 1.0;
     s.material = material_and_flags.x;
-    s.model = uint(material_texel(4).x);
+    s.model = material_and_flags.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    vec2 rough_metal = texture(metal_rough_map, slot_uv(1)).gb;
-    s.roughness *= rough_metal.x;
-    s.metalness *= rough_metal.y;
+    vec3 texel = texture(metal_rough_map, slot_uv(1)).rgb;
+    s.roughness *= texel.g;
+    s.metalness *= texel.b;
+#ifdef OCCLUSION_SHARED
+    s.occlusion = 1.0 + factors.z * (texel.r - 1.0);
+#endif
 #endif
 #ifdef OCCLUSION_MAP
     s.occlusion = 1.0 + factors.z * (texture(occlusion_map, slot_uv(3)).r - 1.0);
 #endif
 #ifdef EMISSION_MAP
-    s.emission *= texture(emission_map, slot_uv(4)).rgb;
+    vec3 glow = texture(emission_map, slot_uv(4)).rgb;
+#ifdef SRGB_EMISSION
+    glow = srgb_decode(glow);
+#endif
+    s.emission *= glow;
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
     if (s.model == kModelUnlit) {

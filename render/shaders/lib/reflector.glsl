@@ -78,10 +78,8 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float lobe = ggx_lobe(n_l, r.n_v, h.x, r.alpha2);
     float p = schlick_weight(h.y);
 #ifdef CLASSIC_MODELS
-    float n_v = dot(r.normal, r.to_camera);
-    vec2 true_h = half_cosines(n_l, n_v, l_v);
-    float r_v = 2.0 * n_l * n_v - l_v;
-    float classic = lit(n_l, r.classic > 1.5 ? r_v : true_h.x, r.shininess).z / kPi;
+    float r_v = 2.0 * n_l * r.n_v - l_v;
+    float classic = lit(n_l, r.classic > 1.5 ? r_v : h.x, r.shininess).z / kPi;
     lobe = r.classic > 0.5 ? classic : lobe;
     p = r.classic > 0.5 ? 0.0 : p;
 #endif
