@@ -64,8 +64,9 @@ Entity add_framing_camera(World& world, const Bounds& bounds) {
         Name{"framing camera"}, frame_bounds(bounds, camera.fov_y, kFramingAspect), camera);
 }
 
-/// Three lights as a photographer sets them, seen from the camera: a warm key from the upper left,
-/// a weak cool fill from the right, a rim from behind that parts the model from the dark.
+/// Three lights as a photographer sets them, seen from the camera: a warm key from the upper right,
+/// where the Studio has its large soft box, a weak cool fill from the left, a rim from behind that
+/// parts the model from the dark.
 void add_light_rig(World& world, const Quat& camera) {
     struct RigLight {
         const char* name;
@@ -74,9 +75,9 @@ void add_light_rig(World& world, const Quat& camera) {
         float illuminance;
     };
     constexpr RigLight kRig[] = {
-        {"key light", {-0.7f, 0.8f, 0.8f}, {1.0f, 0.93f, 0.84f}, 2.6f},
-        {"fill light", {0.9f, 0.1f, 0.7f}, {0.75f, 0.86f, 1.0f}, 0.5f},
-        {"rim light", {0.6f, 0.7f, -0.9f}, {0.9f, 0.95f, 1.0f}, 2.0f}};
+        {"key light", {0.6f, 0.7f, 0.7f}, {1.0f, 0.94f, 0.86f}, 1.9f},
+        {"fill light", {-0.9f, 0.1f, 0.6f}, {0.75f, 0.86f, 1.0f}, 0.25f},
+        {"rim light", {-0.7f, 0.55f, -0.75f}, {0.9f, 0.95f, 1.0f}, 1.6f}};
     for (const RigLight& light : kRig) {
         Transform transform;
         transform.rotation = look_along(camera * -light.from);
