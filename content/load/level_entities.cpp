@@ -31,7 +31,8 @@ const JsonValue* find_in_layers(const std::vector<const JsonValue*>& layers, std
     return nullptr;
 }
 
-/// "repeat" of all layers: later ones replace single keys, as with components, or all of it by null.
+/// "repeat" of all layers: later ones replace single keys, as with components, or all of it by
+/// null.
 JsonValue merged_repeat(const std::vector<const JsonValue*>& layers) {
     JsonValue merged;
     for (const JsonValue* const layer : layers) {
