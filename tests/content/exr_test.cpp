@@ -228,7 +228,9 @@ TEST_CASE("exr: broken files are errors of one line") {
         {"tiled OpenEXR file, which is unsupported", tiled},
         {"0 bytes", {}},
     };
-    for (const auto& [expected, bytes] : cases) {
+    for (const auto& tried : cases) {  // clang 14 captures no structured bindings
+        const char* const expected = tried.first;
+        const std::vector<std::byte>& bytes = tried.second;
         CAPTURE(expected);
         const Result<ExrImage> image = decode_exr(bytes, "a.exr");
         REQUIRE_FALSE(image.ok());

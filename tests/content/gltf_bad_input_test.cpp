@@ -386,7 +386,9 @@ TEST_CASE("gltf: a file may name only files under its own folder") {
         {"data:application/octet-stream,abc", "in base64"},
         {"data:application/octet-stream;base64,AAAA", "expected at most the 3 bytes"},
     };
-    for (const auto& [uri, expected] : cases) {
+    for (const auto& tried : cases) {  // clang 14 captures no structured bindings
+        const std::string& uri = tried.first;
+        const std::string& expected = tried.second;
         CAPTURE(uri);
         const std::string plain = expected == "\\\"..\\\"" ? "found \"..\" in" : expected;
         check_refused(load_gltf(write_gltf(folder, uri)), plain);
