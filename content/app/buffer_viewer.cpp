@@ -1,6 +1,6 @@
 #include "content/app/buffer_viewer.h"
 
-#include "content/app/hud.h"
+#include "content/app/hud_style.h"
 #include "render/gpu/device.h"
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/readback.h"
@@ -183,30 +183,30 @@ void BufferViewer::fit_range(const gpu::Texture& texture) {
     }
 }
 
-void BufferViewer::draw(const Hud& hud, const FrameGraph& graph) {
+void BufferViewer::draw(const HudStyle& style, const FrameGraph& graph) {
     if (!open) {
         return;
     }
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float width = std::min(0.56f * display.x, 900.0f * hud.scale());
-    const float height = std::min(0.52f * display.y, 500.0f * hud.scale());
+    const float width = std::min(0.56f * display.x, 900.0f * style.scale);
+    const float height = std::min(0.52f * display.y, 500.0f * style.scale);
     ImGui::SetNextWindowSize({width, height}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowPos(
-        {0.5f * display.x, display.y - 14.0f * hud.scale()}, ImGuiCond_FirstUseEver, {0.5f, 1.0f});
+        {0.5f * display.x, display.y - 14.0f * style.scale}, ImGuiCond_FirstUseEver, {0.5f, 1.0f});
     if (ImGui::Begin("Buffers", &open, ImGuiWindowFlags_NoCollapse)) {
-        ImGui::BeginChild("##names", {200.0f * hud.scale(), 0});
-        draw_list(hud, graph);
+        ImGui::BeginChild("##names", {200.0f * style.scale, 0});
+        draw_list(style, graph);
         ImGui::EndChild();
         ImGui::SameLine();
         ImGui::BeginChild("##picture");
-        draw_mapping(hud);
-        draw_picture(hud);
+        draw_mapping(style);
+        draw_picture(style);
         ImGui::EndChild();
     }
     ImGui::End();
 }
 
-void BufferViewer::draw_list(const Hud& hud, const FrameGraph& graph) {
+void BufferViewer::draw_list(const HudStyle& style, const FrameGraph& graph) {
     std::array<char, 128> label;
     const auto entry = [&](std::string_view name) {
         *fmt::format_to_n(label.data(), label.size() - 1, "{}", name).out = '\0';
@@ -215,14 +215,14 @@ void BufferViewer::draw_list(const Hud& hud, const FrameGraph& graph) {
         }
     };
     ImGui::TextColored(kHudDim, "Surfaces");
-    ImGui::PushFont(hud.fonts().numbers);
+    ImGui::PushFont(style.numbers);
     for (const std::string_view name : aov_names()) {
         entry(name);
     }
     ImGui::PopFont();
     ImGui::Spacing();
     ImGui::TextColored(kHudDim, "Frame graph");
-    ImGui::PushFont(hud.fonts().numbers);
+    ImGui::PushFont(style.numbers);
     for (const std::string_view name : graph.texture_names()) {
         if (!name.starts_with("aov")) {
             entry(name);
@@ -231,16 +231,16 @@ void BufferViewer::draw_list(const Hud& hud, const FrameGraph& graph) {
     ImGui::PopFont();
 }
 
-void BufferViewer::draw_mapping(const Hud& hud) {
+void BufferViewer::draw_mapping(const HudStyle& style) {
     for (int channel = 0; channel <= kAllChannels; ++channel) {
         if (channel > 0) {
             ImGui::SameLine();
         }
         ImGui::RadioButton(kChannelNames[channel], &channel_, channel);
     }
-    ImGui::SameLine(0, 16 * hud.scale());
+    ImGui::SameLine(0, 16 * style.scale);
     ImGui::Checkbox("linear light", &srgb_);
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 64 * hud.scale());
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 64 * style.scale);
     const float speed = std::max(std::abs(range_.y - range_.x) * 0.005f, 1e-6f);
     ImGui::DragFloatRange2(
         "##range", &range_.x, &range_.y, speed, 0, 0, "black %.4g", "white %.4g");
@@ -251,7 +251,7 @@ void BufferViewer::draw_mapping(const Hud& hud) {
     fit_wanted_ = ImGui::Button("Fit", {-1, 0}) || fit_wanted_;
 }
 
-void BufferViewer::draw_picture(const Hud& hud) {
+void BufferViewer::draw_picture(const HudStyle& style) {
     if (source_ == nullptr) {
         ImGui::TextColored(kHudDim, "%s", cannot_);
         return;
@@ -274,7 +274,7 @@ void BufferViewer::draw_picture(const Hud& hud) {
     const int y = static_cast<int>((mouse.y - at.y) / size.y * static_cast<float>(view_.height()));
     const bool inside =
         ImGui::IsItemHovered() && x >= 0 && y >= 0 && x < view_.width() && y < view_.height();
-    ImGui::PushFont(hud.fonts().numbers);
+    ImGui::PushFont(style.numbers);
     if (inside) {
         const Vec4 texel = read_texel(*source_, x, view_.height() - 1 - y);
         ImGui::TextColored(

@@ -16,7 +16,7 @@ namespace gpu {
 class Device;
 }
 class FrameGraph;
-class Hud;
+struct HudStyle;
 struct FrameOutput;
 struct FrameRequest;
 
@@ -34,7 +34,7 @@ class BufferViewer {
     /// After render_frame: draws the chosen texture into the viewer's own.
     void after_frame(gpu::Device& device, const FrameGraph& graph, const FrameOutput& frame);
     /// The panel.
-    void draw(const Hud& hud, const FrameGraph& graph);
+    void draw(const HudStyle& style, const FrameGraph& graph);
 
     /// Shows the texture of that name.
     void choose(std::string name);
@@ -44,9 +44,9 @@ class BufferViewer {
   private:
     explicit BufferViewer(gpu::Pipeline pipeline) : pipeline_(pipeline) {}
     void fit_range(const gpu::Texture& texture);
-    void draw_list(const Hud& hud, const FrameGraph& graph);
-    void draw_mapping(const Hud& hud);
-    void draw_picture(const Hud& hud);
+    void draw_list(const HudStyle& style, const FrameGraph& graph);
+    void draw_mapping(const HudStyle& style);
+    void draw_picture(const HudStyle& style);
 
     gpu::Pipeline pipeline_;
     gpu::Texture view_;

@@ -1,6 +1,6 @@
 #include "content/app/field_widgets.h"
 
-#include "content/app/hud.h"
+#include "content/app/hud_style.h"
 #include "content/load/component_json.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
@@ -28,7 +28,7 @@ constexpr float kDegrees = 57.29577951f;   // of a radian
 
 /// Everything the widgets of one component need to know, and what they report.
 struct Context {
-    const Hud& hud;
+    const HudStyle& style;
     const World& world;
     FieldChange change;
 };
@@ -276,11 +276,11 @@ void show_entity(Context& context, const void* element) {
     }
 }
 
-void show_matrix(const Hud& hud, const FieldInfo& field, const void* element) {
+void show_matrix(const HudStyle& style, const FieldInfo& field, const void* element) {
     const bool rows = field.type == FieldType::Affine;
     const int height = field.type == FieldType::Mat4 ? 4 : 3;
     const int width = rows || field.type == FieldType::Mat4 ? 4 : 3;
-    ImGui::PushFont(hud.fonts().numbers);
+    ImGui::PushFont(style.numbers);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const double value = get_number(field, element, rows ? y * width + x : x * height + y);
@@ -331,7 +331,7 @@ bool edit_element(Context& context, const FieldInfo& field, void* element) {
     case FieldType::Mat3:
     case FieldType::Mat4:
     case FieldType::Affine:
-        show_matrix(context.hud, field, element);
+        show_matrix(context.style, field, element);
         return false;
     case FieldType::Struct:
         break;
@@ -445,8 +445,8 @@ void edit_field_rows(Context& context, const std::vector<FieldInfo>& fields, voi
 }  // namespace
 
 FieldChange
-edit_fields(const Hud& hud, const World& world, const ComponentInfo& info, void* object) {
-    Context context{.hud = hud, .world = world, .change = {}};
+edit_fields(const HudStyle& style, const World& world, const ComponentInfo& info, void* object) {
+    Context context{.style = style, .world = world, .change = {}};
     edit_field_rows(context, info.fields, object);
     return context.change;
 }

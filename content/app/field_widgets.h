@@ -8,7 +8,7 @@
 namespace limn {
 
 class World;
-class Hud;
+struct HudStyle;
 
 // ImGui widgets for the fields of any component, from its reflection: sliders where a range is
 // known, drags where it is not, degrees for radians, sRGB color pickers for linear colors, combos
@@ -24,7 +24,7 @@ struct FieldChange {
 /// Draws the fields of `object` as rows of name and widget, and edits it in place. `world` gives
 /// names to entities and assets.
 FieldChange
-edit_fields(const Hud& hud, const World& world, const ComponentInfo& info, void* object);
+edit_fields(const HudStyle& style, const World& world, const ComponentInfo& info, void* object);
 
 /// Its name, or what it shows or does with its number: "teapot 12", "point light 3", "entity 7".
 [[nodiscard]] std::string entity_label(const World& world, Entity entity);

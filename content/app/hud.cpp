@@ -55,8 +55,8 @@ constexpr std::array kKeys = {
 };
 
 /// Text in the numbers' face.
-void numbers_text(const HudFonts& fonts, const ImVec4& color, const char* text) {
-    ImGui::PushFont(fonts.numbers);
+void numbers_text(const HudStyle& style, const ImVec4& color, const char* text) {
+    ImGui::PushFont(style.numbers);
     ImGui::TextColored(color, "%s", text);
     ImGui::PopFont();
 }
@@ -100,8 +100,8 @@ Hud::Hud(Window& window) : window_(window) {
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     // Readable on a fine display and from across the room on a large one.
     const float height = static_cast<float>(window.framebuffer_size().y);
-    scale_ = std::max(window.content_scale(), std::clamp(height / 900.0f, 1.0f, 2.5f));
-    fonts_ = apply_hud_style(scale_);
+    const float scale = std::max(window.content_scale(), std::clamp(height / 900.0f, 1.0f, 2.5f));
+    style_ = apply_hud_style(scale);
     ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
     ImGui_ImplOpenGL3_Init("#version 450");
 }
@@ -157,26 +157,26 @@ void Hud::draw_status(const HudStatus& status) {
         *end.out = '\0';
         return line.data();
     };
-    ImGui::SetNextWindowPos({kMargin * scale_, kMargin * scale_});
+    ImGui::SetNextWindowPos({kMargin * style_.scale, kMargin * style_.scale});
     ImGui::SetNextWindowBgAlpha(0.62f);
     if (ImGui::Begin("##status", nullptr, kOverlay)) {
-        ImGui::PushFont(fonts_.title);
+        ImGui::PushFont(style_.title);
         ImGui::TextUnformatted(status.level);
         ImGui::PopFont();
-        ImGui::SameLine(0, 12 * scale_);
+        ImGui::SameLine(0, 12 * style_.scale);
         ImGui::AlignTextToFramePadding();
         ImGui::TextColored(kHudDim, "%s", status.camera);
         if (status.paused) {
-            ImGui::SameLine(0, 12 * scale_);
+            ImGui::SameLine(0, 12 * style_.scale);
             ImGui::TextColored(kHudAccent, "paused");
         }
         const double rate = status.frame_ms > 0.0 ? 1000.0 / status.frame_ms : 0.0;
         numbers_text(
-            fonts_,
+            style_,
             kHudText,
             format("{:.1f} fps   {:.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
         numbers_text(
-            fonts_,
+            style_,
             kHudDim,
             status.render_size == status.window_size
                 ? format("{} x {}", status.window_size.x, status.window_size.y)
@@ -193,19 +193,19 @@ void Hud::draw_status(const HudStatus& status) {
         if (!help_open) {
             ImGui::TextColored(kHudDim, "F1 keys");
         }
-        status_bottom_ = ImGui::GetWindowPos().y + ImGui::GetWindowHeight();
+        style_.panel_top = ImGui::GetWindowPos().y + ImGui::GetWindowHeight() + 8 * style_.scale;
     }
     ImGui::End();
     if (status.error[0] != '\0') {
         const ImVec2 display = ImGui::GetIO().DisplaySize;
         ImGui::SetNextWindowPos(
-            {0.5f * display.x, kMargin * scale_}, ImGuiCond_Always, {0.5f, 0.0f});
+            {0.5f * display.x, kMargin * style_.scale}, ImGuiCond_Always, {0.5f, 0.0f});
         ImGui::SetNextWindowBgAlpha(0.92f);
         ImGui::PushStyleColor(ImGuiCol_Border, kHudBad);
         if (ImGui::Begin("##error", nullptr, kOverlay)) {
-            ImGui::PushTextWrapPos(std::min(0.6f * display.x, 760.0f * scale_));
+            ImGui::PushTextWrapPos(std::min(0.6f * display.x, 760.0f * style_.scale));
             ImGui::TextColored(kHudBad, "A shader does not compile; the last good one is shown.");
-            ImGui::PushFont(fonts_.numbers);
+            ImGui::PushFont(style_.numbers);
             ImGui::TextUnformatted(status.error);
             ImGui::PopFont();
             ImGui::PopTextWrapPos();
@@ -215,19 +215,34 @@ void Hud::draw_status(const HudStatus& status) {
     }
 }
 
+void Hud::draw_loading(const std::string& what) {
+    begin_frame(0.0f);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
+    if (ImGui::Begin("##loading", nullptr, kOverlay)) {
+        ImGui::TextColored(kHudDim, "loading");
+        ImGui::SameLine();
+        ImGui::PushFont(style_.title);
+        ImGui::TextUnformatted(what.c_str());
+        ImGui::PopFont();
+    }
+    ImGui::End();
+    end_frame();
+}
+
 void Hud::draw_help() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowBgAlpha(0.94f);
     if (ImGui::Begin("##help", nullptr, kOverlay)) {
-        const float key_width = 104.0f * scale_;
+        const float key_width = 104.0f * style_.scale;
         bool first = true;
         for (const KeyHelp& entry : kKeys) {
             if (entry.key == nullptr) {
                 if (!first) {
-                    ImGui::Dummy({0, 3 * scale_});
+                    ImGui::Dummy({0, 3 * style_.scale});
                 }
-                ImGui::PushFont(fonts_.title);
+                ImGui::PushFont(style_.title);
                 ImGui::TextUnformatted(entry.text);
                 ImGui::PopFont();
             } else {
@@ -243,7 +258,7 @@ void Hud::draw_help() {
 
 void Hud::draw_toasts() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    float bottom = display.y - kMargin * scale_;
+    float bottom = display.y - kMargin * style_.scale;
     for (std::size_t i = toasts_.size(); i-- > 0;) {
         const Toast& toast = toasts_[i];
         const float left = kToastLife - toast.age;
@@ -255,7 +270,7 @@ void Hud::draw_toasts() {
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::max(alpha, 0.01f));
         if (ImGui::Begin(name.data(), nullptr, kOverlay)) {
             ImGui::TextColored(toast_color(toast.kind), "%s", toast.text.c_str());
-            bottom -= ImGui::GetWindowHeight() + 6 * scale_;
+            bottom -= ImGui::GetWindowHeight() + 6 * style_.scale;
         }
         ImGui::End();
         ImGui::PopStyleVar();

@@ -41,6 +41,8 @@ class Hud {
     /// `dt`: real time since the last frame [s].
     void begin_frame(float dt);
     void draw_status(const HudStatus& status);
+    /// A whole frame that says what is being loaded.
+    void draw_loading(const std::string& what);
     /// Draws everything since begin_frame into the window's framebuffer.
     void end_frame();
 
@@ -51,12 +53,7 @@ class Hud {
     [[nodiscard]] bool wants_mouse() const;
     [[nodiscard]] bool wants_keyboard() const;
 
-    [[nodiscard]] const HudFonts& fonts() const { return fonts_; }
-    /// Pixels a unit of the layout.
-    [[nodiscard]] float scale() const { return scale_; }
-
-    /// Where the status line ends: panels below it begin there [pixels].
-    [[nodiscard]] float status_bottom() const { return status_bottom_; }
+    [[nodiscard]] const HudStyle& style() const { return style_; }
 
     bool help_open = false;  ///< F1
     bool status_shown = true;
@@ -72,9 +69,7 @@ class Hud {
     void draw_toasts();
 
     Window& window_;
-    HudFonts fonts_;
-    float scale_ = 1.0f;
-    float status_bottom_ = 0.0f;
+    HudStyle style_;
     std::vector<Toast> toasts_;
 };
 

@@ -84,7 +84,7 @@ void set_colors(ImGuiStyle& style) {
 
 }  // namespace
 
-HudFonts apply_hud_style(float scale) {
+HudStyle apply_hud_style(float scale) {
     ImGuiStyle style;
     ImGui::StyleColorsDark(&style);
     set_colors(style);
@@ -115,11 +115,11 @@ HudFonts apply_hud_style(float scale) {
     const auto pixels = [scale](float size) {
         return static_cast<float>(static_cast<int>(size * scale + 0.5f));
     };
-    HudFonts fonts;
-    fonts.text = load_font("DejaVuSans.ttf", pixels(14));
-    fonts.numbers = load_font("DejaVuSansMono.ttf", pixels(13));
-    fonts.title = load_font("DejaVuSans-Bold.ttf", pixels(16));
-    return fonts;
+    HudStyle hud{.scale = scale};
+    hud.text = load_font("DejaVuSans.ttf", pixels(14));
+    hud.numbers = load_font("DejaVuSansMono.ttf", pixels(13));
+    hud.title = load_font("DejaVuSans-Bold.ttf", pixels(16));
+    return hud;
 }
 
 }  // namespace limn

@@ -13,14 +13,17 @@ inline const ImVec4 kHudDim = {0.60f, 0.63f, 0.69f, 1.0f};
 inline const ImVec4 kHudGood = {0.50f, 0.83f, 0.58f, 1.0f};
 inline const ImVec4 kHudBad = {0.96f, 0.45f, 0.40f, 1.0f};
 
-struct HudFonts {
+/// What panels need to know of how they look.
+struct HudStyle {
     ImFont* text = nullptr;
-    ImFont* numbers = nullptr;
+    ImFont* numbers = nullptr;  ///< monospaced
     ImFont* title = nullptr;
+    float scale = 1.0f;      ///< pixels a unit of the layout
+    float panel_top = 0.0f;  ///< where panels below the status line begin [pixels]
 };
 
 /// Loads the fonts (DejaVu where it is installed, ImGui's own otherwise) and sets colors and
 /// spacing of the current ImGui context for `scale` pixels a unit.
-[[nodiscard]] HudFonts apply_hud_style(float scale);
+[[nodiscard]] HudStyle apply_hud_style(float scale);
 
 }  // namespace limn

@@ -1,7 +1,7 @@
 #include "content/app/inspector.h"
 
 #include "content/app/field_widgets.h"
-#include "content/app/hud.h"
+#include "content/app/hud_style.h"
 #include "ecs/archetype.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
@@ -56,7 +56,7 @@ void Inspector::reset() {
     material_ = 0;
 }
 
-void Inspector::draw(const Hud& hud, World& world) {
+void Inspector::draw(const HudStyle& style, World& world) {
     if (!ImGui::IsAnyItemActive()) {
         dragging_.clear();
     }
@@ -64,27 +64,27 @@ void Inspector::draw(const Hud& hud, World& world) {
         return;
     }
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float margin = 14.0f * hud.scale();
+    const float margin = 14.0f * style.scale;
     ImGui::SetNextWindowPos({display.x - margin, margin}, ImGuiCond_FirstUseEver, {1, 0});
     ImGui::SetNextWindowSize(
-        {std::min(390.0f * hud.scale(), 0.5f * display.x), display.y - 2 * margin},
+        {std::min(390.0f * style.scale, 0.5f * display.x), display.y - 2 * margin},
         ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Inspector", &open, ImGuiWindowFlags_NoCollapse)
         && ImGui::BeginTabBar("##tabs")) {
         if (ImGui::BeginTabItem("Entities")) {
-            draw_entities(hud, world);
+            draw_entities(style, world);
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem("Resources")) {
-            draw_resources(hud, world);
+            draw_resources(style, world);
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem("Materials")) {
-            draw_materials(hud, world);
+            draw_materials(style, world);
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem("Storage")) {
-            draw_storage(hud, world);
+            draw_storage(style, world);
             ImGui::EndTabItem();
         }
         ImGui::EndTabBar();
@@ -92,7 +92,7 @@ void Inspector::draw(const Hud& hud, World& world) {
     ImGui::End();
 }
 
-void Inspector::draw_entities(const Hud& hud, World& world) {
+void Inspector::draw_entities(const HudStyle& style, World& world) {
     const bool was_empty = search_.empty();
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##search", "search by name or component", &search_)
@@ -102,12 +102,12 @@ void Inspector::draw_entities(const Hud& hud, World& world) {
     const bool has_selected = world.alive(selected_);
     const float room = ImGui::GetContentRegionAvail().y;
     ImGui::BeginChild("##tree", {0, has_selected ? 0.36f * room : 0.0f});
-    draw_tree(hud, world);
+    draw_tree(style, world);
     ImGui::EndChild();
     if (has_selected) {
         ImGui::Separator();
         ImGui::BeginChild("##selected");
-        draw_selected(hud, world);
+        draw_selected(style, world);
         ImGui::EndChild();
     }
 }
@@ -144,7 +144,7 @@ void Inspector::rebuild_rows(World& world) {
     });
 }
 
-void Inspector::draw_tree(const Hud& hud, World& world) {
+void Inspector::draw_tree(const HudStyle& style, World& world) {
     if (rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLife) {
         rebuild_rows(world);
         rows_built_at_ = ImGui::GetTime();
@@ -164,9 +164,9 @@ void Inspector::draw_tree(const Hud& hud, World& world) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const Row& row = rows_[static_cast<std::size_t>(i)];
             ImGui::PushID(i);
-            const float indent = static_cast<float>(row.depth) * 14.0f * hud.scale() + 1.0f;
+            const float indent = static_cast<float>(row.depth) * 14.0f * style.scale + 1.0f;
             ImGui::Indent(indent);
-            const float arrow_width = 13.0f * hud.scale();
+            const float arrow_width = 13.0f * style.scale;
             if (row.has_children) {
                 const float x = ImGui::GetCursorPosX();
                 ImGui::TextColored(kHudDim, row.collapsed ? "\u25b8" : "\u25be");
@@ -195,19 +195,19 @@ void Inspector::draw_tree(const Hud& hud, World& world) {
     }
 }
 
-void Inspector::draw_selected(const Hud& hud, World& world) {
-    ImGui::PushFont(hud.fonts().title);
+void Inspector::draw_selected(const HudStyle& style, World& world) {
+    ImGui::PushFont(style.title);
     ImGui::TextUnformatted(entity_label(world, selected_).c_str());
     ImGui::PopFont();
     ImGui::SameLine();
     ImGui::TextColored(kHudDim, "%u v%u", selected_.index, selected_.generation);
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * hud.scale());
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);
     for (const ComponentId id : world.components_of(selected_)) {
         if (!world.alive(selected_)) {
             return;
         }
-        draw_component(hud, world, component_info(id));
+        draw_component(style, world, component_info(id));
     }
 }
 
@@ -234,7 +234,7 @@ void Inspector::draw_add_button(World& world) {
     ImGui::EndPopup();
 }
 
-void Inspector::draw_component(const Hud& hud, World& world, const ComponentInfo& info) {
+void Inspector::draw_component(const HudStyle& style, World& world, const ComponentInfo& info) {
     ImGui::PushID(static_cast<int>(info.id));
     bool keep = true;
     const bool editable = is_editable(info);
@@ -247,7 +247,7 @@ void Inspector::draw_component(const Hud& hud, World& world, const ComponentInfo
         edit.entity = selected_;
         const void* value = std::as_const(world).find(selected_, info.id);
         const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
-        edit_copy(hud, world, std::move(edit), info, value, place);
+        edit_copy(style, world, std::move(edit), info, value, place);
     }
     if (!keep && info.ops.construct_copy != nullptr) {
         Edit edit;
@@ -261,7 +261,7 @@ void Inspector::draw_component(const Hud& hud, World& world, const ComponentInfo
 }
 
 void Inspector::edit_copy(
-    const Hud& hud,
+    const HudStyle& style,
     World& world,
     Edit edit,
     const ComponentInfo& info,
@@ -269,7 +269,7 @@ void Inspector::edit_copy(
     const std::string& place) {
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
-    const FieldChange change = edit_fields(hud, world, info, after.data());
+    const FieldChange change = edit_fields(style, world, info, after.data());
     if (!change.wanted.is_null()) {
         select(change.wanted);
     }
@@ -287,7 +287,7 @@ void Inspector::edit_copy(
     undo_.record(std::move(edit));
 }
 
-void Inspector::draw_resources(const Hud& hud, World& world) {
+void Inspector::draw_resources(const HudStyle& style, World& world) {
     ImGui::BeginChild("##resources");
     for (const ComponentId id : world.resources()) {
         const ComponentInfo& info = component_info(id);
@@ -298,7 +298,7 @@ void Inspector::draw_resources(const Hud& hud, World& world) {
             Edit edit;
             edit.kind = EditKind::Resource;
             edit_copy(
-                hud,
+                style,
                 world,
                 std::move(edit),
                 info,
@@ -310,7 +310,7 @@ void Inspector::draw_resources(const Hud& hud, World& world) {
     ImGui::EndChild();
 }
 
-void Inspector::draw_materials(const Hud& hud, World& world) {
+void Inspector::draw_materials(const HudStyle& style, World& world) {
     const Assets* assets = std::as_const(world).find_resource<Assets>();
     if (assets == nullptr || assets->materials.empty()) {
         ImGui::TextDisabled("this level has no materials");
@@ -345,12 +345,12 @@ void Inspector::draw_materials(const Hud& hud, World& world) {
     edit.material = material_;
     const Material& material = assets->materials[material_];
     ImGui::PushID(static_cast<int>(material_));
-    edit_copy(hud, world, std::move(edit), component_info<Material>(), &material, material.name);
+    edit_copy(style, world, std::move(edit), component_info<Material>(), &material, material.name);
     ImGui::PopID();
     ImGui::EndChild();
 }
 
-void Inspector::draw_storage(const Hud& hud, const World& world) {
+void Inspector::draw_storage(const HudStyle& style, const World& world) {
     std::size_t used = 0;
     std::size_t bytes = 0;
     for (const std::unique_ptr<Archetype>& archetype : world.archetypes()) {
@@ -383,7 +383,7 @@ void Inspector::draw_storage(const Hud& hud, const World& world) {
              archetype->chunk_count(),
              static_cast<double>(archetype->committed()) / 1024.0)
              .out = '\0';
-        ImGui::PushFont(hud.fonts().numbers);
+        ImGui::PushFont(style.numbers);
         draw_bar(
             static_cast<float>(archetype->size()) / static_cast<float>(std::max(rows, 1u)),
             text.data());

@@ -12,7 +12,7 @@
 namespace limn {
 
 class Hierarchy;
-class Hud;
+struct HudStyle;
 class World;
 
 // F2: the world, open for changes. Entities as a tree with search, every component of the selected
@@ -22,7 +22,7 @@ class World;
 class Inspector {
   public:
     /// The panel; edits go to `world` at once and onto the undo stack.
-    void draw(const Hud& hud, World& world);
+    void draw(const HudStyle& style, World& world);
 
     void select(Entity entity) {
         selected_ = entity;
@@ -43,20 +43,20 @@ class Inspector {
         bool collapsed = false;
     };
 
-    void draw_entities(const Hud& hud, World& world);
-    void draw_tree(const Hud& hud, World& world);
-    void draw_selected(const Hud& hud, World& world);
-    void draw_component(const Hud& hud, World& world, const ComponentInfo& info);
+    void draw_entities(const HudStyle& style, World& world);
+    void draw_tree(const HudStyle& style, World& world);
+    void draw_selected(const HudStyle& style, World& world);
+    void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
-    void draw_resources(const Hud& hud, World& world);
-    void draw_materials(const Hud& hud, World& world);
-    void draw_storage(const Hud& hud, const World& world);
+    void draw_resources(const HudStyle& style, World& world);
+    void draw_materials(const HudStyle& style, World& world);
+    void draw_storage(const HudStyle& style, const World& world);
 
     void rebuild_rows(World& world);
     void add_rows(const Hierarchy& tree, Entity entity, int depth);
     /// Edits a copy of the value; on a change records it under `place` and gives it to the world.
     void edit_copy(
-        const Hud& hud,
+        const HudStyle& style,
         World& world,
         Edit edit,
         const ComponentInfo& info,

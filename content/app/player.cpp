@@ -105,6 +105,7 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
 // ---- levels -------------------------------------------------------------------------------------
 
 Status Player::load(const std::string& scene) {
+    draw_loading(scene);
     Result<std::unique_ptr<Stage>> stage = open_stage(scene);
     if (!stage) {
         return stage.error();
@@ -123,6 +124,16 @@ Status Player::load(const std::string& scene) {
     shown_time_ = stage_time(*stage_);
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
     return Done{};
+}
+
+void Player::draw_loading(const std::string& scene) {
+    const IVec2 size = window_->framebuffer_size();
+    device_->bind_window(size.x, size.y);
+    glClearColor(0.02f, 0.02f, 0.025f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    hud_->draw_loading(std::filesystem::path(scene).filename().string());
+    device_->forget_state();
+    window_->swap();
 }
 
 void Player::load_or_say(const std::string& scene) {
@@ -408,9 +419,9 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .scale_auto = scale_.automatic,
          .paused = paused_,
          .error = shader_error_.c_str()});
-    inspector_.draw(*hud_, stage_->world);
-    profiler_.draw(*hud_, stage_->world, stage_->schedule, graph);
-    buffers_->draw(*hud_, graph);
+    inspector_.draw(hud_->style(), stage_->world);
+    profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
+    buffers_->draw(hud_->style(), graph);
     hud_->end_frame();
     device_->forget_state();
 }

@@ -46,6 +46,7 @@ class Player {
 
     /// Replaces the level; the old one stays if the new one cannot be loaded.
     [[nodiscard]] Status load(const std::string& scene);
+    void draw_loading(const std::string& scene);
     void load_or_say(const std::string& scene);
     void load_neighbor(int offset);
 

@@ -1,6 +1,6 @@
 #include "content/app/profiler_panel.h"
 
-#include "content/app/hud.h"
+#include "content/app/hud_style.h"
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "render/graph/frame_graph.h"
@@ -23,11 +23,11 @@ constexpr int kMemoryInterval = 30;   // frames between two looks at the memory
 constexpr double kGoodFrame = 16.67;  // [ms]
 
 /// A number in the right place of its column.
-void number_cell(const HudFonts& fonts, const ImVec4& color, const char* format, double value) {
+void number_cell(const HudStyle& style, const ImVec4& color, const char* format, double value) {
     std::array<char, 32> text;
     *fmt::format_to_n(text.data(), text.size() - 1, fmt::runtime(format), value).out = '\0';
     ImGui::TableNextColumn();
-    ImGui::PushFont(fonts.numbers);
+    ImGui::PushFont(style.numbers);
     const float width = ImGui::CalcTextSize(text.data()).x;
     ImGui::SetCursorPosX(
         ImGui::GetCursorPosX() + std::max(ImGui::GetContentRegionAvail().x - width, 0.0f));
@@ -97,29 +97,29 @@ void ProfilerPanel::add_frame(const FrameCost& cost) {
 }
 
 void ProfilerPanel::draw(
-    const Hud& hud, const World& world, const Schedule& schedule, const FrameGraph& graph) {
+    const HudStyle& style, const World& world, const Schedule& schedule, const FrameGraph& graph) {
     if (!open) {
         return;
     }
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float margin = 14.0f * hud.scale();
-    const float top = std::max(hud.status_bottom(), 110.0f * hud.scale()) + 8.0f * hud.scale();
+    const float margin = 14.0f * style.scale;
+    const float top = std::max(style.panel_top, 110.0f * style.scale);
     ImGui::SetNextWindowPos({margin, top}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(
-        {std::min(372.0f * hud.scale(), 0.45f * display.x), display.y - top - margin},
+        {std::min(372.0f * style.scale, 0.45f * display.x), display.y - top - margin},
         ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Profiler", &open, ImGuiWindowFlags_NoCollapse)) {
-        draw_graph(hud);
-        draw_counts(hud, world, graph);
-        draw_passes(hud, graph);
-        draw_systems(hud, schedule);
+        draw_graph(style);
+        draw_counts(style, world, graph);
+        draw_passes(style, graph);
+        draw_systems(style, schedule);
     }
     ImGui::End();
 }
 
-void ProfilerPanel::draw_graph(const Hud& hud) {
+void ProfilerPanel::draw_graph(const HudStyle& style) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 size = {ImGui::GetContentRegionAvail().x, 72.0f * hud.scale()};
+    const ImVec2 size = {ImGui::GetContentRegionAvail().x, 72.0f * style.scale};
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(
         at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 4.0f);
@@ -159,12 +159,13 @@ void ProfilerPanel::draw_graph(const Hud& hud) {
          all.p95,
          all.max)
          .out = '\0';
-    ImGui::PushFont(hud.fonts().numbers);
+    ImGui::PushFont(style.numbers);
     ImGui::TextUnformatted(text.data());
     ImGui::PopFont();
 }
 
-void ProfilerPanel::draw_counts(const Hud& hud, const World& world, const FrameGraph& graph) {
+void ProfilerPanel::draw_counts(
+    const HudStyle& style, const World& world, const FrameGraph& graph) {
     if (frames_until_memory_-- <= 0) {
         frames_until_memory_ = kMemoryInterval;
         resident_mib_ = resident_memory_mib();
@@ -174,10 +175,10 @@ void ProfilerPanel::draw_counts(const Hud& hud, const World& world, const FrameG
     if (!ImGui::BeginTable("##counts", 4, ImGuiTableFlags_SizingStretchProp)) {
         return;
     }
-    const auto pair = [&hud](const char* name, double value, const char* format) {
+    const auto pair = [&style](const char* name, double value, const char* format) {
         ImGui::TableNextColumn();
         ImGui::TextColored(kHudDim, "%s", name);
-        number_cell(hud.fonts(), kHudText, format, value);
+        number_cell(style, kHudText, format, value);
     };
     const double mib = 1.0 / (1 << 20);
     pair("draws", statistics.draws, "{:.0f}");
@@ -191,7 +192,7 @@ void ProfilerPanel::draw_counts(const Hud& hud, const World& world, const FrameG
     ImGui::EndTable();
 }
 
-void ProfilerPanel::draw_passes(const Hud& hud, const FrameGraph& graph) {
+void ProfilerPanel::draw_passes(const HudStyle& style, const FrameGraph& graph) {
     ImGui::Spacing();
     if (!ImGui::BeginTable("##passes", 3, ImGuiTableFlags_SizingStretchProp)) {
         return;
@@ -203,21 +204,21 @@ void ProfilerPanel::draw_passes(const Hud& hud, const FrameGraph& graph) {
     const double whole = std::max(graph.total_gpu_ms(), 1e-6);
     for (const PassTiming& timing : graph.timings()) {
         name_cell(timing.name, timing.gpu_ms / whole);
-        number_cell(hud.fonts(), time_color(timing.cpu_ms), "{:.3f}", timing.cpu_ms);
-        number_cell(hud.fonts(), time_color(timing.gpu_ms), "{:.3f}", timing.gpu_ms);
+        number_cell(style, time_color(timing.cpu_ms), "{:.3f}", timing.cpu_ms);
+        number_cell(style, time_color(timing.gpu_ms), "{:.3f}", timing.gpu_ms);
     }
     name_cell("all passes", 0.0);
-    number_cell(hud.fonts(), kHudAccent, "{:.3f}", graph.total_cpu_ms());
-    number_cell(hud.fonts(), kHudAccent, "{:.3f}", graph.total_gpu_ms());
+    number_cell(style, kHudAccent, "{:.3f}", graph.total_cpu_ms());
+    number_cell(style, kHudAccent, "{:.3f}", graph.total_gpu_ms());
     name_cell("extract", 0.0);
-    number_cell(hud.fonts(), kHudText, "{:.3f}", cost_.statistics.extract_ms);
+    number_cell(style, kHudText, "{:.3f}", cost_.statistics.extract_ms);
     ImGui::TableNextColumn();
     name_cell("drawing, all of it", 0.0);
-    number_cell(hud.fonts(), kHudText, "{:.3f}", cost_.render_ms);
+    number_cell(style, kHudText, "{:.3f}", cost_.render_ms);
     ImGui::EndTable();
 }
 
-void ProfilerPanel::draw_systems(const Hud& hud, const Schedule& schedule) {
+void ProfilerPanel::draw_systems(const HudStyle& style, const Schedule& schedule) {
     ImGui::Spacing();
     if (!ImGui::BeginTable("##systems", 2, ImGuiTableFlags_SizingStretchProp)) {
         return;
@@ -234,10 +235,10 @@ void ProfilerPanel::draw_systems(const Hud& hud, const Schedule& schedule) {
     }
     for (std::size_t i = 0; i < timings.size(); ++i) {
         name_cell(timings[i].name, system_ms_[i] / whole);
-        number_cell(hud.fonts(), time_color(system_ms_[i]), "{:.3f}", system_ms_[i]);
+        number_cell(style, time_color(system_ms_[i]), "{:.3f}", system_ms_[i]);
     }
     name_cell("simulation of a frame", 0.0);
-    number_cell(hud.fonts(), kHudAccent, "{:.3f}", cost_.simulate_ms);
+    number_cell(style, kHudAccent, "{:.3f}", cost_.simulate_ms);
     ImGui::EndTable();
 }
 

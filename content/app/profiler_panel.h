@@ -10,7 +10,7 @@
 namespace limn {
 
 class FrameGraph;
-class Hud;
+struct HudStyle;
 class Schedule;
 class World;
 
@@ -28,8 +28,11 @@ struct FrameCost {
 class ProfilerPanel {
   public:
     void add_frame(const FrameCost& cost);
-    void
-    draw(const Hud& hud, const World& world, const Schedule& schedule, const FrameGraph& graph);
+    void draw(
+        const HudStyle& style,
+        const World& world,
+        const Schedule& schedule,
+        const FrameGraph& graph);
 
     /// Of the last second or so [ms].
     [[nodiscard]] double median_frame_ms() const { return summary_.median; }
@@ -37,10 +40,10 @@ class ProfilerPanel {
     bool open = false;
 
   private:
-    void draw_graph(const Hud& hud);
-    void draw_counts(const Hud& hud, const World& world, const FrameGraph& graph);
-    void draw_systems(const Hud& hud, const Schedule& schedule);
-    void draw_passes(const Hud& hud, const FrameGraph& graph);
+    void draw_graph(const HudStyle& style);
+    void draw_counts(const HudStyle& style, const World& world, const FrameGraph& graph);
+    void draw_systems(const HudStyle& style, const Schedule& schedule);
+    void draw_passes(const HudStyle& style, const FrameGraph& graph);
 
     static constexpr std::size_t kGraphFrames = 240;
     FrameHistory history_{kGraphFrames};

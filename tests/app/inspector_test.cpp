@@ -1,0 +1,170 @@
+#include "content/app/field_widgets.h"
+#include "content/app/hud_style.h"
+#include "content/app/inspector.h"
+#include "ecs/components/all.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/snapshot.h"
+#include "ecs/world.h"
+
+#include <doctest/doctest.h>
+#include <imgui.h>
+
+namespace limn {
+namespace {
+
+/// ImGui without a window: its frames are built and thrown away.
+class OffscreenHud {
+  public:
+    OffscreenHud() {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = {1280, 720};
+        style = apply_hud_style(1.0f);
+        unsigned char* pixels = nullptr;
+        int width = 0;
+        int height = 0;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    }
+    OffscreenHud(const OffscreenHud&) = delete;
+    OffscreenHud& operator=(const OffscreenHud&) = delete;
+    ~OffscreenHud() { ImGui::DestroyContext(); }
+
+    /// One frame with the pointer at `mouse`.
+    template <typename Draw>
+    void frame(Draw draw, const ImVec2& mouse = {-1, -1}, bool pressed = false) const {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 1.0f / 60.0f;
+        io.MousePos = mouse;
+        io.MouseDown[0] = pressed;
+        ImGui::NewFrame();
+        draw();
+        ImGui::EndFrame();
+    }
+
+    HudStyle style;
+};
+
+/// A world with one entity that has every registered component, and every resource.
+Entity make_everything(World& world) {
+    register_all_components();
+    const Entity entity = world.create(Name{"everything"});
+    for (const ComponentInfo* info : all_components()) {
+        if (info->ops.construct_default != nullptr && info->id != component_id<Parent>) {
+            static_cast<void>(world.add(entity, info->id));
+        }
+    }
+    for (const ComponentInfo* info : all_resources()) {
+        if (info->ops.construct_default != nullptr) {
+            static_cast<void>(world.insert_default_resource(info->id));
+        }
+    }
+    world.insert_resource(Assets{}).materials.emplace_back().name = "clay";
+    return entity;
+}
+
+}  // namespace
+
+TEST_CASE("inspector: looking at every component changes nothing") {
+    const OffscreenHud hud;
+    World world;
+    const Entity entity = make_everything(world);
+    Inspector inspector;
+    inspector.open = true;
+    inspector.select(entity);
+    const std::uint64_t before = state_hash(world);
+    for (int i = 0; i < 5; ++i) {
+        hud.frame([&] { inspector.draw(hud.style, world); });
+    }
+    CHECK(state_hash(world) == before);
+    CHECK(inspector.undo_stack().undo_count() == 0);
+    for (const ComponentInfo* info : all_components()) {
+        if (info->defaults == nullptr) {
+            continue;
+        }
+        AnyComponent value(*info, info->defaults);
+        CAPTURE(info->name);
+        hud.frame([&] {
+            ImGui::Begin("one");
+            CHECK_FALSE(edit_fields(hud.style, world, *info, value.data()).changed);
+            ImGui::End();
+        });
+    }
+}
+
+TEST_CASE("inspector: a drag of a slider sets the component and is one step of undo") {
+    const OffscreenHud hud;
+    World world;
+    register_all_components();
+    // One field with a range: a slider as wide as the right part of the panel.
+    world.insert_resource(Assets{});
+    const Entity entity = world.create(LightPulse{});
+    Inspector inspector;
+    inspector.open = true;
+    inspector.select(entity);
+    const auto draw = [&] { inspector.draw(hud.style, world); };
+    for (int i = 0; i < 3; ++i) {
+        hud.frame(draw);
+    }
+    const auto amplitude = [&] { return world.get<const LightPulse>(entity).amplitude; };
+    // Look for it: press at every height until the amplitude changes.
+    const float x = 1130.0f;
+    float y = 150.0f;
+    for (; y < 700.0f && amplitude() == 0.5f; y += 5.0f) {
+        hud.frame(draw, {x, y});
+        hud.frame(draw, {x, y}, true);
+        if (amplitude() != 0.5f) {
+            break;
+        }
+        hud.frame(draw, {x, y});
+    }
+    REQUIRE(amplitude() != 0.5f);
+    for (int i = 0; i < 20; ++i) {
+        hud.frame(draw, {x + 4.0f * static_cast<float>(i), y}, true);
+    }
+    hud.frame(draw, {x + 80.0f, y});
+    const float dragged = amplitude();
+    CHECK(dragged > 0.5f);
+    CHECK(dragged <= 1.0f);
+    CHECK(inspector.undo_stack().undo_count() == 1);
+    CHECK(inspector.undo_stack().undo(world).find("light_pulse.amplitude") != std::string::npos);
+    CHECK(amplitude() == 0.5f);
+    CHECK_FALSE(inspector.undo_stack().redo(world).empty());
+    CHECK(amplitude() == dragged);
+}
+
+TEST_CASE("inspector: nameless entities are called by what they show or do") {
+    World world;
+    world.insert_resource(Assets{}).meshes.emplace_back().name = "teapot";
+    CHECK(entity_label(world, world.create(Name{"lamp"}, PointLight{})) == "lamp");
+    CHECK(entity_label(world, world.create(PointLight{})).starts_with("point light "));
+    CHECK(entity_label(world, world.create(MeshInstance{{0}, {}})).starts_with("teapot "));
+    CHECK(entity_label(world, world.create(Transform{})).starts_with("entity "));
+}
+
+TEST_CASE("inspector: the selected entity may vanish at any time") {
+    const OffscreenHud hud;
+    World world;
+    register_all_components();
+    const Entity parent = world.create(Name{"parent"});
+    const Entity child = world.create(Name{"child"}, Parent{parent});
+    Inspector inspector;
+    inspector.open = true;
+    inspector.select(child);
+    const auto draw = [&] { inspector.draw(hud.style, world); };
+    hud.frame(draw);
+    world.destroy(child);
+    hud.frame(draw);
+    world.destroy(parent);
+    for (int i = 0; i < 40; ++i) {  // long enough for the list to be built anew
+        hud.frame(draw);
+    }
+    CHECK_FALSE(world.alive(inspector.selected()));
+}
+
+}  // namespace limn
