@@ -180,6 +180,30 @@ TEST_CASE_FIXTURE(BallScene, "environment: a mirror shows the sky where it is, w
     }
 }
 
+TEST_CASE_FIXTURE(BallScene, "environment: from below, where the map is folded, no edge is seen") {
+    for (const float roughness : {0.05f, 0.3f, 0.6f}) {
+        world.clear();
+        world.insert_resource(
+            Environment{.zenith = {4, 4, 4}, .horizon = {1, 1, 1}, .ground = {0.1f, 0.1f, 0.1f}});
+        const Material mirror = {
+            .base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = roughness};
+        place(add(make_ball(64)), add(mirror), at({0, 0, 0}));
+        const gpu::FloatImage image = radiance(look({0, -3, 0}, {0, 0, 0}, 96, 96));
+        // Its middle shows the ground straight below, where the corners of the map meet.
+        float low = INFINITY;
+        float high = 0;
+        for (int y = 46; y < 50; ++y) {
+            for (int x = 46; x < 50; ++x) {
+                low = std::min(low, image.at(x, y, 0));
+                high = std::max(high, image.at(x, y, 0));
+            }
+        }
+        CAPTURE(roughness);
+        CHECK(low > 0.09f);
+        CHECK(high < low * 1.1f);
+    }
+}
+
 TEST_CASE_FIXTURE(BallScene, "environment: rougher mirrors blur it and keep its mean") {
     const auto mean_and_spread = [&](float roughness) {
         const gpu::FloatImage image = ball(

@@ -409,6 +409,19 @@ TEST_CASE("light: metal-rough highlights on the GPU equal the oracle") {
     }
 }
 
+TEST_CASE("light: a light behind a shiny plane adds nothing, seen however flat") {
+    for (const ShadingModel model : {ShadingModel::Phong, ShadingModel::Blinn, ShadingModel::Pbr}) {
+        Scene scene;
+        const Material shiny = {
+            .shading = model, .roughness = 0.3f, .specular = {1, 1, 1}, .shininess = 2};
+        scene.place(scene.add(make_square()), scene.add(shiny), at({0, 0, 0}));
+        scene.shine(PointLight{.intensity = 100}, at({0, 0.8f, -0.1f}));
+        for (const float value : scene.radiance(scene.look({0, -1.5f, 0.3f}, {0, 0, 0})).pixels) {
+            CHECK((value == 0 || value == 1));  // nothing, or alpha
+        }
+    }
+}
+
 TEST_CASE("light: twice the light is twice the radiance") {
     PlaneScene scene({.base_color = {0.7f, 0.5f, 0.3f, 1}, .roughness = 0.3f});
     const Entity lamp = scene.shine(PointLight{.intensity = 4}, at({0.3f, 0.1f, 0.6f}));
