@@ -29,23 +29,39 @@ enum class ToneCurve : std::uint8_t {
 
 /// Resource: from scene radiance to the display.
 struct Exposure {
-    float ev = 0.0f;       ///< radiance is multiplied by 2^ev before the curve, -24 .. 24
+    float ev = 0.0f;  ///< radiance is multiplied by 2^ev before the curve, -24 .. 24
     ToneCurve curve = ToneCurve::Aces;
 };
 
 template <typename Visitor>
 void visit_fields(Environment& environment, Visitor&& visit) {
-    visit("sky", environment.sky, {.doc = "what surrounds the scene", .values = "gradient studio uniform"});
-    visit("zenith", environment.zenith, {.doc = "radiance from above, or of uniform", .min = 0, .max = 1e5, .color = true});
-    visit("horizon", environment.horizon, {.doc = "radiance from the horizon", .min = 0, .max = 1e5, .color = true});
-    visit("ground", environment.ground, {.doc = "radiance from below", .min = 0, .max = 1e5, .color = true});
-    visit("intensity", environment.intensity, {.doc = "multiplies all of it", .min = 0, .max = 1e5});
+    visit(
+        "sky",
+        environment.sky,
+        {.doc = "what surrounds the scene", .values = "gradient studio uniform"});
+    visit(
+        "zenith",
+        environment.zenith,
+        {.doc = "radiance from above, or of uniform", .min = 0, .max = 1e5, .color = true});
+    visit(
+        "horizon",
+        environment.horizon,
+        {.doc = "radiance from the horizon", .min = 0, .max = 1e5, .color = true});
+    visit(
+        "ground",
+        environment.ground,
+        {.doc = "radiance from below", .min = 0, .max = 1e5, .color = true});
+    visit(
+        "intensity", environment.intensity, {.doc = "multiplies all of it", .min = 0, .max = 1e5});
     visit("visible", environment.visible, {.doc = "drawn as background"});
 }
 
 template <typename Visitor>
 void visit_fields(Exposure& exposure, Visitor&& visit) {
-    visit("ev", exposure.ev, {.doc = "radiance times 2^ev before the curve", .unit = "EV", .min = -24, .max = 24});
+    visit(
+        "ev",
+        exposure.ev,
+        {.doc = "radiance times 2^ev before the curve", .unit = "EV", .min = -24, .max = 24});
     visit("curve", exposure.curve, {.doc = "tone curve", .values = "neutral aces linear"});
 }
 

@@ -10,8 +10,8 @@
 
 namespace limn {
 
-// What is drawn: meshes, images and materials are kept once, in the Assets resource, and named by index.
-// Loaders and makers append to it; the renderer uploads what is new. Indices never change.
+// What is drawn: meshes, images and materials are kept once, in the Assets resource, and named by
+// index. Loaders and makers append to it; the renderer uploads what is new. Indices never change.
 
 /// Index into Assets; kNoAsset = none.
 inline constexpr std::uint32_t kNoAsset = 0xffffffffu;
@@ -39,11 +39,13 @@ struct MeshData {
     std::string name;
     std::vector<Vec3> positions;  ///< [m]
     std::vector<Vec3> normals;    ///< unit
-    std::vector<Vec4> tangents;   ///< unit xyz along +u; bitangent = w cross(normal, tangent), w = +-1
-    std::vector<Vec2> uvs;        ///< (0, 0) is the first texel of the image (top left of a glTF image)
-    std::vector<Vec2> uvs1;       ///< second set, or empty
-    std::vector<Vec4> colors;     ///< linear RGBA factor a vertex, or empty
-    std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise seen from the front
+    std::vector<Vec4>
+        tangents;            ///< unit xyz along +u; bitangent = w cross(normal, tangent), w = +-1
+    std::vector<Vec2> uvs;   ///< (0, 0) is the first texel of the image (top left of a glTF image)
+    std::vector<Vec2> uvs1;  ///< second set, or empty
+    std::vector<Vec4> colors;  ///< linear RGBA factor a vertex, or empty
+    std::vector<std::uint32_t>
+        indices;  ///< three a triangle, counter-clockwise seen from the front
     Bounds bounds;
 };
 
@@ -55,7 +57,7 @@ struct ImageData {
     int width = 0;   ///< pixels, > 0
     int height = 0;  ///< pixels, > 0
     PixelFormat format = PixelFormat::Rgba8;
-    bool srgb = false;  ///< Rgba8 only: color that the GPU decodes to linear
+    bool srgb = false;                 ///< Rgba8 only: color that the GPU decodes to linear
     std::vector<std::uint8_t> pixels;  ///< width * height * (4, 8 or 16) bytes
 };
 
@@ -66,11 +68,11 @@ struct TextureSlot {
     ImageId image;
     Wrap wrap_u = Wrap::Repeat;
     Wrap wrap_v = Wrap::Repeat;
-    bool nearest = false;       ///< no filtering when magnified
-    std::uint8_t uv_set = 0;    ///< 0 or 1
+    bool nearest = false;     ///< no filtering when magnified
+    std::uint8_t uv_set = 0;  ///< 0 or 1
     Vec2 offset = {0, 0};
     Vec2 scale = {1, 1};
-    float rotation = 0.0f;      ///< [rad], counter-clockwise as glTF defines it
+    float rotation = 0.0f;  ///< [rad], counter-clockwise as glTF defines it
 };
 
 enum class ShadingModel : std::uint8_t {
@@ -95,18 +97,18 @@ struct Material {
     Vec3 specular = {0.04f, 0.04f, 0.04f};    ///< ks of Blinn and Phong
     float shininess = 50.0f;                  ///< n of Blinn and Phong, > 0
     float normal_scale = 1.0f;
-    float occlusion_strength = 1.0f;          ///< 0 .. 1
-    TextureSlot base_color_texture = {};           ///< sRGB, alpha = opacity
-    TextureSlot metal_rough_texture = {};          ///< g = roughness, b = metalness
-    TextureSlot normal_texture = {};               ///< tangent space, green up
-    TextureSlot occlusion_texture = {};            ///< r
-    TextureSlot emission_texture = {};             ///< sRGB
+    float occlusion_strength = 1.0f;       ///< 0 .. 1
+    TextureSlot base_color_texture = {};   ///< sRGB, alpha = opacity
+    TextureSlot metal_rough_texture = {};  ///< g = roughness, b = metalness
+    TextureSlot normal_texture = {};       ///< tangent space, green up
+    TextureSlot occlusion_texture = {};    ///< r
+    TextureSlot emission_texture = {};     ///< sRGB
 };
 
-/// Tells one Assets from every other of this run, even from one that lives where it did: the renderer keeps
-/// what it uploaded by it. Moves with the value; a copy is another.
+/// Tells one Assets from every other of this run, even from one that lives where it did: the
+/// renderer keeps what it uploaded by it. Moves with the value; a copy is another.
 class AssetsIdentity {
-public:
+  public:
     AssetsIdentity() = default;
     AssetsIdentity(const AssetsIdentity& /*other*/) {}
     AssetsIdentity(AssetsIdentity&& other) noexcept : value_(std::exchange(other.value_, next())) {}
@@ -121,7 +123,7 @@ public:
     /// Never 0; no two living values are equal.
     [[nodiscard]] std::uint64_t value() const { return value_; }
 
-private:
+  private:
     static std::uint64_t next() {
         static std::atomic<std::uint64_t> count = 0;
         return ++count;
@@ -153,31 +155,68 @@ void visit_fields(MeshInstance& instance, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(TextureSlot& slot, Visitor&& visit) {
     visit("image", slot.image, {.doc = "an image of the level, by name"});
-    visit("wrap_u", slot.wrap_u, {.doc = "beyond the left and right edge", .values = "repeat mirror clamp"});
-    visit("wrap_v", slot.wrap_v, {.doc = "beyond the upper and lower edge", .values = "repeat mirror clamp"});
+    visit(
+        "wrap_u",
+        slot.wrap_u,
+        {.doc = "beyond the left and right edge", .values = "repeat mirror clamp"});
+    visit(
+        "wrap_v",
+        slot.wrap_v,
+        {.doc = "beyond the upper and lower edge", .values = "repeat mirror clamp"});
     visit("nearest", slot.nearest, {.doc = "no filtering when magnified"});
     visit("uv_set", slot.uv_set, {.doc = "which texture coordinates", .min = 0, .max = 1});
     visit("offset", slot.offset, {.doc = "of the texture coordinates"});
     visit("scale", slot.scale, {.doc = "of the texture coordinates"});
-    visit("rotation", slot.rotation, {.doc = "of the texture coordinates, counter-clockwise", .unit = "rad"});
+    visit(
+        "rotation",
+        slot.rotation,
+        {.doc = "of the texture coordinates, counter-clockwise", .unit = "rad"});
 }
 
 template <typename Visitor>
 void visit_fields(Material& material, Visitor&& visit) {
     visit("shading", material.shading, {.doc = "shading model", .values = "pbr blinn phong unlit"});
-    visit("alpha_mode", material.alpha_mode, {.doc = "what alpha means", .values = "opaque mask blend"});
+    visit(
+        "alpha_mode",
+        material.alpha_mode,
+        {.doc = "what alpha means", .values = "opaque mask blend"});
     visit("double_sided", material.double_sided, {.doc = "drawn from behind too"});
-    visit("alpha_cutoff", material.alpha_cutoff, {.doc = "of mask: below is a hole", .min = 0, .max = 1});
-    visit("base_color", material.base_color, {.doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true});
+    visit(
+        "alpha_cutoff",
+        material.alpha_cutoff,
+        {.doc = "of mask: below is a hole", .min = 0, .max = 1});
+    visit(
+        "base_color",
+        material.base_color,
+        {.doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true});
     visit("metalness", material.metalness, {.doc = "0 dielectric, 1 metal", .min = 0, .max = 1});
     visit("roughness", material.roughness, {.doc = "perceptual roughness", .min = 0, .max = 1});
-    visit("emission", material.emission, {.doc = "radiance it gives off", .unit = "W/(sr m^2)", .min = 0, .max = 1e6, .color = true});
-    visit("specular", material.specular, {.doc = "ks of blinn and phong", .min = 0, .max = 1, .color = true});
+    visit(
+        "emission",
+        material.emission,
+        {.doc = "radiance it gives off",
+         .unit = "W/(sr m^2)",
+         .min = 0,
+         .max = 1e6,
+         .color = true});
+    visit(
+        "specular",
+        material.specular,
+        {.doc = "ks of blinn and phong", .min = 0, .max = 1, .color = true});
     visit("shininess", material.shininess, {.doc = "n of blinn and phong", .min = 1, .max = 10000});
-    visit("normal_scale", material.normal_scale, {.doc = "strength of the normal map", .min = 0, .max = 10});
-    visit("occlusion_strength", material.occlusion_strength, {.doc = "strength of the occlusion map", .min = 0, .max = 1});
+    visit(
+        "normal_scale",
+        material.normal_scale,
+        {.doc = "strength of the normal map", .min = 0, .max = 10});
+    visit(
+        "occlusion_strength",
+        material.occlusion_strength,
+        {.doc = "strength of the occlusion map", .min = 0, .max = 1});
     visit("base_color_texture", material.base_color_texture, {.doc = "sRGB, alpha = opacity"});
-    visit("metal_rough_texture", material.metal_rough_texture, {.doc = "green = roughness, blue = metalness"});
+    visit(
+        "metal_rough_texture",
+        material.metal_rough_texture,
+        {.doc = "green = roughness, blue = metalness"});
     visit("normal_texture", material.normal_texture, {.doc = "tangent space, green up"});
     visit("occlusion_texture", material.occlusion_texture, {.doc = "red"});
     visit("emission_texture", material.emission_texture, {.doc = "sRGB"});

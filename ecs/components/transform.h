@@ -7,9 +7,9 @@ namespace limn {
 
 /// Where an entity is, relative to its parent or, without one, to the world.
 struct Transform {
-    Vec3 position = {0, 0, 0};    ///< [m]
+    Vec3 position = {0, 0, 0};     ///< [m]
     Quat rotation = {1, 0, 0, 0};  ///< unit
-    Vec3 scale = {1, 1, 1};       ///< not 0
+    Vec3 scale = {1, 1, 1};        ///< not 0
 };
 
 /// world_from_local after the last step of the simulation; written by update_transforms alone.
@@ -17,8 +17,8 @@ struct WorldTransform {
     Affine world;
 };
 
-/// world_from_local one simulation step earlier, equal to WorldTransform in the step of the spawn and
-/// after a Teleport: rendering interpolates between the two and takes the velocity from them.
+/// world_from_local one simulation step earlier, equal to WorldTransform in the step of the spawn
+/// and after a Teleport: rendering interpolates between the two and takes the velocity from them.
 struct PreviousWorldTransform {
     Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
@@ -32,18 +32,22 @@ struct Spin {
     float speed = 0.5f;  ///< [rad/s]
 };
 
-/// Moves the entity on a closed path about where it was placed: offset_i = amplitude_i sin(frequency_i t + phase_i).
+/// Moves the entity on a closed path about where it was placed: offset_i = amplitude_i
+/// sin(frequency_i t + phase_i).
 struct Sway {
-    Vec3 center = {0, 0, 0};       ///< rest position, relative to the parent [m]
+    Vec3 center = {0, 0, 0};         ///< rest position, relative to the parent [m]
     Vec3 amplitude = {0, 0.25f, 0};  ///< [m]
-    Vec3 frequency = {1, 1, 1};    ///< [rad/s]
-    Vec3 phase = {0, 0, 0};        ///< [rad]
+    Vec3 frequency = {1, 1, 1};      ///< [rad/s]
+    Vec3 phase = {0, 0, 0};          ///< [rad]
 };
 
 template <typename Visitor>
 void visit_fields(Transform& transform, Visitor&& visit) {
     visit("position", transform.position, {.doc = "relative to the parent", .unit = "m"});
-    visit("rotation", transform.rotation, {.doc = "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees"});
+    visit(
+        "rotation",
+        transform.rotation,
+        {.doc = "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees"});
     visit("scale", transform.scale, {.doc = "along each local axis, not 0"});
 }
 
@@ -57,7 +61,8 @@ template <typename Visitor>
 void visit_fields(Sway& sway, Visitor&& visit) {
     visit("center", sway.center, {.doc = "rest position", .unit = "m"});
     visit("amplitude", sway.amplitude, {.doc = "reach along each axis", .unit = "m"});
-    visit("frequency", sway.frequency, {.doc = "angular frequency along each axis", .unit = "rad/s"});
+    visit(
+        "frequency", sway.frequency, {.doc = "angular frequency along each axis", .unit = "rad/s"});
     visit("phase", sway.phase, {.doc = "phase along each axis", .unit = "rad"});
 }
 
