@@ -117,6 +117,14 @@ TEST_CASE("culling: what lies behind, above or beside the camera is dropped") {
     for (int i = 2; i < 7; ++i) {
         CHECK(visible[i] == 0);
     }
+    // Before the eye, but nearer than the near plane.
+    const RenderView far_near =
+        make_render_view({.near = 4.0f}, pose, pose, {.width = 64, .height = 64});
+    cull_boxes(make_frustum(far_near.clip_from_world), *block, 1, visible);
+    CHECK(visible[0] == 1);
+    put(*block, 0, {Vec3(0, 0, 2) - unit, Vec3(0, 0, 2) + unit});
+    cull_boxes(make_frustum(far_near.clip_from_world), *block, 1, visible);
+    CHECK(visible[0] == 0);
 }
 
 TEST_CASE("culling: a transformed box holds every transformed corner, tightly if only scaled") {

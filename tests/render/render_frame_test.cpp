@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+
 namespace limn::test {
 
 TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black picture of the asked size") {
@@ -140,6 +142,16 @@ TEST_CASE("render view: sample positions fill the pixel evenly, one sample is it
             ++quadrants[(j.x > 0 ? 1 : 0) + (j.y > 0 ? 2 : 0)];
         }
         CHECK(glm::length(sum / static_cast<float>(count)) < 0.08f);
+        // Every column of `count` has about one: no two samples see the same edge.
+        std::vector<float> xs;
+        for (int i = 0; i < count; ++i) {
+            xs.push_back(sample_jitter(i, count).x);
+        }
+        std::sort(xs.begin(), xs.end());
+        for (std::size_t i = 1; i < xs.size(); ++i) {
+            CHECK(xs[i] - xs[i - 1] > 0.2f / static_cast<float>(count));
+            CHECK(xs[i] - xs[i - 1] < 3.0f / static_cast<float>(count));
+        }
         for (const int n : quadrants) {
             CHECK(std::abs(n - count / 4) <= 2);
         }
