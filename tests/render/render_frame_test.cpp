@@ -150,7 +150,7 @@ TEST_CASE("render view: sample positions fill the pixel evenly, one sample is it
         std::sort(xs.begin(), xs.end());
         for (std::size_t i = 1; i < xs.size(); ++i) {
             CHECK(xs[i] - xs[i - 1] > 0.2f / static_cast<float>(count));
-            CHECK(xs[i] - xs[i - 1] < 3.0f / static_cast<float>(count));
+            CHECK(xs[i] - xs[i - 1] < 4.0f / static_cast<float>(count));
         }
         for (const int n : quadrants) {
             CHECK(std::abs(n - count / 4) <= 2);

@@ -1,0 +1,78 @@
+// Culling and filling the instance buffer: the renderer's share of the CPU's work a frame. 100,000
+// boxes of one mesh that all moved; `seen` is the share of them in the picture.
+
+#include "ecs/base/jobs.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/gpu/context.h"
+#include "render/gpu/device.h"
+#include "render/instance_list.h"
+
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+namespace limn {
+namespace {
+
+constexpr int kBoxes = 100000;
+
+struct Crowd {
+    Crowd()
+        : context(*gpu::create_headless_context()), device(*gpu::Device::from_current_context()),
+          materials(std::make_unique<MaterialPool>(*device, 1.0f)),
+          meshes(std::make_unique<MeshPool>()),
+          ring(std::make_unique<gpu::RingBuffer>(device->caps(), "bench", std::size_t{64} << 20)) {
+        Assets assets;
+        MeshData box;
+        box.positions = {{-1, -1, -1}, {1, -1, -1}, {0, 1, 1}};
+        box.normals.assign(3, {0, 0, 1});
+        box.indices = {0, 1, 2};
+        assets.meshes.push_back(box);
+        assets.materials.resize(8);
+        meshes->append(assets.meshes);
+        materials->update(assets, true);
+        for (int i = 0; i < kBoxes; ++i) {
+            const Vec3 place = {i % 317 - 158, i / 317 - 158, 0};
+            const Affine now = affine_from(place, {1, 0, 0, 0}, Vec3(0.3f));
+            world.create(
+                MeshInstance{{0}, {static_cast<std::uint32_t>(i) % 8}},
+                WorldTransform{now},
+                PreviousWorldTransform{now});
+        }
+    }
+
+    std::unique_ptr<gpu::Context> context;
+    std::unique_ptr<gpu::Device> device;
+    std::unique_ptr<MaterialPool> materials;
+    std::unique_ptr<MeshPool> meshes;
+    std::unique_ptr<gpu::RingBuffer> ring;
+    World world;
+};
+
+void collect_100k(benchmark::State& state) {
+    static Crowd crowd;
+    set_thread_count(static_cast<int>(state.range(0)));
+    // From far away all are seen, from the middle a tenth.
+    const float distance = state.range(1) == 100 ? 400.0f : 55.0f;
+    const Affine eye = look_at({0, 0, distance}, {0, 0, 0});
+    const RenderView view = make_render_view({}, eye, eye);
+    InstanceCollector collector;
+    InstanceList list;
+    for (auto _ : state) {
+        crowd.ring->begin_frame();
+        collector.collect(
+            crowd.world, view, *crowd.meshes, *crowd.materials, false, *crowd.ring, list);
+        crowd.ring->end_frame();
+    }
+    state.counters["seen"] = list.visible;
+    state.SetItemsProcessed(state.iterations() * kBoxes);
+}
+BENCHMARK(collect_100k)
+    ->ArgNames({"threads", "seen_percent"})
+    ->ArgsProduct({{1, 2}, {10, 100}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace limn
