@@ -24,6 +24,12 @@ struct FieldLine {
     std::string doc;
 };
 
+/// "0 .. 10 m", or the unit alone where there are no limits.
+std::string range_or_unit(const FieldMeta& meta) {
+    const std::string range = range_text(meta);
+    return range.empty() ? meta.unit : range;
+}
+
 /// Adds the fields of `object`, those of structs in it with their path.
 void add_lines(
     const std::vector<FieldInfo>& fields,
@@ -40,7 +46,7 @@ void add_lines(
             {.path = prefix + field.name,
              .type = type_text(field),
              .value = field.shape == FieldShape::List ? "[]" : value_text(field, value),
-             .range = range_text(field.meta),
+             .range = range_or_unit(field.meta),
              .doc = field.meta.doc});
     }
 }

@@ -147,7 +147,8 @@ TEST_CASE("cli: levels lists the gallery, components their fields with units") {
     CHECK(components.exit_code == 0);
     CHECK(components.out.find("point_light") != std::string::npos);
     CHECK(components.out.find("intensity") != std::string::npos);
-    CHECK(components.out.find("cd") != std::string::npos);
+    CHECK(components.out.find("1000000 cd") != std::string::npos);
+    CHECK(components.out.find("[0, 0, 0]  m ") != std::string::npos);  // a unit without limits
 
     const ProgramRun schema = run_limn(folder, {"components", "--schema"});
     CHECK(schema.exit_code == 0);
