@@ -1,6 +1,7 @@
 #pragma once
 
-#include "render/passes/gbuffer_pass.h"
+#include "render/frame_scene.h"
+#include "render/gbuffer.h"
 
 #include <array>
 #include <string_view>

@@ -1,6 +1,6 @@
 #include "content/make/bezier_patch.h"
 #include "ecs/base/rng.h"
-#include "mesh_laws.h"
+#include "tests/content/mesh_laws.h"
 
 #include <doctest/doctest.h>
 

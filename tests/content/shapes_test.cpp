@@ -1,7 +1,7 @@
 #include "content/bake/tangents.h"
 #include "content/make/make_mesh.h"
 #include "content/make/shapes.h"
-#include "mesh_laws.h"
+#include "tests/content/mesh_laws.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 #include "content/make/teapot.h"
-#include "mesh_laws.h"
+#include "tests/content/mesh_laws.h"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 #include "content/make/terrain.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
-#include "mesh_laws.h"
+#include "tests/content/mesh_laws.h"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "render/graph/frame_graph.h"
+
+namespace limn {
+
+/// The textures that hold a frame's surfaces (lib/gbuffer.glsl). Pixels without a surface keep
+/// depth 0; their attributes are undefined.
+struct Gbuffer {
+    TextureId surface;   ///< RGBA32UI
+    TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 where nothing is
+    TextureId velocity;  ///< RG16F, uv now - uv before; not valid() unless asked for
+};
+
+}  // namespace limn
