@@ -52,7 +52,8 @@ Prefab make_prefab(World& world, Entity root) {
         for (const ComponentId id : source.components_of(subtree[i])) {
             const ComponentInfo& info = component_info(id);
             const bool is_link_up = i == 0 && id == component_id<Parent>;
-            if (!info.saved || info.ops.construct_copy == nullptr || is_link_up) {
+            if (!info.saved || !info.in_prefabs || info.ops.construct_copy == nullptr
+                || is_link_up) {
                 continue;
             }
             AnyComponent& copy =

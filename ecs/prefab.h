@@ -26,8 +26,9 @@ struct Prefab {
     std::vector<PrefabEntity> entities;  ///< the root first
 };
 
-/// Copies `root` and everything below it. What is not saved (ComponentTraits<T>::saved) or cannot
-/// be copied is left out, and so is the root's Parent. Entities outside are named as they are.
+/// Copies `root` and everything below it. What ComponentTraits keep from it (saved, in_prefabs)
+/// or cannot be copied is left out, and so is the root's Parent. Entities outside are named as they
+/// are.
 [[nodiscard]] Prefab make_prefab(World& world, Entity root);
 
 /// `count` copies in one batch, under `parent` unless that is null. Returns their roots. The

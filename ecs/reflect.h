@@ -114,8 +114,9 @@ enum class Storage : std::uint8_t { Table, Sparse };
 
 struct DefaultTraits {
     static constexpr Storage storage = Storage::Table;
-    static constexpr bool saved = true;   ///< part of snapshots
-    static constexpr bool hashed = true;  ///< part of the state hash
+    static constexpr bool saved = true;       ///< part of snapshots
+    static constexpr bool hashed = true;      ///< part of the state hash
+    static constexpr bool in_prefabs = true;  ///< copied into prefabs, if saved
     static constexpr bool trivially_relocatable =
         false;  ///< may be moved by memcpy although not trivially copyable
 };
@@ -165,6 +166,7 @@ struct ComponentInfo {
     bool trivially_destructible = false;
     bool saved = true;
     bool hashed = true;
+    bool in_prefabs = true;
     bool is_registered = false;  ///< found by name
     bool is_resource = false;    ///< registered as resource
     ValueBytes value_bytes = ValueBytes::Opaque;
@@ -410,6 +412,7 @@ ComponentId make_component_id() {
     info.trivially_destructible = std::is_trivially_destructible_v<T>;
     info.saved = ComponentTraits<T>::saved;
     info.hashed = ComponentTraits<T>::hashed;
+    info.in_prefabs = ComponentTraits<T>::in_prefabs;
     info.value_bytes = value_bytes_of<T>();
     info.ops = component_ops<T>();
     if constexpr (HasFields<T>) {

@@ -23,6 +23,16 @@ struct PreviousWorldTransform {
     Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
 
+/// A copy of a prefab stands elsewhere and has no past: add_world_transforms gives it both anew.
+template <>
+struct ComponentTraits<WorldTransform> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+template <>
+struct ComponentTraits<PreviousWorldTransform> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
 /// Tag: the entity jumped; its next step has no velocity. Removed by update_transforms.
 struct Teleport {};
 

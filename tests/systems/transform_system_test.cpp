@@ -1,5 +1,6 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
+#include "ecs/prefab.h"
 #include "ecs/schedule.h"
 #include "systems/motion_kernels.h"
 #include "systems/transform_system.h"
@@ -283,6 +284,22 @@ TEST_CASE(
             std::memcmp(previous.data(), plain_previous.data(), count * sizeof(WorldTransform))
             == 0);
     }
+}
+
+TEST_CASE("transform: a copy of a prefab has no velocity in its first step") {
+    World world;
+    Schedule schedule = make_schedule();
+    const Entity original = world.create(at(1, 2, 3));
+    schedule.run(world);
+    const Prefab prefab = make_prefab(world, original);
+    const Entity copy = spawn(world, prefab)[0];
+    world.get<Transform>(copy).position = {40, 50, 60};
+    schedule.run(world);
+    CHECK(same(
+        world.get<WorldTransform>(copy).world,
+        affine_from({40, 50, 60}, Quat(1, 0, 0, 0), Vec3(1))));
+    CHECK(
+        same(world.get<PreviousWorldTransform>(copy).world, world.get<WorldTransform>(copy).world));
 }
 
 TEST_CASE("transform: a random forest is what plain recursion says, through moves, births, deaths "
