@@ -35,6 +35,17 @@ T& resource_or_default(World& world) {
 
 }  // namespace
 
+void start_world(World& world) {
+    resource_or_default<FrameTime>(world);
+    resource_or_default<RandomSeed>(world);
+    resource_or_default<Input>(world);
+    world.run(update_sways);
+    world.run(update_camera_paths);
+    world.run(add_world_transforms);
+    world.run(update_transforms);
+    world.run(update_orbit_cameras);
+}
+
 void step_world(World& world, Schedule& schedule) {
     resource_or_default<RandomSeed>(world);
     resource_or_default<Input>(world);

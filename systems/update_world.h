@@ -11,6 +11,11 @@ namespace limn {
 /// All systems, in their order.
 [[nodiscard]] Schedule make_world_schedule();
 
+/// Puts everything where it is at time 0: the systems that follow from the time alone, then the
+/// matrices. The first picture needs no step, and the first step makes no jump. Inserts
+/// missing resources as step_world does.
+void start_world(World& world);
+
 /// Advances FrameTime by one step and runs the schedule. Resources that the systems need
 /// (FrameTime, RandomSeed, Input) are inserted with their defaults where they are missing.
 void step_world(World& world, Schedule& schedule);

@@ -1,11 +1,6 @@
 #include "content/app/stage.h"
 
-#include "ecs/components/input.h"
 #include "ecs/components/time.h"
-#include "systems/orbit_camera_system.h"
-#include "systems/script_system.h"
-#include "systems/sway_system.h"
-#include "systems/transform_system.h"
 #include "systems/update_world.h"
 
 #include <algorithm>
@@ -18,19 +13,6 @@ namespace {
 // minutes.
 constexpr double kRounding = 1e-3;
 
-/// Puts everything where it is at time 0, so that the first picture needs no step and the first
-/// step makes no jump: the systems that follow from the time alone, then the matrices.
-void place_everything(World& world) {
-    if (world.find_resource<Input>() == nullptr) {
-        world.insert_resource(Input{});
-    }
-    world.run(update_sways);
-    world.run(update_camera_paths);
-    world.run(add_world_transforms);
-    world.run(update_transforms);
-    world.run(update_orbit_cameras);
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Stage>>
@@ -42,7 +24,7 @@ open_stage(const std::string& scene, std::optional<std::uint64_t> seed) {
     }
     stage->scene = *std::move(loaded);
     stage->schedule = make_world_schedule();
-    place_everything(stage->world);
+    start_world(stage->world);
     return stage;
 }
 

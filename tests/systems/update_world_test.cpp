@@ -73,6 +73,17 @@ TEST_CASE("update_world: what was spawned is where it belongs after one step") {
     CHECK(world.has<PreviousWorldTransform>(child));
 }
 
+TEST_CASE("update_world: a started world is in place before its first step, which makes no jump") {
+    World world;
+    const Entity box = world.create(Transform{.position = {1, 2, 3}}, Sway{.center = {5, 0, 0}});
+    start_world(world);
+    CHECK(world.resource<FrameTime>().time == 0);
+    CHECK(transform_point(world.get<WorldTransform>(box).world, Vec3(0)) == Vec3(5, 0, 0));
+    Schedule schedule = make_world_schedule();
+    step_world(world, schedule);
+    CHECK(transform_point(world.get<PreviousWorldTransform>(box).world, Vec3(0)) == Vec3(5, 0, 0));
+}
+
 TEST_CASE("update_world: the same start gives the same worlds, from run to run and on any number "
           "of threads") {
     const int before = thread_count();
