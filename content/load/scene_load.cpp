@@ -154,7 +154,9 @@ load_gltf_scene(World& world, const std::string& path, const SceneOptions& optio
     scene.path = path;
     insert_missing<Assets>(world);
     (void)spawn_gltf(world, world.resource<Assets>(), *std::move(gltf));
-    world.insert_resource(Environment{.sky = SkyKind::Studio});
+    // Dim enough that the rig models the shape; the neutral curve keeps the file's colors.
+    world.insert_resource(Environment{.sky = SkyKind::Studio, .intensity = 0.6f});
+    world.insert_resource(Exposure{.curve = ToneCurve::Neutral});
     complete_scene(world, options, scene);
     if (!has_lights(world)) {
         // A camera of the file may be anywhere; the rig stands as if one looked at the model.
