@@ -1,0 +1,231 @@
+#pragma once
+
+#include "bench/micro/ecs_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+// Going through components, beside the same kernel over raw arrays.
+
+namespace limn::bench {
+
+// The loops of both sides are functions of their own, so that what the compiler makes of one does
+// not depend on what stands around it.
+
+template <typename Kernel, typename Query>
+[[gnu::noinline]] void run_each(const Query& query, const Kernel& kernel) {
+    query.each(kernel);
+}
+
+/// The kernel over the spans of every chunk, which is what Query::chunks is for.
+template <typename Kernel, typename... Terms>
+[[gnu::noinline]] void run_chunks(const Query<Terms...>& query, const Kernel& kernel) {
+    query.chunks([&](ChunkView chunk, std::span<Terms>... columns) {
+        const std::size_t size = chunk.size();
+        for (std::size_t i = 0; i < size; ++i) {
+            kernel(columns[i]...);
+        }
+    });
+}
+
+struct IterationTimes {
+    Timing raw;
+    Timing each;
+    Timing chunks;
+};
+
+/// [ns an entity]
+template <typename... Terms, typename Kernel>
+IterationTimes
+iterate(Bench& bench, const std::string& name, std::size_t count, const Kernel& kernel) {
+    const RawArrays<std::remove_const_t<Terms>...> arrays(count);
+    arrays.start_all();
+    World each_world;
+    World chunk_world;
+    fill<std::remove_const_t<Terms>...>(each_world, count);
+    fill<std::remove_const_t<Terms>...>(chunk_world, count);
+    const Query<Terms...> each_query = each_world.query<Terms...>();
+    const Query<Terms...> chunk_query = chunk_world.query<Terms...>();
+
+    const std::size_t rounds = std::max<std::size_t>(1, 200'000 / count);
+    const auto timed = [&](auto&& once) {
+        return per(
+            time_of([&] {
+                for (std::size_t i = 0; i < rounds; ++i) {
+                    once();
+                    keep(rounds);
+                }
+            }),
+            rounds * count);
+    };
+    const auto times = take_turns(
+        bench.repeats,
+        [&] { return timed([&] { arrays.each(kernel); }); },
+        [&] { return timed([&] { run_each(each_query, kernel); }); },
+        [&] { return timed([&] { run_chunks(chunk_query, kernel); }); });
+
+    std::uint64_t sum = 0;
+    arrays.each(RowSum{&sum});
+    bench.check(sum_of(each_query) == sum, name + ", each");
+    bench.check(sum_of(chunk_query) == sum, name + ", chunks");
+    return {times[0], times[1], times[2]};
+}
+
+template <typename... Terms, typename Kernel>
+void iteration_rows(
+    Bench& bench,
+    const std::string& name,
+    std::size_t count,
+    const Kernel& kernel,
+    int gate,
+    double limit) {
+    const IterationTimes times = iterate<Terms...>(bench, name, count, kernel);
+    bench.add(
+        {gate, name + ", each", count, "ns", times.each, times.raw, {}, Figure::OfRaw, limit});
+    bench.add(
+        {gate, name + ", chunks", count, "ns", times.chunks, times.raw, {}, Figure::OfRaw, limit});
+}
+
+inline void iteration(Bench& bench) {
+    iteration_rows<const Velocity, Position>(bench, "2 columns", kMany, Move{}, 1, 1.03);
+    iteration_rows<const Velocity, Position>(bench, "2 columns", kCached, Move{}, 2, 1.05);
+    iteration_rows<const Velocity, Position>(bench, "2 columns", kSmall, Move{}, 0, 0);
+    iteration_rows<Position>(bench, "1 column", kMany, Shift{}, 0, 0);
+    iteration_rows<Position>(bench, "1 column", kCached, Shift{}, 0, 0);
+    iteration_rows<Position>(bench, "1 column", kSmall, Shift{}, 0, 0);
+    const auto seven = [&](std::size_t count, int gate, double limit) {
+        iteration_rows<const Velocity, const Turn, const Scale, Position, Rotation, Tint, Life>(
+            bench, "7 columns", count, Animate{}, gate, limit);
+    };
+    seven(kMany, 3, 1.03);
+    seven(kCached, 4, 1.02);
+    seven(kSmall, 0, 0);
+
+    const IterationTimes call =
+        iterate<const Velocity, Position>(bench, "one call", kSmall, Move{});
+    const double rows = static_cast<double>(kSmall);
+    const Timing raw = scaled(call.raw, rows);
+    const Timing each = scaled(call.each, rows);
+    const Timing chunks = scaled(call.chunks, rows);
+    const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
+        bench.add({gate, name, kSmall, "ns/call", time, raw, {}, Figure::Plain, limit});
+    };
+    row(5, "one call over 64 rows, each", each, 20);
+    row(5, "one call over 64 rows, chunks", chunks, 20);
+    row(0, "    each, beyond the raw loop", beyond(each, raw), 10);
+    row(0, "    chunks, beyond the raw loop", beyond(chunks, raw), 10);
+}
+
+/// 26 archetypes of 20 rows each, one float a row.
+inline void fragmented(Bench& bench) {
+    constexpr std::size_t kArchetypes = 26;
+    constexpr std::size_t kRows = 20;
+    constexpr std::size_t kRounds = 400;
+    World world;
+    const auto make = [&]<int... numbers>(std::integer_sequence<int, numbers...>) {
+        (world.create_many(kRows, Scale{}, Fragment<numbers>{}), ...);
+    };
+    make(std::make_integer_sequence<int, kArchetypes>{});
+    const Query<Scale> query = world.query<Scale>();
+    query.each([row = std::size_t{0}](Scale& scale) mutable { start(scale, row++); });
+    const std::size_t count = query.count();
+    const RawArrays<Scale> arrays(count);
+    arrays.start_all();
+
+    const auto timed = [&](auto&& once) {
+        return per(
+            time_of([&] {
+                for (std::size_t i = 0; i < kRounds; ++i) {
+                    once();
+                    keep(i);
+                }
+            }),
+            kRounds * count);
+    };
+    const auto times = take_turns(
+        bench.repeats,
+        [&] { return timed([&] { arrays.each(Grow{}); }); },
+        [&] { return timed([&] { run_each(query, Grow{}); }); });
+    std::uint64_t sum = 0;
+    arrays.each(RowSum{&sum});
+    bench.check(count == kArchetypes * kRows && sum_of(query) == sum, "26 x 20");
+    bench.add(
+        {6,
+         "26 archetypes x 20 rows, each",
+         count,
+         "ns",
+         times[1],
+         times[0],
+         {},
+         Figure::OfRaw,
+         1.6});
+}
+
+/// Every entity has lost its velocity and got it back, in random order.
+inline void after_churn(Bench& bench) {
+    World world;
+    const std::vector<Entity> entities = fill<Velocity, Position>(world, kMany);
+    for (const std::uint32_t i : shuffled(kMany)) {
+        const Velocity velocity = world.get<const Velocity>(entities[i]);
+        world.remove<Velocity>(entities[i]);
+        world.add(entities[i], velocity);
+    }
+    const RawArrays<Velocity, Position> arrays(kMany);
+    arrays.start_all();
+    const auto query = world.query<const Velocity, Position>();
+    const auto times = take_turns(
+        bench.repeats,
+        [&] { return per(time_of([&] { arrays.each(Move{}); }), kMany); },
+        [&] { return per(time_of([&] { run_each(query, Move{}); }), kMany); });
+    std::uint64_t sum = 0;
+    arrays.each(RowSum{&sum});
+    bench.check(sum_of(query) == sum, "after churn");
+    bench.add(
+        {7,
+         "2 columns after churn, each",
+         kMany,
+         "ns",
+         times[1],
+         times[0],
+         {},
+         Figure::OfRaw,
+         1.03});
+}
+
+/// Time an entity against the number of entities, for the plot.
+inline std::vector<Curve> growth(Bench& bench, std::size_t largest) {
+    Curve raw{"raw arrays", "#888888", {}, {}};
+    Curve each{"each", "#1f77b4", {}, {}};
+    Curve chunks{"chunks", "#d62728", {}, {}};
+    for (double size = 1000; size < 1.1 * static_cast<double>(largest); size *= std::sqrt(10.0)) {
+        const std::size_t count = static_cast<std::size_t>(std::lround(size));
+        const IterationTimes times =
+            iterate<const Velocity, Position>(bench, "2 columns, growth", count, Move{});
+        bench.add(
+            {0,
+             "2 columns, growth, each",
+             count,
+             "ns",
+             times.each,
+             times.raw,
+             {},
+             Figure::OfRaw,
+             0});
+        const auto put = [&](Curve& curve, const Timing& timing) {
+            curve.entities.push_back(static_cast<double>(count));
+            curve.time.push_back(timing.best);
+        };
+        put(raw, times.raw);
+        put(each, times.each);
+        put(chunks, times.chunks);
+    }
+    return {raw, each, chunks};
+}
+
+}  // namespace limn::bench
