@@ -184,9 +184,14 @@ run_on_threads(Bench& bench, std::size_t count, const Kernel& kernel, const char
     const RawArrays<std::remove_const_t<Terms>...> arrays(count);
     arrays.start_all();
     const auto query = world.query<Terms...>();
+    // Threads are made when there is work, and move to a core of their own after a while.
     const auto start_threads = [](int threads) {
         set_thread_count(threads);
-        parallel_for(64, 1, [](std::size_t, std::size_t) { keep(time_of([] {})); });
+        parallel_for(64, 1, [](std::size_t, std::size_t) {
+            for (double spent = 0; spent < 2e5;) {
+                spent += time_of([] {});
+            }
+        });
     };
     const auto run_ecs = [&](int threads) {
         start_threads(threads);
