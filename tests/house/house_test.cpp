@@ -151,9 +151,9 @@ TEST_CASE("house: file names are unique in the whole tree") {
         if (name == "main.cpp") {
             continue;
         }
-        const auto [where, is_new] = first.emplace(name, source.path);
-        INFO(source.path << " and " << where->second);
-        CHECK(is_new);
+        const auto added = first.emplace(name, source.path);
+        INFO(source.path << " and " << added.first->second);
+        CHECK(added.second);
     }
 }
 
