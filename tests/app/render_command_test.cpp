@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -119,6 +120,68 @@ TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by
         CHECK((length < 1e-6f || std::abs(length - 1.0f) < 0.01f));
     }
     CHECK(surfaces > 100);
+}
+
+TEST_CASE("render_command: the EXR of a matte plane under a point light is the closed form") {
+    // A camera 4 m above the plane looks straight down, its picture's top toward -z; the light
+    // hangs off its axis. Radiance = albedo / pi * intensity * cos / d^2.
+    const TemporaryFolder folder;
+    test::write_text(folder.file("plane.level.json"), R"json({
+      "resources": {"environment": {"sky": "uniform", "zenith": [0, 0, 0]}},
+      "meshes": {"plane": {"make": "plane", "size": [40, 40]}},
+      "materials": {"matte": {"shading": "blinn", "base_color": [0.5, 0.25, 0.125, 1], "specular": [0, 0, 0]}},
+      "entities": [
+        {"transform": {}, "mesh_instance": {"mesh": "plane", "material": "matte"}},
+        {"transform": {"position": [0.5, 2, -0.3]},
+         "point_light": {"color": [1, 1, 1], "intensity": 100, "radius": 0}},
+        {"transform": {"position": [0, 4, 0], "rotation": [0, -90, 0]}, "camera": {"fov_y": 1.0}}
+      ]
+    })json");
+    constexpr int kWidth = 64;
+    constexpr int kHeight = 36;
+    check_ok(run_limn(
+        folder,
+        {"render",
+         "plane.level.json",
+         "-o",
+         "a.exr",
+         "--size",
+         "64x36",
+         "--spp",
+         "1",
+         "--aov",
+         "depth,normal,albedo"}));
+    const Picture picture = read_picture(folder.file("a.exr"));
+    REQUIRE(picture.whole);
+    REQUIRE(picture.width == kWidth);
+    REQUIRE(picture.height == kHeight);
+
+    const double half_height = 4.0 * std::tan(0.5);  // of what the picture shows [m]
+    double worst = 0;
+    for (int row = 0; row < kHeight; ++row) {
+        for (int column = 0; column < kWidth; ++column) {
+            const std::size_t pixel = static_cast<std::size_t>(row) * kWidth + column;
+            const auto value = [&](const char* channel) {
+                return static_cast<double>(
+                    picture.values
+                        [pixel * picture.channels.size()
+                         + static_cast<std::size_t>(picture.channel(channel))]);
+            };
+            const double x =
+                (2.0 * (column + 0.5) / kHeight - double(kWidth) / kHeight) * half_height;
+            const double z = (2.0 * (row + 0.5) / kHeight - 1.0) * half_height;
+            const double d2 = (x - 0.5) * (x - 0.5) + 4.0 + (z + 0.3) * (z + 0.3);
+            const double irradiance = 100.0 / d2 * (2.0 / std::sqrt(d2));
+            const double red = 0.5 / 3.14159265358979 * irradiance;
+            worst = std::max(worst, std::abs(value("R") / red - 1.0));
+            worst = std::max(worst, std::abs(value("G") / (0.5 * red) - 1.0));
+            worst = std::max(worst, std::abs(value("B") / (0.25 * red) - 1.0));
+            worst = std::max(worst, std::abs(value("depth.Z") / 4.0 - 1.0));
+            worst = std::max(worst, std::abs(value("normal.Y") - 1.0));
+        }
+    }
+    INFO("largest relative error " << worst);
+    CHECK(worst <= 1e-3);
 }
 
 TEST_CASE("render_command: the same command gives the same bytes") {
