@@ -108,9 +108,14 @@ struct FieldInfo {
 using ComponentId = std::uint32_t;
 inline constexpr ComponentId kMaxComponents = 4096;
 
-/// Where a component lives. `Table`: in the columns of the entity's archetype; quick to iterate.
-/// `Sparse`: in a table of its own; quick to add and remove.
-enum class Storage : std::uint8_t { Table, Sparse };
+/// Where a component lives.
+enum class Storage : std::uint8_t {
+    Table,   ///< in a column of the entity's archetype: quick to iterate
+    Split,   ///< in a column per 4-byte scalar of it: quickest for kernels over single fields
+    Sparse,  ///< in a table of its own: quick to add and remove
+    Toggle,  ///< in a column, with a bit per row that says whether it counts
+    Shared,  ///< once per archetype: entities of equal value are one batch
+};
 
 struct DefaultTraits {
     static constexpr Storage storage = Storage::Table;
