@@ -274,7 +274,7 @@ class CommandFlush {
 
     [[nodiscard]] Archetype* source_of(const Group& group) const {
         const std::uint32_t index =
-            group.is_new ? 0 : world_.core_.entities.find(group.entity)->archetype;
+            group.is_new ? 0 : world_.core_.entities.find(group.entity).archetype;
         return &world_.archetype(index);
     }
 
@@ -286,7 +286,7 @@ class CommandFlush {
             if (group.is_new) {
                 world_.core_.entities.free(group.entity);
             } else {
-                world_.destroy_now(group.entity, *world_.core_.entities.find(group.entity));
+                world_.destroy_now(group.entity, world_.core_.entities.find(group.entity));
             }
             return;
         }
@@ -298,7 +298,7 @@ class CommandFlush {
         } else if (Archetype* source = source_of(group); source != &target) {
             world_.move_row(group.entity, *source, target);
         }
-        const std::uint32_t row = world_.core_.entities.find(group.entity)->row;
+        const std::uint32_t row = world_.core_.entities.find(group.entity).row;
         for (const Change& change : changes_of(group)) {
             const ComponentInfo& info = component_info(change.component);
             if (info.storage == Storage::Sparse) {

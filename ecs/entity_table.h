@@ -3,26 +3,34 @@
 #include "ecs/column.h"
 #include "ecs/entity.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace limn {
 
-// Which handle is alive, and where its row is. A slot is 12 bytes in memory that never moves. Free
-// slots wait in a queue, first freed first used, and none is used again before kReuseDistance
-// others are free: a stale handle that somebody kept meets its successor as late as possible.
-// Generations differ all the same, so that such a handle is found out, never mistaken.
+// Which handle is alive, and where its row is. A slot is 10 bytes in memory that never moves: the
+// generation, and archetype and row packed into the other six. Free slots wait in a queue, first
+// freed first used, and none is used again before kReuseDistance others are free: a stale handle
+// that somebody kept meets its successor as late as possible. Generations differ all the same, so
+// that such a handle is found out, never mistaken.
 
 inline constexpr std::uint32_t kNoArchetype = 0xffffffffu;
 /// Generations stay below this bit; handles above it are placeholders of Commands.
 inline constexpr std::uint32_t kPlaceholderBit = 0x80000000u;
+/// What a slot has room for.
+inline constexpr std::uint32_t kMaxArchetypes = 0xffffu << 6;
+inline constexpr std::uint32_t kMaxRowsOfSlot = 1u << 26;
 
-struct EntitySlot {
-    std::uint32_t generation;
-    std::uint32_t archetype;  ///< index of the archetype, or kNoArchetype: the slot is free
-    std::uint32_t row;        ///< in the archetype; of a free slot, the next free slot
+/// Where the row of an entity is.
+struct EntityPlace {
+    std::uint32_t archetype = kNoArchetype;
+    std::uint32_t row = 0;
+
+    /// False: the handle was stale or null.
+    [[nodiscard]] explicit operator bool() const { return archetype != kNoArchetype; }
 };
-static_assert(sizeof(EntitySlot) == 12);
 
 /// Everything a snapshot needs to give out the same handles later.
 struct EntityTableImage {
@@ -37,28 +45,31 @@ class EntityTable {
 
     EntityTable();
 
-    /// A new handle. Its slot says kNoArchetype until place().
+    /// A new handle, which find() does not know before place().
     [[nodiscard]] Entity allocate();
     void free(Entity entity);
     void place(Entity entity, std::uint32_t archetype, std::uint32_t row) {
-        EntitySlot& slot = slots_[entity.index];
-        slot.archetype = archetype;
-        slot.row = row;
+        Slot slot = slot_at(entity.index);
+        slot.set_low(archetype << kRowBits | row);
+        slot.set_high(static_cast<std::uint16_t>(archetype >> (32 - kRowBits)));
     }
 
-    /// nullptr: the handle is stale or null.
-    [[nodiscard]] const EntitySlot* find(Entity entity) const {
+    [[nodiscard]] EntityPlace find(Entity entity) const {
         if (entity.index >= slot_count_) {
-            return nullptr;
+            return {};
         }
-        const EntitySlot& slot = slots_[entity.index];
-        return slot.generation == entity.generation && slot.archetype != kNoArchetype ? &slot
-                                                                                      : nullptr;
+        const Slot slot = slot_at(entity.index);
+        if (slot.generation() != entity.generation || slot.high() == kFree) {
+            return {};
+        }
+        const std::uint32_t low = slot.low();
+        return {
+            std::uint32_t{slot.high()} << (32 - kRowBits) | low >> kRowBits,
+            low & (kMaxRowsOfSlot - 1)};
     }
 
     [[nodiscard]] std::uint32_t slot_count() const { return slot_count_; }
     [[nodiscard]] std::uint32_t free_count() const { return free_count_; }
-    [[nodiscard]] const EntitySlot& slot(std::uint32_t index) const { return slots_[index]; }
     [[nodiscard]] std::size_t committed() const { return range_.committed(); }
 
     [[nodiscard]] EntityTableImage image() const;
@@ -67,8 +78,39 @@ class EntityTable {
 
   private:
     static constexpr std::uint32_t kEnd = 0xffffffffu;
+    static constexpr int kRowBits = 26;
+    static constexpr std::uint16_t kFree = 0xffff;  ///< as high part: no row; low is the next slot
+    static constexpr std::size_t kSlotBytes = 10;
 
-    EntitySlot* slots_ = nullptr;
+    /// Three fields read and written each in one piece, so that a read soon after a write need not
+    /// wait for the cache.
+    class Slot {
+      public:
+        explicit Slot(std::byte* bytes) : bytes_(bytes) {}
+        [[nodiscard]] std::uint32_t generation() const { return load<std::uint32_t>(0); }
+        /// The row, and above it the low bits of the archetype.
+        [[nodiscard]] std::uint32_t low() const { return load<std::uint32_t>(4); }
+        /// The high bits of the archetype.
+        [[nodiscard]] std::uint16_t high() const { return load<std::uint16_t>(8); }
+        void set_generation(std::uint32_t value) { std::memcpy(bytes_, &value, sizeof(value)); }
+        void set_low(std::uint32_t value) { std::memcpy(bytes_ + 4, &value, sizeof(value)); }
+        void set_high(std::uint16_t value) { std::memcpy(bytes_ + 8, &value, sizeof(value)); }
+
+      private:
+        template <typename T>
+        [[nodiscard]] T load(std::size_t offset) const {
+            T value;
+            std::memcpy(&value, bytes_ + offset, sizeof(value));
+            return value;
+        }
+        std::byte* bytes_;
+    };
+    [[nodiscard]] Slot slot_at(std::uint32_t index) const {
+        return Slot(slots_ + std::size_t{index} * kSlotBytes);
+    }
+    void set_free(std::uint32_t index, std::uint32_t generation, std::uint32_t next);
+
+    std::byte* slots_ = nullptr;
     std::uint32_t slot_count_ = 0;
     std::uint32_t free_count_ = 0;
     std::uint32_t first_free_ = kEnd;

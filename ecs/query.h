@@ -454,18 +454,18 @@ class Query {
     void visit_following(std::uint32_t begin, std::uint32_t end, const Visit& visit) const {
         const SparseSet* set = state_->leading_set(*core_);
         for (std::uint32_t i = begin; i < end; ++i) {
-            const EntitySlot* slot = core_->entities.find(set->entities()[i]);
-            const QueryMatch* match = state_->match_of(slot->archetype);
-            if (match == nullptr || !passes(*match, slot->row)) {
+            const EntityPlace place = core_->entities.find(set->entities()[i]);
+            const QueryMatch* match = state_->match_of(place.archetype);
+            if (match == nullptr || !passes(*match, place.row)) {
                 continue;
             }
             if constexpr (kChanged) {
                 if (!state_->chunk_changed(
-                        *match->archetype, slot->row / kChunkRows, since_version())) {
+                        *match->archetype, place.row / kChunkRows, since_version())) {
                     continue;
                 }
             }
-            visit(*match, slot->row);
+            visit(*match, place.row);
         }
     }
 
@@ -489,15 +489,15 @@ class Query {
 
     [[nodiscard]] Place locate(Entity entity) const {
         state_->update(*core_);
-        const EntitySlot* slot = core_->entities.find(entity);
-        if (slot == nullptr) {
+        const EntityPlace place = core_->entities.find(entity);
+        if (!place) {
             return {};
         }
-        const QueryMatch* match = state_->match_of(slot->archetype);
+        const QueryMatch* match = state_->match_of(place.archetype);
         if (match == nullptr || (kFiltersRows && !state_->row_matches(*core_, entity))) {
             return {};
         }
-        return {match, slot->row};
+        return {match, place.row};
     }
 
     template <typename T, typename... Ts, std::size_t... Positions>

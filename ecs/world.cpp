@@ -49,20 +49,20 @@ std::size_t World::entity_count() const {
 
 void World::destroy(Entity entity) {
     core_.check_unlocked();
-    const EntitySlot slot = require(entity);
-    bool observed = archetype(slot.archetype).observes_remove;
+    const EntityPlace place = require(entity);
+    bool observed = archetype(place.archetype).observes_remove;
     for (const SparseSet* set : core_.sparse_list) {
         observed = observed || (set->observes_remove && set->has(entity));
     }
     if (observed) {
         notify(ObserverEvent::Remove, components_of(entity), {&entity, 1});
     }
-    destroy_now(entity, slot);
+    destroy_now(entity, place);
 }
 
-void World::destroy_now(Entity entity, const EntitySlot& slot) {
-    const std::uint32_t row = slot.row;
-    Archetype& rows = archetype(slot.archetype);
+void World::destroy_now(Entity entity, EntityPlace place) {
+    const std::uint32_t row = place.row;
+    Archetype& rows = archetype(place.archetype);
     for (SparseSet* set : core_.sparse_list) {
         if (const std::uint32_t position = set->find(entity); position != SparseSet::kAbsent) {
             set->remove(position, core_.now());
@@ -104,6 +104,7 @@ Archetype& World::archetype_of(std::span<const ComponentId> components) {
         return archetype(found->second);
     }
     const std::uint32_t index = static_cast<std::uint32_t>(core_.archetypes.size());
+    LIMN_CHECK_NOTE(index < kMaxArchetypes, "too many archetypes");
     core_.archetypes.push_back(std::make_unique<Archetype>(index, components, core_.blocks));
     internals_->archetype_by_components.emplace(std::move(key), index);
     Archetype& made = *core_.archetypes.back();
@@ -170,7 +171,7 @@ World::make_bundle(std::uint32_t index, std::span<const ComponentId> components)
 }
 
 std::uint32_t World::move_row(Entity entity, Archetype& from, Archetype& to) {
-    const std::uint32_t old_row = core_.entities.find(entity)->row;
+    const std::uint32_t old_row = core_.entities.find(entity).row;
     const std::uint32_t new_row = to.append(entity, core_.now());
     // Both lists of columns ascend by component: walk them together.
     const std::span<Column> targets = to.columns();
@@ -213,8 +214,8 @@ SparseSet& World::use_sparse_set(ComponentId id) {
 // --------------------------------------------------------------------
 
 std::vector<ComponentId> World::components_of(Entity entity) const {
-    const EntitySlot& slot = require(entity);
-    const auto table = archetype(slot.archetype).components();
+    const EntityPlace place = require(entity);
+    const auto table = archetype(place.archetype).components();
     std::vector<ComponentId> components(table.begin(), table.end());
     for (const SparseSet* set : core_.sparse_list) {
         if (set->has(entity)) {
@@ -230,29 +231,29 @@ std::vector<ComponentId> World::components_of(Entity entity) const {
 }
 
 bool World::has(Entity entity, ComponentId id) const {
-    const EntitySlot* slot = core_.entities.find(entity);
-    if (slot == nullptr) {
+    const EntityPlace place = core_.entities.find(entity);
+    if (!place) {
         return false;
     }
     const SparseSet* set = core_.sparse_set(id);
-    return archetype(slot->archetype).has(id) || (set != nullptr && set->has(entity));
+    return archetype(place.archetype).has(id) || (set != nullptr && set->has(entity));
 }
 
 const void* World::find(Entity entity, ComponentId id) const {
-    const EntitySlot* slot = core_.entities.find(entity);
-    if (slot == nullptr) {
+    const EntityPlace place = core_.entities.find(entity);
+    if (!place) {
         return nullptr;
     }
     if (const SparseSet* set = core_.sparse_set(id); set != nullptr) {
         const std::uint32_t position = set->find(entity);
         return position == SparseSet::kAbsent ? nullptr : set->value(position);
     }
-    const Archetype& rows = archetype(slot->archetype);
+    const Archetype& rows = archetype(place.archetype);
     const int column = rows.column_of(id);
     if (column == kTagColumn) {
         return &rows;  // some address: tags have no value
     }
-    return column == kNoColumn ? nullptr : rows.column(column).at(slot->row);
+    return column == kNoColumn ? nullptr : rows.column(column).at(place.row);
 }
 
 void* World::find(Entity entity, ComponentId id) {
@@ -263,21 +264,21 @@ void* World::find(Entity entity, ComponentId id) {
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->touch(set->find(entity), core_.now());
     } else {
-        const EntitySlot& slot = *core_.entities.find(entity);
-        Archetype& rows = archetype(slot.archetype);
-        rows.touch_row(rows.column_of(id), slot.row, core_.now());
+        const EntityPlace place = core_.entities.find(entity);
+        Archetype& rows = archetype(place.archetype);
+        rows.touch_row(rows.column_of(id), place.row, core_.now());
     }
     return const_cast<void*>(value);
 }
 
 void* World::make_room(Entity entity, ComponentId id) {
-    const EntitySlot slot = require(entity);
+    const EntityPlace place = require(entity);
     const ComponentInfo& info = component_info(id);
     if (info.storage == Storage::Sparse) {
         SparseSet& set = use_sparse_set(id);
         return set.value(set.append(entity, core_.now()));
     }
-    Archetype& from = archetype(slot.archetype);
+    Archetype& from = archetype(place.archetype);
     Archetype& to = archetype_with(from, id);
     const std::uint32_t row = move_row(entity, from, to);
     const int column = to.column_of(id);
@@ -353,7 +354,7 @@ void World::remove_now(Entity entity, ComponentId id) {
         set->remove(set->find(entity), core_.now());
         return;
     }
-    Archetype& from = archetype(core_.entities.find(entity)->archetype);
+    Archetype& from = archetype(core_.entities.find(entity).archetype);
     move_row(entity, from, archetype_without(from, id));
 }
 

@@ -56,7 +56,9 @@ class World {
     template <typename... Ts>
     void create_many(std::span<Entity> entities, const Ts&... components);
     void destroy(Entity entity);
-    [[nodiscard]] bool alive(Entity entity) const { return core_.entities.find(entity) != nullptr; }
+    [[nodiscard]] bool alive(Entity entity) const {
+        return static_cast<bool>(core_.entities.find(entity));
+    }
     [[nodiscard]] std::size_t entity_count() const;
     /// Destroys all entities; resources, observers and memory stay.
     void clear();
@@ -211,10 +213,10 @@ class World {
         bool has_sparse = false;
     };
 
-    [[nodiscard]] const EntitySlot& require(Entity entity) const {
-        const EntitySlot* slot = core_.entities.find(entity);
-        LIMN_CHECK_NOTE(slot != nullptr, "stale handle: the entity is gone");
-        return *slot;
+    [[nodiscard]] EntityPlace require(Entity entity) const {
+        const EntityPlace place = core_.entities.find(entity);
+        LIMN_CHECK_NOTE(place, "stale handle: the entity is gone");
+        return place;
     }
     [[nodiscard]] Archetype& archetype(std::uint32_t index) const {
         return *core_.archetypes[index];
@@ -230,7 +232,7 @@ class World {
     std::uint32_t move_row(Entity entity, Archetype& from, Archetype& to);
     /// Room for a component the entity does not have yet: raw memory, nullptr for tags.
     void* make_room(Entity entity, ComponentId id);
-    void destroy_now(Entity entity, const EntitySlot& slot);
+    void destroy_now(Entity entity, EntityPlace place);
     void remove_now(Entity entity, ComponentId id);
     [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);
 

@@ -20,6 +20,8 @@ inline constexpr std::uint32_t kMaxVersionAge = 3u << 29;
 /// `since` of a system that never ran, relative to the version it runs at: all is new to it.
 inline constexpr std::uint32_t kNeverRan = 0x7fffffffu;
 
+static_assert(kMaxRows <= kMaxRowsOfSlot);
+
 struct WorldCore {
     EntityTable entities;
     BlockPool blocks;

@@ -165,15 +165,15 @@ T& World::add(Entity entity, T component) {
 template <typename T>
 T* World::find(Entity entity) {
     using Value = std::remove_const_t<T>;
-    const EntitySlot* slot = core_.entities.find(entity);
-    if (slot == nullptr) {
+    const EntityPlace place = core_.entities.find(entity);
+    if (!place) {
         return nullptr;
     }
     if constexpr (detail::is_sparse<Value>) {
         return detail::SparseOptionalAccess<T>{
             core_.sparse_set(component_id<Value>), &entity, core_.now()}[0];
     } else {
-        Archetype& rows = archetype(slot->archetype);
+        Archetype& rows = archetype(place.archetype);
         const int column = rows.column_of(component_id<Value>);
         if (column == kNoColumn) {
             return nullptr;
@@ -182,9 +182,9 @@ T* World::find(Entity entity) {
             return &detail::tag_value<Value>;
         } else {
             if constexpr (!std::is_const_v<T>) {
-                rows.touch_row(column, slot->row, core_.now());
+                rows.touch_row(column, place.row, core_.now());
             }
-            return reinterpret_cast<T*>(rows.column(column).data) + slot->row;
+            return reinterpret_cast<T*>(rows.column(column).data) + place.row;
         }
     }
 }

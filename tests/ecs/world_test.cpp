@@ -83,8 +83,39 @@ TEST_CASE("world: a slot whose generations are used up is retired, not started o
     table.place(last, 0, 0);
     table.free(last);
     CHECK(table.free_count() == 0);
-    CHECK(table.find(last) == nullptr);
+    CHECK_FALSE(table.find(last));
     CHECK(table.allocate().index == 1);
+}
+
+TEST_CASE(
+    "world: a slot holds every archetype and row up to the limits, apart from its neighbors") {
+    constexpr std::uint32_t kArchetypes[] = {
+        0, 1, 63, 64, 1000, 65'535, 1u << 21, kMaxArchetypes - 1};
+    constexpr std::uint32_t kRows[] = {0, 1, 1023, 65'536, kMaxRowsOfSlot - 1};
+    EntityTable table;
+    const Entity before = table.allocate();
+    const Entity entity = table.allocate();
+    const Entity after = table.allocate();
+    table.place(before, 3, 4);
+    CHECK_FALSE(table.find(entity));
+    for (const std::uint32_t archetype : kArchetypes) {
+        for (const std::uint32_t row : kRows) {
+            table.place(entity, archetype, row);
+            REQUIRE(table.find(entity));
+            CHECK(table.find(entity).archetype == archetype);
+            CHECK(table.find(entity).row == row);
+            CHECK_FALSE(table.find(after));
+        }
+    }
+    table.place(after, 5, 6);
+    CHECK(table.find(before).archetype == 3);
+    CHECK(table.find(before).row == 4);
+    CHECK(table.find(entity).archetype == kMaxArchetypes - 1);
+    CHECK(table.find(after).row == 6);
+    CHECK_FALSE(table.find({entity.index, entity.generation + 1}));
+    table.free(entity);
+    CHECK_FALSE(table.find(entity));
+    CHECK_FALSE(table.find({entity.index, entity.generation + 1}));
 }
 
 TEST_CASE("world: misuse stops with a message that names the mistake") {
