@@ -87,13 +87,14 @@ class Schedule {
     void build_stage(Stage& stage) const;
     [[nodiscard]] bool is_worth_threads(const Stage& stage) const;
     void run_stage(World& world, const Stage& stage);
+    void run_in_row(World& world, const Stage& stage, std::uint32_t version);
     void run_timed(World& world, std::size_t system, std::uint32_t version);
+    void note_time(std::size_t system, double duration);
     void apply(World& world, const Stage& stage);
 
     std::vector<System> systems_;
     std::vector<SystemTiming> timings_;
     std::vector<double> expected_;          ///< running average of each system [s]
-    std::vector<std::uint32_t> versions_;   ///< of the systems of the running stage
     std::vector<std::size_t> sync_points_;  ///< before the system of this number
     mutable std::vector<Stage> stages_;
     mutable bool is_built_ = false;

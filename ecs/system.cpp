@@ -64,16 +64,19 @@ bool SystemAccess::conflicts_with(const SystemAccess& other) const {
 }
 
 void System::run(World& world, std::uint32_t version) {
-    const std::uint32_t since = has_run_ ? last_version_ : version - kNeverRan;
-    // In a task of its own: its commands are numbered from the start, wherever it was stolen to.
-    const TaskScopeGuard scope({});
     if (access_.exclusive) {
         world.core().check_unlocked();
-        body_->run(world, version, since);
+        run_locked(world, version);
     } else {
         const IterationGuard guard(world.core(), IterationLock::Shared);
-        body_->run(world, version, since);
+        run_locked(world, version);
     }
+}
+
+void System::run_locked(World& world, std::uint32_t version) {
+    // In a task of its own: its commands are numbered from the start, wherever it was stolen to.
+    const TaskScopeGuard scope({});
+    body_->run(world, version, has_run_ ? last_version_ : version - kNeverRan);
     last_version_ = version;
     has_run_ = true;
 }

@@ -45,6 +45,9 @@ class System {
     /// in the order of the systems. Systems whose access does not conflict may run at the same
     /// time. An exclusive one must run alone.
     void run(World& world, std::uint32_t version);
+    /// The same by a caller who has locked the structure, or, of an exclusive system, has made sure
+    /// that nobody did.
+    void run_locked(World& world, std::uint32_t version);
     /// For apply_commands after the run; nullptr if the system takes no Commands.
     [[nodiscard]] CommandBuffer* commands() { return body_->commands(); }
 

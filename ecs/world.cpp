@@ -379,7 +379,7 @@ QueryState& World::shared_query_state(std::uint32_t index, MakeTerms terms) cons
     return *state;
 }
 
-std::uint32_t World::begin_run() {
+std::uint32_t World::begin_run(std::uint32_t systems) {
     constexpr std::uint32_t kInterval = 1u << 28;  // kMaxVersionAge + kInterval < 2^31
     if (core_.now() - versions_forgotten_at_ > kInterval
         && core_.iterations.load(std::memory_order_relaxed) == 0) {
@@ -397,7 +397,7 @@ std::uint32_t World::begin_run() {
             }
         }
     }
-    return core_.version.fetch_add(1, std::memory_order_relaxed);
+    return core_.version.fetch_add(systems, std::memory_order_relaxed);
 }
 
 void World::set_version(std::uint32_t version) {

@@ -195,8 +195,9 @@ class World {
     [[nodiscard]] WorldMemory memory() const;  ///< in ecs/world_stats.h
     [[nodiscard]] WorldCore& core() { return core_; }
     [[nodiscard]] const WorldCore& core() const { return core_; }
-    /// Starts a run of a system: the version of what it writes. Old versions are forgotten here.
-    [[nodiscard]] std::uint32_t begin_run();
+    /// Starts a run of `systems` systems: the version of what the first one writes; those of the
+    /// others follow. Old versions are forgotten here.
+    [[nodiscard]] std::uint32_t begin_run(std::uint32_t systems = 1);
     /// For tests of the wrap: all that happens from now on has versions from `version` on.
     void set_version(std::uint32_t version);
 
