@@ -1,9 +1,10 @@
 #include "ecs/field_access.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -387,13 +388,13 @@ std::string range_text(const FieldMeta& meta) {
     const bool has_max = meta.max < INFINITY;
     const std::string unit = *meta.unit == '\0' ? "" : std::string(" ") + meta.unit;
     if (has_min && has_max) {
-        return fmt::format("{} .. {}{}", meta.min, meta.max, unit);
+        return format_text("{} .. {}{}", meta.min, meta.max, unit);
     }
     if (has_min) {
-        return fmt::format("{} or more{}", meta.min, unit);
+        return format_text("{} or more{}", meta.min, unit);
     }
     if (has_max) {
-        return fmt::format("{} or less{}", meta.max, unit);
+        return format_text("{} or less{}", meta.max, unit);
     }
     return "";
 }
@@ -412,29 +413,29 @@ std::string type_text(const FieldInfo& field) {
         text = "text";
         break;
     case FieldType::Enum:
-        text = fmt::format("one of {}", field.meta.values);
+        text = format_text("one of {}", field.meta.values);
         break;
     case FieldType::Entity:
         text = "name of an entity";
         break;
     case FieldType::Asset:
-        text = fmt::format("name of a {}", field.asset);
+        text = format_text("name of a {}", field.asset);
         break;
     case FieldType::Struct:
         text = "object";
         break;
     default: {
         const int numbers = number_count(field.type);
-        text = numbers == 1 ? "number" : fmt::format("{} numbers", numbers);
+        text = numbers == 1 ? "number" : format_text("{} numbers", numbers);
     }
     }
     switch (field.shape) {
     case FieldShape::One:
         return text;
     case FieldShape::Array:
-        return fmt::format("{} times {}", field.count, text);
+        return format_text("{} times {}", field.count, text);
     case FieldShape::List:
-        return fmt::format("list of {}", text);
+        return format_text("list of {}", text);
     }
     return text;
 }
@@ -444,34 +445,34 @@ std::string value_text(const FieldInfo& field, const void* element) {
     case FieldType::Bool:
         return load<std::uint8_t>(element) != 0 ? "true" : "false";
     case FieldType::String:
-        return fmt::format("\"{}\"", *static_cast<const std::string*>(element));
+        return format_text("\"{}\"", *static_cast<const std::string*>(element));
     case FieldType::Enum:
         return std::string(get_enum(field, element));
     case FieldType::Entity: {
         const auto entity = load<Entity>(element);
         return entity.is_null() ? "none"
-                                : fmt::format("entity {} v{}", entity.index, entity.generation);
+                                : format_text("entity {} v{}", entity.index, entity.generation);
     }
     case FieldType::Asset: {
         const auto index = load<std::uint32_t>(element);
-        return index == 0xffffffffu ? "none" : fmt::format("{} {}", field.asset, index);
+        return index == 0xffffffffu ? "none" : format_text("{} {}", field.asset, index);
     }
     case FieldType::Struct: {
         std::string text = "{";
         for (const FieldInfo& inner : field.fields) {
             const void* const data = field_ptr(element, inner);
             text += text.size() > 1 ? ", " : "";
-            text += fmt::format("{}: ", inner.name);
+            text += format_text("{}: ", inner.name);
             text += inner.shape == FieldShape::One
                         ? value_text(inner, data)
-                        : fmt::format("{} elements", element_count(inner, data));
+                        : format_text("{} elements", element_count(inner, data));
         }
         return text + "}";
     }
     case FieldType::Int:
-        return fmt::format("{}", get_signed(field, element));
+        return format_text("{}", get_signed(field, element));
     case FieldType::UInt:
-        return fmt::format("{}", get_unsigned(field, element));
+        return format_text("{}", get_unsigned(field, element));
     default:
         break;
     }
@@ -481,8 +482,8 @@ std::string value_text(const FieldInfo& field, const void* element) {
         text += lane > 0 ? ", " : "";
         // As a float where it is one: 0.1, not 0.10000000149011612.
         const double number = get_number(field, element, lane);
-        text += field.type == FieldType::Double ? fmt::format("{}", number)
-                                                : fmt::format("{}", static_cast<float>(number));
+        text += field.type == FieldType::Double ? format_text("{}", number)
+                                                : format_text("{}", static_cast<float>(number));
     }
     return numbers > 1 ? text + "]" : text;
 }

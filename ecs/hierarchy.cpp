@@ -9,7 +9,7 @@ namespace limn {
 namespace {
 
 std::string name_of(Entity entity) {
-    return fmt::format("entity {} v{}", entity.index, entity.generation);
+    return format_text("entity {} v{}", entity.index, entity.generation);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ecs/base/math.h"
+#include "ecs/base/field_type.h"
 #include "ecs/base/result.h"
 #include "ecs/base/type_name.h"
 #include "ecs/entity.h"
@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -44,37 +45,12 @@ namespace limn {
 struct FieldMeta {
     const char* doc = "";
     const char* unit = "";
-    double min = -INFINITY;
-    double max = INFINITY;
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
     const char* values =
         "";              ///< names of the enumerators 0, 1, 2 ... of an enum, one space between
     bool color = false;  ///< linear RGB or RGBA
 };
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"  // gcc 12 takes scoped enumerators for rivals of types
-enum class FieldType : std::uint8_t {
-    Bool,
-    Int,   ///< signed, `size` bytes
-    UInt,  ///< unsigned, `size` bytes
-    Float,
-    Double,
-    Vec2,
-    Vec3,
-    Vec4,
-    Quat,  ///< in memory x y z w
-    IVec2,
-    IVec3,
-    Mat3,
-    Mat4,
-    Affine,  ///< 12 floats, rows of the upper 3x4 matrix
-    String,  ///< std::string
-    Enum,    ///< unsigned integer of `size` bytes, below values.size()
-    Entity,
-    Asset,   ///< std::uint32_t index; `asset` says of what
-    Struct,  ///< `fields`
-};
-#pragma GCC diagnostic pop
 
 /// How often a field holds its type.
 enum class FieldShape : std::uint8_t {
@@ -200,6 +176,15 @@ struct ComponentInfo {
 [[nodiscard]] std::string component_suggestion(std::string_view name);
 [[nodiscard]] std::string resource_suggestion(std::string_view name);
 
+template <>
+inline constexpr FieldType field_type_of<float> = FieldType::Float;
+template <>
+inline constexpr FieldType field_type_of<double> = FieldType::Double;
+template <>
+inline constexpr FieldType field_type_of<std::string> = FieldType::String;
+template <>
+inline constexpr FieldType field_type_of<Entity> = FieldType::Entity;
+
 namespace detail {
 
 /// Takes the next id. `info.id` is overwritten.
@@ -243,32 +228,8 @@ void describe_type(FieldInfo& field) {
         field.values = split_words(field.meta.values);
     } else if constexpr (std::is_integral_v<F>) {
         field.type = std::is_signed_v<F> ? FieldType::Int : FieldType::UInt;
-    } else if constexpr (std::is_same_v<F, float>) {
-        field.type = FieldType::Float;
-    } else if constexpr (std::is_same_v<F, double>) {
-        field.type = FieldType::Double;
-    } else if constexpr (std::is_same_v<F, Vec2>) {
-        field.type = FieldType::Vec2;
-    } else if constexpr (std::is_same_v<F, Vec3>) {
-        field.type = FieldType::Vec3;
-    } else if constexpr (std::is_same_v<F, Vec4>) {
-        field.type = FieldType::Vec4;
-    } else if constexpr (std::is_same_v<F, Quat>) {
-        field.type = FieldType::Quat;
-    } else if constexpr (std::is_same_v<F, IVec2>) {
-        field.type = FieldType::IVec2;
-    } else if constexpr (std::is_same_v<F, IVec3>) {
-        field.type = FieldType::IVec3;
-    } else if constexpr (std::is_same_v<F, Mat3>) {
-        field.type = FieldType::Mat3;
-    } else if constexpr (std::is_same_v<F, Mat4>) {
-        field.type = FieldType::Mat4;
-    } else if constexpr (std::is_same_v<F, Affine>) {
-        field.type = FieldType::Affine;
-    } else if constexpr (std::is_same_v<F, std::string>) {
-        field.type = FieldType::String;
-    } else if constexpr (std::is_same_v<F, Entity>) {
-        field.type = FieldType::Entity;
+    } else if constexpr (field_type_of<F> != FieldType::Struct) {
+        field.type = field_type_of<F>;
     } else if constexpr (asset_kind<F> != nullptr) {
         static_assert(sizeof(F) == sizeof(std::uint32_t));
         field.type = FieldType::Asset;

@@ -1,8 +1,7 @@
 #include "ecs/schedule.h"
 
+#include "ecs/base/text.h"
 #include "ecs/world.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -31,9 +30,14 @@ std::string names_of(const std::vector<ComponentId>& ids) {
     return names;
 }
 
+/// Seconds as milliseconds, in a column of its own.
+std::string ms_text(double time) {
+    return align_right(fixed_text(time * 1e3, 3), 9);
+}
+
 void add_part(std::string& line, std::string_view what, const std::string& names) {
     if (!names.empty()) {
-        line += fmt::format("  {} {}", what, names);
+        line += format_text("  {} {}", what, names);
     }
 }
 
@@ -225,14 +229,14 @@ std::string Schedule::to_text() const {
     std::string text;
     for (std::size_t number = 0; number < stages_.size(); ++number) {
         const Stage& stage = stages_[number];
-        text += fmt::format("stage {}\n", number + 1);
+        text += format_text("stage {}\n", number + 1);
         for (std::size_t i = 0; i < stage.count; ++i) {
             const System& system = systems_[stage.first + i];
             const SystemTiming& timing = timings_[stage.first + i];
-            text += fmt::format("  {:<{}}", system.name(), width);
+            text += "  " + align_left(system.name(), width);
             if (timing.runs > 0) {
-                text += fmt::format(
-                    "  {:9.3f} ms  mean {:9.3f} ms", timing.last * 1e3, timing.mean * 1e3);
+                text +=
+                    format_text("  {} ms  mean {} ms", ms_text(timing.last), ms_text(timing.mean));
             }
             text += access_text(system.access());
             std::string before;
@@ -254,19 +258,19 @@ std::string Schedule::to_dot() const {
     std::string dot = "digraph schedule {\n  rankdir=LR;\n  node [shape=box];\n";
     for (std::size_t number = 0; number < stages_.size(); ++number) {
         const Stage& stage = stages_[number];
-        dot += fmt::format(
-            "  subgraph cluster_{} {{\n    label=\"stage {}\";\n", number + 1, number + 1);
+        dot += format_text(
+            "  subgraph cluster_{} {\n    label=\"stage {}\";\n", number + 1, number + 1);
         for (std::size_t i = stage.first; i < stage.first + stage.count; ++i) {
-            dot += fmt::format("    s{} [label=\"{}\"];\n", i, systems_[i].name());
+            dot += format_text("    s{} [label=\"{}\"];\n", i, systems_[i].name());
         }
         dot += "  }\n";
         for (std::size_t i = 0; i < stage.count; ++i) {
             for (const std::size_t before : stage.waits_for[i]) {
-                dot += fmt::format("  s{} -> s{};\n", stage.first + before, stage.first + i);
+                dot += format_text("  s{} -> s{};\n", stage.first + before, stage.first + i);
             }
         }
         if (number > 0) {
-            dot += fmt::format(
+            dot += format_text(
                 "  s{} -> s{} [style=dashed, label=\"sync\"];\n",
                 stages_[number - 1].first + stages_[number - 1].count - 1,
                 stage.first);

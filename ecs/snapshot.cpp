@@ -2,7 +2,7 @@
 
 #include "ecs/any_component.h"
 #include "ecs/base/hash.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
 #include "ecs/world.h"
 

@@ -1,9 +1,7 @@
 #include "ecs/world_stats.h"
 
+#include "ecs/base/text.h"
 #include "ecs/world.h"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace limn {
 
@@ -17,8 +15,8 @@ std::uint32_t row_bytes(const Archetype& archetype) {
     return bytes;
 }
 
-double kib(std::size_t bytes) {
-    return static_cast<double>(bytes) / 1024.0;
+std::string kib(std::size_t bytes) {
+    return fixed_text(static_cast<double>(bytes) / 1024.0, 0);
 }
 
 }  // namespace
@@ -67,22 +65,21 @@ WorldStats world_stats(const World& world) {
 }
 
 std::string to_text(const WorldStats& stats) {
-    std::string text = fmt::format("{} entities\n", stats.entities);
+    std::string text = format_text("{} entities\n", stats.entities);
     for (const ArchetypeStats& archetype : stats.archetypes) {
-        text += fmt::format(
-            "{:>9} rows {:>6} chunks {:>5} B/row {:>5.1f} % filled  {}\n",
-            archetype.rows,
-            archetype.chunks,
-            archetype.row_bytes,
-            100.0 * archetype.fill(),
-            fmt::join(archetype.components, " "));
+        text += format_text(
+            "{} rows {} chunks {} B/row {} % filled  {}\n",
+            align_right(archetype.rows, 9),
+            align_right(archetype.chunks, 6),
+            align_right(archetype.row_bytes, 5),
+            align_right(fixed_text(100.0 * archetype.fill(), 1), 5),
+            join_text(archetype.components, " "));
     }
     for (const SparseStats& set : stats.sparse_sets) {
-        text += fmt::format("{:>9} values, sparse  {}\n", set.values, set.component);
+        text += format_text("{} values, sparse  {}\n", align_right(set.values, 9), set.component);
     }
-    text += fmt::format(
-        "{:.0f} KiB: columns {:.0f}, blocks {:.0f}, handles {:.0f}, sparse {:.0f}, versions "
-        "{:.0f}\n",
+    text += format_text(
+        "{} KiB: columns {}, blocks {}, handles {}, sparse {}, versions {}\n",
         kib(stats.memory.total()),
         kib(stats.memory.archetypes),
         kib(stats.memory.blocks),

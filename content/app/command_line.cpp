@@ -6,6 +6,7 @@
 #include "content/app/hash_command.h"
 #include "content/app/info_command.h"
 #include "content/app/list_commands.h"
+#include "content/app/log_sink.h"
 #include "content/app/picture_file.h"
 #include "content/app/play_command.h"
 #include "content/app/render_command.h"
@@ -358,6 +359,7 @@ std::string one_line(std::string text) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
+    log_through_spdlog();
     CLI::App program("Limn: a data-oriented ECS engine for game effects.", "limn");
     program.get_formatter()->column_width(28);
     program.set_version_flag("--version", "limn " LIMN_VERSION);

@@ -1,6 +1,6 @@
 #include "content/app/command_values.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <algorithm>
 #include <charconv>

@@ -5,7 +5,7 @@
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/image_write.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
 #include <fmt/format.h>

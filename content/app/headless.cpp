@@ -1,6 +1,6 @@
 #include "content/app/headless.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <utility>
 

@@ -2,9 +2,11 @@
 
 #include "content/load/exr_file.h"
 #include "content/load/image_write.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/gpu/readback.h"
 #include "render/render_frame.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>

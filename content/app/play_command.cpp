@@ -7,7 +7,7 @@
 #include "content/app/stage.h"
 #include "content/app/window.h"
 #include "content/load/level_list.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/render_view.h"
 
 #include <fmt/format.h>

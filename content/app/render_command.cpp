@@ -5,10 +5,12 @@
 #include "content/app/progress.h"
 #include "content/app/stage.h"
 #include "content/load/set_value.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 #include "ecs/components/name.h"
 #include "render/render_view.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -96,7 +98,7 @@ Status check_render_options(const RenderOptions& options) {
     for (const std::string& aov : options.aovs) {
         const std::vector<std::string_view>& names = aov_names();
         if (std::find(names.begin(), names.end(), aov) == names.end()) {
-            return fail("--aov: found \"{}\", expected some of {}", aov, fmt::join(names, " "));
+            return fail("--aov: found \"{}\", expected some of {}", aov, join_text(names, " "));
         }
     }
     return Done{};

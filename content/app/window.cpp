@@ -1,7 +1,7 @@
 #include "content/app/window.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

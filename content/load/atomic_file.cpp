@@ -1,6 +1,6 @@
 #include "content/load/atomic_file.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,9 +1,11 @@
 #include "content/load/component_json.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/light.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>

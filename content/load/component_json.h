@@ -2,6 +2,7 @@
 
 #include "content/load/json_document.h"
 #include "ecs/any_component.h"
+#include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/reflect.h"
 

@@ -1,7 +1,7 @@
 #include "content/load/exr_file.h"
 
 #include "content/load/atomic_file.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
 #include <OpenEXR/ImfArray.h>

@@ -2,7 +2,9 @@
 
 #include "content/load/gltf_file.h"
 #include "content/load/gltf_schema.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -34,7 +36,7 @@ Status check_version(const JsonValue& json, const std::string& file) {
                 file,
                 i,
                 in_quotes(name),
-                fmt::join(kExtensions, ", "));
+                join_text(kExtensions, ", "));
         }
     }
     return Done{};

@@ -2,7 +2,9 @@
 
 #include "content/load/atomic_file.h"
 #include "content/load/json_document.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -68,7 +70,9 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
         const std::span<const std::byte> data = bytes.subspan(at, size);
         if (!has_json && type != kJsonChunk) {
             return fail(
-                "{}: found chunk type {:#010x}, expected JSON as the first chunk", file, type);
+                "{}: found chunk type {}, expected JSON as the first chunk",
+                file,
+                fmt::format("{:#010x}", type));
         }
         if (!has_json) {
             chunks.json = as_text(data);

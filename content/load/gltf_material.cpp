@@ -3,7 +3,9 @@
 #include "content/load/gltf_file.h"
 #include "content/load/image_load.h"
 #include "ecs/base/jobs.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
 
 #include <optional>
 

@@ -2,8 +2,9 @@
 
 #include "content/bake/tangents.h"
 #include "content/load/gltf_accessor.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>

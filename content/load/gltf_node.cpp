@@ -2,8 +2,9 @@
 
 #include "content/load/component_json.h"
 #include "content/load/gltf_accessor.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 

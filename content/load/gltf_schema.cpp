@@ -1,6 +1,8 @@
 #include "content/load/gltf_schema.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>

@@ -3,7 +3,7 @@
 #include "content/load/atomic_file.h"
 #include "content/load/exr_file.h"
 #include "content/load/png_check.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,7 +1,7 @@
 #include "content/load/image_write.h"
 
 #include "content/load/atomic_file.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

@@ -1,6 +1,6 @@
 #include "content/load/json_document.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 
 #include <fmt/format.h>

@@ -1,10 +1,12 @@
 #include "content/load/level_entities.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
 #include "ecs/components/name.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 

@@ -1,7 +1,9 @@
 #include "content/load/level_events.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/field_access.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "content/load/level_list.h"
 
 #include "content/load/json_document.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -8,6 +8,8 @@
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <unordered_map>

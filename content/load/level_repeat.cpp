@@ -1,10 +1,12 @@
 #include "content/load/level_repeat.h"
 
 #include "ecs/base/hash.h"
-#include "ecs/base/log.h"
 #include "ecs/base/rng.h"
+#include "ecs/base/text.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "content/load/png_check.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <array>
 #include <cstring>

@@ -4,7 +4,7 @@
 #include "content/load/gltf_spawn.h"
 #include "content/load/level_list.h"
 #include "content/load/level_load.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"

@@ -1,6 +1,6 @@
 #include "content/load/set_value.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"

@@ -1,49 +1,42 @@
 #include "ecs/base/log.h"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <atomic>
+#include <cstdio>
 
 namespace limn {
 namespace {
 
+void write_to_stderr(LogLevel level, std::string_view message) {
+    static constexpr const char* kNames[] = {"debug", "info", "warning", "error"};
+    std::fprintf(
+        stderr,
+        "%s: %.*s\n",
+        kNames[static_cast<std::size_t>(level)],
+        static_cast<int>(message.size()),
+        message.data());
+}
+
+std::atomic<LogSink> current_sink{write_to_stderr};
+std::atomic<LogLevel> least_level{LogLevel::Info};
 std::atomic<std::uint64_t> error_count{0};
-
-spdlog::logger& logger() {
-    static const std::shared_ptr<spdlog::logger> instance = [] {
-        auto created = spdlog::stderr_color_mt("limn");
-        created->set_pattern("%^%l%$: %v");
-        return created;
-    }();
-    return *instance;
-}
-
-spdlog::level::level_enum spdlog_level(LogLevel level) {
-    switch (level) {
-    case LogLevel::Debug:
-        return spdlog::level::debug;
-    case LogLevel::Info:
-        return spdlog::level::info;
-    case LogLevel::Warn:
-        return spdlog::level::warn;
-    case LogLevel::Error:
-        return spdlog::level::err;
-    }
-    return spdlog::level::info;
-}
 
 }  // namespace
 
+void set_log_sink(LogSink sink) {
+    current_sink.store(sink != nullptr ? sink : write_to_stderr);
+}
+
 void set_log_level(LogLevel level) {
-    logger().set_level(spdlog_level(level));
+    least_level.store(level);
 }
 
 void log_message(LogLevel level, std::string_view message) {
     if (level == LogLevel::Error) {
         error_count.fetch_add(1, std::memory_order_relaxed);
     }
-    logger().log(spdlog_level(level), message);
+    if (level >= least_level.load()) {
+        current_sink.load()(level, message);
+    }
 }
 
 std::uint64_t logged_error_count() {

@@ -1,19 +1,22 @@
 #pragma once
 
-#include "ecs/base/result.h"
-
-#include <fmt/format.h>
+#include "ecs/base/text.h"
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 namespace limn {
 
-// Messages for people, on stderr, through spdlog. Errors that somebody can handle are Results; the
-// log is for what has no caller left to ask.
+// Messages for people. Errors that somebody can handle are Results; the log is for what has no
+// caller left to ask. They go to stderr, or to where the application says.
 
 enum class LogLevel : std::uint8_t { Debug, Info, Warn, Error };
+
+/// Takes one message, without a line end. Called from any thread, also from several at once.
+using LogSink = void (*)(LogLevel level, std::string_view message);
+
+/// Where messages go from now on; nullptr: to stderr, as "error: message", as at start.
+void set_log_sink(LogSink sink);
 
 /// Messages below `level` are dropped; Info at start.
 void set_log_level(LogLevel level);
@@ -24,26 +27,20 @@ void log_message(LogLevel level, std::string_view message);
 [[nodiscard]] std::uint64_t logged_error_count();
 
 template <typename... Args>
-void log_debug(fmt::format_string<Args...> format, Args&&... args) {
-    log_message(LogLevel::Debug, fmt::format(format, std::forward<Args>(args)...));
+void log_debug(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... args) {
+    log_message(LogLevel::Debug, format_text<Args...>(pattern, args...));
 }
 template <typename... Args>
-void log_info(fmt::format_string<Args...> format, Args&&... args) {
-    log_message(LogLevel::Info, fmt::format(format, std::forward<Args>(args)...));
+void log_info(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... args) {
+    log_message(LogLevel::Info, format_text<Args...>(pattern, args...));
 }
 template <typename... Args>
-void log_warn(fmt::format_string<Args...> format, Args&&... args) {
-    log_message(LogLevel::Warn, fmt::format(format, std::forward<Args>(args)...));
+void log_warn(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... args) {
+    log_message(LogLevel::Warn, format_text<Args...>(pattern, args...));
 }
 template <typename... Args>
-void log_error(fmt::format_string<Args...> format, Args&&... args) {
-    log_message(LogLevel::Error, fmt::format(format, std::forward<Args>(args)...));
-}
-
-/// The error with a formatted message: `return fail("{}: no such file", path);`
-template <typename... Args>
-[[nodiscard]] Error fail(fmt::format_string<Args...> format, Args&&... args) {
-    return Error{fmt::format(format, std::forward<Args>(args)...)};
+void log_error(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... args) {
+    log_message(LogLevel::Error, format_text<Args...>(pattern, args...));
 }
 
 }  // namespace limn

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/base/field_type.h"
+
 #define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #define GLM_FORCE_XYZW_ONLY
 #include <glm/gtc/quaternion.hpp>
@@ -125,5 +127,25 @@ inline void grow(Bounds& b, const Bounds& other) {
     b.min = glm::min(b.min, other.min);
     b.max = glm::max(b.max, other.max);
 }
+
+// What reflection takes them for.
+template <>
+inline constexpr FieldType field_type_of<Vec2> = FieldType::Vec2;
+template <>
+inline constexpr FieldType field_type_of<Vec3> = FieldType::Vec3;
+template <>
+inline constexpr FieldType field_type_of<Vec4> = FieldType::Vec4;
+template <>
+inline constexpr FieldType field_type_of<Quat> = FieldType::Quat;
+template <>
+inline constexpr FieldType field_type_of<IVec2> = FieldType::IVec2;
+template <>
+inline constexpr FieldType field_type_of<IVec3> = FieldType::IVec3;
+template <>
+inline constexpr FieldType field_type_of<Mat3> = FieldType::Mat3;
+template <>
+inline constexpr FieldType field_type_of<Mat4> = FieldType::Mat4;
+template <>
+inline constexpr FieldType field_type_of<Affine> = FieldType::Affine;
 
 }  // namespace limn

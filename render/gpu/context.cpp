@@ -1,9 +1,10 @@
 #include "render/gpu/context.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <atomic>
 #include <mutex>

@@ -1,8 +1,10 @@
 #include "render/gpu/device.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
+
+#include <fmt/format.h>
 
 namespace limn::gpu {
 

@@ -1,8 +1,9 @@
 #include "render/gpu/device_caps.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 namespace limn::gpu {
 namespace {

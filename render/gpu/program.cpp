@@ -1,6 +1,8 @@
 #include "render/gpu/program.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

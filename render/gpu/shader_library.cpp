@@ -1,7 +1,9 @@
 #include "render/gpu/shader_library.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/gpu/device_caps.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

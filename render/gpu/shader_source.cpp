@@ -1,8 +1,10 @@
 #include "render/gpu/shader_source.h"
 
 #include "ecs/base/hash.h"
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/gpu/embedded_shaders.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,9 @@
 #include "render/gpu/texture.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/gpu/device_caps.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -170,7 +172,9 @@ std::size_t texture_bytes(const TextureDesc& desc) {
 
 Status check_texture(const DeviceCaps& caps, const TextureDesc& desc) {
     if (format_info(desc.format).bytes == 0) {
-        return fail("texture: format {:#x} found, expected one that Limn knows", desc.format);
+        return fail(
+            "texture: format {} found, expected one that Limn knows",
+            fmt::format("{:#x}", desc.format));
     }
     if (desc.width < 1 || desc.height < 1 || desc.depth < 1) {
         return fail(

@@ -1,6 +1,6 @@
 #include "render/graph/frame_graph.h"
 
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/graph/frame_graph_impl.h"
 
 #include <algorithm>

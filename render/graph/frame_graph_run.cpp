@@ -1,4 +1,4 @@
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/graph/frame_graph.h"
 #include "render/graph/frame_graph_impl.h"
 

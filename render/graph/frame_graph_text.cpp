@@ -1,6 +1,8 @@
-#include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "render/graph/frame_graph.h"
 #include "render/graph/frame_graph_impl.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 

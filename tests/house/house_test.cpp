@@ -120,6 +120,35 @@ TEST_CASE("house: includes point only to the left") {
     }
 }
 
+TEST_CASE("house: the ECS includes the standard library, the system and TBB, and nothing else") {
+    // The engine's own base lies beside that of the ECS, but is no part of it.
+    const std::set<std::string> engine_headers = {"ecs/base/math.h", "ecs/base/rng.h"};
+    const std::regex include(R"re(^\s*#\s*include\s+([<"])([^>"]+)[>"])re");
+    const std::regex allowed(
+        R"(([a-z_]+|sys/mman\.h|sanitizer/tsan_interface\.h|unistd\.h|(oneapi/)?tbb/[a-z_]+\.h))");
+    std::size_t checked = 0;
+    for (const SourceFile& source : own_sources()) {
+        const std::string layer = layer_of(source.path);
+        if ((layer != "ecs/" && layer != "ecs/base/") || engine_headers.count(source.path) == 1) {
+            continue;
+        }
+        ++checked;
+        for (std::size_t i = 0; i < source.lines.size(); ++i) {
+            std::smatch match;
+            if (!std::regex_search(source.lines[i], match, include)) {
+                continue;
+            }
+            INFO(source.path << ":" << i + 1 << ": " << source.lines[i]);
+            if (match[1] == "<") {
+                CHECK(std::regex_match(match[2].str(), allowed));
+            } else {
+                CHECK(engine_headers.count(match[2]) == 0);
+            }
+        }
+    }
+    CHECK(checked > 40);
+}
+
 TEST_CASE("house: a system never includes another system, nor a pass another pass") {
     const std::regex include(R"re(^\s*#\s*include\s+"((systems|render/passes)/[^"]+)")re");
     for (const SourceFile& source : own_sources()) {
