@@ -26,7 +26,9 @@ AnyComponent::AnyComponent(const ComponentInfo& info) : info_(&info), data_(allo
 AnyComponent::AnyComponent(const ComponentInfo& info, const void* value)
     : info_(&info), data_(allocate(info)) {
     LIMN_CHECK_NOTE(info.ops.construct_copy != nullptr, info.name.c_str());
-    info.ops.construct_copy(data_, value, 1);
+    if (!info.is_tag) {  // the address of a tag in a world may not be readable
+        info.ops.construct_copy(data_, value, 1);
+    }
 }
 
 AnyComponent::AnyComponent(const AnyComponent& other) {

@@ -28,6 +28,7 @@ struct Scratch {
 struct Unique {
     std::unique_ptr<int> value;
 };
+struct Chosen {};  // a sparse tag
 
 /// root (with a camera that circles `arm`) - arm - hand, and root - lamp; `outside` is named, but
 /// not part.
@@ -52,6 +53,10 @@ struct Robot {
 template <>
 struct limn::ComponentTraits<prefab_test::Scratch> : DefaultTraits {
     static constexpr bool saved = false;
+};
+template <>
+struct limn::ComponentTraits<prefab_test::Chosen> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
 };
 
 using namespace limn;
@@ -92,6 +97,14 @@ TEST_CASE("prefab: what is not saved or cannot be copied is left out") {
     const Entity lamp = children_of(robot.world, roots.front())[1];
     CHECK_FALSE(robot.world.has<Scratch>(lamp));
     CHECK_FALSE(robot.world.has<Unique>(lamp));
+}
+
+TEST_CASE("prefab: sparse tags, which have no value to read, are copied like others") {
+    Robot robot;
+    robot.world.add<Chosen>(robot.root);
+    const std::vector<Entity> roots = spawn(robot.world, make_prefab(robot.world, robot.root));
+    CHECK(robot.world.has<Chosen>(roots.front()));
+    CHECK_FALSE(robot.world.has<Chosen>(children_of(robot.world, roots.front())[0]));
 }
 
 TEST_CASE("prefab: many copies come in one batch and do not share links") {
