@@ -1,0 +1,255 @@
+#pragma once
+
+#include "ecs/hierarchy.h"
+#include "tests/ecs/model_run.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+// Operations on the world itself: what happens, happens at once.
+
+namespace limn::test::model {
+
+class ModelDirect : public ModelRun {
+  public:
+    using ModelRun::ModelRun;
+
+  protected:
+    // ---- entities and components
+    void change_population() {
+        const std::size_t size = reference_.living().size();
+        if (size + 200 < goal_) {
+            create_many(100);
+        } else if (size > 0 && chance(size > goal_ ? 70 : 40)) {
+            destroy();
+        } else if (chance(10)) {
+            create_many(roll(12));
+        } else {
+            create();
+        }
+    }
+
+    void create() {
+        count("create");
+        const Value value{static_cast<std::int64_t>(next_serial_++), any_link()};
+        switch (roll(6)) {
+        case 0:
+            create_one<>(value);
+            break;
+        case 1:
+            create_one<ModelSpeed, ModelPlace>(value);
+            break;
+        case 2:
+            create_one<ModelTitle, ModelWarmth, ModelPlace, ModelBadge>(value);
+            break;
+        case 3:
+            create_one<ModelChosen, ModelTally, ModelLink, ModelSerial>(value);
+            break;
+        case 4:
+            create_one<ModelPlace, ModelSpeed, ModelMemo>(value);
+            break;
+        default:
+            create_one<ModelSerial, Parent, ModelPlace>(value);
+        }
+    }
+
+    void create_many(std::size_t size) {
+        count("create_many");
+        const Value value{roll(1'000'000), kNoId};
+        switch (roll(3)) {
+        case 0:
+            create_alike<ModelPlace, ModelSpeed>(size, value);
+            break;
+        case 1:
+            create_alike<ModelTally, ModelMemo, ModelTitle>(size, value);
+            break;
+        default:
+            create_alike<ModelWarmth, ModelBadge, ModelPlace>(size, value);
+        }
+    }
+
+    void destroy() {
+        count("destroy");
+        const Id id = any_living();
+        world_.destroy(reference_.handle(id));
+        reference_.destroy(id);
+    }
+
+    void add() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("add");
+        const Id id = any_living();
+        const Kind kind = any_kind();
+        const Value value = any_value(kind, id);
+        const Entity entity = reference_.handle(id);
+        with_kind(kind, [&]<typename T>() {
+            T component = make<T>(value.number, reference_.handle(value.entity));
+            switch (roll(5)) {
+            case 0:
+                world_.add_copy(entity, component_id<T>, &component);
+                break;
+            case 1:
+                world_.add_move(entity, component_id<T>, &component);
+                break;
+            case 2:
+                if (kind != Kind::Serial) {
+                    world_.add(entity, component_id<T>);
+                    if (!reference_.has(id, kind)) {
+                        reference_.add(id, kind, {});
+                    }
+                    return;
+                }
+                [[fallthrough]];
+            default: {
+                T& added = world_.add(entity, std::move(component));
+                expect(read(added) == value.number, "add returns something else");
+            }
+            }
+            reference_.add(id, kind, value);
+        });
+    }
+
+    void remove() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("remove");
+        const Id id = any_living();
+        const Kind kind = any_kind();
+        const Entity entity = reference_.handle(id);
+        with_kind(kind, [&]<typename T>() {
+            const bool was_there =
+                chance(70) ? world_.remove<T>(entity) : world_.remove(entity, component_id<T>);
+            expect(was_there == reference_.remove(id, kind), "remove says something else");
+        });
+    }
+
+    /// Writes a component where it is.
+    void write() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("write");
+        const Id id = any_living();
+        const Kind kind = any_kind();
+        const Value value = any_value(kind, id);
+        const Entity entity = reference_.handle(id);
+        with_kind(kind, [&]<typename T>() {
+            T* place = nullptr;
+            const std::uint32_t way = roll(4);
+            if (way == 0) {
+                place = static_cast<T*>(world_.find(entity, component_id<T>));
+            } else if (way == 1) {
+                place = world_.query<T>().template find<T>(entity);
+            } else if (way == 2 && world_.has<T>(entity)) {
+                place = &world_.get<T>(entity);
+            } else {
+                place = world_.find<T>(entity);
+            }
+            expect((place != nullptr) == reference_.has(id, kind), "a component is lost or extra");
+            if (place != nullptr && !std::is_empty_v<T>) {
+                *place = make<T>(value.number, reference_.handle(value.entity));
+            }
+        });
+        reference_.set(id, kind, value);
+    }
+
+    /// Writes a component of all that a query visits.
+    void sweep() {
+        count("sweep");
+        const std::uint32_t way = roll(3);
+        const std::int64_t offset = roll(1000);
+        const auto query = world_.query<ModelSpeed, const ModelPlace>();
+        const auto write_row = [offset](ModelSpeed& speed, const ModelPlace& place) {
+            speed.value = static_cast<double>(place.x) + static_cast<double>(offset);
+        };
+        if (way == 0) {
+            query.each(write_row);
+        } else if (way == 1) {
+            query.par_each(write_row);
+        } else {
+            query.par_chunks(
+                [&](ChunkView, std::span<ModelSpeed> speeds, std::span<const ModelPlace> places) {
+                    for (std::size_t i = 0; i < speeds.size(); ++i) {
+                        write_row(speeds[i], places[i]);
+                    }
+                });
+        }
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.has(Kind::Place) && record.has(Kind::Speed)) {
+                reference_.set(id, Kind::Speed, {record.value(Kind::Place).number + offset, kNoId});
+            }
+        }
+    }
+
+    void use_stale_handle() {
+        const Id id = any_dead();
+        if (id == kNoId) {
+            return;
+        }
+        count("stale handle");
+        const Entity entity = reference_.handle(id);
+        expect(!world_.alive(entity), "a stale handle is alive");
+        with_kind(any_kind(), [&]<typename T>() {
+            expect(!world_.has<T>(entity), "a stale handle has a component");
+            expect(world_.find<T>(entity) == nullptr, "a stale handle has a component");
+            expect(
+                world_.find(entity, component_id<T>) == nullptr, "a stale handle has a component");
+            expect(!world_.query<T>().contains(entity), "a query contains a stale handle");
+            expect(
+                world_.query<const T>().template find<const T>(entity) == nullptr,
+                "a query finds a stale handle");
+        });
+        expect(children_of(world_, entity).empty(), "a stale handle has children");
+        if (!reference_.living().empty()) {
+            const Entity living = reference_.handle(any_living());
+            expect(!set_parent(world_, entity, living).ok(), "a stale handle gets a parent");
+            expect(!set_parent(world_, living, entity).ok(), "a stale handle gets a child");
+        }
+    }
+
+    // ---- the hierarchy
+
+    void reparent() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("reparent");
+        Id child = any_living();
+        Id parent = any_link();
+        if (chance(15)) {
+            parent = child;
+            while (chance(60) && reference_.parent_of(child) != kNoId) {
+                child = reference_.parent_of(child);  // it is to be below its own child: a cycle
+            }
+        }
+        const bool is_root = parent == kNoId;
+        const bool possible =
+            is_root || (reference_.alive(parent) && !reference_.is_below(parent, child));
+        const bool done =
+            set_parent(world_, reference_.handle(child), reference_.handle(parent)).ok();
+        expect(done == possible, "set_parent accepts or refuses something else");
+        if (is_root) {
+            reference_.remove(child, Kind::Parent);
+        } else if (possible) {
+            reference_.add(child, Kind::Parent, {reference_.next_order++, parent});
+        }
+    }
+
+    void destroy_a_tree() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("destroy_tree");
+        const Id root = any_living();
+        destroy_tree(world_, reference_.handle(root));
+        for (const Id id : reference_.subtree(root)) {
+            reference_.destroy(id);
+        }
+    }
+};
+
+}  // namespace limn::test::model

@@ -1,0 +1,225 @@
+#pragma once
+
+#include "ecs/snapshot.h"
+#include "tests/ecs/model_recorded.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+// A world and the reference, driven through random operations. An operation is one call that
+// changes the world, or one recorded command.
+
+namespace limn::test::model {
+
+class ModelWorld : public ModelRecorded {
+  public:
+    using ModelRecorded::ModelRecorded;
+
+    /// Continues until `operations` have been done.
+    void run(std::uint64_t operations) {
+        while (done_ < operations) {
+            step();
+            if (done_ >= compare_at_) {
+                compare();
+            }
+            if (done_ >= steer_at_) {
+                steer();
+            }
+        }
+        compare();
+    }
+
+  private:
+    // ---- one step
+    void step() {
+        const std::uint32_t choice = roll(1000);
+        if (choice < 260) {
+            change_population();
+        } else if (choice < 480) {
+            add();
+        } else if (choice < 620) {
+            remove();
+        } else if (choice < 780) {
+            write();
+        } else if (choice < 850) {
+            reparent();
+        } else if (choice < 852) {
+            destroy_a_tree();
+        } else if (choice < 900) {
+            use_stale_handle();
+        } else if (choice < 910) {
+            spawn_directly();
+        } else if (choice < 913) {
+            make_template();
+        } else if (choice < 915) {
+            sweep();
+        } else if (choice < 916) {
+            save_or_restore();
+        } else if (choice < 918) {
+            run_systems();
+        } else if (choice < 960) {
+            record_and_flush();
+        } else {
+            create();
+        }
+        if (roll(3000) == 0) {
+            new_goal();
+        }
+    }
+
+    void new_goal() {
+        constexpr std::size_t kGoals[] = {0, 3, 60, 700, 1500, 2600};
+        goal_ = kGoals[roll(std::size(kGoals))];
+        if (goal_ == 0) {
+            count("clear");
+            world_.clear();
+            reference_.clear();
+            expect(world_.entity_count() == 0, "clear leaves entities");
+        }
+    }
+
+    // ---- snapshots
+
+    struct Saved {
+        std::vector<std::byte> bytes;
+        std::uint64_t hash = 0;
+        Reference reference;
+        std::vector<std::shared_ptr<const Template>> templates;
+    };
+
+    void save_or_restore() {
+        if (saved_ == nullptr || chance(40)) {
+            count("save");
+            Result<std::vector<std::byte>> bytes = save_snapshot(world_);
+            expect(bytes.ok(), "a snapshot fails");
+            saved_ = std::make_unique<Saved>(
+                Saved{std::move(*bytes), state_hash(world_), reference_, templates_});
+            return;
+        }
+        count("restore");
+        expect(restore_snapshot(world_, saved_->bytes).ok(), "a snapshot is refused");
+        expect(state_hash(world_) == saved_->hash, "a restored world has another hash");
+        reference_.restore(saved_->reference);
+        templates_ = saved_->templates;
+        compare();
+    }
+
+    // ---- around full chunks
+
+    /// Brings an archetype, or a sparse set, to 1024 k - 1, 1024 k and 1024 k + 1 rows, and looks.
+    void steer() {
+        constexpr Mask kWhole = bit(Kind::Place) | bit(Kind::Speed);
+        const bool sparse = steered_ % 5 == 4;
+        const std::uint32_t chunks = 1 + steered_ / 5 % 3;
+        const auto size = [&] {
+            return sparse ? reference_.count(bit(Kind::Chosen), 0)
+                          : reference_.count(kWhole, ~kWhole & ~kSparseKinds);
+        };
+        const std::size_t middle = std::size_t{chunks} * 1024;
+        for (std::size_t target = middle - 1; target <= middle + 1; ++target) {
+            for (std::size_t now = size(); now != target; now = size()) {
+                for (std::size_t extra = now; extra > target; --extra) {
+                    sparse ? remove_chosen() : shrink_whole();
+                }
+                if (now < target) {
+                    sparse ? add_chosen(target - now) : grow_whole(target - now);
+                }
+            }
+            compare();
+        }
+        ++steered_;
+        steer_at_ = done_ + 9000;
+        goal_ = 500;
+    }
+
+    void add_chosen(std::size_t missing) {
+        if (missing > 64) {
+            count("create_many");
+            create_alike<ModelChosen>(missing - 32, {});
+        } else {
+            count("create");
+            create_one<ModelChosen, ModelBadge>({});
+        }
+    }
+
+    void remove_chosen() {
+        count("remove");
+        const Id id = first_with(bit(Kind::Chosen), 0);
+        expect(world_.remove<ModelChosen>(reference_.handle(id)), "remove says something else");
+        reference_.remove(id, Kind::Chosen);
+    }
+
+    void grow_whole(std::size_t missing) {
+        const Value value{roll(1000), kNoId};
+        const std::uint32_t way = roll(3);
+        if (missing > 40) {
+            count("create_many");
+            create_alike<ModelSpeed, ModelPlace>(missing - roll(30), value);
+        } else if (way == 0) {
+            count("create");
+            create_one<ModelPlace, ModelSpeed>(value);
+        } else if (way == 1) {
+            count("create");
+            count("add");
+            create_one<ModelPlace>(value);
+            const Id id = reference_.living().back();
+            world_.add(reference_.handle(id), make<ModelSpeed>(value.number, {}));
+            reference_.add(id, Kind::Speed, value);
+        } else {
+            count("create");
+            count("command");
+            create_one<ModelPlace, ModelSpeed, ModelBadge>(value);
+            const Id id = reference_.living().back();
+            command([&](Commands commands) { commands.remove<ModelBadge>(reference_.handle(id)); });
+            reference_.remove(id, Kind::Badge);
+        }
+    }
+
+    void shrink_whole() {
+        constexpr Mask kWhole = bit(Kind::Place) | bit(Kind::Speed);
+        const Id id = first_with(kWhole, ~kWhole & ~kSparseKinds);
+        const Entity entity = reference_.handle(id);
+        switch (roll(3)) {
+        case 0:
+            count("destroy");
+            world_.destroy(entity);
+            reference_.destroy(id);
+            break;
+        case 1:
+            count("command");
+            command([&](Commands commands) { commands.destroy(entity); });
+            reference_.destroy(id);
+            break;
+        default:
+            count("command");
+            command([&](Commands commands) { commands.add(entity, ModelBadge{}); });
+            reference_.add(id, Kind::Badge, {});
+        }
+    }
+
+    [[nodiscard]] Id first_with(Mask required, Mask excluded) {
+        const std::vector<Id>& living = reference_.living();
+        const std::size_t start = roll(living.size());
+        for (std::size_t i = 0; i < living.size(); ++i) {
+            const Id id = living[(start + i) % living.size()];
+            if (reference_.at(id).matches(required, excluded)) {
+                return id;
+            }
+        }
+        return kNoId;
+    }
+
+    template <typename Record>
+    void command(const Record& record) {
+        record(Commands(buffer_));
+        CommandBuffer* const buffers[] = {&buffer_};
+        apply_commands(world_, buffers);
+    }
+
+    std::uint64_t steer_at_ = 5000;
+    std::uint32_t steered_ = 0;
+    std::unique_ptr<Saved> saved_;
+};
+
+}  // namespace limn::test::model
