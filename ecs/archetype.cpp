@@ -22,11 +22,6 @@ std::size_t alignment(const Column& column) {
     return std::max<std::size_t>(kColumnAlign, column.info->align);
 }
 
-/// Where a promoted column starts in its range.
-std::size_t promoted_offset(const Column& column, std::size_t position) {
-    return round_up((position + 1) * kColumnSkew % 4096, alignment(column));
-}
-
 void move_bytes(std::byte* destination, const std::byte* source, std::size_t count) {
     if (count > 0) {
         std::memcpy(destination, source, count);
@@ -91,7 +86,7 @@ void Archetype::grow(std::uint32_t rows) {
                 return;
             }
         }
-        promote();
+        promote(static_cast<std::uint32_t>(round_up(rows, kRowPadding)));
     }
     commit(rows);
 }
@@ -133,9 +128,9 @@ void Archetype::move_to_block(std::size_t bytes) {
     capacity_ = rows;
 }
 
-void Archetype::promote() {
-    entity_range_ = VirtualRange(std::size_t{kMaxRows} * sizeof(Entity));
-    entity_range_.commit(size_ * sizeof(Entity));
+void Archetype::promote(std::uint32_t rows) {
+    entity_range_ = VirtualRange(kMaxRows * sizeof(Entity), 0, rows * sizeof(Entity));
+    entity_range_.commit(std::size_t{rows} * sizeof(Entity));
     move_bytes(
         entity_range_.data(),
         reinterpret_cast<const std::byte*>(entities_),
@@ -143,28 +138,26 @@ void Archetype::promote() {
     entities_ = reinterpret_cast<Entity*>(entity_range_.data());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         Column& column = columns_[i];
-        const std::size_t offset = promoted_offset(column, i);
-        column.range = VirtualRange(offset + std::size_t{kMaxRows} * column.size);
-        column.range.commit(offset + std::size_t{size_} * column.size);
-        relocate_values(*column.info, column.range.data() + offset, column.data, size_);
-        column.data = column.range.data() + offset;
+        column.range = VirtualRange(
+            std::size_t{kMaxRows} * column.size,
+            skew_of(i + 1, alignment(column)),
+            std::size_t{rows} * column.size);
+        column.range.commit(std::size_t{rows} * column.size);
+        relocate_values(*column.info, column.range.data(), column.data, size_);
+        column.data = column.range.data();
     }
     leave_block();
     capacity_ = 0;
-    commit(std::max(size_, std::uint32_t{1}));
 }
 
 void Archetype::commit(std::uint32_t rows) {
     LIMN_CHECK_NOTE(rows <= kMaxRows, "more rows than an archetype can hold");
     const std::size_t padded = round_up(rows, kRowPadding);
     entity_range_.commit(padded * sizeof(Entity));
-    capacity_ = round_rows_down(entity_range_.committed() / sizeof(Entity));
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-        Column& column = columns_[i];
-        const std::size_t offset = promoted_offset(column, i);
-        column.range.commit(offset + padded * column.size);
-        capacity_ =
-            std::min(capacity_, round_rows_down((column.range.committed() - offset) / column.size));
+    capacity_ = round_rows_down(entity_range_.usable() / sizeof(Entity));
+    for (Column& column : columns_) {
+        column.range.commit(padded * column.size);
+        capacity_ = std::min(capacity_, round_rows_down(column.range.usable() / column.size));
     }
 }
 

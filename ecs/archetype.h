@@ -26,9 +26,6 @@ namespace limn {
 inline constexpr std::uint32_t kChunkRows = 1024;
 inline constexpr std::uint32_t kRowPadding = 16;
 inline constexpr std::size_t kColumnAlign = 64;
-/// Neighboring columns start this much apart modulo 4096, so that a row of many columns does not
-/// compete for one set of the cache. A multiple of kColumnAlign. [bytes]
-inline constexpr std::size_t kColumnSkew = 64;
 #if defined(LIMN_SANITIZED)
 inline constexpr std::uint32_t kMaxRows = 1u << 22;  // sanitizers have little address space
 #else
@@ -174,7 +171,7 @@ class Archetype {
   private:
     void grow(std::uint32_t rows);
     void move_to_block(std::size_t bytes);
-    void promote();
+    void promote(std::uint32_t rows);
     void commit(std::uint32_t rows);
     void leave_block();
     [[nodiscard]] std::uint32_t rows_in_block(std::size_t bytes) const;

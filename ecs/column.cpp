@@ -12,33 +12,58 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kPage = 4096;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kSmallStep = std::size_t{64} << 10;
-constexpr std::size_t kLargeStep = std::size_t{2} << 20;  // also the size of a huge page
+/// A range that starts small has so much, less its skew, before its first huge page.
+constexpr std::size_t kSmallPart = std::size_t{512} << 10;
+static_assert(2 * kSkewRange <= kSmallPart && kSmallPart < kHugePage);
 
 constexpr std::size_t round_up(std::size_t value, std::size_t step) {
     return (value + step - 1) / step * step;
 }
 
+std::byte* round_down(std::byte* address, std::size_t step) {
+    return address - reinterpret_cast<std::uintptr_t>(address) % step;
+}
+
+std::byte* round_up(std::byte* address, std::size_t step) {
+    return round_down(address + step - 1, step);
+}
+
 }  // namespace
 
-VirtualRange::VirtualRange(std::size_t bytes) : reserved_(round_up(std::max(bytes, kPage), kPage)) {
+VirtualRange::VirtualRange(std::size_t bytes, std::size_t skew, std::size_t expected) {
+    LIMN_CHECK(skew < kSkewRange);
+    const bool starts_large = expected >= kHugePage;
+    const std::size_t offset = skew + (starts_large ? 0 : kHugePage - kSmallPart);
+    const std::size_t size = round_up(offset + std::max(bytes, kPage), kPage);
     // Neither readable nor writable, so it counts against no limit on memory until it is committed.
+    const std::size_t enough = size + kHugePage;
     void* address =
-        mmap(nullptr, reserved_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        mmap(nullptr, enough, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     LIMN_CHECK_NOTE(address != MAP_FAILED, "no address space left to reserve");
-    data_ = static_cast<std::byte*>(address);
+    std::byte* first = static_cast<std::byte*>(address);
+    std::byte* base = round_up(first, kHugePage);
+    if (base > first) {
+        munmap(first, static_cast<std::size_t>(base - first));
+    }
+    munmap(base + size, static_cast<std::size_t>(first + enough - (base + size)));
+    data_ = base + offset;
+    reserved_ = size - offset;
+    lead_ = static_cast<std::size_t>(data_ - (starts_large ? base : round_down(data_, kPage)));
 }
 
 VirtualRange::VirtualRange(VirtualRange&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), committed_(std::exchange(other.committed_, 0)),
-      reserved_(std::exchange(other.reserved_, 0)) {}
+    : data_(std::exchange(other.data_, nullptr)), usable_(std::exchange(other.usable_, 0)),
+      reserved_(std::exchange(other.reserved_, 0)), lead_(std::exchange(other.lead_, 0)) {}
 
 VirtualRange& VirtualRange::operator=(VirtualRange&& other) noexcept {
     if (this != &other) {
         release();
         data_ = std::exchange(other.data_, nullptr);
-        committed_ = std::exchange(other.committed_, 0);
+        usable_ = std::exchange(other.usable_, 0);
         reserved_ = std::exchange(other.reserved_, 0);
+        lead_ = std::exchange(other.lead_, 0);
     }
     return *this;
 }
@@ -49,20 +74,26 @@ VirtualRange::~VirtualRange() {
 
 void VirtualRange::release() {
     if (data_ != nullptr) {
-        munmap(data_, reserved_);
+        std::byte* base = round_down(data_, kHugePage);
+        munmap(base, static_cast<std::size_t>(data_ + reserved_ - base));
     }
 }
 
 void VirtualRange::commit_more(std::size_t bytes) {
     LIMN_CHECK_NOTE(bytes <= reserved_, "more rows than an archetype can hold");
-    const std::size_t step = std::clamp(std::bit_ceil(committed_ + 1) / 2, kSmallStep, kLargeStep);
-    const std::size_t target = std::min(round_up(bytes, step), reserved_);
-    const int failed = mprotect(data_ + committed_, target - committed_, PROT_READ | PROT_WRITE);
-    LIMN_CHECK_NOTE(failed == 0, "out of memory");
-    if (target >= 2 * kLargeStep) {
-        madvise(data_, target, MADV_HUGEPAGE);  // a wish: without huge pages it is only slower
+    const std::size_t step = std::max(std::bit_ceil(usable_ + 1) / 2, kSmallStep);
+    std::byte* begin = usable_ == 0 ? data_ - lead_ : data_ + usable_;
+    std::byte* end = round_up(data_ + round_up(bytes, step), kPage);
+    if (usable_ > 0 && end > round_up(data_, kHugePage)) {
+        end = round_up(data_ + bytes, kHugePage);
     }
-    committed_ = target;
+    end = std::min(end, data_ + reserved_);
+    const std::size_t added = static_cast<std::size_t>(end - begin);
+    LIMN_CHECK_NOTE(mprotect(begin, added, PROT_READ | PROT_WRITE) == 0, "out of memory");
+    if (added >= kHugePage) {
+        madvise(begin, added, MADV_HUGEPAGE);  // a wish: without huge pages it is only slower
+    }
+    usable_ = static_cast<std::size_t>(end - data_);
 }
 
 namespace {
@@ -85,7 +116,7 @@ std::byte* BlockPool::allocate(std::size_t bytes) {
         return block;
     }
     if (range_.data() == nullptr) {
-        range_ = VirtualRange(kReserve);
+        range_ = VirtualRange(kReserve, 0);
     }
     std::byte* block = range_.data() + end_;
     end_ += bytes;

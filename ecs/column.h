@@ -11,30 +11,50 @@ namespace limn {
 // without copies and its base pointer holds as long as the archetype. Small archetypes would waste
 // a page a column: they share the blocks of a BlockPool, one block an archetype, until they outgrow
 // the largest.
+//
+// Large ranges get huge pages (2 MiB): a fresh one costs a seventh of as many small ones, and
+// random access rarely misses the translation. Since these are aligned, columns would all start at
+// one offset modulo 2 MiB, that is, in one set of the cache and one bank of the memory; therefore
+// each range has a skew of its own.
+
+/// Skews are below this. [bytes]
+inline constexpr std::size_t kSkewRange = std::size_t{256} << 10;
+
+/// For the range at `position` among those used together: several pages and an odd number of lines
+/// of the cache apart, so that no two of 4096 are equal. A multiple of `align`, a power of two of
+/// 64 to 4096. [bytes]
+[[nodiscard]] constexpr std::size_t skew_of(std::size_t position, std::size_t align = 64) {
+    const std::size_t skew = position * (5 * 4096 + 39 * 64);
+    return (skew + align - 1) / align * align % kSkewRange;
+}
 
 /// A reserved range of addresses whose front is readable and writable memory, zero at first.
 class VirtualRange {
   public:
     VirtualRange() = default;
-    /// Reserves at least `bytes`, page aligned. Stops the program if there is no address space
-    /// left.
-    explicit VirtualRange(std::size_t bytes);
+    /// Reserves at least `bytes`, which start `skew` past a page; with `expected` bytes from the
+    /// start. Stops the program if there is no address space left.
+    explicit VirtualRange(std::size_t bytes, std::size_t skew = 0, std::size_t expected = 0);
     VirtualRange(VirtualRange&& other) noexcept;
     VirtualRange& operator=(VirtualRange&& other) noexcept;
     VirtualRange(const VirtualRange&) = delete;
     VirtualRange& operator=(const VirtualRange&) = delete;
     ~VirtualRange();
 
-    /// Makes the first `bytes` usable, and some more: steps grow from 64 KiB to 2 MiB. Stops the
-    /// program when the reservation or the memory is exhausted.
+    /// Makes the first `bytes` usable, and some more: steps grow from 64 KiB to 256 KiB, and are
+    /// whole huge pages from about 512 KiB on. Stops the program when the reservation or the memory
+    /// is exhausted.
     void commit(std::size_t bytes) {
-        if (bytes > committed_) {
+        if (bytes > usable_) {
             commit_more(bytes);
         }
     }
 
     [[nodiscard]] std::byte* data() const { return data_; }
-    [[nodiscard]] std::size_t committed() const { return committed_; }
+    /// How much can be used without commit(). [bytes]
+    [[nodiscard]] std::size_t usable() const { return usable_; }
+    /// The memory it takes: what is usable, and what the skew leaves before it. [bytes]
+    [[nodiscard]] std::size_t committed() const { return usable_ > 0 ? lead_ + usable_ : 0; }
     [[nodiscard]] std::size_t reserved() const { return reserved_; }
 
   private:
@@ -42,8 +62,9 @@ class VirtualRange {
     void release();
 
     std::byte* data_ = nullptr;
-    std::size_t committed_ = 0;
+    std::size_t usable_ = 0;
     std::size_t reserved_ = 0;
+    std::size_t lead_ = 0;  ///< before data_, committed with it
 };
 
 /// Blocks of 4, 8, 16, 32 and 64 KiB, page aligned, reused through a free list a size.

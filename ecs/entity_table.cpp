@@ -4,7 +4,7 @@
 
 namespace limn {
 
-EntityTable::EntityTable() : range_(std::size_t{kMaxEntities} * kSlotBytes) {
+EntityTable::EntityTable() : range_(std::size_t{kMaxEntities} * kSlotBytes, skew_of(99)) {
     slots_ = range_.data();
 }
 

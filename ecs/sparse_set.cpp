@@ -17,8 +17,12 @@ SparseSet::~SparseSet() {
 
 std::uint32_t SparseSet::append(Entity entity, std::uint32_t version) {
     if (entities_.data() == nullptr) {
-        entities_ = VirtualRange(std::size_t{kMaxRows} * sizeof(Entity));
-        column_.range = VirtualRange(std::size_t{kMaxRows} * column_.size);
+        // Apart from each other, and from the columns of archetypes.
+        const std::size_t position = 100 + 2 * std::size_t{column_.info->id};
+        const std::size_t align = std::max<std::size_t>(kColumnAlign, column_.info->align);
+        entities_ = VirtualRange(std::size_t{kMaxRows} * sizeof(Entity), skew_of(position));
+        column_.range =
+            VirtualRange(std::size_t{kMaxRows} * column_.size, skew_of(position + 1, align));
         column_.data = column_.range.data();
     }
     const std::uint32_t position = size_++;

@@ -163,7 +163,7 @@ T& World::add(Entity entity, T component) {
 }
 
 template <typename T>
-T* World::find(Entity entity) {
+inline T* World::find(Entity entity) {
     using Value = std::remove_const_t<T>;
     const EntityPlace place = core_.entities.find(entity);
     if (!place) {
@@ -190,19 +190,19 @@ T* World::find(Entity entity) {
 }
 
 template <typename T>
-const T* World::find(Entity entity) const {
+inline const T* World::find(Entity entity) const {
     return const_cast<World*>(this)->find<const T>(entity);
 }
 
 template <typename T>
-T& World::get(Entity entity) {
+inline T& World::get(Entity entity) {
     T* value = find<T>(entity);
     LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
     return *value;
 }
 
 template <typename T>
-const T& World::get(Entity entity) const {
+inline const T& World::get(Entity entity) const {
     const T* value = find<T>(entity);
     LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
     return *value;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstring>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -58,30 +59,59 @@ bool has_sound_columns(World& world, Archetype& rows) {
 }  // namespace
 
 TEST_CASE("column: a range keeps its base and its contents while it grows") {
-    VirtualRange range(std::size_t{1} << 30);
-    range.commit(1);
-    std::byte* base = range.data();
-    base[0] = std::byte{7};
-    std::size_t before = range.committed();
-    for (std::size_t bytes = 1; bytes <= (std::size_t{1} << 25); bytes *= 3) {
-        range.commit(bytes);
-        CHECK(range.committed() >= bytes);
-        CHECK(range.committed() >= before);
-        CHECK(range.data()[range.committed() - 1] == std::byte{0});
-        before = range.committed();
+    for (const std::size_t expected : {std::size_t{0}, std::size_t{4} << 20}) {
+        VirtualRange range(std::size_t{1} << 30, skew_of(3), expected);
+        range.commit(1);
+        std::byte* base = range.data();
+        base[0] = std::byte{7};
+        std::size_t before = range.usable();
+        for (std::size_t bytes = 1; bytes <= (std::size_t{1} << 25); bytes *= 3) {
+            range.commit(bytes);
+            CHECK(range.usable() >= bytes);
+            CHECK(range.usable() >= before);
+            CHECK(range.data()[range.usable() - 1] == std::byte{0});
+            before = range.usable();
+        }
+        CHECK(range.data() == base);
+        CHECK(base[0] == std::byte{7});
     }
-    CHECK(range.data() == base);
-    CHECK(base[0] == std::byte{7});
 }
 
 TEST_CASE("column: a range commits little at first and never far more than asked") {
-    VirtualRange range(std::size_t{1} << 30);
+    VirtualRange range(std::size_t{1} << 30, skew_of(2));
     range.commit(1);
-    CHECK(range.committed() == 64 * 1024);
+    CHECK(range.usable() >= 64 * 1024);
+    CHECK(range.committed() < 72 * 1024);
+    for (std::size_t bytes = 64 << 10; bytes <= (256 << 10); bytes += 10'000) {
+        range.commit(bytes);
+        CHECK(range.committed() < 2 * bytes + 8192);
+    }
     for (std::size_t bytes = 1 << 20; bytes <= (std::size_t{1} << 27); bytes += 12'345'678) {
         range.commit(bytes);
-        CHECK(range.committed() < bytes + (std::size_t{2} << 20));
+        CHECK(range.committed() < bytes + (std::size_t{2} << 20) + 8192);
     }
+}
+
+TEST_CASE("column: a range that is large at once wastes little but its skew") {
+    constexpr std::size_t kBytes = 12'000'000;
+    VirtualRange range(std::size_t{1} << 30, skew_of(7), kBytes);
+    range.commit(kBytes);
+    CHECK(range.usable() >= kBytes);
+    CHECK(range.committed() < kBytes + kSkewRange + (64 << 10) + 4096);
+}
+
+TEST_CASE("column: skews differ for as many positions as anyone uses, also within a page's lines") {
+    std::set<std::size_t> skews;
+    for (std::size_t position = 0; position < 4096; ++position) {
+        CHECK(skew_of(position) < kSkewRange);
+        CHECK(skew_of(position) % 64 == 0);
+        CHECK(skew_of(position, 4096) % 4096 == 0);
+        CHECK(skew_of(position) % 4096 != skew_of(position + 1) % 4096);
+        skews.insert(skew_of(position));
+    }
+    CHECK(skews.size() == 4096);
+    VirtualRange range(1 << 20, skew_of(5));
+    CHECK(reinterpret_cast<std::uintptr_t>(range.data()) % kSkewRange == skew_of(5));
 }
 
 TEST_CASE("column: a moved range has one owner") {
