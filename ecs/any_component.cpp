@@ -1,6 +1,7 @@
 #include "ecs/any_component.h"
 
 #include "ecs/field_access.h"
+#include "ecs/world.h"
 
 #include <algorithm>
 #include <cstring>
@@ -16,6 +17,10 @@ void* allocate(const ComponentInfo& info) {
     return ::operator new (std::max<std::size_t>(info.size, 1), std::align_val_t{info.align});
 }
 
+void deallocate(const ComponentInfo& info, void* data) {
+    ::operator delete (data, std::align_val_t{info.align});
+}
+
 }  // namespace
 
 AnyComponent::AnyComponent(const ComponentInfo& info) : info_(&info), data_(allocate(info)) {
@@ -29,6 +34,18 @@ AnyComponent::AnyComponent(const ComponentInfo& info, const void* value)
     if (!info.is_tag) {  // the address of a tag in a world may not be readable
         info.ops.construct_copy(data_, value, 1);
     }
+}
+
+AnyComponent AnyComponent::read(const World& world, Entity entity, const ComponentInfo& info) {
+    AnyComponent copy;
+    void* const raw = allocate(info);
+    if (world.read(entity, info.id, raw)) {
+        copy.info_ = &info;
+        copy.data_ = raw;
+    } else {
+        deallocate(info, raw);
+    }
+    return copy;
 }
 
 AnyComponent::AnyComponent(const AnyComponent& other) {
@@ -51,7 +68,7 @@ AnyComponent& AnyComponent::operator=(AnyComponent other) noexcept {
 AnyComponent::~AnyComponent() {
     if (data_ != nullptr) {
         info_->ops.destroy(data_, 1);
-        ::operator delete (data_, std::align_val_t{info_->align});
+        deallocate(*info_, data_);
     }
 }
 

@@ -4,6 +4,8 @@
 
 namespace limn {
 
+class World;
+
 /// The value of a component or resource whose type is known at run time only: what a level or a
 /// script keeps until there is an entity to give it to. Copies copy the value.
 class AnyComponent {
@@ -13,6 +15,9 @@ class AnyComponent {
     explicit AnyComponent(const ComponentInfo& info);
     /// A copy of `value`, whose type is `info`.
     AnyComponent(const ComponentInfo& info, const void* value);
+    /// A copy of an entity's component, empty if it has none.
+    [[nodiscard]] static AnyComponent
+    read(const World& world, Entity entity, const ComponentInfo& info);
     AnyComponent(const AnyComponent& other);
     AnyComponent(AnyComponent&& other) noexcept;
     AnyComponent& operator=(AnyComponent other) noexcept;

@@ -42,6 +42,47 @@ void relocate_values(
     }
 }
 
+void relocate_elements(const Column& column, void* destination, void* source, std::size_t count) {
+    if (column.info->trivially_relocatable) {
+        move_bytes(
+            static_cast<std::byte*>(destination),
+            static_cast<std::byte*>(source),
+            count * column.size);
+    } else {
+        column.info->ops.relocate(destination, source, count);
+    }
+}
+
+void gather_values(const Column* lanes, std::uint32_t row, std::size_t count, void* values) {
+    const std::size_t size = lanes->info->size;
+    for (std::size_t lane = 0; lane < size / kLaneBytes; ++lane) {
+        const std::byte* source = lanes[lane].at(row);
+        std::byte* target = static_cast<std::byte*>(values) + lane * kLaneBytes;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::memcpy(target + i * size, source + i * kLaneBytes, kLaneBytes);
+        }
+    }
+}
+
+void scatter_values(Column* lanes, std::uint32_t row, std::size_t count, const void* values) {
+    const std::size_t size = lanes->info->size;
+    for (std::size_t lane = 0; lane < size / kLaneBytes; ++lane) {
+        std::byte* target = lanes[lane].at(row);
+        const std::byte* source = static_cast<const std::byte*>(values) + lane * kLaneBytes;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::memcpy(target + i * kLaneBytes, source + i * size, kLaneBytes);
+        }
+    }
+}
+
+void fill_values(Column* lanes, std::uint32_t row, std::size_t count, const void* value) {
+    for (std::size_t lane = 0; lane < lanes->info->size / kLaneBytes; ++lane) {
+        std::uint32_t scalar = 0;
+        std::memcpy(&scalar, static_cast<const std::byte*>(value) + lane * kLaneBytes, kLaneBytes);
+        std::fill_n(reinterpret_cast<LaneScalar*>(lanes[lane].at(row)), count, scalar);
+    }
+}
+
 Archetype::Archetype(
     std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks)
     : index_(index), components_(components.begin(), components.end()), blocks_(blocks) {
@@ -54,10 +95,15 @@ Archetype::Archetype(
         }
         LIMN_CHECK_NOTE(info.align <= 4096, "components are aligned to 4096 bytes at most");
         column_of_[id] = static_cast<std::int16_t>(columns_.size());
-        Column column;
-        column.info = &info;
-        column.size = info.size;
-        columns_.push_back(std::move(column));
+        const std::size_t lanes =
+            info.storage == Storage::Split ? info.size / kLaneBytes : std::size_t{1};
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            Column column;
+            column.info = &info;
+            column.size = static_cast<std::uint32_t>(info.size / lanes);
+            column.lane = static_cast<std::uint32_t>(lane);
+            columns_.push_back(std::move(column));
+        }
         is_trivial_ = is_trivial_ && info.trivially_destructible;
     }
 }
@@ -117,7 +163,7 @@ void Archetype::move_to_block(std::size_t bytes) {
     std::size_t end = rows * sizeof(Entity);
     for (Column& column : columns_) {
         const std::size_t start = round_up(end, alignment(column));
-        relocate_values(*column.info, block + start, column.data, size_);
+        relocate_elements(column, block + start, column.data, size_);
         column.data = block + start;
         end = start + std::size_t{rows} * column.size;
     }
@@ -143,7 +189,7 @@ void Archetype::promote(std::uint32_t rows) {
             skew_of(i + 1, alignment(column)),
             std::size_t{rows} * column.size);
         column.range.commit(std::size_t{rows} * column.size);
-        relocate_values(*column.info, column.range.data(), column.data, size_);
+        relocate_elements(column, column.range.data(), column.data, size_);
         column.data = column.range.data();
     }
     leave_block();
@@ -172,8 +218,10 @@ void Archetype::leave_block() {
 void Archetype::add_chunk(std::uint32_t version) {
     structure_.push_back(version);
     for (Column& column : columns_) {
-        column.versions.push_back(version);
-        column.newest = version;
+        if (column.lane == 0) {
+            column.versions.push_back(version);
+            column.newest = version;
+        }
     }
 }
 
@@ -204,7 +252,7 @@ Entity Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
     }
     touch_structure(last, version);
     for (Column& column : columns_) {
-        relocate_values(*column.info, column.at(row), column.at(last), 1);
+        relocate_elements(column, column.at(row), column.at(last), 1);
     }
     entities_[row] = entities_[last];
     return entities_[row];
@@ -212,8 +260,15 @@ Entity Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
 
 void Archetype::construct_default(std::uint32_t first, std::uint32_t count) {
     for (Column& column : columns_) {
-        LIMN_CHECK_NOTE(column.info->ops.construct_default != nullptr, column.info->name.c_str());
-        column.info->ops.construct_default(column.at(first), count);
+        const ComponentInfo& info = *column.info;
+        LIMN_CHECK_NOTE(info.ops.construct_default != nullptr, info.name.c_str());
+        if (info.storage != Storage::Split) {
+            info.ops.construct_default(column.at(first), count);
+        } else if (column.lane == 0 && count > 0) {
+            std::vector<std::uint32_t> value(info.size / kLaneBytes);
+            info.ops.construct_default(value.data(), 1);
+            fill_values(&column, first, count, value.data());
+        }
     }
 }
 

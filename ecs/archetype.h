@@ -16,7 +16,8 @@ namespace limn {
 // an array over all rows, at least 64-byte aligned, without gaps, so that a system is a plain loop
 // over arrays. The first rows live in a block shared by all columns; from some hundred rows on, at
 // 1024 at the latest, each column has a VirtualRange of its own and never moves again. Rows up to
-// the next multiple of 16 can be read and written, so vector loops need no tail.
+// the next multiple of 16 can be read and written, so vector loops need no tail. A split component
+// has a column, a lane, for each of its 4-byte scalars.
 //
 // 1024 rows are a chunk, the unit of work and of change versions. A version is the number of the
 // system run (or the moment between runs) that last took the chunk of the column for writing; rows
@@ -31,6 +32,12 @@ inline constexpr std::uint32_t kMaxRows = 1u << 22;  // sanitizers have little a
 #else
 inline constexpr std::uint32_t kMaxRows = 1u << 26;
 #endif
+
+/// A lane is a column that holds one scalar of a split component. The lanes of a component are
+/// neighbors, in the order of its bytes. [bytes]
+inline constexpr std::size_t kLaneBytes = 4;
+/// What a lane holds, whatever its type is elsewhere.
+using LaneScalar [[gnu::may_alias]] = std::uint32_t;
 
 inline constexpr int kNoColumn = -1;
 inline constexpr int kTagColumn = -2;  ///< present, but has no data
@@ -56,7 +63,8 @@ inline void store_version(std::uint32_t& target, std::uint32_t version) {
 struct Column {
     std::byte* data = nullptr;
     const ComponentInfo* info = nullptr;
-    std::uint32_t size = 0;               ///< of an element [bytes]
+    std::uint32_t size = 0;               ///< of an element [bytes]; kLaneBytes in a lane
+    std::uint32_t lane = 0;               ///< of a split component; lane 0 has the versions
     std::uint32_t newest = 0;             ///< no version of a chunk is newer
     std::vector<std::uint32_t> versions;  ///< last taken for writing, a chunk
     VirtualRange range;                   ///< empty while in a block
@@ -203,5 +211,14 @@ class Archetype {
 
 /// Moves `count` values to raw memory and ends the sources.
 void relocate_values(const ComponentInfo& info, void* destination, void* source, std::size_t count);
+/// The same with elements of a column, which may be a lane.
+void relocate_elements(const Column& column, void* destination, void* source, std::size_t count);
+
+/// Copies rows of a split component, whose first lane is `lanes`, to values side by side.
+void gather_values(const Column* lanes, std::uint32_t row, std::size_t count, void* values);
+/// The way back; the lanes may be raw memory.
+void scatter_values(Column* lanes, std::uint32_t row, std::size_t count, const void* values);
+/// The same with one value for all rows.
+void fill_values(Column* lanes, std::uint32_t row, std::size_t count, const void* value);
 
 }  // namespace limn

@@ -305,6 +305,11 @@ class CommandFlush {
                 apply_sparse(group.entity, change, now);
             } else if (change.is_present && change.value != nullptr) {
                 const int column = target.column_of(change.component);
+                if (info.storage == Storage::Split) {
+                    scatter_values(&target.column(column), row, 1, change.value);
+                    target.touch_row(column, row, now);
+                    continue;
+                }
                 void* place = target.column(column).at(row);
                 if (change.was_present) {
                     info.ops.destroy(place, 1);

@@ -177,6 +177,19 @@ bool read_fields(const std::vector<FieldInfo>& fields, void* around, ByteReader&
     return !in.failed();
 }
 
+/// Calls call(values, count) for the rows of a split component, a chunk's worth at a time.
+template <typename Call>
+void each_gathered(
+    const Column& column, std::uint32_t first, std::uint32_t count, const Call& call) {
+    thread_local std::vector<std::uint32_t> values;  // keeps its memory from call to call
+    values.resize(kChunkRows * column.info->size / kLaneBytes);
+    for (std::uint32_t row = 0; row < count; row += kChunkRows) {
+        const std::uint32_t some = std::min(count - row, kChunkRows);
+        gather_values(&column, first + row, some, values.data());
+        call(values.data(), some);
+    }
+}
+
 std::uint64_t layout_of(const std::vector<FieldInfo>& fields, std::uint64_t hash) {
     for (const FieldInfo& field : fields) {
         hash = hash_combine(hash, hash_text(field.name));
@@ -248,6 +261,32 @@ bool read_values(const ComponentInfo& info, void* first, std::size_t count, Byte
     return true;
 }
 
+void write_rows(const Column& column, std::uint32_t first, std::uint32_t count, ByteWriter& out) {
+    if (column.info->storage != Storage::Split) {
+        write_values(*column.info, column.at(first), count, out);
+        return;
+    }
+    each_gathered(column, first, count, [&](const void* values, std::size_t some) {
+        write_values(*column.info, values, some, out);
+    });
+}
+
+bool read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteReader& in) {
+    if (column.info->storage != Storage::Split) {
+        return read_values(*column.info, column.at(first), count, in);
+    }
+    std::vector<std::uint32_t> values(kChunkRows * column.info->size / kLaneBytes);
+    for (std::uint32_t row = 0; row < count; row += kChunkRows) {
+        const std::uint32_t some = std::min(count - row, kChunkRows);
+        gather_values(&column, first + row, some, values.data());
+        if (!read_values(*column.info, values.data(), some, in)) {
+            return false;
+        }
+        scatter_values(&column, first + row, some, values.data());
+    }
+    return true;
+}
+
 std::size_t least_bytes(const ComponentInfo& info) {
     return info.value_bytes == ValueBytes::All ? info.size : least_bytes_of(info.fields);
 }
@@ -261,6 +300,19 @@ hash_values(const ComponentInfo& info, const void* first, std::size_t count, std
     scratch.clear();
     write_values(info, first, count, scratch);
     return hash_bytes(scratch.data(), scratch.size(), seed);
+}
+
+std::uint64_t
+hash_rows(const Column& column, std::uint32_t first, std::uint32_t count, std::uint64_t seed) {
+    if (column.info->storage != Storage::Split) {
+        return hash_values(*column.info, column.at(first), count, seed);
+    }
+    LIMN_CHECK(count <= kChunkRows);
+    std::uint64_t hash = hash_bytes(nullptr, 0, seed);
+    each_gathered(column, first, count, [&](const void* values, std::size_t some) {
+        hash = hash_values(*column.info, values, some, seed);
+    });
+    return hash;
 }
 
 std::uint64_t layout_hash(const ComponentInfo& info) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/archetype.h"
 #include "ecs/base/bytes.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
@@ -22,12 +23,21 @@ void write_values(const ComponentInfo& info, const void* first, std::size_t coun
 [[nodiscard]] bool
 read_values(const ComponentInfo& info, void* first, std::size_t count, ByteReader& in);
 
+/// The same for `count` rows of a column of an archetype; the lanes of a split component are
+/// written, read and hashed as the structs that they make up.
+void write_rows(const Column& column, std::uint32_t first, std::uint32_t count, ByteWriter& out);
+[[nodiscard]] bool
+read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteReader& in);
+
 /// No value is written in fewer bytes.
 [[nodiscard]] std::size_t least_bytes(const ComponentInfo& info);
 
 /// Of what write_values would write; quick where there is no padding.
 [[nodiscard]] std::uint64_t
 hash_values(const ComponentInfo& info, const void* first, std::size_t count, std::uint64_t seed);
+/// The same of rows, a chunk at most.
+[[nodiscard]] std::uint64_t
+hash_rows(const Column& column, std::uint32_t first, std::uint32_t count, std::uint64_t seed);
 
 /// Tells apart what write_values of two programs would write for this type: names, types and sizes
 /// of the fields.

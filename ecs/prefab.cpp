@@ -56,8 +56,8 @@ Prefab make_prefab(World& world, Entity root) {
                 || is_link_up) {
                 continue;
             }
-            AnyComponent& copy =
-                prefab.entities[i].components.emplace_back(info, source.find(subtree[i], id));
+            AnyComponent& copy = prefab.entities[i].components.emplace_back(
+                AnyComponent::read(source, subtree[i], info));
             for_each_entity(info.fields, copy.data(), [&numbers](Entity& entity) {
                 const auto found =
                     std::lower_bound(numbers.begin(), numbers.end(), std::pair(entity, 0u));

@@ -172,8 +172,33 @@ class Query {
         static_assert(
             (std::is_same_v<typename ValueOf<Terms>::Type, T> || ...),
             "find: T must be a term of the query, const if it is const there");
+        static_assert(
+            !detail::is_split<T>,
+            "find: a split component has no address; use value<T>(entity) and set(entity, value)");
         const Place place = locate(entity);
         return place.match == nullptr ? nullptr : find_in<T>(place, Data{}, Indices{});
+    }
+
+    /// A copy of the split component of another entity, which must be one of the query and have it.
+    template <typename T>
+    [[nodiscard]] T value(Entity entity) const {
+        static_assert(
+            detail::is_split<T>,
+            "value: for split components; find<const T>() gives others in place");
+        const Place place = locate(entity);
+        return detail::Lanes<const T>(split_column<T>(place), 0).load(place.row);
+    }
+    /// Replaces it; T is a term that is not const.
+    template <typename T>
+    void set(Entity entity, const T& value) const {
+        static_assert(
+            detail::is_split<T> && (std::is_same_v<typename ValueOf<Terms>::Type, T> || ...),
+            "set: for split components that are terms and not const; find<T>() gives others in "
+            "place");
+        const Place place = locate(entity);
+        detail::Lanes<T>(split_column<T>(place), 0).store(place.row, value);
+        place.match->archetype->touch_row(
+            place.match->archetype->column_of(component_id<T>), place.row, write_version());
     }
 
   private:
@@ -221,10 +246,9 @@ class Query {
             !(std::is_empty_v<typename detail::TermTraits<Ts>::Value> || ...),
             "chunks: tags have no array; use With<Tag>");
         static_assert(
-            std::
-                is_invocable_v<F&, ChunkView, std::span<typename detail::TermTraits<Ts>::Value>...>,
+            std::is_invocable_v<F&, ChunkView, detail::ChunkArgument<Ts>...>,
             "chunks: the function takes a ChunkView and one std::span a component, in order: "
-            "std::span<const A>, std::span<B>");
+            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>");
     }
 
     [[nodiscard]] static constexpr std::uint32_t
@@ -380,9 +404,9 @@ class Query {
                     }
                 }
                 if constexpr (std::is_invocable_v<F&, detail::RowArgument<Ts>...>) {
-                    function(access[row]...);
+                    function(detail::row_argument(access[row])...);
                 } else {
-                    function(entities[row], access[row]...);
+                    function(entities[row], detail::row_argument(access[row])...);
                 }
             }
         };
@@ -421,14 +445,20 @@ class Query {
     }
 
     template <typename Term>
-    static auto span_of(
+    static detail::ChunkArgument<Term> span_of(
         const QueryMatch& match, std::size_t position, std::uint32_t begin, std::uint32_t size) {
         using T = typename detail::TermTraits<Term>::Value;
         const int column = match.columns[position];
-        return column < 0
-                   ? std::span<T>()
-                   : std::span<T>(
-                       reinterpret_cast<T*>(match.archetype->column(column).data) + begin, size);
+        if constexpr (detail::is_split<T>) {
+            return column < 0 ? SplitSpan<T>()
+                              : SplitSpan<T>(&match.archetype->column(column), begin, size);
+        } else {
+            return column < 0
+                       ? std::span<T>()
+                       : std::span<T>(
+                           reinterpret_cast<T*>(match.archetype->column(column).data) + begin,
+                           size);
+        }
     }
 
     // ---- sparse components
@@ -500,6 +530,17 @@ class Query {
         return {match, place.row};
     }
 
+    template <typename T>
+    [[nodiscard]] Column* split_column(const Place& place) const {
+        static_assert(
+            (std::is_same_v<std::remove_const_t<typename ValueOf<Terms>::Type>, T> || ...),
+            "value, set: T must be a term of the query");
+        const int column =
+            place.match != nullptr ? place.match->archetype->column_of(component_id<T>) : kNoColumn;
+        LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
+        return &place.match->archetype->column(column);
+    }
+
     template <typename T, typename... Ts, std::size_t... Positions>
     T*
     find_in(const Place& place, detail::TypeList<Ts...>, std::index_sequence<Positions...>) const {
@@ -549,6 +590,9 @@ class Query {
     template <typename... Ts, std::size_t... Positions>
     std::tuple<detail::RowArgument<Ts>...>
     single(detail::TypeList<Ts...>, std::index_sequence<Positions...>) const {
+        static_assert(
+            !(detail::is_split<typename detail::TermTraits<Ts>::Value> || ...),
+            "single: a split component has no address; use value<T>(single_entity())");
         const Place place = find_single();
         const std::uint32_t version = write_version();
         touch(*place.match, place.row, place.row + 1, version, Data{});

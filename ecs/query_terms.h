@@ -2,7 +2,9 @@
 
 #include "ecs/query_state.h"
 #include "ecs/reflect.h"
+#include "ecs/split_span.h"
 
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -40,6 +42,13 @@ struct TypeList {
 template <typename T>
 inline constexpr bool is_sparse =
     ComponentTraits<std::remove_const_t<T>>::storage == Storage::Sparse;
+
+template <typename T>
+inline constexpr bool is_split = ComponentTraits<std::remove_const_t<T>>::storage == Storage::Split;
+
+/// What World::add returns.
+template <typename T>
+using Added = std::conditional_t<is_split<T>, void, T&>;
 
 /// A component type as such, not a pointer, a reference or another term.
 template <typename T>
@@ -192,6 +201,17 @@ struct SparseAccess {
     T& operator[](std::uint32_t row) const { return *optional[row]; }
 };
 
+template <typename T>
+struct SplitAccess {
+    Lanes<T> lanes;
+    SplitRow<T> operator[](std::uint32_t row) const { return {lanes, row}; }
+};
+template <typename T>
+struct SplitOptionalAccess {
+    Lanes<T> lanes;
+    SplitOptionalRow<T> operator[](std::uint32_t row) const { return {lanes, row}; }
+};
+
 template <typename Term>
 auto access_term(
     const WorldCore& core, const QueryMatch& match, std::size_t position, std::uint32_t version) {
@@ -207,6 +227,13 @@ auto access_term(
             return access;
         } else {
             return SparseAccess<T>{access};
+        }
+    } else if constexpr (is_split<T>) {
+        if constexpr (Traits::is_optional) {
+            return SplitOptionalAccess<T>{
+                column < 0 ? Lanes<T>() : Lanes<T>(&match.archetype->column(column), 0)};
+        } else {
+            return SplitAccess<T>{Lanes<T>(&match.archetype->column(column), 0)};
         }
     } else if constexpr (std::is_empty_v<T>) {
         if constexpr (Traits::is_optional) {
@@ -228,6 +255,10 @@ using RowArgument = std::conditional_t<
     TermTraits<Term>::is_optional,
     typename TermTraits<Term>::Value*,
     typename TermTraits<Term>::Value&>;
+
+/// What the function of chunks() is given for a term.
+template <typename Term, typename T = typename TermTraits<Term>::Value>
+using ChunkArgument = std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>;
 
 template <typename... Terms>
 [[nodiscard]] std::vector<QueryTerm> query_terms() {

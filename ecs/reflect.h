@@ -158,6 +158,11 @@ struct ComponentInfo {
         nullptr;  ///< a default-constructed instance; null for types without fields
 };
 
+/// Whether a value of the component lies in one place, so that there can be a pointer to it.
+[[nodiscard]] inline bool has_address(const ComponentInfo& info) {
+    return info.storage != Storage::Split;
+}
+
 /// The type with this id, which must exist.
 [[nodiscard]] const ComponentInfo& component_info(ComponentId id);
 
@@ -363,9 +368,42 @@ ComponentOps component_ops() {
     return ops;
 }
 
+/// Scalars that a split component has at most.
+inline constexpr std::size_t kMaxLanes = 64;
+
+template <typename T>
+inline constexpr bool can_be_split =
+    !std::is_empty_v<T> && std::is_trivially_copyable_v<T> && alignof(T) == 4
+    && sizeof(T) <= 4 * kMaxLanes;
+
+struct SplitFieldVisitor {
+    template <typename F>
+    void operator()(const char*, F&, const FieldMeta& = {}) const {
+        static_assert(
+            alignof(F) == 4,
+            "Storage::Split: every field is made of 4-byte scalars (float, int, Vec3, Quat ...); "
+            "no bool, no double");
+    }
+};
+
+template <typename T>
+void check_storage() {
+    if constexpr (ComponentTraits<T>::storage == Storage::Split) {
+        static_assert(
+            can_be_split<T>,
+            "Storage::Split: the component must be trivially copyable and made of 4-byte scalars "
+            "(float, int, Vec3, Quat ...), 1 to 64 of them");
+        if constexpr (HasFields<T>) {
+            T instance{};
+            visit_fields(instance, SplitFieldVisitor{});
+        }
+    }
+}
+
 template <typename T>
 ComponentId make_component_id() {
     static_assert(std::is_nothrow_move_constructible_v<T> && std::is_nothrow_destructible_v<T>);
+    check_storage<T>();
     ComponentInfo info;
     info.name = snake_case(short_name(type_name<T>()));
     info.is_tag = std::is_empty_v<T>;

@@ -123,7 +123,7 @@ void write_rows(const SavedRows& rows, const NameTable& names, ByteWriter& out) 
     for (const ComponentId id : rows.components) {
         for (const Archetype* part : rows.parts) {
             if (const int column = part->column_of(id); column >= 0) {
-                write_values(component_info(id), part->column(column).data, part->size(), out);
+                limn::write_rows(part->column(column), 0, part->size(), out);
             }
         }
     }
@@ -331,7 +331,7 @@ class SnapshotReader {
         for (std::uint32_t i = 0; i < count; ++i) {
             std::vector<const ComponentInfo*> infos;
             for (const std::uint32_t number : read_numbers()) {
-                if (number >= names_.size() || names_[number]->storage != Storage::Table) {
+                if (number >= names_.size() || names_[number]->storage == Storage::Sparse) {
                     return fail(
                         "archetype {}: found component {} of {} tables", i, number, names_.size());
                 }
@@ -364,10 +364,14 @@ class SnapshotReader {
             Archetype* const rows =
                 world_ != nullptr ? &world_->restore_rows(ids, entities) : nullptr;
             for (const ComponentInfo* info : infos) {
-                void* const first = rows != nullptr && !info->is_tag
-                                        ? rows->column(rows->column_of(info->id)).data
-                                        : nullptr;
-                if (!read_column(*info, first, entities.size())) {
+                const bool is_read = rows != nullptr && !info->is_tag
+                                         ? read_rows(
+                                             rows->column(rows->column_of(info->id)),
+                                             0,
+                                             static_cast<std::uint32_t>(entities.size()),
+                                             in_)
+                                         : read_column(*info, nullptr, entities.size());
+                if (!is_read) {
                     return cut_off("component " + info->name);
                 }
             }
@@ -453,6 +457,8 @@ struct HashPiece {
     const ComponentInfo* info;  ///< nullptr: entities
     const std::byte* first;
     std::uint32_t count;
+    const Column* lanes = nullptr;  ///< of a split component, whose rows begin at `row`
+    std::uint32_t row = 0;
 };
 
 class StateHasher {
@@ -464,6 +470,18 @@ class StateHasher {
             pieces_.push_back({info, first + row * size, std::min(count - row, kChunkRows)});
         }
         parts_.push_back({pieces_.size(), info != nullptr ? hash_text(info->name) : 0, false});
+    }
+    /// The same of an archetype.
+    void add_rows(const Column& column, std::uint32_t count) {
+        if (column.info->storage != Storage::Split) {
+            add_column(column.info, column.data, count);
+            return;
+        }
+        for (std::uint32_t row = 0; row < count; row += kChunkRows) {
+            pieces_.push_back(
+                {column.info, nullptr, std::min(count - row, kChunkRows), &column, row});
+        }
+        parts_.push_back({pieces_.size(), hash_text(column.info->name), false});
     }
     /// A component that is there, without a value.
     void add_presence(const ComponentInfo& info) {
@@ -478,7 +496,9 @@ class StateHasher {
             for (std::size_t i = begin; i < end; ++i) {
                 const HashPiece& piece = pieces_[i];
                 hashes[i] =
-                    piece.info != nullptr
+                    piece.lanes != nullptr
+                        ? hash_rows(*piece.lanes, piece.row, piece.count, piece.count)
+                    : piece.info != nullptr
                         ? hash_values(*piece.info, piece.first, piece.count, piece.count)
                         : hash_bytes(piece.first, piece.count * sizeof(Entity), piece.count);
             }
@@ -594,7 +614,7 @@ std::uint64_t state_hash(const World& world) {
             }
             const int column = archetype->column_of(id);
             if (column >= 0 && has_bytes(info)) {
-                hasher.add_column(&info, archetype->column(column).data, archetype->size());
+                hasher.add_rows(archetype->column(column), archetype->size());
             } else {
                 hasher.add_presence(info);
             }

@@ -1,5 +1,6 @@
 #include "ecs/world.h"
 
+#include "ecs/any_component.h"
 #include "ecs/world_internals.h"
 
 #include <algorithm>
@@ -181,7 +182,8 @@ std::uint32_t World::move_row(Entity entity, Archetype& from, Archetype& to) {
             ++target;
         }
         if (target < targets.size() && targets[target].info == source.info) {
-            relocate_values(*source.info, targets[target].at(new_row), source.at(old_row), 1);
+            relocate_elements(source, targets[target].at(new_row), source.at(old_row), 1);
+            ++target;  // the next may be another lane of it
         } else if (!source.info->trivially_destructible) {
             source.info->ops.destroy(source.at(old_row), 1);
         }
@@ -253,6 +255,9 @@ const void* World::find(Entity entity, ComponentId id) const {
     if (column == kTagColumn) {
         return &rows;  // some address: tags have no value
     }
+    LIMN_CHECK_NOTE(
+        column == kNoColumn || has_address(component_info(id)),
+        "a split component has no address; use read and write");
     return column == kNoColumn ? nullptr : rows.column(column).at(place.row);
 }
 
@@ -282,13 +287,66 @@ void* World::make_room(Entity entity, ComponentId id) {
     Archetype& to = archetype_with(from, id);
     const std::uint32_t row = move_row(entity, from, to);
     const int column = to.column_of(id);
-    return column < 0 ? nullptr : to.column(column).at(row);
+    return column < 0 || !has_address(info) ? nullptr : to.column(column).at(row);
+}
+
+bool World::read(Entity entity, ComponentId id, void* raw) const {
+    const ComponentInfo& info = component_info(id);
+    if (!has(entity, id)) {
+        return false;
+    }
+    if (info.storage == Storage::Split) {
+        const EntityPlace place = core_.entities.find(entity);
+        const Archetype& rows = archetype(place.archetype);
+        gather_values(&rows.column(rows.column_of(id)), place.row, 1, raw);
+    } else if (!info.is_tag) {
+        LIMN_CHECK_NOTE(info.ops.construct_copy != nullptr, info.name.c_str());
+        info.ops.construct_copy(raw, find(entity, id), 1);
+    }
+    return true;
+}
+
+bool World::write(Entity entity, ComponentId id, void* value) {
+    const ComponentInfo& info = component_info(id);
+    if (!has(entity, id)) {
+        return false;
+    }
+    if (!has_address(info)) {
+        put_bytes(entity, id, value);
+    } else if (!info.is_tag) {
+        void* const present = find(entity, id);
+        info.ops.destroy(present, 1);
+        info.ops.construct_move(present, value, 1);
+    }
+    return true;
+}
+
+void World::put_bytes(Entity entity, ComponentId id, const void* value) {
+    const bool is_new = !has(entity, id);
+    if (is_new) {
+        make_room(entity, id);
+    }
+    const EntityPlace place = core_.entities.find(entity);
+    Archetype& rows = archetype(place.archetype);
+    const int column = rows.column_of(id);
+    scatter_values(&rows.column(column), place.row, 1, value);
+    rows.touch_row(column, place.row, core_.now());
+    if (is_new) {
+        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    }
 }
 
 void* World::add(Entity entity, ComponentId id) {
     core_.check_unlocked();
+    const ComponentInfo& info = component_info(id);
+    if (!has_address(info)) {
+        if (!has(entity, id)) {
+            const AnyComponent initial(info);
+            put_bytes(entity, id, initial.data());
+        }
+        return nullptr;
+    }
     if (!has(entity, id)) {
-        const ComponentInfo& info = component_info(id);
         LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_default != nullptr, info.name.c_str());
         void* room = make_room(entity, id);
         if (!info.is_tag) {
@@ -303,6 +361,10 @@ void* World::add_copy(Entity entity, ComponentId id, const void* value) {
     core_.check_unlocked();
     const ComponentInfo& info = component_info(id);
     LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_copy != nullptr, info.name.c_str());
+    if (!has_address(info)) {
+        put_bytes(entity, id, value);
+        return nullptr;
+    }
     void* present = find(entity, id);
     const bool is_new = present == nullptr;
     void* room = is_new ? make_room(entity, id) : present;
@@ -321,6 +383,10 @@ void* World::add_copy(Entity entity, ComponentId id, const void* value) {
 void* World::add_move(Entity entity, ComponentId id, void* value) {
     core_.check_unlocked();
     const ComponentInfo& info = component_info(id);
+    if (!has_address(info)) {
+        put_bytes(entity, id, value);
+        return nullptr;
+    }
     void* present = find(entity, id);
     const bool is_new = present == nullptr;
     void* room = is_new ? make_room(entity, id) : present;

@@ -66,10 +66,10 @@ class World {
     // ---- components
     // -------------------------------------------------------------------------------
 
-    /// Adds the component or replaces its value. The reference holds until the next structural
-    /// change.
+    /// Adds the component or replaces its value. Returns a reference that holds until the next
+    /// structural change; of a split component, which has no address, nothing.
     template <typename T>
-    T& add(Entity entity, T component = T{});
+    detail::Added<T> add(Entity entity, T component = T{});
     /// Returns whether it was there.
     template <typename T>
     bool remove(Entity entity) {
@@ -89,6 +89,13 @@ class World {
     [[nodiscard]] T* find(Entity entity);
     template <typename T>
     [[nodiscard]] const T* find(Entity entity) const;
+
+    /// A copy of the component, which must be there. For all kinds of storage.
+    template <typename T>
+    [[nodiscard]] T value(Entity entity) const;
+    /// Replaces the component, which must be there. For all kinds of storage.
+    template <typename T>
+    void set(Entity entity, T component);
 
     // ---- queries and systems
     // ----------------------------------------------------------------------
@@ -147,10 +154,17 @@ class World {
     [[nodiscard]] std::vector<ComponentId> components_of(Entity entity) const;
     [[nodiscard]] bool has(Entity entity, ComponentId id) const;
     /// The value; nullptr if there is none. Of tags, not null and not to be read. Counts as a
-    /// change if not const.
+    /// change if not const. Split components have no address: use read and write.
     [[nodiscard]] void* find(Entity entity, ComponentId id);
     [[nodiscard]] const void* find(Entity entity, ComponentId id) const;
-    /// Adds with the default value, or leaves the value there is. Returns it.
+    /// Copies the value to raw memory, where it is the caller's to destroy. False: there is none.
+    /// Nothing is copied of a tag. For all kinds of storage.
+    bool read(Entity entity, ComponentId id, void* raw) const;
+    /// Replaces the value by moving from `value`. False: there is none to replace. For all kinds of
+    /// storage.
+    bool write(Entity entity, ComponentId id, void* value);
+    /// Adds with the default value, or leaves the value there is. Returns it; nullptr of a split
+    /// component, here and below.
     void* add(Entity entity, ComponentId id);
     /// Adds a copy of `value`, or replaces the value there is with one.
     void* add_copy(Entity entity, ComponentId id, const void* value);
@@ -235,6 +249,8 @@ class World {
     void* make_room(Entity entity, ComponentId id);
     void destroy_now(Entity entity, EntityPlace place);
     void remove_now(Entity entity, ComponentId id);
+    /// Adds or replaces a component without an address.
+    void put_bytes(Entity entity, ComponentId id, const void* value);
     [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);
 
     void observe(Observer observer);

@@ -59,6 +59,9 @@ Entity World::create(Ts&&... components) {
             if constexpr (!std::is_empty_v<Value>) {
                 ::new (static_cast<void*>(set.value(place))) Value(std::forward<T>(component));
             }
+        } else if constexpr (detail::is_split<Value>) {
+            detail::Lanes<Value>(&bundle.archetype->column(bundle.columns[position]), 0)
+                .store(row, component);
         } else if constexpr (!std::is_empty_v<Value>) {
             Column& column = bundle.archetype->column(bundle.columns[position]);
             ::new (static_cast<void*>(reinterpret_cast<Value*>(column.data) + row))
@@ -98,6 +101,12 @@ void World::create_many(std::span<Entity> entities, const Ts&... components) {
                     ::new (static_cast<void*>(set.value(place))) T(component);
                 }
             }
+        } else if constexpr (detail::is_split<T>) {
+            fill_values(
+                &bundle.archetype->column(bundle.columns[position]),
+                first,
+                entities.size(),
+                &component);
         } else if constexpr (!std::is_empty_v<T>) {
             T* rows = reinterpret_cast<T*>(bundle.archetype->column(bundle.columns[position]).data)
                       + first;
@@ -134,37 +143,45 @@ void World::each_entity(F&& function) const {
 // ----------------------------------------------------------------------------------
 
 template <typename T>
-T& World::add(Entity entity, T component) {
+detail::Added<T> World::add(Entity entity, T component) {
     static_assert(detail::Component<T>, "components are values, not pointers, arrays or entities");
     core_.check_unlocked();
-    if (T* present = find<T>(entity); present != nullptr) {
-        if constexpr (!std::is_empty_v<T>) {
-            // Not operator=: a component need not be assignable.
-            present->~T();
-            return *::new (static_cast<void*>(present)) T(std::move(component));
-        } else {
-            return *present;
-        }
-    }
-    T* value = static_cast<T*>(make_room(entity, component_id<T>));
-    if constexpr (!std::is_empty_v<T>) {
-        value = ::new (static_cast<void*>(value)) T(std::move(component));
-    }
-    if (observes(component_id<T>, ObserverEvent::Add)) {
-        notify(ObserverEvent::Add, {&component_id<T>, 1}, {&entity, 1});
-        value = find<T>(entity);
-        LIMN_CHECK_NOTE(value != nullptr, "an observer took the component that was being added");
-    }
-    if constexpr (std::is_empty_v<T>) {
-        return detail::tag_value<T>;
+    if constexpr (detail::is_split<T>) {
+        put_bytes(entity, component_id<T>, &component);
     } else {
-        return *value;
+        if (T* present = find<T>(entity); present != nullptr) {
+            if constexpr (!std::is_empty_v<T>) {
+                // Not operator=: a component need not be assignable.
+                present->~T();
+                return *::new (static_cast<void*>(present)) T(std::move(component));
+            } else {
+                return *present;
+            }
+        }
+        T* value = static_cast<T*>(make_room(entity, component_id<T>));
+        if constexpr (!std::is_empty_v<T>) {
+            value = ::new (static_cast<void*>(value)) T(std::move(component));
+        }
+        if (observes(component_id<T>, ObserverEvent::Add)) {
+            notify(ObserverEvent::Add, {&component_id<T>, 1}, {&entity, 1});
+            value = find<T>(entity);
+            LIMN_CHECK_NOTE(
+                value != nullptr, "an observer took the component that was being added");
+        }
+        if constexpr (std::is_empty_v<T>) {
+            return detail::tag_value<T>;
+        } else {
+            return *value;
+        }
     }
 }
 
 template <typename T>
 inline T* World::find(Entity entity) {
     using Value = std::remove_const_t<T>;
+    static_assert(
+        !detail::is_split<T>,
+        "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");
     const EntityPlace place = core_.entities.find(entity);
     if (!place) {
         return nullptr;
@@ -206,6 +223,38 @@ inline const T& World::get(Entity entity) const {
     const T* value = find<T>(entity);
     LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
     return *value;
+}
+
+template <typename T>
+T World::value(Entity entity) const {
+    if constexpr (detail::is_split<T>) {
+        const EntityPlace place = require(entity);
+        const Archetype& rows = archetype(place.archetype);
+        const int column = rows.column_of(component_id<T>);
+        LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
+        return detail::Lanes<const T>(&rows.column(column), 0).load(place.row);
+    } else {
+        return get<T>(entity);
+    }
+}
+
+template <typename T>
+void World::set(Entity entity, T component) {
+    if constexpr (detail::is_split<T>) {
+        const EntityPlace place = require(entity);
+        Archetype& rows = archetype(place.archetype);
+        const int column = rows.column_of(component_id<T>);
+        LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
+        detail::Lanes<T>(&rows.column(column), 0).store(place.row, component);
+        rows.touch_row(column, place.row, core_.now());
+    } else if constexpr (std::is_empty_v<T>) {
+        static_cast<void>(get<const T>(entity));
+    } else {
+        // Not operator=: a component need not be assignable.
+        T* present = &get<T>(entity);
+        present->~T();
+        ::new (static_cast<void*>(present)) T(std::move(component));
+    }
 }
 
 // ---- queries

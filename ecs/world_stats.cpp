@@ -30,8 +30,10 @@ WorldMemory World::memory() const {
             memory.archetypes += archetype->committed();
         }
         memory.used += std::size_t{archetype->size()} * row_bytes(*archetype);
-        memory.versions += std::size_t{archetype->chunk_count()} * (archetype->columns().size() + 1)
-                           * sizeof(std::uint32_t);
+        for (const Column& column : archetype->columns()) {
+            memory.versions += column.versions.size() * sizeof(std::uint32_t);
+        }
+        memory.versions += std::size_t{archetype->chunk_count()} * sizeof(std::uint32_t);
     }
     for (const SparseSet* set : core_.sparse_list) {
         memory.sparse += set->committed();

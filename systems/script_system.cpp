@@ -10,19 +10,6 @@ namespace limn {
 
 namespace {
 
-/// Where the action's component is; added if it is to be set and missing. Null: nothing to do.
-void* find_target(World& world, const ScriptAction& action) {
-    const ComponentId id = action.value.info().id;
-    if (action.is_resource) {
-        return world.find_resource(id);
-    }
-    if (!world.alive(action.entity)) {
-        return nullptr;
-    }
-    return action.action == EventAction::Set ? world.add(action.entity, id)
-                                             : world.find(action.entity, id);
-}
-
 /// The field at `to` grows by the one at `by`.
 void add_to_field(const FieldInfo& field, void* to, const void* by) {
     if (field.shape == FieldShape::List) {
@@ -57,13 +44,35 @@ void apply_edits(const ScriptAction& action, void* target) {
     }
 }
 
+/// Where there is no resource or entity of that kind, there is nothing to do; a component that is
+/// to be set is added.
+void edit_target(World& world, const ScriptAction& action) {
+    const ComponentInfo& info = action.value.info();
+    if (action.is_resource) {
+        if (void* const resource = world.find_resource(info.id); resource != nullptr) {
+            apply_edits(action, resource);
+        }
+        return;
+    }
+    if (!world.alive(action.entity)) {
+        return;
+    }
+    if (action.action == EventAction::Set) {
+        world.add(action.entity, info.id);
+    }
+    // By copy: components of some kinds of storage have no address.
+    AnyComponent component = AnyComponent::read(world, action.entity, info);
+    if (!component.is_empty()) {
+        apply_edits(action, component.data());
+        world.write(action.entity, info.id, component.data());
+    }
+}
+
 void run_action(World& world, const ScriptAction& action) {
     switch (action.action) {
     case EventAction::Set:
     case EventAction::Impulse:
-        if (void* const target = find_target(world, action)) {
-            apply_edits(action, target);
-        }
+        edit_target(world, action);
         break;
     case EventAction::Spawn:
         (void)spawn(world, action.prefab);

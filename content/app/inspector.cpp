@@ -245,14 +245,14 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
     } else if (ImGui::CollapsingHeader(info.name.c_str(), &keep, flags)) {
         Edit edit;
         edit.entity = selected_;
-        const void* value = std::as_const(world).find(selected_, info.id);
+        const AnyComponent value = AnyComponent::read(world, selected_, info);
         const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
-        edit_copy(style, world, std::move(edit), info, value, place);
+        edit_copy(style, world, std::move(edit), info, value.data(), place);
     }
     if (!keep && info.ops.construct_copy != nullptr) {
         Edit edit;
         edit.entity = selected_;
-        edit.before = AnyComponent(info, std::as_const(world).find(selected_, info.id));
+        edit.before = AnyComponent::read(world, selected_, info);
         edit.label = fmt::format("{}: remove {}", entity_label(world, selected_), info.name);
         world.remove(selected_, info.id);
         undo_.record(std::move(edit));

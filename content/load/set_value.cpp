@@ -95,15 +95,16 @@ Status set_in_entities(
     const JsonPlace& place) {
     bool is_set = false;
     for (const Entity entity : entities) {
-        void* const component = world.find(entity, info.id);
-        if (component == nullptr) {
+        AnyComponent component = AnyComponent::read(world, entity, info);
+        if (component.is_empty()) {
             continue;
         }
         const Status status =
-            set_field(info, component, field_path, value, place, find_names_in(world));
+            set_field(info, component.data(), field_path, value, place, find_names_in(world));
         if (!status) {
             return status;
         }
+        world.write(entity, info.id, component.data());
         is_set = true;
     }
     if (!is_set) {

@@ -30,6 +30,19 @@ struct Unique {
 };
 struct Chosen {};  // a sparse tag
 
+}  // namespace prefab_test
+
+template <>
+struct limn::ComponentTraits<prefab_test::Scratch> : DefaultTraits {
+    static constexpr bool saved = false;
+};
+template <>
+struct limn::ComponentTraits<prefab_test::Chosen> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+
+namespace prefab_test {
+
 /// root (with a camera that circles `arm`) - arm - hand, and root - lamp; `outside` is named, but
 /// not part.
 struct Robot {
@@ -49,15 +62,6 @@ struct Robot {
 };
 
 }  // namespace prefab_test
-
-template <>
-struct limn::ComponentTraits<prefab_test::Scratch> : DefaultTraits {
-    static constexpr bool saved = false;
-};
-template <>
-struct limn::ComponentTraits<prefab_test::Chosen> : DefaultTraits {
-    static constexpr Storage storage = Storage::Sparse;
-};
 
 using namespace limn;
 using namespace prefab_test;

@@ -46,6 +46,24 @@ struct SnapEngine {
     int value = 0;
 };
 
+}  // namespace snapshot_test
+
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapMark> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapSelected> : DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+template <>
+struct limn::ComponentTraits<snapshot_test::SnapCache> : DefaultTraits {
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+};
+
+namespace snapshot_test {
+
 void register_snapshot_types() {
     register_all_components();
     register_component<SnapGears>();
@@ -106,20 +124,6 @@ std::string refusal(std::span<const std::byte> bytes) {
 }
 
 }  // namespace snapshot_test
-
-template <>
-struct limn::ComponentTraits<snapshot_test::SnapMark> : DefaultTraits {
-    static constexpr Storage storage = Storage::Sparse;
-};
-template <>
-struct limn::ComponentTraits<snapshot_test::SnapSelected> : DefaultTraits {
-    static constexpr Storage storage = Storage::Sparse;
-};
-template <>
-struct limn::ComponentTraits<snapshot_test::SnapCache> : DefaultTraits {
-    static constexpr bool saved = false;
-    static constexpr bool hashed = false;
-};
 
 using namespace limn;
 using namespace snapshot_test;
