@@ -89,6 +89,14 @@ Archetype::Archetype(
     column_of_.assign(components.empty() ? 0 : components.back() + 1, std::int16_t{kNoColumn});
     for (const ComponentId id : components) {
         const ComponentInfo& info = component_info(id);
+        const int column_index = info.is_tag ? kTagColumn : static_cast<int>(columns_.size());
+        if (info.storage == Storage::Toggle) {
+            bits_.add_toggle(id, column_index);
+            has_tracked_toggles_ = has_tracked_toggles_ || info.tracks_rows;
+        }
+        if (info.tracks_rows) {
+            bits_.add_track(id, column_index);
+        }
         if (info.is_tag) {
             column_of_[id] = kTagColumn;
             continue;
@@ -106,6 +114,7 @@ Archetype::Archetype(
         }
         is_trivial_ = is_trivial_ && info.trivially_destructible;
     }
+    has_row_bits_ = !bits_.empty();
 }
 
 Archetype::~Archetype() {
@@ -223,6 +232,7 @@ void Archetype::add_chunk(std::uint32_t version) {
             column.newest = version;
         }
     }
+    bits_.add_chunk(version);
 }
 
 // ---- rows
@@ -241,12 +251,19 @@ std::uint32_t Archetype::append(std::span<const Entity> entities, std::uint32_t 
     for (std::uint32_t chunk = first / kChunkRows; chunk < chunk_count(); ++chunk) {
         touch_structure(chunk * kChunkRows, version);
     }
+    bits_.rows_came(first, count);
     return first;
 }
 
 Entity Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
     const std::uint32_t last = --size_;
     touch_structure(row, version);
+    if (has_row_bits_) {
+        if (row != last) {
+            bits_.rows_moved(last, row, 1);
+        }
+        bits_.rows_went(last, 1);
+    }
     if (row == last) {
         return {};
     }
@@ -288,6 +305,7 @@ void Archetype::clear(std::uint32_t version) {
     for (std::uint32_t chunk = 0; chunk < chunk_count(); ++chunk) {
         touch_structure(chunk * kChunkRows, version);
     }
+    bits_.rows_went(0, size_);
     size_ = 0;
 }
 
@@ -301,6 +319,9 @@ void Archetype::touch_column(int column, std::uint32_t version) {
     Column& target = columns_[static_cast<std::size_t>(column)];
     std::fill_n(target.versions.begin(), chunk_count(), version);
     target.newest = version;
+    if (TrackedRows* track = bits_.track_of_column(column); track != nullptr) {
+        track->mark(0, size_);
+    }
 }
 
 void Archetype::forget_versions_before(std::uint32_t oldest) {
@@ -311,6 +332,7 @@ void Archetype::forget_versions_before(std::uint32_t oldest) {
         std::for_each(column.versions.begin(), column.versions.end(), raise);
         raise(column.newest);
     }
+    bits_.forget_versions_before(oldest);
 }
 
 }  // namespace limn

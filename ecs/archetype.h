@@ -3,6 +3,7 @@
 #include "ecs/column.h"
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
+#include "ecs/row_bits.h"
 
 #include <atomic>
 #include <cstddef>
@@ -25,6 +26,7 @@ namespace limn {
 // number a chunk.
 
 inline constexpr std::uint32_t kChunkRows = 1024;
+static_assert(kChunkRows == RowMask::kRows);
 inline constexpr std::uint32_t kRowPadding = 16;
 inline constexpr std::size_t kColumnAlign = 64;
 #if defined(LIMN_SANITIZED)
@@ -74,7 +76,7 @@ struct Column {
 
 class Archetype {
   public:
-    /// `components` ascending, of Storage::Table.
+    /// `components` ascending, none of Storage::Sparse.
     Archetype(std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks);
     Archetype(const Archetype&) = delete;
     Archetype& operator=(const Archetype&) = delete;
@@ -115,6 +117,9 @@ class Archetype {
         const std::uint32_t row = size_++;
         entities_[row] = entity;
         touch_structure(row, version);
+        if (has_row_bits_) {
+            bits_.rows_came(row, 1);
+        }
         return row;
     }
     /// Adds a row for every entity; returns the first.
@@ -147,6 +152,17 @@ class Archetype {
                               columns_[static_cast<std::size_t>(column)].versions[chunk],
                               structure_[chunk]);
     }
+    /// The same of a component; the bits of a toggled tag, which has no column, count.
+    [[nodiscard]] std::uint32_t version_of(ComponentId id, std::uint32_t chunk) const {
+        const ToggleBits* tag = toggled_tag(id);
+        return tag == nullptr ? version(column_of(id), chunk)
+                              : newer_of(tag->chunks[chunk].version, structure_[chunk]);
+    }
+    [[nodiscard]] std::uint32_t newest_version_of(ComponentId id) const {
+        const ToggleBits* tag = toggled_tag(id);
+        return tag == nullptr ? newest_version(column_of(id))
+                              : newer_of(tag->newest, newest_structure_);
+    }
     /// No chunk of the column changed later.
     [[nodiscard]] std::uint32_t newest_version(int column) const {
         return column < 0
@@ -163,8 +179,53 @@ class Archetype {
             store_version(target.newest, version);
         }
     }
+    /// The same, and marks the row if the component tracks its rows. For code that does not know
+    /// the type.
+    void write_row(int column, std::uint32_t row, std::uint32_t version) {
+        touch_row(column, row, version);
+        if (has_row_bits_) {
+            if (TrackedRows* track = bits_.track_of_column(column); track != nullptr) {
+                track->mark(row);
+            }
+        }
+    }
     /// Makes versions that are older than `oldest` equal to it, so that differences never overflow.
     void forget_versions_before(std::uint32_t oldest);
+
+    // ---- bits a row (ecs/row_bits.h)
+    // --------------------------------------------------------------
+
+    /// Whether there are bits at all: some component is toggled or tracks its rows.
+    [[nodiscard]] bool has_row_bits() const { return has_row_bits_; }
+    [[nodiscard]] RowBits& bits() { return bits_; }
+    [[nodiscard]] const RowBits& bits() const { return bits_; }
+    /// `toggle` is one of bits(). Returns whether it was otherwise; that is a change of the
+    /// component.
+    bool set_enabled(ToggleBits& toggle, std::uint32_t row, bool enabled, std::uint32_t version) {
+        if (!toggle.set_enabled(row, enabled)) {
+            return false;
+        }
+        if (toggle.column < 0) {
+            toggle.chunks[row / kChunkRows].version = version;
+            store_version(toggle.newest, version);
+        } else if (has_tracked_toggles_) {
+            write_row(toggle.column, row, version);
+        } else {
+            touch_row(toggle.column, row, version);
+        }
+        return true;
+    }
+    /// The same by component; one that cannot be toggled stays enabled.
+    void set_enabled(ComponentId id, std::uint32_t row, bool enabled, std::uint32_t version) {
+        if (ToggleBits* toggle = bits_.toggle(id); toggle != nullptr) {
+            set_enabled(*toggle, row, enabled, version);
+        }
+    }
+    /// Whether the row has the component and it is not disabled.
+    [[nodiscard]] bool is_enabled(ComponentId id, std::uint32_t row) const {
+        const ToggleBits* toggle = bits_.toggle(id);
+        return toggle != nullptr ? toggle->is_enabled(row) : has(id);
+    }
 
     // ---- what the world remembers here
     // ------------------------------------------------------------
@@ -184,6 +245,10 @@ class Archetype {
     void leave_block();
     [[nodiscard]] std::uint32_t rows_in_block(std::size_t bytes) const;
     void add_chunk(std::uint32_t version);
+    [[nodiscard]] const ToggleBits* toggled_tag(ComponentId id) const {
+        const ToggleBits* toggle = has_row_bits_ ? bits_.toggle(id) : nullptr;
+        return toggle != nullptr && toggle->column < 0 ? toggle : nullptr;
+    }
     void touch_structure(std::uint32_t row, std::uint32_t version) {
         const std::uint32_t chunk = row / kChunkRows;
         if (chunk >= structure_.size()) {
@@ -206,7 +271,10 @@ class Archetype {
     BlockPool& blocks_;
     std::byte* block_ = nullptr;
     std::size_t block_bytes_ = 0;
-    bool is_trivial_ = true;  ///< no destructors
+    bool is_trivial_ = true;            ///< no destructors
+    bool has_row_bits_ = false;         ///< bits_ is not empty
+    bool has_tracked_toggles_ = false;  ///< some toggled component tracks its rows
+    RowBits bits_;
 };
 
 /// Moves `count` values to raw memory and ends the sources.

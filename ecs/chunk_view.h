@@ -17,7 +17,7 @@ class ChunkView {
     }
     /// Position among the chunks of the query; those that Changed leaves out count too.
     [[nodiscard]] std::uint32_t index() const { return index_; }
-    /// How many entities of the query come before.
+    /// How many rows the query's chunks before it have.
     [[nodiscard]] std::uint32_t offset() const { return offset_; }
     [[nodiscard]] const Archetype& archetype() const { return *archetype_; }
     /// Row of the archetype where the chunk begins.
@@ -33,7 +33,8 @@ class ChunkView {
     /// there.
     template <typename T>
     [[nodiscard]] std::uint32_t version() const {
-        return archetype_->version(column_of<T>(), chunk_);
+        static_cast<void>(column_of<T>());
+        return archetype_->version_of(component_id<T>, chunk_);
     }
     template <typename T>
     [[nodiscard]] bool changed_since(std::uint32_t since) const {
@@ -52,13 +53,81 @@ class ChunkView {
         for (std::size_t i = 0; i < kMaxQueryColumns; ++i) {
             if (columns_[i] == column && column >= 0) {
                 archetype_->column(column).versions[chunk_] = previous_[i];
+                if constexpr (ComponentTraits<T>::tracks_rows) {
+                    if (state_->writes(component_id<T>)) {
+                        written<T>() = previous_written_[i];
+                    }
+                }
             }
         }
+    }
+    /// Of a component that tracks its rows, which this query takes for writing: says that these
+    /// rows are written and no others, where all would count otherwise. Once a chunk.
+    template <typename T>
+    void mark_rows(const RowMask& rows) const {
+        static_assert(ComponentTraits<T>::tracks_rows, "mark_rows: T does not track its rows");
+        LIMN_CHECK_NOTE(
+            state_->writes(component_id<T>), "mark_rows: T is no written term of the query");
+        const int column = column_of<T>();
+        for (std::size_t i = 0; i < kMaxQueryColumns; ++i) {
+            if (columns_[i] == column) {
+                written<T>() = previous_written_[i];
+                written<T>() |= rows;
+            }
+        }
+    }
+
+    // ---- toggled components
+    // ------------------------------------------------------------------------
+
+    /// The rows that are enabled for the query: those where its toggled components are enabled, and
+    /// those of Without disabled or not there; all rows if it has none of either. As they were when
+    /// the query came to the chunk; there is at least one. Of Optional terms see enabled<T>().
+    [[nodiscard]] const RowMask& enabled() const {
+        if (all_enabled_) {
+            *enabled_ = RowMask::first(size_);
+        }
+        return *enabled_;
+    }
+    [[nodiscard]] bool all_enabled() const { return all_enabled_; }
+    /// The rows that have T enabled now; T need not be a term.
+    template <typename T>
+    [[nodiscard]] RowMask enabled() const {
+        const ToggleBits* toggle = toggle_of<T>();
+        if (toggle == nullptr) {
+            return {};
+        }
+        RowMask rows = RowMask::first(size_);
+        rows -= toggle->chunks[chunk_].disabled;
+        return rows;
+    }
+    /// Enables or disables T, which this query takes for writing (T or Optional<T>), for row `row`
+    /// < size() of the chunk. Counts as a change of T if it was otherwise, and returns whether it
+    /// was.
+    template <typename T>
+    bool set_enabled(std::uint32_t row, bool enabled) const {
+        LIMN_CHECK_NOTE(
+            state_->writes(component_id<T>), "set_enabled: T is no written term of the query");
+        ToggleBits* toggle = toggle_of<T>();
+        LIMN_CHECK_NOTE(toggle != nullptr && row < size_, component_info<T>().name.c_str());
+        return archetype_->set_enabled(*toggle, first_row() + row, enabled, version_);
     }
 
   private:
     template <typename... Terms>
     friend class Query;
+
+    template <typename T>
+    [[nodiscard]] ToggleBits* toggle_of() const {
+        static_assert(
+            ComponentTraits<T>::storage == Storage::Toggle,
+            "T cannot be disabled: its storage is not Storage::Toggle");
+        return archetype_->bits().toggle(component_id<T>);
+    }
+    template <typename T>
+    [[nodiscard]] RowMask& written() const {
+        return archetype_->bits().track(component_id<T>)->written[chunk_];
+    }
 
     template <typename T>
     [[nodiscard]] int column_of() const {
@@ -68,12 +137,17 @@ class ChunkView {
     }
 
     Archetype* archetype_ = nullptr;
-    const std::int16_t* columns_ = nullptr;    ///< of the terms with data
-    const std::uint32_t* previous_ = nullptr;  ///< their versions before the query
+    const std::int16_t* columns_ = nullptr;      ///< of the terms with data
+    const std::uint32_t* previous_ = nullptr;    ///< their versions before the query
+    const RowMask* previous_written_ = nullptr;  ///< and marked rows; null: none tracks its rows
+    const QueryState* state_ = nullptr;
+    RowMask* enabled_ = nullptr;  ///< arbitrary if all are
     std::uint32_t chunk_ = 0;
     std::uint32_t size_ = 0;
     std::uint32_t index_ = 0;
     std::uint32_t offset_ = 0;
+    std::uint32_t version_ = 0;  ///< of what the query writes
+    bool all_enabled_ = true;
 };
 
 }  // namespace limn

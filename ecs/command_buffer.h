@@ -20,7 +20,7 @@ class World;
 // recorded (task_scope.h). Sorted by that, the segments of all streams are what a single thread
 // would have recorded.
 
-enum class CommandOp : std::uint8_t { Create, Destroy, Add, Set, Remove };
+enum class CommandOp : std::uint8_t { Create, Destroy, Add, Set, Remove, Enable, Disable };
 
 struct Command {
     Entity entity;

@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
+/// What commands say of a component that can be disabled.
+enum class Enabling : std::uint8_t { Keep, Enable, Disable };
+
 /// What becomes of one component of an entity.
 struct Change {
     ComponentId component;
@@ -25,6 +28,7 @@ struct Change {
     bool is_present;   ///< after the change
     bool was_present;  ///< before
     bool was_removed;  ///< at some time in between
+    Enabling enabling;
 };
 
 /// All commands of one entity.
@@ -221,11 +225,21 @@ class CommandFlush {
         }
         if (change == nullptr) {
             const bool present = !group.is_new && world_.has(group.entity, command.component);
-            changes_.push_back({command.component, nullptr, present, present, false});
+            changes_.push_back(
+                {command.component, nullptr, present, present, false, Enabling::Keep});
             change = &changes_.back();
         }
-        if (command.op == CommandOp::Set && !change->is_present) {
+        const bool is_enabling =
+            command.op == CommandOp::Enable || command.op == CommandOp::Disable;
+        if ((command.op == CommandOp::Set || is_enabling) && !change->is_present) {
             destroy_value(command.component, command.value);
+            return;
+        }
+        if (command.op != CommandOp::Set) {
+            change->enabling =
+                command.op == CommandOp::Disable ? Enabling::Disable : Enabling::Enable;
+        }
+        if (is_enabling) {
             return;
         }
         destroy_value(command.component, change->value);
@@ -307,15 +321,18 @@ class CommandFlush {
                 const int column = target.column_of(change.component);
                 if (info.storage == Storage::Split) {
                     scatter_values(&target.column(column), row, 1, change.value);
-                    target.touch_row(column, row, now);
+                    target.write_row(column, row, now);
                     continue;
                 }
                 void* place = target.column(column).at(row);
                 if (change.was_present) {
                     info.ops.destroy(place, 1);
-                    target.touch_row(column, row, now);
+                    target.write_row(column, row, now);
                 }
                 relocate_values(info, place, change.value, 1);
+            }
+            if (change.is_present && change.enabling != Enabling::Keep) {
+                target.set_enabled(change.component, row, change.enabling == Enabling::Enable, now);
             }
         }
     }

@@ -52,6 +52,22 @@ class Commands {
     void remove(Entity entity) const {
         buffer_->record(CommandOp::Remove, entity, component_id<T>);
     }
+    /// Enables or disables the component (Storage::Toggle) if the entity has it by then. Adding it
+    /// afterwards enables it.
+    template <typename T>
+    void enable(Entity entity) const {
+        set_enabled<T>(entity, true);
+    }
+    template <typename T>
+    void disable(Entity entity) const {
+        set_enabled<T>(entity, false);
+    }
+    template <typename T>
+    void set_enabled(Entity entity, bool enabled) const {
+        static_assert(
+            detail::is_toggle<T>, "T cannot be disabled: its storage is not Storage::Toggle");
+        set_enabled(entity, component_id<T>, enabled);
+    }
 
     // ---- without types
     // ----------------------------------------------------------------------------
@@ -60,6 +76,9 @@ class Commands {
     void add_copy(Entity entity, ComponentId id, const void* value) const;
     void remove(Entity entity, ComponentId id) const {
         buffer_->record(CommandOp::Remove, entity, id);
+    }
+    void set_enabled(Entity entity, ComponentId id, bool enabled) const {
+        buffer_->record(enabled ? CommandOp::Enable : CommandOp::Disable, entity, id);
     }
 
   private:

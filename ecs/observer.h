@@ -25,8 +25,8 @@ class World;
 //                destroyed, or took the component from, is left out.
 //     on_remove  before anything is gone: the component can still be read. Must not change the
 //     structure.
-// Replacing a value is neither. World::clear and the world's end call on_remove for all that is
-// left.
+// Replacing a value is neither, and nor is enabling or disabling. World::clear and the world's end
+// call on_remove for all that is left.
 
 enum class ObserverEvent : std::uint8_t { Add, Remove };
 

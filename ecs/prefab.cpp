@@ -26,6 +26,9 @@ void record_copy(Commands commands, const Prefab& prefab, std::span<const Entity
             });
             commands.add_copy(entities[i], info.id, copy.data());
         }
+        for (const ComponentId id : prefab.entities[i].disabled) {
+            commands.set_enabled(entities[i], id, false);
+        }
     }
 }
 
@@ -65,6 +68,9 @@ Prefab make_prefab(World& world, Entity root) {
                     entity = prefab_entity(found->second);
                 }
             });
+            if (!source.is_enabled(subtree[i], id)) {
+                prefab.entities[i].disabled.push_back(id);
+            }
         }
     }
     return prefab;

@@ -19,7 +19,8 @@ namespace limn {
 }
 
 struct PrefabEntity {
-    std::vector<AnyComponent> components;  ///< each type at most once
+    std::vector<AnyComponent> components;    ///< each type at most once
+    std::vector<ComponentId> disabled = {};  ///< those of them that copies have disabled
 };
 
 struct Prefab {

@@ -7,6 +7,7 @@
 #include "ecs/resource.h"
 #include "ecs/task_scope.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -38,11 +39,16 @@ class Query {
     /// A sparse component is required: the iteration follows its set.
     static constexpr bool kFollowsSparse = (detail::TermTraits<Terms>::needs_sparse || ...);
     static constexpr bool kFiltersRows = (detail::TermTraits<Terms>::filters_rows || ...);
+    /// Rows are left out by their enable bits.
+    static constexpr bool kToggles = (detail::TermTraits<Terms>::is_toggled || ...);
+    /// Something that tracks its rows is written.
+    static constexpr bool kTracks = (detail::TermTraits<Terms>::is_tracked || ...);
+    static constexpr bool kTakes = (detail::TermTraits<Terms>::is_take || ...);
     using Data = detail::DataTerms<Terms...>;
     static_assert(Data::size <= kMaxQueryColumns, "too many components in one query");
 
   public:
-    static constexpr bool kReadOnly = !(detail::TermTraits<Terms>::is_write || ...);
+    static constexpr bool kReadOnly = !(detail::TermTraits<Terms>::is_write || ...) && !kTakes;
 
     Query(WorldCore& core, QueryState& state, IterationLock lock)
         : core_(&core), state_(&state), lock_(lock) {}
@@ -68,6 +74,8 @@ class Query {
         const std::uint32_t version = write_version();
         if constexpr (kFollowsSparse) {
             each_following(0, leading_size(), version, function);
+        } else if constexpr (kToggles) {
+            each_chunk([&](const ChunkTask& task) { run_enabled(task, version, function); });
         } else {
             each_range([&](const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
                 touch(match, begin, end, version, Data{});
@@ -93,11 +101,7 @@ class Query {
         } else {
             const std::vector<ChunkTask> tasks = chunk_tasks(version);
             par_tasks(tasks.size(), [&](std::size_t task) {
-                const QueryMatch& match = *tasks[task].match;
-                const std::uint32_t begin = tasks[task].chunk * kChunkRows;
-                const std::uint32_t end = chunk_end(begin, match.archetype->size());
-                touch(match, begin, end, version, Data{});
-                run_rows(match, begin, end, version, function, Data{}, Indices{});
+                run_enabled(tasks[task], version, function);
             });
         }
     }
@@ -130,6 +134,22 @@ class Query {
         state_->update(*core_);
         if constexpr (kFollowsSparse) {
             visit_following(0, leading_size(), [&](const QueryMatch&, std::uint32_t) { ++total; });
+        } else if constexpr (kToggles && !kFiltersRows) {
+            each_chunk([&](const ChunkTask& task) {
+                RowMask rows;
+                switch (enabled_rows(task, rows)) {
+                case EnabledRows::None:
+                    break;
+                case EnabledRows::Some:
+                    total += rows.count();
+                    break;
+                case EnabledRows::All:
+                    total += task_end(task) - task.chunk * kChunkRows;
+                    break;
+                }
+            });
+        } else if constexpr (kToggles) {
+            each_enabled_row([&](const QueryMatch&, std::uint32_t) { ++total; });
         } else {
             each_range([&](const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
                 if constexpr (kFiltersRows) {
@@ -199,6 +219,9 @@ class Query {
         detail::Lanes<T>(split_column<T>(place), 0).store(place.row, value);
         place.match->archetype->touch_row(
             place.match->archetype->column_of(component_id<T>), place.row, write_version());
+        if constexpr (detail::tracks_rows<T>) {
+            place.match->archetype->bits().track(component_id<T>)->mark_shared(place.row);
+        }
     }
 
   private:
@@ -211,6 +234,10 @@ class Query {
     template <typename Term>
     struct ValueOf<Term, true> {
         using Type = typename detail::TermTraits<Term>::Value;
+    };
+    template <typename T>
+    struct ValueOf<TakeRows<T>, true> {
+        using Type = void;
     };
 
     struct ChunkTask {
@@ -229,6 +256,7 @@ class Query {
 
     template <typename F, typename... Ts>
     static constexpr void check_row_function(detail::TypeList<Ts...>) {
+        static_assert(!kTakes, "each: TakeRows comes by chunk; use chunks or par_chunks");
         static_assert(
             std::is_invocable_v<
                 F&,
@@ -242,14 +270,20 @@ class Query {
     static constexpr void check_chunk_function(detail::TypeList<Ts...>) {
         static_assert(
             !kFiltersRows, "chunks: sparse components come row by row; use each or par_each");
-        static_assert(
-            !(std::is_empty_v<typename detail::TermTraits<Ts>::Value> || ...),
-            "chunks: tags have no array; use With<Tag>");
+        static_assert(!(is_plain_tag<Ts> || ...), "chunks: tags have no array; use With<Tag>");
         static_assert(
             std::is_invocable_v<F&, ChunkView, detail::ChunkArgument<Ts>...>,
             "chunks: the function takes a ChunkView and one std::span a component, in order: "
-            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>");
+            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>; of "
+            "TakeRows, const RowMask&");
     }
+
+    /// A toggled tag may be there, to be enabled and disabled: its array is empty.
+    template <typename Term>
+    static constexpr bool is_plain_tag =
+        std::is_empty_v<
+            typename detail::TermTraits<Term>::Value> && !detail::TermTraits<Term>::is_take
+        && !detail::is_toggle<typename detail::TermTraits<Term>::Value>;
 
     [[nodiscard]] static constexpr std::uint32_t
     chunk_end(std::uint32_t begin, std::uint32_t size) {
@@ -314,11 +348,70 @@ class Query {
         }
     }
 
+    [[nodiscard]] static std::uint32_t task_end(const ChunkTask& task) {
+        return chunk_end(task.chunk * kChunkRows, task.match->archetype->size());
+    }
+
+    // ---- toggled components
+    // ------------------------------------------------------------------------
+
+    [[nodiscard]] EnabledRows enabled_rows(const ChunkTask& task, RowMask& rows) const {
+        return state_->enabled_rows(*task.match->archetype, task.chunk, rows);
+    }
+
+    /// visit(match, row) for the rows that pass all filters, in order.
+    template <typename Visit>
+    void each_enabled_row(const Visit& visit) const {
+        each_chunk([&](const ChunkTask& task) {
+            const std::uint32_t begin = task.chunk * kChunkRows;
+            RowMask rows;
+            const EnabledRows found = enabled_rows(task, rows);
+            if (found == EnabledRows::All) {
+                rows = RowMask::first(task_end(task) - begin);
+            }
+            if (found != EnabledRows::None) {
+                rows.for_each([&](std::uint32_t row) {
+                    if (!kFiltersRows || passes(*task.match, begin + row)) {
+                        visit(*task.match, begin + row);
+                    }
+                });
+            }
+        });
+    }
+
+    /// The function for each enabled row of the chunk; a plain loop if that is all of them.
+    template <typename F>
+    void run_enabled(const ChunkTask& task, std::uint32_t version, F& function) const {
+        const QueryMatch& match = *task.match;
+        const std::uint32_t begin = task.chunk * kChunkRows;
+        const std::uint32_t end = task_end(task);
+        if constexpr (kToggles) {
+            RowMask rows;
+            const EnabledRows found = enabled_rows(task, rows);
+            if (found == EnabledRows::None) {
+                return;
+            }
+            if (found == EnabledRows::Some) {
+                touch(match, begin, end, version, Data{});
+                run_masked(match, begin, rows, version, function, Data{}, Indices{});
+                return;
+            }
+        }
+        touch(match, begin, end, version, Data{});
+        run_rows(match, begin, end, version, function, Data{}, Indices{});
+    }
+
     /// The chunks to visit; their columns' upper bounds are raised already, since tasks must not
     /// share them.
     [[nodiscard]] std::vector<ChunkTask> chunk_tasks(std::uint32_t version) const {
         std::vector<ChunkTask> tasks;
         each_chunk([&](const ChunkTask& task) {
+            if constexpr (kToggles) {
+                RowMask rows;
+                if (enabled_rows(task, rows) == EnabledRows::None) {
+                    return;
+                }
+            }
             raise_newest(*task.match, version, Data{});
             tasks.push_back(task);
         });
@@ -383,6 +476,57 @@ class Query {
             match, [&](Column& column) { store_version(column.newest, version); }, list);
     }
 
+    /// mark(tracked rows, toggle bits if only enabled rows are handed out) for every written term
+    /// that tracks its rows.
+    template <typename Mark, typename... Ts>
+    static void each_tracked(const QueryMatch& match, const Mark& mark, detail::TypeList<Ts...>) {
+        [[maybe_unused]] const auto one = [&]<typename Term>() {
+            if constexpr (detail::TermTraits<Term>::is_tracked) {
+                using Value = typename detail::TermTraits<Term>::Value;
+                RowBits& bits = match.archetype->bits();
+                if (TrackedRows* track = bits.track(component_id<Value>); track != nullptr) {
+                    mark(
+                        *track,
+                        detail::TermTraits<Term>::is_optional ? bits.toggle(component_id<Value>)
+                                                              : nullptr);
+                }
+            }
+        };
+        (one.template operator()<Ts>(), ...);
+    }
+    static void mark_range(const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
+        if constexpr (kTracks) {
+            each_tracked(
+                match,
+                [&](TrackedRows& track, const ToggleBits* toggle) {
+                    if (toggle == nullptr && !kFollowsSparse) {
+                        track.mark(begin, end - begin);
+                        return;
+                    }
+                    for (std::uint32_t row = begin; row < end; ++row) {
+                        if (toggle == nullptr || toggle->is_enabled(row)) {
+                            track.mark_shared(row);  // tasks that follow a set share chunks
+                        }
+                    }
+                },
+                Data{});
+        }
+    }
+    static void mark_masked(const QueryMatch& match, std::uint32_t chunk, const RowMask& rows) {
+        if constexpr (kTracks) {
+            each_tracked(
+                match,
+                [&](TrackedRows& track, const ToggleBits* toggle) {
+                    RowMask marked = rows;
+                    if (toggle != nullptr) {
+                        marked -= toggle->chunks[chunk].disabled;
+                    }
+                    track.written[chunk] |= marked;
+                },
+                Data{});
+        }
+    }
+
     // ---- calls
     // ------------------------------------------------------------------------------------
 
@@ -396,12 +540,17 @@ class Query {
         detail::TypeList<Ts...>,
         std::index_sequence<Positions...>) const {
         const Entity* entities = match.archetype->entities().data();
+        constexpr bool kFiltersHere = kFiltersRows && !kFollowsSparse;
+        if constexpr (!kFiltersHere) {
+            mark_range(match, begin, end);
+        }
         const auto loop = [&](auto... access) {
             for (std::uint32_t row = begin; row < end; ++row) {
-                if constexpr (kFiltersRows && !kFollowsSparse) {
+                if constexpr (kFiltersHere) {
                     if (!passes(match, row)) {
                         continue;
                     }
+                    mark_range(match, row, row + 1);
                 }
                 if constexpr (std::is_invocable_v<F&, detail::RowArgument<Ts>...>) {
                     function(detail::row_argument(access[row])...);
@@ -409,6 +558,39 @@ class Query {
                     function(entities[row], detail::row_argument(access[row])...);
                 }
             }
+        };
+        loop(detail::access_term<Ts>(*core_, match, Positions, version)...);
+    }
+
+    /// The rows of the chunk at `begin` that are in `rows`.
+    template <typename F, typename... Ts, std::size_t... Positions>
+    void run_masked(
+        const QueryMatch& match,
+        std::uint32_t begin,
+        const RowMask& rows,
+        [[maybe_unused]] std::uint32_t version,
+        F& function,
+        detail::TypeList<Ts...>,
+        std::index_sequence<Positions...>) const {
+        const Entity* entities = match.archetype->entities().data();
+        if constexpr (!kFiltersRows) {
+            mark_masked(match, begin / kChunkRows, rows);
+        }
+        const auto loop = [&](auto... access) {
+            rows.for_each([&](std::uint32_t place) {
+                const std::uint32_t row = begin + place;
+                if constexpr (kFiltersRows) {
+                    if (!passes(match, row)) {
+                        return;
+                    }
+                    mark_range(match, row, row + 1);
+                }
+                if constexpr (std::is_invocable_v<F&, detail::RowArgument<Ts>...>) {
+                    function(detail::row_argument(access[row])...);
+                } else {
+                    function(entities[row], detail::row_argument(access[row])...);
+                }
+            });
         };
         loop(detail::access_term<Ts>(*core_, match, Positions, version)...);
     }
@@ -423,6 +605,15 @@ class Query {
         const QueryMatch& match = *task.match;
         const std::uint32_t begin = task.chunk * kChunkRows;
         const std::uint32_t size = chunk_end(begin, match.archetype->size()) - begin;
+        RowMask enabled;  // written by ChunkView::enabled() if all are
+        bool all_enabled = true;
+        if constexpr (kToggles) {
+            const EnabledRows found = enabled_rows(task, enabled);
+            if (found == EnabledRows::None) {
+                return;
+            }
+            all_enabled = found == EnabledRows::All;
+        }
         std::uint32_t previous[Data::size + 1] = {};
         [[maybe_unused]] const auto save = [&](std::size_t position) {
             const int column = match.columns[position];
@@ -432,6 +623,22 @@ class Query {
         };
         (save(Positions), ...);
         touch(match, begin, begin + size, version, list);
+        [[maybe_unused]] std::array<RowMask, kTracks ? Data::size : 1> previous_written;
+        if constexpr (kTracks) {
+            std::size_t position = 0;
+            const auto mark_all = [&]<typename Term>() {
+                if constexpr (detail::TermTraits<Term>::is_tracked) {
+                    using Value = typename detail::TermTraits<Term>::Value;
+                    TrackedRows* track = match.archetype->bits().track(component_id<Value>);
+                    if (track != nullptr) {
+                        previous_written[position] = track->written[task.chunk];
+                        track->mark(begin, size);
+                    }
+                }
+                ++position;
+            };
+            (mark_all.template operator()<Ts>(), ...);
+        }
 
         ChunkView view;
         view.archetype_ = match.archetype;
@@ -441,15 +648,28 @@ class Query {
         view.size_ = size;
         view.index_ = task.index;
         view.offset_ = task.offset;
-        function(view, span_of<Ts>(match, Positions, begin, size)...);
+        view.version_ = version;
+        view.state_ = state_;
+        view.enabled_ = &enabled;
+        view.all_enabled_ = all_enabled;
+        if constexpr (kTracks) {
+            view.previous_written_ = previous_written.data();
+        }
+        function(view, chunk_argument<Ts>(match, Positions, task.chunk, size)...);
     }
 
     template <typename Term>
-    static detail::ChunkArgument<Term> span_of(
-        const QueryMatch& match, std::size_t position, std::uint32_t begin, std::uint32_t size) {
-        using T = typename detail::TermTraits<Term>::Value;
-        const int column = match.columns[position];
-        if constexpr (detail::is_split<T>) {
+    static detail::ChunkValue<Term> chunk_argument(
+        const QueryMatch& match, std::size_t position, std::uint32_t chunk, std::uint32_t size) {
+        using Traits = detail::TermTraits<Term>;
+        using T = typename Traits::Value;
+        [[maybe_unused]] const int column = match.columns[position];
+        [[maybe_unused]] const std::uint32_t begin = chunk * kChunkRows;
+        if constexpr (Traits::is_take) {
+            return match.archetype->bits().track_of_column(column)->take(chunk, size);
+        } else if constexpr (std::is_empty_v<T>) {
+            return {};
+        } else if constexpr (detail::is_split<T>) {
             return column < 0 ? SplitSpan<T>()
                               : SplitSpan<T>(&match.archetype->column(column), begin, size);
         } else {
@@ -489,6 +709,11 @@ class Query {
             if (match == nullptr || !passes(*match, place.row)) {
                 continue;
             }
+            if constexpr (kToggles) {
+                if (!state_->row_enabled(*match->archetype, place.row)) {
+                    continue;
+                }
+            }
             if constexpr (kChanged) {
                 if (!state_->chunk_changed(
                         *match->archetype, place.row / kChunkRows, since_version())) {
@@ -527,6 +752,11 @@ class Query {
         if (match == nullptr || (kFiltersRows && !state_->row_matches(*core_, entity))) {
             return {};
         }
+        if constexpr (kToggles) {
+            if (!state_->row_enabled(*match->archetype, place.row)) {
+                return {};
+            }
+        }
         return {match, place.row};
     }
 
@@ -558,6 +788,13 @@ class Query {
                 } else {
                     found = &access[place.row];
                 }
+                if constexpr (detail::TermTraits<Term>::is_tracked) {
+                    if (found != nullptr) {
+                        place.match->archetype->bits()
+                            .track(component_id<T>)
+                            ->mark_shared(place.row);
+                    }
+                }
             }
         };
         (one.template operator()<Ts>(Positions), ...);
@@ -574,6 +811,8 @@ class Query {
         };
         if constexpr (kFollowsSparse) {
             visit_following(0, leading_size(), visit);
+        } else if constexpr (kToggles) {
+            each_enabled_row(visit);
         } else {
             each_range([&](const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
                 for (std::uint32_t row = begin; row < end && total < 2; ++row) {
@@ -596,6 +835,7 @@ class Query {
         const Place place = find_single();
         const std::uint32_t version = write_version();
         touch(*place.match, place.row, place.row + 1, version, Data{});
+        mark_range(*place.match, place.row, place.row + 1);
         return {detail::access_term<Ts>(*core_, *place.match, Positions, version)[place.row]...};
     }
 

@@ -8,12 +8,17 @@ namespace {
 
 bool is_required(TermKind kind) {
     return kind == TermKind::Read || kind == TermKind::Write || kind == TermKind::With
-           || kind == TermKind::Changed;
+           || kind == TermKind::Changed || kind == TermKind::TakeRows;
 }
 
 bool has_data(TermKind kind) {
     return kind == TermKind::Read || kind == TermKind::Write || kind == TermKind::OptionalRead
-           || kind == TermKind::OptionalWrite;
+           || kind == TermKind::OptionalWrite || kind == TermKind::TakeRows;
+}
+
+/// Whether rows that are disabled are left out.
+bool wants_enabled(TermKind kind) {
+    return is_required(kind) && kind != TermKind::TakeRows;
 }
 
 /// Whether test(term) holds for some Changed term of every group.
@@ -33,7 +38,9 @@ bool all_groups(
 
 QueryState::QueryState(std::span<const QueryTerm> terms) : terms_(terms.begin(), terms.end()) {
     for (QueryTerm& term : terms_) {
-        term.is_sparse = component_info(term.id).storage == Storage::Sparse;
+        const Storage storage = component_info(term.id).storage;
+        term.is_sparse = storage == Storage::Sparse;
+        term.is_toggle = storage == Storage::Toggle;
     }
     for (const QueryTerm& term : terms_) {
         if (term.kind != TermKind::Changed) {
@@ -57,7 +64,7 @@ bool QueryState::matches(const Archetype& archetype) const {
             return true;  // decided by row
         }
         if (term.kind == TermKind::Without) {
-            return !archetype.has(term.id);
+            return term.is_toggle || !archetype.has(term.id);  // disabled rows are without
         }
         return !is_required(term.kind) || archetype.has(term.id);
     });
@@ -92,14 +99,14 @@ void QueryState::extend(const WorldCore& core) {
 
 bool QueryState::archetype_changed(const Archetype& archetype, std::uint32_t since) const {
     return all_groups(table_groups_, terms_, [&](const QueryTerm& term) {
-        return is_newer(archetype.newest_version(archetype.column_of(term.id)), since);
+        return is_newer(archetype.newest_version_of(term.id), since);
     });
 }
 
 bool QueryState::chunk_changed(
     const Archetype& archetype, std::uint32_t chunk, std::uint32_t since) const {
     return all_groups(table_groups_, terms_, [&](const QueryTerm& term) {
-        return is_newer(archetype.version(archetype.column_of(term.id), chunk), since);
+        return is_newer(archetype.version_of(term.id, chunk), since);
     });
 }
 
@@ -110,8 +117,7 @@ bool QueryState::row_changed(
     std::uint32_t since) const {
     return all_groups(sparse_groups_, terms_, [&](const QueryTerm& term) {
         if (!term.is_sparse) {
-            return is_newer(
-                archetype.version(archetype.column_of(term.id), row / kChunkRows), since);
+            return is_newer(archetype.version_of(term.id, row / kChunkRows), since);
         }
         const SparseSet* set = core.sparse_set(term.id);
         const std::uint32_t position = set->find(archetype.entities()[row]);
@@ -128,6 +134,57 @@ bool QueryState::row_matches(const WorldCore& core, Entity entity) const {
         }
         const SparseSet* set = core.sparse_set(term.id);
         return (set != nullptr && set->has(entity)) == is_required(term.kind);
+    });
+}
+
+bool QueryState::writes(ComponentId id) const {
+    return std::any_of(terms_.begin(), terms_.end(), [id](const QueryTerm& term) {
+        return term.id == id
+               && (term.kind == TermKind::Write || term.kind == TermKind::OptionalWrite);
+    });
+}
+
+EnabledRows
+QueryState::enabled_rows(const Archetype& archetype, std::uint32_t chunk, RowMask& rows) const {
+    const std::uint32_t size =
+        std::min(archetype.size() - chunk * kChunkRows, std::uint32_t{kChunkRows});
+    EnabledRows found = EnabledRows::All;
+    const auto keep = [&](const auto& change) {
+        if (found == EnabledRows::All) {
+            rows = RowMask::first(size);
+            found = EnabledRows::Some;
+        }
+        change();
+    };
+    for (const QueryTerm& term : terms_) {
+        if (!term.is_toggle) {
+            continue;
+        }
+        const ToggleBits* toggle = archetype.bits().toggle(term.id);
+        if (toggle == nullptr) {
+            continue;  // Without or Optional
+        }
+        const ToggleChunk& bits = toggle->chunks[chunk];
+        if (wants_enabled(term.kind) && bits.disabled_count > 0) {
+            if (bits.disabled_count == size) {
+                return EnabledRows::None;
+            }
+            keep([&] { rows -= bits.disabled; });
+        } else if (term.kind == TermKind::Without && bits.disabled_count < size) {
+            if (bits.disabled_count == 0) {
+                return EnabledRows::None;
+            }
+            keep([&] { rows &= bits.disabled; });
+        }
+    }
+    return found == EnabledRows::Some && !rows.any() ? EnabledRows::None : found;
+}
+
+bool QueryState::row_enabled(const Archetype& archetype, std::uint32_t row) const {
+    return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
+        const bool matters =
+            term.is_toggle && (wants_enabled(term.kind) || term.kind == TermKind::Without);
+        return !matters || archetype.is_enabled(term.id, row) == (term.kind != TermKind::Without);
     });
 }
 

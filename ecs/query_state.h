@@ -24,6 +24,7 @@ enum class TermKind : std::uint8_t {
     With,           ///< With<T>
     Without,        ///< Without<T>
     Changed,        ///< Changed<T>: T must be there, its versions are compared
+    TakeRows,       ///< TakeRows<T>: T must be there, the marks of its rows are taken
 };
 
 struct QueryTerm {
@@ -31,7 +32,11 @@ struct QueryTerm {
     ComponentId id;
     std::uint8_t group = 0;  ///< Changed terms of one group: any of them
     bool is_sparse = false;
+    bool is_toggle = false;
 };
+
+/// Which rows of a chunk a query with toggled components visits.
+enum class EnabledRows : std::uint8_t { None, Some, All };
 
 struct QueryMatch {
     Archetype* archetype;
@@ -55,6 +60,8 @@ class QueryState {
         return position < 0 ? nullptr : &matches_[static_cast<std::size_t>(position)];
     }
     [[nodiscard]] std::span<const QueryTerm> terms() const { return terms_; }
+    /// Whether the component is a term that is written, perhaps an Optional.
+    [[nodiscard]] bool writes(ComponentId id) const;
 
     /// Whether every group of Changed terms has a change later than `since`; groups with a sparse
     /// component are left to row_changed. Of an archetype, false is certain and true may turn out
@@ -69,6 +76,12 @@ class QueryState {
         std::uint32_t since) const;
     /// Whether the entity has the required sparse components and none of the excluded.
     [[nodiscard]] bool row_matches(const WorldCore& core, Entity entity) const;
+    /// Which rows of the chunk are enabled for the toggled terms: With and the like want the bit,
+    /// Without does not. Fills `rows` if it is Some.
+    [[nodiscard]] EnabledRows
+    enabled_rows(const Archetype& archetype, std::uint32_t chunk, RowMask& rows) const;
+    /// The same for one row.
+    [[nodiscard]] bool row_enabled(const Archetype& archetype, std::uint32_t row) const;
     /// The set of the first required sparse component: the iteration follows its order. nullptr: it
     /// is empty.
     [[nodiscard]] const SparseSet* leading_set(const WorldCore& core) const;

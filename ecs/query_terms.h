@@ -27,10 +27,19 @@ struct Without {};
 template <typename T>
 struct Optional {};
 
-/// Must have all of them, and one must have changed; several Changed terms must all hold. What is
-/// known is that something in the chunk of 1024 rows was taken for writing, came, went or moved.
+/// Must have all of them, and one must have changed (enabling and disabling count); several Changed
+/// terms must all hold. What is known is that something in the chunk of 1024 rows was taken for
+/// writing, came, went or moved.
 template <typename... Ts>
 struct Changed {};
+
+/// For components that track their rows (ComponentTraits<T>::tracks_rows): chunks() are given a
+/// const RowMask& of the rows that were written since they were last taken, and none counts as
+/// written afterwards. Rows that came or moved are among them, and rows that were enabled or
+/// disabled; T must be there, enabled or not. The marks are for one consumer: it takes them from
+/// all others, and so counts as writing T.
+template <typename T>
+struct TakeRows {};
 
 namespace detail {
 
@@ -42,6 +51,11 @@ struct TypeList {
 template <typename T>
 inline constexpr bool is_sparse =
     ComponentTraits<std::remove_const_t<T>>::storage == Storage::Sparse;
+template <typename T>
+inline constexpr bool is_toggle =
+    ComponentTraits<std::remove_const_t<T>>::storage == Storage::Toggle;
+template <typename T>
+inline constexpr bool tracks_rows = ComponentTraits<std::remove_const_t<T>>::tracks_rows;
 
 template <typename T>
 inline constexpr bool is_split = ComponentTraits<std::remove_const_t<T>>::storage == Storage::Split;
@@ -67,7 +81,10 @@ struct TermTraits {
     static constexpr bool is_write = !std::is_const_v<T>;
     static constexpr bool needs_sparse = is_sparse<T>;
     static constexpr bool filters_rows = is_sparse<T>;
+    static constexpr bool is_toggled = is_toggle<T>;
+    static constexpr bool is_tracked = is_write && tracks_rows<T>;
     static constexpr bool is_changed = false;
+    static constexpr bool is_take = false;
     using Value = T;
 
     template <typename Sink>
@@ -84,7 +101,10 @@ struct TermTraits<Optional<T>> {
     static constexpr bool is_write = !std::is_const_v<T>;
     static constexpr bool needs_sparse = false;
     static constexpr bool filters_rows = false;
+    static constexpr bool is_toggled = false;
+    static constexpr bool is_tracked = is_write && tracks_rows<T>;
     static constexpr bool is_changed = false;
+    static constexpr bool is_take = false;
     using Value = T;
 
     template <typename Sink>
@@ -95,12 +115,36 @@ struct TermTraits<Optional<T>> {
     }
 };
 
+template <typename T>
+struct TermTraits<TakeRows<T>> {
+    static_assert(
+        tracks_rows<T>, "TakeRows takes a component whose ComponentTraits say tracks_rows = true");
+    static constexpr bool is_data = true;
+    static constexpr bool is_optional = false;
+    static constexpr bool is_write = false;  // of values and versions; access is declared as one
+    static constexpr bool needs_sparse = false;
+    static constexpr bool filters_rows = false;
+    static constexpr bool is_toggled = false;
+    static constexpr bool is_tracked = false;
+    static constexpr bool is_changed = false;
+    static constexpr bool is_take = true;
+    using Value = TakeRows<T>;
+
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        sink(TermKind::TakeRows, component_id<std::remove_const_t<T>>);
+    }
+};
+
 template <typename... Ts>
 struct FilterTraits {
     static_assert((Component<Ts> && ...), "With, Without and Changed take component types");
     static constexpr bool is_data = false;
     static constexpr bool is_write = false;
     static constexpr bool filters_rows = (is_sparse<Ts> || ...);
+    static constexpr bool is_toggled = (is_toggle<Ts> || ...);
+    static constexpr bool is_tracked = false;
+    static constexpr bool is_take = false;
 };
 
 template <typename... Ts>
@@ -174,6 +218,21 @@ struct OptionalTagAccess {
     T* operator[](std::uint32_t) const { return present ? &tag_value<T> : nullptr; }
 };
 template <typename T>
+struct ToggleOptionalAccess {
+    T* base;  ///< not read of tags
+    const ToggleBits* bits;
+    T* operator[](std::uint32_t row) const {
+        if (bits == nullptr || !bits->is_enabled(row)) {
+            return nullptr;
+        }
+        if constexpr (std::is_empty_v<T>) {
+            return &tag_value<T>;
+        } else {
+            return base + row;
+        }
+    }
+};
+template <typename T>
 struct SparseOptionalAccess {
     SparseSet* set;
     const Entity* entities;
@@ -235,6 +294,14 @@ auto access_term(
         } else {
             return SplitAccess<T>{Lanes<T>(&match.archetype->column(column), 0)};
         }
+    } else if constexpr (is_toggle<T> && Traits::is_optional) {
+        T* base = nullptr;
+        if constexpr (!std::is_empty_v<T>) {
+            base =
+                column < 0 ? nullptr : reinterpret_cast<T*>(match.archetype->column(column).data);
+        }
+        return ToggleOptionalAccess<T>{
+            base, match.archetype->bits().toggle(component_id<std::remove_const_t<T>>)};
     } else if constexpr (std::is_empty_v<T>) {
         if constexpr (Traits::is_optional) {
             return OptionalTagAccess<T>{column != kNoColumn};
@@ -258,7 +325,17 @@ using RowArgument = std::conditional_t<
 
 /// What the function of chunks() is given for a term.
 template <typename Term, typename T = typename TermTraits<Term>::Value>
-using ChunkArgument = std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>;
+struct ChunkArgumentOf {
+    using Type = std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>;
+};
+template <typename T>
+struct ChunkArgumentOf<TakeRows<T>> {
+    using Type = const RowMask&;
+};
+template <typename Term>
+using ChunkArgument = typename ChunkArgumentOf<Term>::Type;
+template <typename Term>
+using ChunkValue = std::remove_cvref_t<ChunkArgument<Term>>;
 
 template <typename... Terms>
 [[nodiscard]] std::vector<QueryTerm> query_terms() {
@@ -266,7 +343,7 @@ template <typename... Terms>
     [[maybe_unused]] std::uint8_t group = 0;
     [[maybe_unused]] const auto one = [&]<typename Term>() {
         TermTraits<Term>::add([&](TermKind kind, ComponentId id) {
-            terms.push_back({kind, id, group, false});
+            terms.push_back({kind, id, group});
         });
         ++group;
     };

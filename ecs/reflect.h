@@ -100,6 +100,7 @@ struct DefaultTraits {
     static constexpr bool in_prefabs = true;  ///< copied into prefabs, if saved
     static constexpr bool trivially_relocatable =
         false;  ///< may be moved by memcpy although not trivially copyable
+    static constexpr bool tracks_rows = false;  ///< remembers which rows are written, for TakeRows
 };
 
 /// To choose otherwise, beside the component:
@@ -148,6 +149,7 @@ struct ComponentInfo {
     bool saved = true;
     bool hashed = true;
     bool in_prefabs = true;
+    bool tracks_rows = false;
     bool is_registered = false;  ///< found by name
     bool is_resource = false;    ///< registered as resource
     ValueBytes value_bytes = ValueBytes::Opaque;
@@ -417,6 +419,13 @@ ComponentId make_component_id() {
     info.saved = ComponentTraits<T>::saved;
     info.hashed = ComponentTraits<T>::hashed;
     info.in_prefabs = ComponentTraits<T>::in_prefabs;
+    info.tracks_rows = ComponentTraits<T>::tracks_rows;
+    static_assert(
+        !ComponentTraits<T>::tracks_rows
+            || (!std::is_empty_v<T> && ComponentTraits<T>::storage != Storage::Sparse
+                && ComponentTraits<T>::storage != Storage::Shared),
+        "tracks_rows needs a component with a column of its own: not a tag, not Sparse, not "
+        "Shared");
     info.value_bytes = value_bytes_of<T>();
     info.ops = component_ops<T>();
     if constexpr (HasFields<T>) {

@@ -7,6 +7,7 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -107,6 +108,28 @@ void write_resources(const World& world, ByteWriter& out) {
     }
 }
 
+/// Which rows are disabled: how many, and if any, a bit a row.
+void write_disabled(const SavedRows& rows, ComponentId id, std::uint32_t count, ByteWriter& out) {
+    std::vector<std::uint64_t> bits((count + 63) / 64);
+    std::uint32_t disabled = 0;
+    std::uint32_t first = 0;
+    for (const Archetype* part : rows.parts) {
+        const ToggleBits& toggle = *part->bits().toggle(id);
+        for (std::uint32_t chunk = 0; chunk < part->chunk_count(); ++chunk) {
+            disabled += toggle.chunks[chunk].disabled_count;
+            toggle.chunks[chunk].disabled.for_each([&](std::uint32_t place) {
+                const std::uint32_t row = first + chunk * kChunkRows + place;
+                bits[row / 64] |= std::uint64_t{1} << row % 64;
+            });
+        }
+        first += part->size();
+    }
+    out.value(disabled);
+    if (disabled > 0) {
+        out.bytes(bits.data(), bits.size() * sizeof(std::uint64_t));
+    }
+}
+
 void write_rows(const SavedRows& rows, const NameTable& names, ByteWriter& out) {
     out.value(static_cast<std::uint32_t>(rows.components.size()));
     for (const ComponentId id : rows.components) {
@@ -125,6 +148,9 @@ void write_rows(const SavedRows& rows, const NameTable& names, ByteWriter& out) 
             if (const int column = part->column_of(id); column >= 0) {
                 limn::write_rows(part->column(column), 0, part->size(), out);
             }
+        }
+        if (component_info(id).storage == Storage::Toggle) {
+            write_disabled(rows, id, count, out);
         }
     }
 }
@@ -325,6 +351,30 @@ class SnapshotReader {
         return true;
     }
 
+    /// False: not what write_disabled writes of `count` rows.
+    bool read_disabled(const ComponentInfo& info, Archetype* rows, std::size_t count) {
+        const auto disabled = in_.value<std::uint32_t>();
+        if (in_.failed() || disabled > count) {
+            return false;
+        }
+        std::vector<std::uint64_t> bits(disabled > 0 ? (count + 63) / 64 : 0);
+        in_.copy(bits.data(), bits.size() * sizeof(std::uint64_t));
+        std::size_t found = 0;
+        for (const std::uint64_t word : bits) {
+            found += static_cast<std::size_t>(std::popcount(word));
+        }
+        const bool is_beyond = !bits.empty() && count % 64 != 0 && bits.back() >> count % 64 != 0;
+        if (in_.failed() || found != disabled || is_beyond) {
+            return false;
+        }
+        for (std::uint32_t row = 0; rows != nullptr && disabled > 0 && row < count; ++row) {
+            if ((bits[row / 64] >> row % 64 & 1) != 0) {
+                rows->bits().toggle(info.id)->set_enabled(row, false);
+            }
+        }
+        return true;
+    }
+
     Status read_archetypes() {
         const std::uint32_t count = in_.count(2 * sizeof(std::uint32_t));
         std::map<std::vector<ComponentId>, bool> seen;
@@ -371,7 +421,9 @@ class SnapshotReader {
                                              static_cast<std::uint32_t>(entities.size()),
                                              in_)
                                          : read_column(*info, nullptr, entities.size());
-                if (!is_read) {
+                if (!is_read
+                    || (info->storage == Storage::Toggle
+                        && !read_disabled(*info, rows, entities.size()))) {
                     return cut_off("component " + info->name);
                 }
             }
@@ -486,6 +538,20 @@ class StateHasher {
     /// A component that is there, without a value.
     void add_presence(const ComponentInfo& info) {
         parts_.push_back({pieces_.size(), hash_text(info.name), false});
+    }
+    /// Which rows of a toggled component are disabled; nothing if none is.
+    void add_disabled(const ComponentInfo& info, const ToggleBits& toggle, std::uint32_t chunks) {
+        if (toggle.disabled_count() == 0) {
+            return;
+        }
+        for (const ToggleChunk& chunk : std::span(toggle.chunks).first(chunks)) {
+            static_assert(sizeof(RowMask) % sizeof(Entity) == 0);
+            pieces_.push_back(
+                {nullptr,
+                 reinterpret_cast<const std::byte*>(&chunk.disabled),
+                 sizeof(RowMask) / sizeof(Entity)});
+        }
+        parts_.push_back({pieces_.size(), hash_combine(hash_text(info.name), 1), false});
     }
     /// Ends an archetype, sparse set or resource: the columns since the last end belong together.
     void end_group() { parts_.back().ends_group = true; }
@@ -617,6 +683,9 @@ std::uint64_t state_hash(const World& world) {
                 hasher.add_rows(archetype->column(column), archetype->size());
             } else {
                 hasher.add_presence(info);
+            }
+            if (const ToggleBits* toggle = archetype->bits().toggle(id); toggle != nullptr) {
+                hasher.add_disabled(info, *toggle, archetype->chunk_count());
             }
         }
         const std::span<const Entity> entities = archetype->entities();

@@ -52,6 +52,7 @@ struct SystemParam<Query<Terms...>> {
             switch (term.kind) {
             case TermKind::Write:
             case TermKind::OptionalWrite:
+            case TermKind::TakeRows:
                 access.writes.push_back(term.id);
                 break;
             case TermKind::Read:
@@ -61,7 +62,11 @@ struct SystemParam<Query<Terms...>> {
                 break;
             case TermKind::With:
             case TermKind::Without:
-                break;  // the structure is fixed while systems run
+                // The structure is fixed while systems run; enable bits are not.
+                if (component_info(term.id).storage == Storage::Toggle) {
+                    access.reads.push_back(term.id);
+                }
+                break;
             }
         }
     }

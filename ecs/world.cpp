@@ -188,6 +188,9 @@ std::uint32_t World::move_row(Entity entity, Archetype& from, Archetype& to) {
             source.info->ops.destroy(source.at(old_row), 1);
         }
     }
+    if (to.has_row_bits()) {
+        to.bits().receive(from.bits(), old_row, new_row, 1);
+    }
     const Entity moved = from.fill_hole(old_row, core_.now());
     if (!moved.is_null()) {
         core_.entities.place(moved, from.index(), old_row);
@@ -271,7 +274,7 @@ void* World::find(Entity entity, ComponentId id) {
     } else {
         const EntityPlace place = core_.entities.find(entity);
         Archetype& rows = archetype(place.archetype);
-        rows.touch_row(rows.column_of(id), place.row, core_.now());
+        rows.write_row(rows.column_of(id), place.row, core_.now());
     }
     return const_cast<void*>(value);
 }
@@ -330,7 +333,7 @@ void World::put_bytes(Entity entity, ComponentId id, const void* value) {
     Archetype& rows = archetype(place.archetype);
     const int column = rows.column_of(id);
     scatter_values(&rows.column(column), place.row, 1, value);
-    rows.touch_row(column, place.row, core_.now());
+    rows.write_row(column, place.row, core_.now());
     if (is_new) {
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
     }
@@ -353,6 +356,8 @@ void* World::add(Entity entity, ComponentId id) {
             info.ops.construct_default(room, 1);
         }
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    } else {
+        enable_present(entity, id);
     }
     return find(entity, id);
 }
@@ -376,6 +381,8 @@ void* World::add_copy(Entity entity, ComponentId id, const void* value) {
     }
     if (is_new) {
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    } else {
+        enable_present(entity, id);
     }
     return find(entity, id);
 }
@@ -398,6 +405,8 @@ void* World::add_move(Entity entity, ComponentId id, void* value) {
     }
     if (is_new) {
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+    } else {
+        enable_present(entity, id);
     }
     return find(entity, id);
 }
@@ -422,6 +431,32 @@ void World::remove_now(Entity entity, ComponentId id) {
     }
     Archetype& from = archetype(core_.entities.find(entity).archetype);
     move_row(entity, from, archetype_without(from, id));
+}
+
+// ---- enabling
+// -------------------------------------------------------------------------------------
+
+bool World::set_enabled(Entity entity, ComponentId id, bool enabled) {
+    check_not_iterating();
+    const EntityPlace place = require(entity);
+    Archetype& rows = archetype(place.archetype);
+    ToggleBits* toggle = rows.bits().toggle(id);
+    LIMN_CHECK_NOTE(toggle != nullptr, component_info(id).name.c_str());
+    return rows.set_enabled(*toggle, place.row, enabled, core_.now());
+}
+
+bool World::is_enabled(Entity entity, ComponentId id) const {
+    const EntityPlace place = core_.entities.find(entity);
+    if (!place) {
+        return false;
+    }
+    const SparseSet* set = core_.sparse_set(id);
+    return set != nullptr ? set->has(entity) : archetype(place.archetype).is_enabled(id, place.row);
+}
+
+void World::enable_present(Entity entity, ComponentId id) {
+    const EntityPlace place = core_.entities.find(entity);
+    archetype(place.archetype).set_enabled(id, place.row, true, core_.now());
 }
 
 // ---- queries and versions

@@ -97,6 +97,30 @@ class World {
     template <typename T>
     void set(Entity entity, T component);
 
+    // ---- enabling, of components whose storage is Storage::Toggle
+    // --------------------------------------------------------------------------------
+
+    /// To queries a disabled component is as if it were not there; has, get and find see it all the
+    /// same. Not a structural change: no row moves and no observer is told. The entity must have
+    /// the component, and no query may iterate (see ChunkView::set_enabled and Commands). add()
+    /// enables. Returns whether it was disabled before.
+    template <typename T>
+    bool enable(Entity entity) {
+        return set_enabled<T>(entity, true);
+    }
+    template <typename T>
+    bool disable(Entity entity) {
+        return set_enabled<T>(entity, false);
+    }
+    /// Returns whether it was otherwise before; if so, that counts as a change of T.
+    template <typename T>
+    bool set_enabled(Entity entity, bool enabled);
+    /// Whether the entity has the component and it is not disabled.
+    template <typename T>
+    [[nodiscard]] bool is_enabled(Entity entity) const {
+        return is_enabled(entity, component_id<T>);
+    }
+
     // ---- queries and systems
     // ----------------------------------------------------------------------
 
@@ -171,6 +195,10 @@ class World {
     /// The same, moving from `value`.
     void* add_move(Entity entity, ComponentId id, void* value);
     bool remove(Entity entity, ComponentId id);
+    /// The component must be of Storage::Toggle.
+    bool set_enabled(Entity entity, ComponentId id, bool enabled);
+    /// Of any component; those that cannot be disabled are enabled if they are there.
+    [[nodiscard]] bool is_enabled(Entity entity, ComponentId id) const;
 
     void* insert_default_resource(ComponentId id);
     [[nodiscard]] void* find_resource(ComponentId id);
@@ -247,6 +275,14 @@ class World {
     std::uint32_t move_row(Entity entity, Archetype& from, Archetype& to);
     /// Room for a component the entity does not have yet: raw memory, nullptr for tags.
     void* make_room(Entity entity, ComponentId id);
+    /// Adding enables what was there, disabled.
+    void enable_present(Entity entity, ComponentId id);
+    void check_not_iterating() const {
+        LIMN_CHECK_NOTE(
+            core_.iterations.load(std::memory_order_relaxed) == 0,
+            "enabling or disabling while iterating or inside a system; use chunk.set_enabled of a "
+            "written term, or Commands");
+    }
     void destroy_now(Entity entity, EntityPlace place);
     void remove_now(Entity entity, ComponentId id);
     /// Adds or replaces a component without an address.

@@ -150,6 +150,9 @@ detail::Added<T> World::add(Entity entity, T component) {
         put_bytes(entity, component_id<T>, &component);
     } else {
         if (T* present = find<T>(entity); present != nullptr) {
+            if constexpr (detail::is_toggle<T>) {
+                enable_present(entity, component_id<T>);
+            }
             if constexpr (!std::is_empty_v<T>) {
                 // Not operator=: a component need not be assignable.
                 present->~T();
@@ -200,6 +203,9 @@ inline T* World::find(Entity entity) {
         } else {
             if constexpr (!std::is_const_v<T>) {
                 rows.touch_row(column, place.row, core_.now());
+                if constexpr (detail::tracks_rows<T>) {
+                    rows.bits().track(component_id<T>)->mark(place.row);
+                }
             }
             return reinterpret_cast<T*>(rows.column(column).data) + place.row;
         }
@@ -246,7 +252,7 @@ void World::set(Entity entity, T component) {
         const int column = rows.column_of(component_id<T>);
         LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
         detail::Lanes<T>(&rows.column(column), 0).store(place.row, component);
-        rows.touch_row(column, place.row, core_.now());
+        rows.write_row(column, place.row, core_.now());
     } else if constexpr (std::is_empty_v<T>) {
         static_cast<void>(get<const T>(entity));
     } else {
@@ -255,6 +261,17 @@ void World::set(Entity entity, T component) {
         present->~T();
         ::new (static_cast<void*>(present)) T(std::move(component));
     }
+}
+
+template <typename T>
+bool World::set_enabled(Entity entity, bool enabled) {
+    static_assert(detail::is_toggle<T>, "T cannot be disabled: its storage is not Storage::Toggle");
+    check_not_iterating();
+    const EntityPlace place = require(entity);
+    Archetype& rows = archetype(place.archetype);
+    ToggleBits* toggle = rows.bits().toggle(component_id<T>);
+    LIMN_CHECK_NOTE(toggle != nullptr, component_info<T>().name.c_str());
+    return rows.set_enabled(*toggle, place.row, enabled, core_.now());
 }
 
 // ---- queries

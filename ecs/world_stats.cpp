@@ -34,6 +34,7 @@ WorldMemory World::memory() const {
             memory.versions += column.versions.size() * sizeof(std::uint32_t);
         }
         memory.versions += std::size_t{archetype->chunk_count()} * sizeof(std::uint32_t);
+        memory.versions += archetype->bits().bytes();
     }
     for (const SparseSet* set : core_.sparse_list) {
         memory.sparse += set->committed();
@@ -58,6 +59,11 @@ WorldStats world_stats(const World& world) {
         one.committed = archetype->committed();
         one.promoted = archetype->is_promoted();
         one.rows_moved_in = archetype->rows_moved_in;
+        for (const ToggleBits& toggle : archetype->bits().toggles()) {
+            if (const std::uint32_t count = toggle.disabled_count(); count > 0) {
+                one.disabled.emplace_back(component_info(toggle.id).name, count);
+            }
+        }
         stats.archetypes.push_back(std::move(one));
     }
     for (const SparseSet* set : world.sparse_sets()) {
@@ -76,6 +82,9 @@ std::string to_text(const WorldStats& stats) {
             align_right(archetype.row_bytes, 5),
             align_right(fixed_text(100.0 * archetype.fill(), 1), 5),
             join_text(archetype.components, " "));
+        for (const auto& [component, rows] : archetype.disabled) {
+            text += format_text("{} of them with {} disabled\n", align_right(rows, 9), component);
+        }
     }
     for (const SparseStats& set : stats.sparse_sets) {
         text += format_text("{} values, sparse  {}\n", align_right(set.values, 9), set.component);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -18,8 +19,8 @@ struct WorldMemory {
     std::size_t archetypes = 0;  ///< columns and entities of promoted archetypes
     std::size_t blocks = 0;      ///< the pool of the small ones, free blocks too
     std::size_t sparse = 0;
-    std::size_t versions = 0;
-    std::size_t used = 0;  ///< the part of archetypes and blocks that rows fill
+    std::size_t versions = 0;  ///< of chunks, and bits of rows
+    std::size_t used = 0;      ///< the part of archetypes and blocks that rows fill
     [[nodiscard]] std::size_t total() const {
         return slots + archetypes + blocks + sparse + versions;
     }
@@ -34,6 +35,8 @@ struct ArchetypeStats {
     std::size_t committed = 0;        ///< [bytes]
     bool promoted = false;            ///< columns in address ranges of their own
     std::uint64_t rows_moved_in = 0;  ///< from other archetypes, since the beginning
+    /// Of the components that have disabled rows: which, and how many.
+    std::vector<std::pair<std::string, std::uint32_t>> disabled;
     /// Share of the committed memory that rows fill, 0 .. 1.
     [[nodiscard]] double fill() const {
         return committed > 0
