@@ -122,7 +122,10 @@ void Schedule::build_stage(Stage& stage) const {
 }
 
 bool Schedule::is_worth_threads(const Stage& stage) const {
-    if (stage.is_chain || thread_count() == 1) {
+    if (stage.is_chain || always_parallel_) {
+        return !stage.is_chain;
+    }
+    if (thread_count() == 1) {
         return false;
     }
     // Systems that wait for each other save nothing; the longest way through the stage takes its
@@ -138,7 +141,7 @@ bool Schedule::is_worth_threads(const Stage& stage) const {
         total += expected_[stage.first + i];
         longest = std::max(longest, ready[i]);
     }
-    return always_parallel_ || total - longest > kWorthThreads;
+    return total - longest > kWorthThreads;
 }
 
 // ---- running

@@ -1,6 +1,7 @@
 #include "ecs/base/jobs.h"
 
 #include "ecs/base/check.h"
+#include "ecs/base/hash.h"
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
@@ -11,6 +12,9 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #if defined(LIMN_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
@@ -46,6 +50,27 @@ std::unique_ptr<Workers>& workers_slot() {
 
 Workers& workers() {
     return *workers_slot();
+}
+
+// ---- shuffling, for tests
+// ------------------------------------------------------------------------
+
+std::atomic<std::uint64_t> task_shuffle = 0;  // 0: none
+std::atomic<std::uint64_t> shuffles = 0;      // drawn since set_task_shuffle
+
+bool is_shuffled() {
+    return task_shuffle.load(std::memory_order_relaxed) != 0;
+}
+
+/// Puts them into an order that depends on the seed and on how many were shuffled before.
+void shuffle(std::vector<std::size_t>& indices) {
+    std::uint64_t state = hash_combine(
+        task_shuffle.load(std::memory_order_relaxed),
+        shuffles.fetch_add(1, std::memory_order_relaxed));
+    for (std::size_t left = indices.size(); left > 1; --left) {
+        state = hash_combine(state, left);
+        std::swap(indices[left - 1], indices[state % left]);
+    }
 }
 
 }  // namespace
@@ -89,7 +114,19 @@ struct IndexedBody {
     }
 };
 
-void run_indexed(std::size_t count, IndexedCall call, void* context) {
+/// Calls in another order.
+struct Permuted {
+    IndexedCall call;
+    void* context;
+    std::vector<std::size_t> order;
+
+    static void run(void* permuted, std::size_t index) {
+        const Permuted& self = *static_cast<const Permuted*>(permuted);
+        self.call(self.context, self.order[index]);
+    }
+};
+
+void run_in_order(std::size_t count, IndexedCall call, void* context) {
     Workers& pool = workers();
     if (pool.count == 1 || count == 1) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -107,6 +144,17 @@ void run_indexed(std::size_t count, IndexedCall call, void* context) {
     });
     LIMN_CHECK(run.finished.load(std::memory_order_acquire) == count);
     acquire(&run.finished);
+}
+
+void run_indexed(std::size_t count, IndexedCall call, void* context) {
+    if (!is_shuffled()) {
+        run_in_order(count, call, context);
+        return;
+    }
+    Permuted permuted{call, context, std::vector<std::size_t>(count)};
+    std::iota(permuted.order.begin(), permuted.order.end(), std::size_t{0});
+    shuffle(permuted.order);
+    run_in_order(count, Permuted::run, &permuted);
 }
 
 /// What the tasks of one graph share.
@@ -134,7 +182,7 @@ struct TaskBody {
             acquire(&shared.waiting[task]);
             shared.call(shared.context, task);
             std::size_t next = kNone;
-            for (const std::uint32_t successor : shared.graph.successors(task)) {
+            const auto tell = [&shared, &next](std::size_t successor) {
                 release(&shared.waiting[successor]);
                 if (shared.waiting[successor].fetch_sub(1, std::memory_order_acq_rel) == 1) {
                     if (next == kNone) {
@@ -143,6 +191,14 @@ struct TaskBody {
                         shared.group.run(TaskBody{&shared, successor});
                     }
                 }
+            };
+            const std::vector<std::uint32_t>& successors = shared.graph.successors(task);
+            if (is_shuffled()) {
+                std::vector<std::size_t> order(successors.begin(), successors.end());
+                shuffle(order);
+                std::for_each(order.begin(), order.end(), tell);
+            } else {
+                std::for_each(successors.begin(), successors.end(), tell);
             }
             release(&shared.finished);
             shared.finished.fetch_add(1, std::memory_order_release);
@@ -151,9 +207,36 @@ struct TaskBody {
     }
 };
 
+/// One task after the other, each any of those that are ready.
+void run_tasks_shuffled(const TaskGraph& graph, IndexedCall call, void* context) {
+    std::vector<std::uint32_t> waiting(graph.size());
+    std::vector<std::size_t> ready;
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+        waiting[i] = graph.predecessor_count(i);
+        if (waiting[i] == 0) {
+            ready.push_back(i);
+        }
+    }
+    while (!ready.empty()) {
+        shuffle(ready);
+        const std::size_t task = ready.back();
+        ready.pop_back();
+        call(context, task);
+        for (const std::uint32_t successor : graph.successors(task)) {
+            if (--waiting[successor] == 0) {
+                ready.push_back(successor);
+            }
+        }
+    }
+}
+
 void run_tasks(const TaskGraph& graph, IndexedCall call, void* context) {
     Workers& pool = workers();
     if (pool.count == 1 || graph.size() <= 1) {
+        if (is_shuffled()) {
+            run_tasks_shuffled(graph, call, context);
+            return;
+        }
         for (std::size_t i = 0; i < graph.size(); ++i) {
             call(context, i);
         }
@@ -163,14 +246,19 @@ void run_tasks(const TaskGraph& graph, IndexedCall call, void* context) {
         tbb::task_group group;
         TaskRun run{graph, call, context, group, nullptr};
         run.waiting = std::make_unique<std::atomic<std::uint32_t>[]>(graph.size());
+        std::vector<std::size_t> first;
         for (std::size_t i = 0; i < graph.size(); ++i) {
             run.waiting[i].store(graph.predecessor_count(i), std::memory_order_relaxed);
+            if (graph.predecessor_count(i) == 0) {
+                first.push_back(i);
+            }
+        }
+        if (is_shuffled()) {
+            shuffle(first);
         }
         release(&run);
-        for (std::size_t i = 0; i < graph.size(); ++i) {
-            if (graph.predecessor_count(i) == 0) {
-                group.run(TaskBody{&run, i});
-            }
+        for (const std::size_t task : first) {
+            group.run(TaskBody{&run, task});
         }
         group.wait();
         LIMN_CHECK(run.finished.load(std::memory_order_acquire) == graph.size());
@@ -188,6 +276,11 @@ std::size_t TaskGraph::add(const std::vector<std::size_t>& predecessors) {
         tasks_[predecessor].successors.push_back(static_cast<std::uint32_t>(task));
     }
     return task;
+}
+
+void set_task_shuffle(std::uint64_t seed) {
+    task_shuffle = seed;
+    shuffles = 0;
 }
 
 void set_thread_count(int count) {

@@ -19,6 +19,10 @@ namespace limn {
 void set_thread_count(int count);
 [[nodiscard]] int thread_count();
 
+/// For tests of that promise: ranges and tasks that are ready start in an order drawn from `seed`,
+/// on one thread too. 0, at start: from the first to the last. Not to be called from inside a job.
+void set_task_shuffle(std::uint64_t seed);
+
 /// Tasks and what each must wait for. Task i may only be waited for by tasks after it: j > i.
 class TaskGraph {
   public:

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <thread>
 
@@ -135,6 +137,50 @@ TEST_CASE("jobs: a task graph runs every task once and after those it waits for"
             CHECK(early == 0);
             CHECK(runs == std::vector<int>(graph.size(), 1));
         }
+    }
+}
+
+TEST_CASE(
+    "jobs: shuffled, everything runs once and in another order, tasks after those they wait for") {
+    const ThreadCountGuard guard;
+    TaskGraph graph;
+    for (std::size_t i = 0; i < 40; ++i) {
+        graph.add(i % 4 == 3 ? std::vector<std::size_t>{i - 3, i - 1} : std::vector<std::size_t>{});
+    }
+    for (const int threads : {1, 4}) {
+        set_thread_count(threads);
+        set_task_shuffle(20'261);
+        std::mutex mutex;
+        std::vector<std::size_t> ranges;
+        parallel_for(40, 1, [&](std::size_t begin, std::size_t) {
+            const std::lock_guard lock(mutex);
+            ranges.push_back(begin);
+        });
+        std::vector<std::size_t> tasks;
+        run_task_graph(graph, [&](std::size_t task) {
+            const std::lock_guard lock(mutex);
+            tasks.push_back(task);
+        });
+        set_task_shuffle(0);
+
+        for (std::vector<std::size_t>* const order : {&ranges, &tasks}) {
+            REQUIRE(order->size() == 40);
+            CHECK_FALSE(std::is_sorted(order->begin(), order->end()));
+        }
+        std::vector<std::size_t> place(40);
+        for (std::size_t i = 0; i < 40; ++i) {
+            place[tasks[i]] = i;
+        }
+        for (std::size_t i = 3; i < 40; i += 4) {
+            CHECK(place[i] > place[i - 3]);
+            CHECK(place[i] > place[i - 1]);
+        }
+        std::sort(ranges.begin(), ranges.end());
+        std::sort(tasks.begin(), tasks.end());
+        std::vector<std::size_t> all(40);
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        CHECK(ranges == all);
+        CHECK(tasks == all);
     }
 }
 
