@@ -53,16 +53,8 @@ iterate(Bench& bench, const std::string& name, std::size_t count, const Kernel& 
     const Query<Terms...> each_query = each_world.query<Terms...>();
     const Query<Terms...> chunk_query = chunk_world.query<Terms...>();
 
-    const std::size_t rounds = std::max<std::size_t>(1, 200'000 / count);
     const auto timed = [&](auto&& once) {
-        return per(
-            time_of([&] {
-                for (std::size_t i = 0; i < rounds; ++i) {
-                    once();
-                    keep(rounds);
-                }
-            }),
-            rounds * count);
+        return per(time_of_rounds(rounds_for(count), once), count);
     };
     const auto times = take_turns(
         bench.repeats,
@@ -87,9 +79,18 @@ void iteration_rows(
     double limit) {
     const IterationTimes times = iterate<Terms...>(bench, name, count, kernel);
     bench.add(
-        {gate, name + ", each", count, "ns", times.each, times.raw, {}, Figure::OfRaw, limit});
+        {gate, name + ", each", count, "ns", times.each, times.raw, {}, Figure::OfRaw, limit, ""});
     bench.add(
-        {gate, name + ", chunks", count, "ns", times.chunks, times.raw, {}, Figure::OfRaw, limit});
+        {gate,
+         name + ", chunks",
+         count,
+         "ns",
+         times.chunks,
+         times.raw,
+         {},
+         Figure::OfRaw,
+         limit,
+         ""});
 }
 
 inline void iteration(Bench& bench) {
@@ -114,12 +115,65 @@ inline void iteration(Bench& bench) {
     const Timing each = scaled(call.each, rows);
     const Timing chunks = scaled(call.chunks, rows);
     const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
-        bench.add({gate, name, kSmall, "ns/call", time, raw, {}, Figure::Plain, limit});
+        bench.add({gate, name, kSmall, "ns/call", time, raw, {}, Figure::Plain, limit, ""});
     };
     row(5, "one call over 64 rows, each", each, 20);
     row(5, "one call over 64 rows, chunks", chunks, 20);
     row(0, "    each, beyond the raw loop", beyond(each, raw), 10);
     row(0, "    chunks, beyond the raw loop", beyond(chunks, raw), 10);
+}
+
+/// The raw loops that an ECS is not: a float an array, and all components of an entity in a struct.
+inline void raw_layouts(Bench& bench) {
+    struct Fat {
+        Position position;
+        Velocity velocity;
+        Rotation rotation;
+        Turn turn;
+        Tint tint;
+        Life life;
+        Scale scale;
+    };
+    static_assert(sizeof(Fat) == 80);
+    for (const std::size_t count : {kSmall, kCached, kMany}) {
+        const RawArrays<Velocity, Position> arrays(count);
+        arrays.start_all();
+        std::vector<float> floats[6];
+        for (std::vector<float>& lane : floats) {
+            lane.resize(count, 0.5f);
+        }
+        std::vector<Fat> fat(count);
+        const auto move_floats = [](std::size_t size, float* position, const float* velocity) {
+            for (std::size_t i = 0; i < size; ++i) {
+                position[i] += velocity[i] * kStep;
+            }
+        };
+        const auto timed = [&](auto&& once) {
+            return per(time_of_rounds(rounds_for(count), once), count);
+        };
+        const auto times = take_turns(
+            bench.repeats,
+            [&] { return timed([&] { arrays.each(Move{}); }); },
+            [&] {
+                return timed([&] {
+                    for (int lane = 0; lane < 3; ++lane) {
+                        move_floats(count, floats[lane].data(), floats[lane + 3].data());
+                    }
+                });
+            },
+            [&] {
+                return timed([&] {
+                    for (Fat& entity : fat) {
+                        Move()(entity.velocity, entity.position);
+                    }
+                });
+            });
+        const auto row = [&](const char* name, const Timing& time) {
+            bench.add({0, name, count, "ns", time, times[0], {}, Figure::OfRaw, 0, ""});
+        };
+        row("2 columns, no ECS: one array per float", times[1]);
+        row("2 columns, no ECS: an array of 80 B structs", times[2]);
+    }
 }
 
 [[gnu::noinline]] inline void grow_all(std::span<const std::span<Scale>> pieces) {
@@ -130,16 +184,24 @@ inline void iteration(Bench& bench) {
     }
 }
 
-/// 26 archetypes of 20 rows each, one float a row; the raw loop goes over a list of 26 arrays.
-inline void fragmented(Bench& bench) {
-    constexpr std::size_t kArchetypes = 26;
-    constexpr std::size_t kRows = 20;
-    constexpr std::size_t kRounds = 400;
+struct FragmentTimes {
+    Timing raw;
+    Timing each;
+    std::size_t count = 0;
+};
+
+/// 26 archetypes of 20 rows each and 4 of `large`, one float a row; the raw loop goes over a list
+/// of as many arrays.
+inline FragmentTimes iterate_fragments(Bench& bench, std::size_t large) {
     World world;
-    const auto make = [&]<int... numbers>(std::integer_sequence<int, numbers...>) {
-        (world.create_many(kRows, Scale{}, Fragment<numbers>{}), ...);
+    const auto make = [&]<int... numbers>(
+        std::size_t rows, std::integer_sequence<int, numbers...>) {
+        (world.create_many(rows, Scale{}, Fragment<numbers>{}), ...);
     };
-    make(std::make_integer_sequence<int, kArchetypes>{});
+    make(20, std::make_integer_sequence<int, 26>{});
+    if (large > 0) {
+        make(large, std::integer_sequence<int, 26, 27, 28, 29>{});
+    }
     const Query<Scale> query = world.query<Scale>();
     query.each([row = std::size_t{0}](Scale& scale) mutable { start(scale, row++); });
     const std::size_t count = query.count();
@@ -147,19 +209,11 @@ inline void fragmented(Bench& bench) {
     const RawArrays<Scale> arrays(count);
     arrays.start_all();
     std::vector<std::span<Scale>> pieces;
-    for (std::size_t begin = 0; begin < count; begin += kRows) {
-        pieces.emplace_back(arrays.column<Scale>() + begin, kRows);
+    for (std::size_t begin = 0; begin < count; begin += pieces.back().size()) {
+        pieces.emplace_back(arrays.column<Scale>() + begin, pieces.size() < 26 ? 20 : large);
     }
-
     const auto timed = [&](auto&& once) {
-        return per(
-            time_of([&] {
-                for (std::size_t i = 0; i < kRounds; ++i) {
-                    once();
-                    keep(i);
-                }
-            }),
-            kRounds * count);
+        return per(time_of_rounds(rounds_for(count), once), count);
     };
     const auto times = take_turns(
         bench.repeats,
@@ -167,20 +221,31 @@ inline void fragmented(Bench& bench) {
         [&] { return timed([&] { run_each(query, Grow{}); }); });
     std::uint64_t sum = 0;
     arrays.each(RowSum{&sum});
-    bench.check(count == kArchetypes * kRows && sum_of(query) == sum, "26 x 20");
+    bench.check(count == 26 * 20 + 4 * large && sum_of(query) == sum, "fragments");
+    return {times[0], times[1], count};
+}
+
+inline void fragmented(Bench& bench) {
+    const FragmentTimes small = iterate_fragments(bench, 0);
+    const FragmentTimes large = iterate_fragments(bench, 25'000);
+    const auto row = [&](int gate, const char* name, const FragmentTimes& times, double limit) {
+        bench.add(
+            {gate, name, times.count, "ns", times.each, times.raw, {}, Figure::OfRaw, limit, ""});
+    };
+    row(6, "26 archetypes x 20 rows, each", small, 1.6);
+    row(0, "26 x 20 and 4 x 25,000 rows, each", large, 0);
+    const Timing visit = scaled(beyond(small.each, small.raw), 20);
     bench.add(
-        {6,
-         "26 archetypes x 20 rows, each",
-         count,
+        {0,
+         "    an archetype, beyond the raw loop",
+         small.count,
          "ns",
-         times[1],
-         times[0],
+         visit,
          {},
-         Figure::OfRaw,
-         1.6});
-    const Timing each = scaled(beyond(times[1], times[0]), static_cast<double>(kRows));
-    bench.add(
-        {0, "    an archetype, beyond the raw loop", count, "ns", each, {}, {}, Figure::Plain, 2});
+         {},
+         Figure::Plain,
+         2,
+         ""});
 }
 
 /// Every entity has lost its velocity and got it back, in random order.
@@ -211,37 +276,8 @@ inline void after_churn(Bench& bench) {
          times[0],
          {},
          Figure::OfRaw,
-         1.03});
-}
-
-/// Time an entity against the number of entities, for the plot.
-inline std::vector<Curve> growth(Bench& bench, std::size_t largest) {
-    Curve raw{"raw arrays", "#888888", {}, {}};
-    Curve each{"each", "#1f77b4", {}, {}};
-    Curve chunks{"chunks", "#d62728", {}, {}};
-    for (double size = 1000; size < 1.1 * static_cast<double>(largest); size *= std::sqrt(10.0)) {
-        const std::size_t count = static_cast<std::size_t>(std::lround(size));
-        const IterationTimes times =
-            iterate<const Velocity, Position>(bench, "2 columns, growth", count, Move{});
-        bench.add(
-            {0,
-             "2 columns, growth, each",
-             count,
-             "ns",
-             times.each,
-             times.raw,
-             {},
-             Figure::OfRaw,
-             0});
-        const auto put = [&](Curve& curve, const Timing& timing) {
-            curve.entities.push_back(static_cast<double>(count));
-            curve.time.push_back(timing.best);
-        };
-        put(raw, times.raw);
-        put(each, times.each);
-        put(chunks, times.chunks);
-    }
-    return {raw, each, chunks};
+         1.03,
+         ""});
 }
 
 }  // namespace limn::bench

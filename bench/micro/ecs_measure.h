@@ -2,6 +2,7 @@
 
 #include "bench/micro/ecs_report.h"
 #include "bench/micro/ecs_workloads.h"
+#include "ecs/base/jobs.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string_view>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -23,20 +25,23 @@ inline constexpr std::size_t kSmall = 64;
 inline constexpr std::size_t kCached = 16384;
 inline constexpr std::size_t kMany = 1'000'000;
 
+/// 40 bytes, 3 components, and the handle.
+using Payload = RawArrays<Entity, Position, Velocity, Rotation>;
+
 /// A run of the program.
 struct Bench {
     int repeats = 15;
     int slow_repeats = 7;  ///< of what needs a new world each time
-    std::vector<Row> rows;
+    Report report;
     bool failed = false;
-    RawArrays<Velocity, Position> reference{kMany};
-
-    Bench() { reference.start_all(); }
+    /// What R is measured on: memory as every program has it.
+    std::vector<Velocity> reference_velocities = std::vector<Velocity>(kMany);
+    std::vector<Position> reference_positions = std::vector<Position>(kMany);
 
     void add(Row row) {
         fmt::print("{}", table_line(row));
         std::fflush(stdout);
-        rows.push_back(std::move(row));
+        report.rows.push_back(std::move(row));
     }
     void check(bool condition, std::string_view what) {
         if (!condition) {
@@ -44,11 +49,42 @@ struct Bench {
             failed = true;
         }
     }
+    /// Whether there is memory for a workload; says so if not.
+    [[nodiscard]] bool fits(std::string_view name, std::size_t count, std::size_t bytes) const {
+        const double free = static_cast<double>(sysconf(_SC_AVPHYS_PAGES))
+                            * static_cast<double>(sysconf(_SC_PAGESIZE));
+        if (static_cast<double>(bytes) < 0.8 * free) {
+            return true;
+        }
+        fmt::print(
+            "left out: {} with {} entities, which needs {} MiB of memory\n",
+            name,
+            count,
+            bytes >> 20);
+        return false;
+    }
     /// R [ns]
-    [[nodiscard]] double time_reference() const {
-        return time_of([&] { reference.each(Move{}); }) / static_cast<double>(kMany);
+    [[nodiscard]] double time_reference() {
+        return time_of([&] {
+                   move_all(kMany, reference_velocities.data(), reference_positions.data());
+               })
+               / static_cast<double>(kMany);
+    }
+
+  private:
+    [[gnu::noinline]] static void
+    move_all(std::size_t count, const Velocity* velocities, Position* positions) {
+        for (std::size_t i = 0; i < count; ++i) {
+            Move()(velocities[i], positions[i]);
+        }
     }
 };
+
+/// Of times that have been taken.
+[[nodiscard]] inline Timing timing_of(std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    return {times[times.size() / 2], times.front()};
+}
 
 /// Calls the functions in turns; each returns its time.
 template <typename... Fs>
@@ -59,11 +95,23 @@ std::array<Timing, sizeof...(Fs)> take_turns(int repeats, Fs&&... functions) {
         (times[which++].push_back(functions()), ...);
     }
     std::array<Timing, sizeof...(Fs)> timings;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        std::sort(times[i].begin(), times[i].end());
-        timings[i] = {times[i][times[i].size() / 2], times[i].front()};
-    }
+    std::transform(times.begin(), times.end(), timings.begin(), timing_of);
     return timings;
+}
+
+/// As many rounds as a timer can see, of the same function.
+template <typename F>
+[[nodiscard]] double time_of_rounds(std::size_t rounds, F&& once) {
+    return time_of([&] {
+               for (std::size_t i = 0; i < rounds; ++i) {
+                   once();
+                   keep(rounds);
+               }
+           })
+           / static_cast<double>(rounds);
+}
+[[nodiscard]] inline std::size_t rounds_for(std::size_t count) {
+    return std::max<std::size_t>(1, 200'000 / count);
 }
 
 [[nodiscard]] inline double per(double time, std::size_t count) {
@@ -78,6 +126,18 @@ inline Timing beyond(const Timing& timing, const Timing& other) {
     return {timing.median - other.median, timing.best - other.best};
 }
 
+/// Sets the number of threads and has them made: that is done when there is work, and they move to
+/// a core of their own after a while.
+inline void start_threads(int threads) {
+    set_thread_count(threads);
+    parallel_for(64, 1, [](std::size_t, std::size_t) {
+        for (double spent = 0; spent < 2e5;) {
+            spent += time_of([] {});
+        }
+    });
+}
+
+/// A world of `count` entities with their start values.
 template <typename... Ts>
 std::vector<Entity> fill(World& world, std::size_t count) {
     std::vector<Entity> entities = world.create_many(count, Ts{}...);

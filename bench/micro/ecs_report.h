@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-// What ecs_bench found out, as a table, CSV, JSON and a plot.
+// What ecs_bench found out: a line of its table, CSV, and JSON. It reads that JSON too, so that one
+// run can be shown beside another. ecs_plot.h and ecs_page.h make a picture and a page of it.
 
 namespace limn::bench {
 
@@ -28,17 +29,26 @@ enum class Figure {
     Plain,        ///< the time itself, or whatever number stands in its place
     Speedup,      ///< time of the raw loop over the time
 };
+inline constexpr std::array<std::string_view, 4> kFigureNames = {"raw", "R", "plain", "speedup"};
 
 struct Row {
     int gate = 0;  ///< number in the list of gates; 0: none
     std::string name;
     std::size_t count = 0;  ///< entities
-    const char* unit = "";  ///< of the times
+    std::string unit;       ///< of the times
     Timing ecs;             ///< what is measured
     Timing raw;             ///< the same without ECS; 0: there is no such thing
     Timing reference;       ///< R, measured in turns with the others
     Figure figure = Figure::OfRaw;
-    double limit = 0;  ///< at most; of a speedup, at least. 0: no gate
+    double limit = 0;   ///< at most; of a speedup, at least. 0: no gate
+    std::string curve;  ///< of the plot; empty: not in it
+};
+
+/// A run of the program.
+struct Report {
+    std::string flags;    ///< of the compiler
+    std::string machine;  ///< processor, cores, compiler
+    std::vector<Row> rows;
 };
 
 [[nodiscard]] inline double over(double a, double b) {
@@ -59,28 +69,41 @@ struct Row {
     return row.ecs.*which;
 }
 
+/// How much of what the gate allows is used: 1 is just reached, less is better.
+[[nodiscard]] inline double share_of_limit(const Row& row, double Timing::*which) {
+    const double figure = figure_of(row, which);
+    return row.figure == Figure::Speedup ? over(row.limit, figure) : over(figure, row.limit);
+}
+
 /// A machine that does other things too only ever adds time, so the best run counts as well.
 [[nodiscard]] inline const char* verdict(const Row& row) {
     if (row.limit == 0) {
         return "";
     }
-    const auto reached = [&](double figure) {
-        return row.figure == Figure::Speedup ? figure >= row.limit : figure <= row.limit;
-    };
-    if (reached(figure_of(row, &Timing::median))) {
+    if (share_of_limit(row, &Timing::median) <= 1) {
         return "reached";
     }
-    return reached(figure_of(row, &Timing::best)) ? "best run only" : "NOT reached";
+    return share_of_limit(row, &Timing::best) <= 1 ? "best run only" : "NOT reached";
+}
+
+/// Three digits, and never an exponent.
+[[nodiscard]] inline std::string short_number(double value) {
+    return value >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+/// What the figure of a gate is counted in.
+[[nodiscard]] inline std::string figure_unit(const Row& row) {
+    return row.figure == Figure::OfReference ? " R"
+           : row.figure == Figure::Plain     ? " " + row.unit
+                                             : "x";
 }
 
 [[nodiscard]] inline std::string gate_text(const Row& row) {
     if (row.limit == 0) {
         return "";
     }
-    const char* unit = row.figure == Figure::OfReference ? " R"
-                       : row.figure == Figure::Plain     ? ""
-                                                         : "x";
-    return fmt::format("{} {}{}", row.figure == Figure::Speedup ? ">=" : "<=", row.limit, unit);
+    return fmt::format(
+        "{} {}{}", row.figure == Figure::Speedup ? ">=" : "<=", row.limit, figure_unit(row));
 }
 
 [[nodiscard]] inline std::string table_line(const Row& row) {
@@ -88,7 +111,7 @@ struct Row {
         return value == 0 ? std::string("-") : fmt::format("{:.4g}", value);
     };
     return fmt::format(
-        "{:>3} {:<44} {:>9} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<10} {:>7} {:>7}  {:<9} {}\n",
+        "{:>3} {:<50} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<7} {:>7} {:>7}  {:<15} {}\n",
         row.gate > 0 ? std::to_string(row.gate) : "",
         row.name,
         row.count,
@@ -106,7 +129,7 @@ struct Row {
 
 [[nodiscard]] inline std::string table_head() {
     return fmt::format(
-        "{:>3} {:<44} {:>9} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<10} {:>7} {:>7}  {}\n",
+        "{:>3} {:<50} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<7} {:>7} {:>7}  {}\n",
         "#",
         "workload",
         "entities",
@@ -121,10 +144,10 @@ struct Row {
         "gate");
 }
 
-[[nodiscard]] inline std::string to_csv(const std::vector<Row>& rows) {
+[[nodiscard]] inline std::string to_csv(const Report& report) {
     std::string text = "gate,workload,entities,unit,median,best,raw_median,raw_best,r_median,"
                        "of_raw,of_r,figure,figure_best,limit,verdict\n";
-    for (const Row& row : rows) {
+    for (const Row& row : report.rows) {
         text += fmt::format(
             "{},\"{}\",{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5g},{:.5g},{:.5g},{:.5g},{},{}"
             "\n",
@@ -147,14 +170,17 @@ struct Row {
     return text;
 }
 
-/// Names hold nothing that JSON would escape.
-[[nodiscard]] inline std::string to_json(const std::vector<Row>& rows) {
-    std::string text = "[\n";
-    for (const Row& row : rows) {
+/// A line a row. Names hold nothing that JSON would escape.
+[[nodiscard]] inline std::string to_json(const Report& report) {
+    std::string text = fmt::format(
+        "{{\n\"flags\": \"{}\",\n\"machine\": \"{}\",\n\"rows\": [\n",
+        report.flags,
+        report.machine);
+    for (const Row& row : report.rows) {
         text += fmt::format(
-            R"(  {{"gate": {}, "workload": "{}", "entities": {}, "unit": "{}", "median": {:.6g}, )"
+            R"({{"gate": {}, "workload": "{}", "entities": {}, "unit": "{}", "median": {:.6g}, )"
             R"("best": {:.6g}, "raw_median": {:.6g}, "raw_best": {:.6g}, "r_median": {:.6g}, )"
-            R"("figure": {:.5g}, "figure_best": {:.5g}, "limit": {}, "verdict": "{}"}}{})",
+            R"("r_best": {:.6g}, "of": "{}", "limit": {}, "curve": "{}", "verdict": "{}"}}{})",
             row.gate,
             row.name,
             row.count,
@@ -164,97 +190,80 @@ struct Row {
             row.raw.median,
             row.raw.best,
             row.reference.median,
-            figure_of(row, &Timing::median),
-            figure_of(row, &Timing::best),
+            row.reference.best,
+            kFigureNames[static_cast<std::size_t>(row.figure)],
             row.limit,
+            row.curve,
             verdict(row),
-            &row == &rows.back() ? "\n" : ",\n");
+            &row == &report.rows.back() ? "\n" : ",\n");
     }
-    return text + "]\n";
+    return text + "]\n}\n";
 }
 
-/// One curve of the plot: best times, since the curve is about the machine and not its guests.
-struct Curve {
-    std::string name;
-    const char* color;
-    std::vector<double> entities;
-    std::vector<double> time;  ///< [ns an entity]
-};
+// ---- reading it again
+// ---------------------------------------------------------------------------
 
-/// Time an entity against the number of entities, which has a logarithmic axis.
-[[nodiscard]] inline std::string to_svg(std::string_view title, const std::vector<Curve>& curves) {
-    constexpr double kWidth = 720, kHeight = 400, kLeft = 60, kRight = 20, kTop = 40, kBottom = 50;
-    double smallest = 1e300, largest = 0, slowest = 0;
-    for (const Curve& curve : curves) {
-        for (std::size_t i = 0; i < curve.entities.size(); ++i) {
-            smallest = std::min(smallest, curve.entities[i]);
-            largest = std::max(largest, curve.entities[i]);
-            slowest = std::max(slowest, curve.time[i]);
+/// The value behind "key": in a line that to_json wrote; empty if there is none.
+[[nodiscard]] inline std::string_view value_in(std::string_view line, std::string_view key) {
+    const std::string quoted = fmt::format("\"{}\": ", key);
+    const std::size_t found = line.find(quoted);
+    if (found == std::string_view::npos) {
+        return {};
+    }
+    line.remove_prefix(found + quoted.size());
+    if (line.starts_with('"')) {
+        line.remove_prefix(1);
+        return line.substr(0, line.find('"'));
+    }
+    return line.substr(0, line.find_first_of(",}"));
+}
+
+[[nodiscard]] inline Row row_from(std::string_view line) {
+    const auto text = [&](std::string_view key) { return std::string(value_in(line, key)); };
+    const auto number = [&](std::string_view key) {
+        return std::strtod(text(key).c_str(), nullptr);
+    };
+    Row row;
+    row.gate = static_cast<int>(number("gate"));
+    row.name = text("workload");
+    row.count = static_cast<std::size_t>(number("entities"));
+    row.unit = text("unit");
+    row.ecs = {number("median"), number("best")};
+    row.raw = {number("raw_median"), number("raw_best")};
+    row.reference = {number("r_median"), number("r_best")};
+    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+        if (value_in(line, "of") == kFigureNames[i]) {
+            row.figure = static_cast<Figure>(i);
         }
     }
-    const double first = std::floor(std::log10(smallest) + 1e-9);
-    const double last = std::max(first + 1, std::ceil(std::log10(largest) - 1e-9));
-    const double tick = slowest > 2 ? 0.5 : 0.25;
-    const double top = std::ceil(slowest / tick) * tick;
-    const auto x_of = [&](double entities) {
-        return kLeft + (std::log10(entities) - first) / (last - first) * (kWidth - kLeft - kRight);
-    };
-    const auto y_of = [&](double time) {
-        return kHeight - kBottom - time / top * (kHeight - kTop - kBottom);
-    };
+    row.limit = number("limit");
+    row.curve = text("curve");
+    return row;
+}
 
-    std::string text = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
-        "font-family=\"sans-serif\" font-size=\"12\">\n"
-        "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
-        "<text x=\"{2}\" y=\"20\" font-size=\"14\">{3}</text>\n",
-        kWidth,
-        kHeight,
-        kLeft,
-        title);
-    const auto line = [&](double x1, double y1, double x2, double y2) {
-        text += fmt::format(
-            "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n",
-            x1,
-            y1,
-            x2,
-            y2);
-    };
-    const auto label = [&](double x, double y, const char* anchor, const std::string& words) {
-        text += fmt::format(
-            "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, words);
-    };
-    for (double power = first; power <= last; ++power) {
-        const double x = x_of(std::pow(10.0, power));
-        line(x, kTop, x, kHeight - kBottom);
-        label(x, kHeight - kBottom + 18, "middle", fmt::format("1e{:.0f}", power));
-    }
-    for (int i = 0; i * tick <= top + 1e-9; ++i) {
-        const double y = y_of(i * tick);
-        line(kLeft, y, kWidth - kRight, y);
-        label(kLeft - 8, y + 4, "end", fmt::format("{:.2f}", i * tick));
-    }
-    label((kLeft + kWidth) / 2, kHeight - 10, "middle", "entities");
-    label(kLeft, kTop - 8, "end", "ns");
-
-    double legend = kTop + 14;
-    for (const Curve& curve : curves) {
-        std::string points;
-        for (std::size_t i = 0; i < curve.entities.size(); ++i) {
-            points += fmt::format("{:.1f},{:.1f} ", x_of(curve.entities[i]), y_of(curve.time[i]));
+/// What to_json made; nothing, with a line on stderr, if the file is not that.
+[[nodiscard]] inline std::optional<Report> read_report(const std::string& path) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    Report report;
+    if (file != nullptr) {
+        char buffer[4096];
+        while (std::fgets(buffer, sizeof(buffer), file) != nullptr) {
+            const std::string_view line = buffer;
+            if (line.starts_with("\"flags\"")) {
+                report.flags = value_in(line, "flags");
+            } else if (line.starts_with("\"machine\"")) {
+                report.machine = value_in(line, "machine");
+            } else if (line.starts_with("{\"gate\"")) {
+                report.rows.push_back(row_from(line));
+            }
         }
-        text += fmt::format(
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n"
-            "<text x=\"{}\" y=\"{}\" fill=\"{}\">{}</text>\n",
-            points,
-            curve.color,
-            kLeft + 12,
-            legend,
-            curve.color,
-            curve.name);
-        legend += 16;
+        std::fclose(file);
     }
-    return text + "</svg>\n";
+    if (report.rows.empty()) {
+        fmt::print(stderr, "{}: not the JSON of a run\n", path);
+        return std::nullopt;
+    }
+    return report;
 }
 
 /// Says why not on stderr.

@@ -13,72 +13,110 @@
 #include <vector>
 
 // Entities that come, go and change their components. Every repeat has a world of its own, in the
-// order of creation; where rows move to, memory has been used before.
+// order of creation; where rows move to, memory has been used before. The functions named time_
+// return the time of all `count` entities together [ns].
 
 namespace limn::bench {
 
-// ---- create and destroy
-// -------------------------------------------------------------------------
+// ---- without ECS
+// --------------------------------------------------------------------------------
 
-/// 40 bytes, 3 components.
-using Payload = RawArrays<Entity, Position, Velocity, Rotation>;
+/// What any ECS has to do to create: fresh memory, a handle and three components a row.
+inline double time_raw_fill(std::size_t count) {
+    std::unique_ptr<Payload> arrays;
+    return time_of([&] {
+        arrays = std::make_unique<Payload>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            arrays->column<Entity>()[i] = {static_cast<std::uint32_t>(i), 1};
+            arrays->column<Position>()[i] = {static_cast<float>(i), 0, 0};
+            arrays->column<Velocity>()[i] = {1, 2, 3};
+            arrays->column<Rotation>()[i] = {0, 0, 0, 1};
+        }
+    });
+}
 
-inline void create_all(World& world) {
-    for (std::size_t i = 0; i < kMany; ++i) {
+/// What moving rows to another archetype has to do: copy the handle and the components.
+class RawMove {
+  public:
+    explicit RawMove(std::size_t count) : from_(count), to_(count), extra_(count) { time(); }
+    double time() const {
+        const std::size_t count = from_.size();
+        return time_of([&] {
+            std::copy_n(from_.column<Entity>(), count, to_.column<Entity>());
+            std::copy_n(from_.column<Position>(), count, to_.column<Position>());
+            std::copy_n(from_.column<Velocity>(), count, to_.column<Velocity>());
+            std::copy_n(from_.column<Rotation>(), count, to_.column<Rotation>());
+            std::fill_n(extra_.column<Extra>(), count, Extra{});
+            keep(extra_);
+        });
+    }
+
+  private:
+    Payload from_;
+    Payload to_;
+    RawArrays<Extra> extra_;
+};
+
+/// What destroying has to do: put the number of every slot on a list, and nothing else.
+inline double time_raw_free(std::size_t count) {
+    std::vector<std::uint32_t> slots(count);
+    std::vector<std::uint32_t> free(count);
+    return time_of([&] {
+        std::size_t size = 0;
+        for (const std::uint32_t slot : slots) {
+            free[size++] = slot;
+        }
+        keep(free[0]);
+    });
+}
+
+// ---- create
+// -------------------------------------------------------------------------------------
+
+inline void create_one_by_one(World& world, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
         world.create(
             Position{static_cast<float>(i), 0, 0}, Velocity{1, 2, 3}, Rotation{0, 0, 0, 1});
     }
 }
 
-inline void create_bulk(World& world) {
-    std::vector<Entity> entities(kMany);
+inline void create_bulk(World& world, std::size_t count) {
+    std::vector<Entity> entities(count);
     world.create_many(
         std::span<Entity>(entities), Position{1, 0, 0}, Velocity{1, 2, 3}, Rotation{});
     keep(entities[0]);
 }
 
-inline void create(Bench& bench) {
-    const auto check_all = [&](const World& world) {
-        bench.check(world.query<const Position>().count() == kMany, "create");
-    };
-    const auto in_new_world = [&](auto&& make) {
-        World world;
-        const double time = time_of([&] { make(world); });
-        check_all(world);
-        return per(time, kMany);
-    };
-    const auto in_used_world = [&](auto&& make) {
-        World world;
-        create_bulk(world);
+enum class Memory { Fresh, Used };
+
+template <typename Make>
+double time_create(Bench& bench, std::size_t count, const Make& make, Memory memory) {
+    World world;
+    if (memory == Memory::Used) {
+        create_bulk(world, count);
         world.clear();
-        const double time = time_of([&] { make(world); });
-        check_all(world);
-        return per(time, kMany);
-    };
-    // What any ECS has to do: fresh memory, a handle and three components a row.
-    const auto fill_raw = [] {
-        std::unique_ptr<Payload> arrays;
-        const double time = time_of([&] {
-            arrays = std::make_unique<Payload>(kMany);
-            for (std::size_t i = 0; i < kMany; ++i) {
-                arrays->column<Entity>()[i] = {static_cast<std::uint32_t>(i), 1};
-                arrays->column<Position>()[i] = {static_cast<float>(i), 0, 0};
-                arrays->column<Velocity>()[i] = {1, 2, 3};
-                arrays->column<Rotation>()[i] = {0, 0, 0, 1};
-            }
-        });
-        return per(time, kMany);
+    }
+    const double time = time_of([&] { make(world, count); });
+    bench.check(world.query<const Position>().count() == count, "create");
+    return time;
+}
+
+inline void create(Bench& bench) {
+    const auto ecs = [&](auto make, Memory memory) {
+        return
+            [&bench, make, memory] { return per(time_create(bench, kMany, make, memory), kMany); };
     };
     const auto times = take_turns(
         bench.slow_repeats,
         [&] { return bench.time_reference(); },
-        fill_raw,
-        [&] { return in_new_world(create_bulk); },
-        [&] { return in_used_world(create_bulk); },
-        [&] { return in_new_world(create_all); },
-        [&] { return in_used_world(create_all); });
+        [&] { return per(time_raw_fill(kMany), kMany); },
+        ecs(create_bulk, Memory::Fresh),
+        ecs(create_bulk, Memory::Used),
+        ecs(create_one_by_one, Memory::Fresh),
+        ecs(create_one_by_one, Memory::Used));
     const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
-        bench.add({gate, name, kMany, "ns", time, times[1], times[0], Figure::OfReference, limit});
+        bench.add(
+            {gate, name, kMany, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});
     };
     row(8, "create, bulk", times[2], 13);
     row(0, "create, bulk, memory used before", times[3], 0);
@@ -86,78 +124,98 @@ inline void create(Bench& bench) {
     row(0, "create, one by one, memory used before", times[5], 0);
 }
 
-inline void destroy_all(Query<const Position> all, Commands commands) {
+// ---- destroy
+// ------------------------------------------------------------------------------------
+
+enum class Order { Creation, Random };
+
+inline double time_destroy(Bench& bench, std::size_t count, Order order) {
+    World world;
+    std::vector<Entity> entities = world.create_many(count, Position{}, Velocity{}, Rotation{});
+    if (order == Order::Random) {
+        std::vector<Entity> mixed;
+        mixed.reserve(count);
+        for (const std::uint32_t i : shuffled(count)) {
+            mixed.push_back(entities[i]);
+        }
+        entities.swap(mixed);
+    }
+    const double time = time_of([&] {
+        for (const Entity entity : entities) {
+            world.destroy(entity);
+        }
+    });
+    bench.check(world.entity_count() == 0, "destroy");
+    return time;
+}
+
+/// Destroys everything by one call.
+template <typename Destroy>
+double time_destroy_all(Bench& bench, std::size_t count, const Destroy& destroy_all) {
+    World world;
+    create_bulk(world, count);
+    const double time = time_of([&] { destroy_all(world); });
+    bench.check(world.entity_count() == 0, "destroy all");
+    return time;
+}
+
+inline void record_destroy(Query<const Position> all, Commands commands) {
     all.each([&](Entity entity, const Position&) { commands.destroy(entity); });
+}
+inline void destroy_by_commands(World& world) {
+    world.run(record_destroy);
+}
+inline void destroy_by_clear(World& world) {
+    world.clear();
 }
 
 inline void destroy(Bench& bench) {
-    const auto one_by_one = [&](bool shuffle) {
-        World world;
-        std::vector<Entity> entities = world.create_many(kMany, Position{}, Velocity{}, Rotation{});
-        if (shuffle) {
-            std::vector<Entity> mixed;
-            for (const std::uint32_t i : shuffled(kMany)) {
-                mixed.push_back(entities[i]);
-            }
-            entities.swap(mixed);
-        }
-        const double time = time_of([&] {
-            for (const Entity entity : entities) {
-                world.destroy(entity);
-            }
-        });
-        bench.check(world.entity_count() == 0, "destroy");
-        return per(time, kMany);
-    };
-    const auto by_query = [&] {
-        World world;
-        create_bulk(world);
-        const double time = time_of([&] { world.run(destroy_all); });
-        bench.check(world.entity_count() == 0, "destroy by commands");
-        return per(time, kMany);
-    };
-    const auto by_clear = [&] {
-        World world;
-        create_bulk(world);
-        const double time = time_of([&] { world.clear(); });
-        bench.check(world.entity_count() == 0, "clear");
-        return per(time, kMany);
-    };
     const auto times = take_turns(
         bench.slow_repeats,
         [&] { return bench.time_reference(); },
-        [&] { return one_by_one(false); },
-        [&] { return one_by_one(true); },
-        by_query,
-        by_clear);
+        [&] { return per(time_raw_free(kMany), kMany); },
+        [&] { return per(time_destroy(bench, kMany, Order::Creation), kMany); },
+        [&] { return per(time_destroy(bench, kMany, Order::Random), kMany); },
+        [&] { return per(time_destroy_all(bench, kMany, destroy_by_commands), kMany); },
+        [&] { return per(time_destroy_all(bench, kMany, destroy_by_clear), kMany); });
     const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
-        bench.add({gate, name, kMany, "ns", time, {}, times[0], Figure::OfReference, limit});
+        bench.add(
+            {gate, name, kMany, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});
     };
-    row(10, "destroy, one by one, order of creation", times[1], 14);
-    row(0, "destroy, one by one, random order", times[2], 0);
-    row(10, "destroy, by query and commands", times[3], 4);
-    row(0, "destroy, World::clear", times[4], 0);
+    row(10, "destroy, one by one, order of creation", times[2], 14);
+    row(0, "destroy, one by one, random order", times[3], 0);
+    row(10, "destroy, by query and commands", times[4], 4);
+    row(0, "destroy, World::clear", times[5], 0);
 }
 
 // ---- add and remove
 // -----------------------------------------------------------------------------
+
+/// Makes the world's lists for sync points as long as they get.
+inline void remove_from_all(Query<const Position> all, Commands commands) {
+    all.each([&](Entity entity, const Position&) { commands.remove<Extra>(entity); });
+}
 
 /// A world whose entities have 3 components, and memory for all of them with Extra, touched.
 struct AddWorld {
     World world;
     std::vector<Entity> entities;
 
-    AddWorld() : entities(fill<Position, Velocity, Rotation>(world, kMany)) {
+    explicit AddWorld(std::size_t count)
+        : entities(fill<Position, Velocity, Rotation>(world, count)) {
         std::vector<Entity> others =
-            world.create_many(kMany, Position{}, Velocity{}, Rotation{}, Extra{});
+            world.create_many(count, Position{}, Velocity{}, Rotation{}, Extra{});
         while (!others.empty()) {
             world.destroy(others.back());
             others.pop_back();
         }
+    }
+    /// Memory for the set of sparse values, too.
+    void use_sparse_set() {
         for (const Entity entity : entities) {
             world.add(entity, SparseExtra{});
         }
-        for (std::size_t i = kMany; i > 0; --i) {
+        for (std::size_t i = entities.size(); i > 0; --i) {
             world.remove<SparseExtra>(entities[i - 1]);
         }
     }
@@ -174,78 +232,93 @@ struct AddWorld {
     }
 };
 
-/// Makes the world's lists for sync points as long as they get.
-inline void remove_from_all(Query<const Position> all, Commands commands) {
-    all.each([&](Entity entity, const Position&) { commands.remove<Extra>(entity); });
-}
-
 template <typename T>
 T extra_of(Entity entity) {
     return {{static_cast<float>(entity.index), 1, 2, 3}};
 }
 
+struct AddTimes {
+    double add = 0;
+    double remove = 0;
+};
+
 template <typename T>
-std::pair<double, double> time_add_and_remove(Bench& bench) {
-    AddWorld made;
+AddTimes time_add_and_remove(Bench& bench, std::size_t count) {
+    AddWorld made(count);
     World& world = made.world;
-    const double add = time_of([&] {
+    if constexpr (std::is_same_v<T, SparseExtra>) {
+        made.use_sparse_set();
+    }
+    AddTimes times;
+    times.add = time_of([&] {
         for (const Entity entity : made.entities) {
             world.add(entity, extra_of<T>(entity));
         }
     });
     bench.check(made.all_have<T>(), "add");
-    const double remove = time_of([&] {
+    times.remove = time_of([&] {
         for (const Entity entity : made.entities) {
             world.remove<T>(entity);
         }
     });
-    bench.check(world.query<const Position, Without<T>>().count() == kMany, "remove");
-    return {per(add, kMany), per(remove, kMany)};
+    bench.check(world.query<const Position, Without<T>>().count() == count, "remove");
+    return times;
+}
+
+/// Only to a quarter of the entities, in random order.
+inline double time_add_to_quarter(Bench& bench, std::size_t count) {
+    AddWorld made(count);
+    std::vector<Entity> chosen;
+    for (const std::uint32_t i : shuffled(count)) {
+        if (chosen.size() < count / 4) {
+            chosen.push_back(made.entities[i]);
+        }
+    }
+    const double time = time_of([&] {
+        for (const Entity entity : chosen) {
+            made.world.add(entity, extra_of<Extra>(entity));
+        }
+    });
+    bench.check(made.world.query<const Extra>().count() == count / 4, "add to a quarter");
+    return time;
 }
 
 inline void add_and_remove(Bench& bench) {
-    // What moving a row to another archetype has to do: copy the handle and the components.
-    const Payload from(kMany);
-    const Payload to(kMany);
-    const RawArrays<Extra> extra(kMany);
-    const auto copy = [&] {
-        return per(
-            time_of([&] {
-                std::copy_n(from.column<Entity>(), kMany, to.column<Entity>());
-                std::copy_n(from.column<Position>(), kMany, to.column<Position>());
-                std::copy_n(from.column<Velocity>(), kMany, to.column<Velocity>());
-                std::copy_n(from.column<Rotation>(), kMany, to.column<Rotation>());
-                std::fill_n(extra.column<Extra>(), kMany, Extra{});
-                keep(extra);
-            }),
-            kMany);
-    };
-    double remove_table = 0;
-    double remove_sparse = 0;
+    const RawMove copy(kMany);
+    AddTimes table;
+    AddTimes sparse;
     const auto times = take_turns(
         bench.slow_repeats,
         [&] { return bench.time_reference(); },
-        copy,
+        [&] { return per(copy.time(), kMany); },
         [&] {
-            const auto [add, remove] = time_add_and_remove<Extra>(bench);
-            remove_table = remove;
-            return add;
+            table = time_add_and_remove<Extra>(bench, kMany);
+            return per(table.add, kMany);
         },
-        [&] { return remove_table; },
+        [&] { return per(table.remove, kMany); },
         [&] {
-            const auto [add, remove] = time_add_and_remove<SparseExtra>(bench);
-            remove_sparse = remove;
-            return add;
+            sparse = time_add_and_remove<SparseExtra>(bench, kMany);
+            return per(sparse.add, kMany);
         },
-        [&] { return remove_sparse; });
-    const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
-        bench.add({gate, name, kMany, "ns", time, times[1], times[0], Figure::OfReference, limit});
+        [&] { return per(sparse.remove, kMany); },
+        [&] { return per(time_add_to_quarter(bench, kMany), kMany / 4); });
+    const auto row = [&](int gate,
+                         const char* name,
+                         std::size_t count,
+                         const Timing& time,
+                         double limit) {
+        bench.add(
+            {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});
     };
-    row(11, "add, table, one by one", times[2], 33);
-    row(11, "remove, table, one by one", times[3], 33);
-    row(12, "add, sparse, one by one", times[4], 15);
-    row(12, "remove, sparse, one by one", times[5], 15);
+    row(11, "add, table, one by one", kMany, times[2], 33);
+    row(11, "remove, table, one by one", kMany, times[3], 33);
+    row(12, "add, sparse, one by one", kMany, times[4], 15);
+    row(12, "remove, sparse, one by one", kMany, times[5], 15);
+    row(0, "add, table, to a random quarter, one by one", kMany / 4, times[6], 0);
 }
+
+// ---- deferred
+// -----------------------------------------------------------------------------------
 
 inline void add_to_all(Query<const Position, Without<Extra>> all, Commands commands) {
     all.each(
@@ -265,9 +338,10 @@ inline void add_to_chosen(Res<const Chosen> chosen, Commands commands) {
 struct DeferredTime {
     double record = 0;
     double flush = 0;
+    [[nodiscard]] double both() const { return record + flush; }
 };
 
-inline DeferredTime time_deferred(World& world, System& system) {
+inline DeferredTime run_deferred(World& world, System& system) {
     DeferredTime time;
     const std::uint32_t version = world.begin_run();
     system.prepare(world);
@@ -277,56 +351,79 @@ inline DeferredTime time_deferred(World& world, System& system) {
     return time;
 }
 
-inline void deferred(Bench& bench) {
-    System all = make_system<add_to_all>();
-    System chosen = make_system<add_to_chosen>();
-    const std::vector<std::uint32_t> order = shuffled(kMany);
-    constexpr std::size_t kQuarter = kMany / 4;
-    DeferredTime all_time;
-    DeferredTime chosen_time;
-    const auto run_all = [&] {
-        AddWorld made;
+/// Systems that record, and keep their buffers from run to run, as those of a schedule do.
+class Deferred {
+  public:
+    /// Extra for everybody.
+    DeferredTime time_all(Bench& bench, std::size_t count) {
+        AddWorld made(count);
         made.world.run(remove_from_all);
-        all_time = time_deferred(made.world, all);
+        const DeferredTime time = run_deferred(made.world, all_);
         bench.check(made.all_have<Extra>(), "deferred add");
-        return per(all_time.record + all_time.flush, kMany);
-    };
-    const auto run_chosen = [&] {
-        AddWorld made;
+        return time;
+    }
+    /// For a random quarter.
+    DeferredTime time_quarter(Bench& bench, std::size_t count) {
+        AddWorld made(count);
         made.world.run(remove_from_all);
         Chosen list;
-        for (std::size_t i = 0; i < kQuarter; ++i) {
-            list.entities.push_back(made.entities[order[i]]);
+        for (const std::uint32_t i : shuffled(count)) {
+            if (list.entities.size() < count / 4) {
+                list.entities.push_back(made.entities[i]);
+            }
         }
         made.world.insert_resource(list);
-        chosen_time = time_deferred(made.world, chosen);
+        const DeferredTime time = run_deferred(made.world, chosen_);
         bench.check(
-            made.world.query<const Extra>().count() == kQuarter
+            made.world.query<const Extra>().count() == count / 4
                 && made.world.get<const Extra>(list.entities[7]).value[0]
                        == static_cast<float>(list.entities[7].index),
             "random quarter");
-        return per(chosen_time.record + chosen_time.flush, kQuarter);
-    };
-    run_all();  // the buffers of the systems grow to their size
+        return time;
+    }
+
+  private:
+    System all_ = make_system<add_to_all>();
+    System chosen_ = make_system<add_to_chosen>();
+};
+
+inline void deferred(Bench& bench) {
+    constexpr std::size_t kQuarter = kMany / 4;
+    const RawMove copy(kMany);
+    Deferred systems;
+    systems.time_all(bench, kMany);  // the buffers grow to their size
+    DeferredTime all;
+    DeferredTime chosen;
     const auto times = take_turns(
         bench.slow_repeats,
         [&] { return bench.time_reference(); },
-        run_all,
-        [&] { return per(all_time.record, kMany); },
-        [&] { return per(all_time.flush, kMany); },
-        run_chosen,
-        [&] { return per(chosen_time.record, kQuarter); },
-        [&] { return per(chosen_time.flush, kQuarter); });
-    const auto row =
-        [&](int gate, const char* name, std::size_t count, const Timing& time, double limit) {
-            bench.add({gate, name, count, "ns", time, {}, times[0], Figure::OfReference, limit});
-        };
-    row(14, "deferred add to all", kMany, times[1], 22);
-    row(0, "    of it recording", kMany, times[2], 0);
-    row(0, "    of it the sync point", kMany, times[3], 0);
-    row(15, "deferred add to a random quarter", kQuarter, times[4], 80);
-    row(0, "    of it recording", kQuarter, times[5], 0);
-    row(0, "    of it the sync point", kQuarter, times[6], 0);
+        [&] { return per(copy.time(), kMany); },
+        [&] {
+            all = systems.time_all(bench, kMany);
+            return per(all.both(), kMany);
+        },
+        [&] { return per(all.record, kMany); },
+        [&] { return per(all.flush, kMany); },
+        [&] {
+            chosen = systems.time_quarter(bench, kMany);
+            return per(chosen.both(), kQuarter);
+        },
+        [&] { return per(chosen.record, kQuarter); },
+        [&] { return per(chosen.flush, kQuarter); });
+    const auto row = [&](int gate,
+                         const char* name,
+                         std::size_t count,
+                         const Timing& time,
+                         double limit) {
+        bench.add(
+            {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});
+    };
+    row(14, "deferred add to all", kMany, times[2], 22);
+    row(0, "    of it recording", kMany, times[3], 0);
+    row(0, "    of it the sync point", kMany, times[4], 0);
+    row(15, "deferred add to a random quarter", kQuarter, times[5], 80);
+    row(0, "    of it recording", kQuarter, times[6], 0);
+    row(0, "    of it the sync point", kQuarter, times[7], 0);
 }
 
 }  // namespace limn::bench

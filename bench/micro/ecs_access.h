@@ -1,0 +1,186 @@
+#pragma once
+
+#include "bench/micro/ecs_measure.h"
+#include "ecs/base/hash.h"
+#include "ecs/snapshot.h"
+#include "ecs/world_stats.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+// A world as a whole and single entities of it: random access, what it takes in memory, what has
+// changed, and its copies.
+
+namespace limn::bench {
+
+inline void random_get(Bench& bench, std::size_t count, double limit) {
+    World world;
+    const std::vector<Entity> entities = fill<Position, Velocity, Rotation>(world, count);
+    const RawArrays<Position> arrays(count);
+    arrays.start_all();
+    const std::vector<std::uint32_t> order = shuffled(count);
+    std::vector<Entity> mixed;
+    for (const std::uint32_t i : order) {
+        mixed.push_back(entities[i]);
+    }
+    float raw_sum = 0;
+    float ecs_sum = 0;
+    const auto get_raw = [&] {
+        const Position* positions = arrays.column<Position>();
+        raw_sum = 0;
+        for (const std::uint32_t i : order) {
+            raw_sum += positions[i].x;
+        }
+    };
+    const World& readable = world;
+    const auto get_ecs = [&] {
+        ecs_sum = 0;
+        for (const Entity entity : mixed) {
+            ecs_sum += readable.get<Position>(entity).x;
+        }
+    };
+    const auto timed = [&](auto&& once) {
+        return per(time_of_rounds(rounds_for(count), once), count);
+    };
+    const auto times = take_turns(
+        bench.repeats,
+        [&] { return bench.time_reference(); },
+        [&] { return timed(get_raw); },
+        [&] { return timed(get_ecs); });
+    bench.check(raw_sum == ecs_sum, "random get");
+    bench.add(
+        {16,
+         "random get",
+         count,
+         "ns",
+         times[2],
+         times[1],
+         times[0],
+         Figure::OfReference,
+         limit,
+         ""});
+}
+
+inline void memory(Bench& bench) {
+    World world;
+    fill<Position, Velocity, Rotation>(world, kMany);
+    const double bytes = static_cast<double>(world.memory().total()) / static_cast<double>(kMany);
+    bench.add(
+        {17,
+         "memory, 40 B payload",
+         kMany,
+         "B",
+         {bytes, bytes},
+         {40, 40},
+         {},
+         Figure::Plain,
+         60,
+         ""});
+}
+
+inline void changed(Bench& bench) {
+    World world;
+    const std::vector<Entity> entities = fill<Position, Velocity>(world, kMany);
+    const RawArrays<Position> arrays(kMany);
+    const std::uint32_t moment = world.version();
+    std::size_t seen = 0;
+    const auto query = world.query<const Position, Changed<Position>>();
+    const auto look = [&] {
+        return time_of_rounds(1000, [&] {
+            query.since(moment).each([&](const Position&) { ++seen; });
+            keep(seen);
+        });
+    };
+    const auto read_raw = [&] {
+        return time_of([&] {
+            float sum = 0;
+            for (std::size_t i = 0; i < kMany; ++i) {
+                sum += arrays.column<Position>()[i].x;
+            }
+            keep(sum);
+        });
+    };
+    const auto times = take_turns(bench.repeats, read_raw, look);
+    bench.check(seen == 0, "nothing changed");
+    world.get<Position>(entities[5000]).x = 1;
+    query.since(moment).each([&](const Position&) { ++seen; });
+    bench.check(seen == 1024, "one chunk changed");
+    bench.add(
+        {23,
+         "changed since, nothing changed",
+         kMany,
+         "ns/call",
+         times[1],
+         times[0],
+         {},
+         Figure::Plain,
+         2000,
+         ""});
+}
+
+// ---- copies of a world
+// --------------------------------------------------------------------------
+
+/// The bytes of a snapshot, copied.
+inline double time_raw_copy(std::span<const std::byte> bytes) {
+    std::vector<std::byte> copy(bytes.size());
+    return time_of([&] {
+        std::memcpy(copy.data(), bytes.data(), bytes.size());
+        keep(copy[0]);
+    });
+}
+
+struct SnapshotTimes {
+    double save = 0;
+    double restore = 0;
+    double copy = 0;
+};
+
+inline SnapshotTimes time_snapshot(Bench& bench, World& world) {
+    SnapshotTimes times;
+    const std::uint64_t before = state_hash(world);
+    std::vector<std::byte> bytes;
+    times.save = time_of([&] { bytes = *save_snapshot(world); });
+    times.restore = time_of([&] { bench.check(restore_snapshot(world, bytes).ok(), "restore"); });
+    times.copy = time_raw_copy(bytes);
+    bench.check(state_hash(world) == before, "the restored world");
+    return times;
+}
+
+inline void snapshots(Bench& bench) {
+    World world;
+    fill<Position, Velocity, Rotation>(world, kMany);
+    const Payload arrays(kMany);
+    SnapshotTimes found;
+    const auto times = take_turns(
+        bench.slow_repeats,
+        [&] { return bench.time_reference(); },
+        [&] {
+            found = time_snapshot(bench, world);
+            return per(found.save, kMany);
+        },
+        [&] { return per(found.restore, kMany); },
+        [&] { return per(found.copy, kMany); },
+        [&] { return per(time_of([&] { keep(state_hash(world)); }), kMany); },
+        [&] {
+            return per(
+                time_of([&] {
+                    keep(hash_bytes(arrays.column<Entity>(), kMany * sizeof(Entity)));
+                    keep(hash_bytes(arrays.column<Position>(), kMany * sizeof(Position)));
+                    keep(hash_bytes(arrays.column<Velocity>(), kMany * sizeof(Velocity)));
+                    keep(hash_bytes(arrays.column<Rotation>(), kMany * sizeof(Rotation)));
+                }),
+                kMany);
+        });
+    const auto row = [&](const char* name, const Timing& time, const Timing& raw) {
+        bench.add({0, name, kMany, "ns", time, raw, times[0], Figure::OfRaw, 0, ""});
+    };
+    row("snapshot, save; beside memcpy of its bytes", times[1], times[3]);
+    row("snapshot, restore; beside memcpy of its bytes", times[2], times[3]);
+    row("state hash; beside hashing the raw arrays", times[4], times[5]);
+}
+
+}  // namespace limn::bench

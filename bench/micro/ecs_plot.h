@@ -1,0 +1,418 @@
+#pragma once
+
+#include "bench/micro/ecs_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// The picture of a run, as SVG: time an entity over the number of entities, of iteration and of
+// structural change, each over the wide gray line of the raw loop beside it; below, every gate as a
+// share of what it allows.
+
+namespace limn::bench {
+
+/// A drawing that grows.
+class Svg {
+  public:
+    void text(
+        double x,
+        double y,
+        std::string_view words,
+        std::string_view color = "#333",
+        std::string_view anchor = "start",
+        double size = 12,
+        std::string_view more = "") {
+        body_ += fmt::format(
+            "<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\" text-anchor=\"{}\" font-size=\"{}\" "
+            "{}>{}</text>\n",
+            x,
+            y,
+            color,
+            anchor,
+            size,
+            more,
+            words);
+    }
+    void
+    line(double x1, double y1, double x2, double y2, std::string_view color, double width = 1) {
+        body_ += fmt::format(
+            "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{}\"/>\n",
+            x1,
+            y1,
+            x2,
+            y2,
+            color,
+            width);
+    }
+    void
+    box(double x, double y, double width, double height, std::string_view color, double opacity) {
+        body_ += fmt::format(
+            "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
+            "fill-opacity=\"{}\"/>\n",
+            x,
+            y,
+            width,
+            height,
+            color,
+            opacity);
+    }
+    void dot(double x, double y, std::string_view color) {
+        body_ += fmt::format(
+            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"{}\" stroke=\"white\"/>\n",
+            x,
+            y,
+            color);
+    }
+    void curve(
+        const std::vector<std::array<double, 2>>& points,
+        std::string_view color,
+        double width,
+        std::string_view dashes = "") {
+        std::string path;
+        for (const auto& [x, y] : points) {
+            path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x, y);
+        }
+        body_ += fmt::format(
+            "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
+            "stroke-linejoin=\"round\" stroke-linecap=\"{}\" stroke-dasharray=\"{}\"/>\n",
+            path,
+            color,
+            width,
+            dashes.empty() ? "round" : "butt",
+            dashes.empty() ? "none" : dashes);
+    }
+    [[nodiscard]] std::string done(double width, double height) const {
+        return fmt::format(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+            "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', "
+            "sans-serif\">\n"
+            "<rect width=\"{0}\" height=\"{1}\" fill=\"#fcfcfa\"/>\n{2}</svg>\n",
+            width,
+            height,
+            body_);
+    }
+
+  private:
+    std::string body_;
+};
+
+inline constexpr const char* kRawColor = "#d3d3cf";
+inline constexpr const char* kInk = "#333";
+inline constexpr const char* kFaint = "#777";
+inline constexpr const char* kReached = "#0a8f6a";
+inline constexpr const char* kMissed = "#d1495b";
+
+/// How a curve looks; its name is that of its rows.
+struct CurveStyle {
+    std::string_view name;
+    std::string_view color;
+    bool dashed = false;
+};
+
+inline constexpr std::array<CurveStyle, 4> kIterationCurves = {{
+    {"7 columns", "#c8553d"},
+    {"7 columns, 2 threads", "#c8553d", true},
+    {"2 columns", "#2a6fbb"},
+    {"2 columns, 2 threads", "#2a6fbb", true},
+}};
+
+inline constexpr std::array<CurveStyle, 9> kStructureCurves = {{
+    {"create, one by one", "#2a6fbb"},
+    {"create, bulk", "#2a6fbb", true},
+    {"destroy, one by one", "#8a4f9e"},
+    {"destroy, World::clear", "#8a4f9e", true},
+    {"add, one by one", "#c8553d"},
+    {"remove, one by one", "#e09f3e"},
+    {"deferred add", "#c8553d", true},
+    {"snapshot, save", "#2e8b6f"},
+    {"snapshot, restore", "#2e8b6f", true},
+}};
+
+/// Both axes logarithmic. Where it is, and what it shows.
+struct Panel {
+    double left, top, width, height;
+    double first_decade, last_decade;  ///< entities, powers of ten
+    double low_decade, high_decade;    ///< [ns]
+    [[nodiscard]] double x_of(double entities) const {
+        return left + width * (std::log10(entities) - first_decade) / (last_decade - first_decade);
+    }
+    [[nodiscard]] double y_of(double time) const {
+        const double share = (std::log10(time) - low_decade) / (high_decade - low_decade);
+        return top + height * (1 - std::clamp(share, 0.0, 1.0));
+    }
+};
+
+inline void draw_axes(Svg& svg, const Panel& panel, std::string_view title) {
+    const double bottom = panel.top + panel.height;
+    const double right = panel.left + panel.width;
+    svg.text(panel.left, panel.top - 18, title, kInk, "start", 15, "font-weight=\"600\"");
+    for (double decade = panel.low_decade; decade <= panel.high_decade + 1e-9; ++decade) {
+        for (const double step : {1.0, 2.0, 5.0}) {
+            const double time = step * std::pow(10.0, decade);
+            if (std::log10(time) > panel.high_decade + 1e-9) {
+                continue;
+            }
+            const double y = panel.y_of(time);
+            svg.line(panel.left, y, right, y, step == 1 ? "#dcdcd8" : "#efefec");
+            if (step == 1) {
+                svg.text(panel.left - 8, y + 4, fmt::format("{:g}", time), kFaint, "end");
+            }
+        }
+    }
+    for (double decade = panel.first_decade; decade <= panel.last_decade; ++decade) {
+        const double x = panel.x_of(std::pow(10.0, decade));
+        svg.line(x, panel.top, x, bottom, "#efefec");
+        svg.line(x, bottom, x, bottom + 4, "#aaa");
+        svg.text(
+            x,
+            bottom + 19,
+            fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{:.0f}</tspan>", decade),
+            kFaint,
+            "middle");
+    }
+    svg.line(panel.left, bottom, right, bottom, "#aaa");
+    svg.text(panel.left + panel.width / 2, bottom + 38, "entities", kFaint, "middle");
+    svg.text(
+        panel.left - 46,
+        panel.top + panel.height / 2,
+        "time an entity [ns]",
+        kFaint,
+        "middle",
+        12,
+        fmt::format(
+            "transform=\"rotate(-90 {:.1f} {:.1f})\"",
+            panel.left - 46,
+            panel.top + panel.height / 2));
+}
+
+/// Names at the ends of the curves, moved apart until none covers another.
+struct EndLabel {
+    double y;  ///< where the curve ends
+    std::string name;
+    std::string_view color;
+};
+
+inline void draw_labels(Svg& svg, double x, std::vector<EndLabel> labels) {
+    constexpr double kLine = 14;
+    std::sort(labels.begin(), labels.end(), [](const EndLabel& a, const EndLabel& b) {
+        return a.y < b.y;
+    });
+    std::vector<double> at;
+    for (const EndLabel& label : labels) {
+        at.push_back(label.y);
+    }
+    for (int pass = 0; pass < 200; ++pass) {
+        for (std::size_t i = 1; i < at.size(); ++i) {
+            if (const double lack = kLine - (at[i] - at[i - 1]); lack > 0) {
+                at[i - 1] -= lack / 2;
+                at[i] += lack / 2;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        svg.line(x + 5, labels[i].y, x + 16, at[i], "#bbb");
+        svg.text(x + 20, at[i] + 4, labels[i].name, labels[i].color);
+    }
+}
+
+template <std::size_t size>
+void draw_curves(
+    Svg& svg,
+    const Panel& panel,
+    const Report& report,
+    const std::array<CurveStyle, size>& styles) {
+    struct Drawn {
+        const CurveStyle* style;
+        std::vector<std::array<double, 2>> ecs;
+        std::vector<std::array<double, 2>> raw;
+    };
+    std::vector<Drawn> curves;
+    for (const CurveStyle& style : styles) {
+        Drawn& curve = curves.emplace_back();
+        curve.style = &style;
+        for (const Row& row : report.rows) {
+            if (row.curve == style.name) {
+                const double x = panel.x_of(static_cast<double>(row.count));
+                curve.ecs.push_back({x, panel.y_of(row.ecs.best)});
+                if (row.raw.best > 0) {
+                    curve.raw.push_back({x, panel.y_of(row.raw.best)});
+                }
+            }
+        }
+        if (curve.ecs.empty()) {
+            curves.pop_back();
+        }
+    }
+    for (const Drawn& curve : curves) {
+        svg.curve(curve.raw, kRawColor, 6);
+    }
+    std::vector<EndLabel> labels;
+    for (const Drawn& curve : curves) {
+        svg.curve(curve.ecs, curve.style->color, 2, curve.style->dashed ? "5 3" : "");
+        for (const auto& [x, y] : curve.ecs) {
+            svg.dot(x, y, curve.style->color);
+        }
+        labels.push_back({curve.ecs.back()[1], std::string(curve.style->name), curve.style->color});
+    }
+    draw_labels(svg, panel.left + panel.width, std::move(labels));
+}
+
+// ---- gates
+// --------------------------------------------------------------------------------------
+
+/// The row of the other run that is about the same.
+[[nodiscard]] inline const Row* same_row(const Report* other, const Row& row) {
+    if (other != nullptr) {
+        for (const Row& candidate : other->rows) {
+            if (candidate.gate == row.gate && candidate.name == row.name
+                && candidate.count == row.count) {
+                return &candidate;
+            }
+        }
+    }
+    return nullptr;
+}
+
+[[nodiscard]] inline std::vector<const Row*> gate_rows(const Report& report) {
+    std::vector<const Row*> rows;
+    for (const Row& row : report.rows) {
+        if (row.gate > 0 && row.limit > 0) {
+            rows.push_back(&row);
+        }
+    }
+    std::stable_sort(
+        rows.begin(), rows.end(), [](const Row* a, const Row* b) { return a->gate < b->gate; });
+    return rows;
+}
+
+/// "16k", "1M"; nothing for other counts, which the names tell.
+[[nodiscard]] inline std::string short_count(std::size_t count) {
+    return count == 16384 ? ", 16k" : count == 1'000'000 ? ", 1M" : "";
+}
+
+inline double draw_gates(
+    Svg& svg, double left, double top, double width, const Report& report, const Report* other) {
+    constexpr double kRow = 25, kLabel = 400, kMost = 2;
+    const std::vector<const Row*> rows = gate_rows(report);
+    const double start = left + kLabel;
+    const double scale = (width - kLabel - 190) / kMost;
+    const double bottom = top + kRow * static_cast<double>(rows.size());
+    svg.text(
+        left,
+        top - 34,
+        "Gates: share of what is allowed that is used",
+        kInk,
+        "start",
+        15,
+        "font-weight=\"600\"");
+    for (int i = 0; i <= 8; ++i) {
+        const double x = start + scale * 0.25 * i;
+        svg.line(x, top, x, bottom, i == 4 ? kInk : "#e6e6e2", i == 4 ? 1.5 : 1);
+        if (i % 2 == 0) {
+            const std::string word = i == 4 ? "the gate" : fmt::format("{:g}x", 0.25 * i);
+            svg.text(x, top - 8, word, i == 4 ? kInk : kFaint, "middle");
+        }
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row& row = *rows[i];
+        const double y = top + kRow * static_cast<double>(i);
+        const auto bar = [&](const Row& shown, double from, double height, double opacity) {
+            const double share = share_of_limit(shown, &Timing::median);
+            const char* color = share <= 1 ? kReached : kMissed;
+            svg.box(start, y + from, scale * std::min(share, kMost), height, color, opacity);
+            if (share > kMost) {
+                const double x = start + scale * kMost;
+                svg.curve(
+                    {{x + 3, y + from}, {x + 8, y + from + height / 2}, {x + 3, y + from + height}},
+                    color,
+                    1.5);
+            }
+        };
+        const Row* second = same_row(other, row);
+        bar(row, 4, second != nullptr ? 10 : 17, 0.9);
+        if (second != nullptr) {
+            bar(*second, 15, 5, 0.45);
+        }
+        svg.text(left + 22, y + 16, std::to_string(row.gate), kFaint, "end");
+        svg.text(left + 32, y + 16, row.name + short_count(row.count));
+        svg.text(
+            start + scale * kMost + 16,
+            y + 16,
+            short_number(figure_of(row, &Timing::median)) + figure_unit(row),
+            kInk,
+            "start",
+            12,
+            "font-weight=\"600\"");
+        svg.text(
+            start + scale * kMost + 188,
+            y + 16,
+            fmt::format("{} {:g}", row.figure == Figure::Speedup ? "≥" : "≤", row.limit),
+            kFaint,
+            "end",
+            11);
+    }
+    return bottom;
+}
+
+inline void draw_legend(Svg& svg, double x, double y, const Report& report, const Report* other) {
+    const auto entry = [&](double width, std::string_view words, auto&& draw) {
+        draw(x, y - 4);
+        svg.text(x + 34, y, words, kFaint);
+        x += width;
+    };
+    entry(190, "the raw loop beside it", [&](double at, double middle) {
+        svg.curve({{at, middle}, {at + 26, middle}}, kRawColor, 6);
+    });
+    entry(270, "the ECS (dashed: bulk or 2 threads)", [&](double at, double middle) {
+        svg.curve({{at, middle}, {at + 26, middle}}, "#2a6fbb", 2);
+    });
+    entry(220, fmt::format("gate, {}", report.flags), [&](double at, double middle) {
+        svg.box(at, middle - 5, 13, 10, kReached, 0.9);
+        svg.box(at + 13, middle - 5, 13, 10, kMissed, 0.9);
+    });
+    if (other != nullptr) {
+        entry(160, fmt::format("gate, {}", other->flags), [&](double at, double middle) {
+            svg.box(at, middle - 2, 13, 5, kReached, 0.45);
+            svg.box(at + 13, middle - 2, 13, 5, kMissed, 0.45);
+        });
+    }
+}
+
+/// `other`: the same with other compiler flags, or nullptr.
+[[nodiscard]] inline std::string to_svg(const Report& report, const Report* other) {
+    constexpr double kWidth = 1320;
+    Svg svg;
+    svg.text(
+        60,
+        44,
+        "Limn's ECS beside raw arrays in the same process",
+        kInk,
+        "start",
+        22,
+        "font-weight=\"600\"");
+    svg.text(
+        60,
+        66,
+        fmt::format("{}; curves: best of the repeats, {}", report.machine, report.flags),
+        kFaint);
+    draw_legend(svg, 60, 94, report, other);
+
+    const Panel iteration = {90, 150, 400, 440, 3, 7, -1, 1};
+    draw_axes(svg, iteration, "Iteration: position += velocity * step, and 7 columns");
+    draw_curves(svg, iteration, report, kIterationCurves);
+    const Panel structure = {760, 150, 400, 440, 3, 7, -1, 3};
+    draw_axes(svg, structure, "Structural change, and copies of a world");
+    draw_curves(svg, structure, report, kStructureCurves);
+
+    const double bottom = draw_gates(svg, 60, 712, kWidth - 120, report, other);
+    return svg.done(kWidth, bottom + 40);
+}
+
+}  // namespace limn::bench
