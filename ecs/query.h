@@ -444,7 +444,7 @@ class Query {
         std::size_t position = 0;
         [[maybe_unused]] const auto one = [&]<typename Term>() {
             if constexpr (detail::TermTraits<Term>::is_write) {
-                if (match.columns[position] >= 0) {
+                if (detail::always_has_column<Term> || match.columns[position] >= 0) {
                     visit(match.archetype->column(match.columns[position]));
                 }
             }
@@ -463,8 +463,11 @@ class Query {
         each_written(
             match,
             [&](Column& column) {
-                for (std::uint32_t chunk = begin / kChunkRows; chunk < chunks_of(end); ++chunk) {
-                    column.versions[chunk] = version;
+                std::uint32_t* const versions = column.versions.data();
+                const std::uint32_t first = begin / kChunkRows;
+                versions[first] = version;  // many archetypes have but one chunk: no loop for them
+                for (std::uint32_t chunk = first + 1; chunk < chunks_of(end); ++chunk) {
+                    versions[chunk] = version;
                 }
                 store_version(column.newest, version);
             },

@@ -271,6 +271,13 @@ struct SplitOptionalAccess {
     SplitOptionalRow<T> operator[](std::uint32_t row) const { return {lanes, row}; }
 };
 
+/// Whether each match has a column for the term, whatever its entities: no need to ask.
+template <typename Term>
+inline constexpr bool always_has_column =
+    !TermTraits<Term>::is_optional
+    && !is_sparse<
+        typename TermTraits<Term>::Value> && !std::is_empty_v<typename TermTraits<Term>::Value>;
+
 template <typename Term>
 auto access_term(
     const WorldCore& core, const QueryMatch& match, std::size_t position, std::uint32_t version) {
