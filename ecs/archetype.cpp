@@ -28,6 +28,54 @@ void move_bytes(std::byte* destination, const std::byte* source, std::size_t cou
     }
 }
 
+/// Calls function<size>() for the usual sizes of an element, so that copying one is a few moves
+/// instead of a call; function<0>() for the others.
+template <typename F>
+void with_fixed_size(std::uint32_t size, const F& function) {
+    switch (size) {
+    case 4:
+        return function.template operator()<4>();
+    case 8:
+        return function.template operator()<8>();
+    case 12:
+        return function.template operator()<12>();
+    case 16:
+        return function.template operator()<16>();
+    case 20:
+        return function.template operator()<20>();
+    case 24:
+        return function.template operator()<24>();
+    case 32:
+        return function.template operator()<32>();
+    case 48:
+        return function.template operator()<48>();
+    case 64:
+        return function.template operator()<64>();
+    default:
+        return function.template operator()<0>();
+    }
+}
+
+/// Moves one element of the column to raw memory; `size` is the column's or 0.
+template <std::uint32_t size>
+void move_element(const Column& column, std::byte* destination, std::byte* source) {
+    if constexpr (size != 0) {
+        std::memcpy(destination, source, size);
+    } else {
+        relocate_elements(column, destination, source, 1);
+    }
+}
+
+template <std::uint32_t size>
+std::byte* element(const Column& column, std::uint32_t row) {
+    return column.data + std::size_t{row} * (size != 0 ? size : column.size);
+}
+
+/// For with_fixed_size.
+std::uint32_t fixed_size(const Column& column) {
+    return column.info->trivially_relocatable ? column.size : 0;
+}
+
 }  // namespace
 
 void relocate_values(
@@ -255,24 +303,80 @@ std::uint32_t Archetype::append(std::span<const Entity> entities, std::uint32_t 
     return first;
 }
 
-Entity Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
+void Archetype::bits_of_hole(std::uint32_t row, std::uint32_t last) {
+    if (row != last) {
+        bits_.rows_moved(last, row, 1);
+    }
+    bits_.rows_went(last, 1);
+}
+
+void Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
     const std::uint32_t last = --size_;
-    touch_structure(row, version);
+    stamp_structure(row, version);
     if (has_row_bits_) {
-        if (row != last) {
-            bits_.rows_moved(last, row, 1);
-        }
-        bits_.rows_went(last, 1);
+        bits_of_hole(row, last);
     }
     if (row == last) {
-        return {};
+        return;
     }
-    touch_structure(last, version);
-    for (Column& column : columns_) {
-        relocate_elements(column, column.at(row), column.at(last), 1);
+    stamp_structure(last, version);
+    for (const Column& column : columns_) {
+        with_fixed_size(fixed_size(column), [&]<std::uint32_t size>() {
+            move_element<size>(column, element<size>(column, row), element<size>(column, last));
+        });
     }
     entities_[row] = entities_[last];
-    return entities_[row];
+}
+
+std::uint32_t Archetype::move_row(std::uint32_t row, const RowPlan& plan, std::uint32_t version) {
+    const std::uint32_t new_row = plan.to->append(entities_[row], version);
+    const std::uint32_t last = --size_;
+    stamp_structure(row, version);
+    stamp_structure(last, version);
+    if (plan.to->has_row_bits_) {
+        plan.to->bits_.receive(bits_, row, new_row, 1);
+    }
+    if (has_row_bits_) {
+        bits_of_hole(row, last);
+    }
+    for (const RowPlan::Step& step : plan.steps) {
+        with_fixed_size(step.fixed_size, [&]<std::uint32_t size>() {
+            const Column& column = *step.source;
+            std::byte* const hole = element<size>(column, row);
+            if (step.target != nullptr) {
+                move_element<size>(column, element<size>(*step.target, new_row), hole);
+            } else if (size == 0 && !column.info->trivially_destructible) {
+                column.info->ops.destroy(hole, 1);
+            }
+            if (row != last) {
+                move_element<size>(column, hole, element<size>(column, last));
+            }
+        });
+    }
+    entities_[row] = entities_[last];
+    ++plan.to->rows_moved_in;
+    return new_row;
+}
+
+const RowPlan& Archetype::plan_to(Archetype& to) {
+    for (const std::unique_ptr<RowPlan>& plan : plans_) {
+        if (plan->to == &to) {
+            return *plan;
+        }
+    }
+    RowPlan plan;
+    plan.to = &to;
+    // Both lists of columns ascend by component: walk them together.
+    Column* target = to.columns_.data();
+    Column* const end = target + to.columns_.size();
+    for (const Column& source : columns_) {
+        while (target != end && target->info->id < source.info->id) {
+            ++target;
+        }
+        const bool is_common = target != end && target->info == source.info;
+        plan.steps.push_back({&source, is_common ? target++ : nullptr, fixed_size(source)});
+    }
+    return *plans_.emplace_back(std::make_unique<RowPlan>(std::move(plan)));
 }
 
 void Archetype::construct_default(std::uint32_t first, std::uint32_t count) {
@@ -289,10 +393,7 @@ void Archetype::construct_default(std::uint32_t first, std::uint32_t count) {
     }
 }
 
-void Archetype::destroy_components(std::uint32_t first, std::uint32_t count) {
-    if (is_trivial_ || count == 0) {
-        return;
-    }
+void Archetype::destroy_each(std::uint32_t first, std::uint32_t count) {
     for (Column& column : columns_) {
         if (!column.info->trivially_destructible) {
             column.info->ops.destroy(column.at(first), count);

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,6 +75,19 @@ struct Column {
     [[nodiscard]] std::byte* at(std::uint32_t row) const { return data + std::size_t{row} * size; }
 };
 
+class Archetype;
+
+/// How the row of an entity gets from one archetype to another.
+struct RowPlan {
+    struct Step {
+        const Column* source;
+        Column* target;            ///< nullptr: the other archetype has no such column
+        std::uint32_t fixed_size;  ///< of an element that is moved by copying, else 0 [bytes]
+    };
+    Archetype* to = nullptr;
+    std::vector<Step> steps;  ///< a column of the source each
+};
+
 class Archetype {
   public:
     /// `components` ascending, none of Storage::Sparse.
@@ -129,11 +143,19 @@ class Archetype {
             grow(rows);
         }
     }
-    /// Moves the last row into `row`, whose components are gone already. Returns the entity that
-    /// moved; null if `row` was the last.
-    Entity fill_hole(std::uint32_t row, std::uint32_t version);
+    /// Moves the last row into `row`, whose components are gone already, unless `row` is the last.
+    void fill_hole(std::uint32_t row, std::uint32_t version);
+    /// Moves a row to the end of another archetype, and the last row into the hole. Components that
+    /// the other has more are raw memory, those it has less are gone. Returns the row there.
+    std::uint32_t move_row(std::uint32_t row, const RowPlan& plan, std::uint32_t version);
+    /// How rows get there; made once.
+    [[nodiscard]] const RowPlan& plan_to(Archetype& to);
     void construct_default(std::uint32_t first, std::uint32_t count);
-    void destroy_components(std::uint32_t first, std::uint32_t count);
+    void destroy_components(std::uint32_t first, std::uint32_t count) {
+        if (!is_trivial_ && count > 0) {
+            destroy_each(first, count);
+        }
+    }
     /// Destroys all rows; keeps the memory.
     void clear(std::uint32_t version);
 
@@ -230,10 +252,9 @@ class Archetype {
     // ---- what the world remembers here
     // ------------------------------------------------------------
 
-    std::vector<std::uint32_t>
-        add_edges;  ///< archetype with one component more, by id; kNoArchetype: unknown
-    std::vector<std::uint32_t> remove_edges;  ///< with one component less
-    bool observes_add = false;                ///< some observer waits for a component of it
+    std::vector<const RowPlan*> add_edges;     ///< to one component more, by id; null: unknown
+    std::vector<const RowPlan*> remove_edges;  ///< to one component less
+    bool observes_add = false;                 ///< some observer waits for a component of it
     bool observes_remove = false;
     std::uint64_t rows_moved_in = 0;  ///< for the inspector
 
@@ -243,6 +264,8 @@ class Archetype {
     void promote(std::uint32_t rows);
     void commit(std::uint32_t rows);
     void leave_block();
+    void destroy_each(std::uint32_t first, std::uint32_t count);
+    void bits_of_hole(std::uint32_t row, std::uint32_t last);
     [[nodiscard]] std::uint32_t rows_in_block(std::size_t bytes) const;
     void add_chunk(std::uint32_t version);
     [[nodiscard]] const ToggleBits* toggled_tag(ComponentId id) const {
@@ -257,6 +280,11 @@ class Archetype {
         structure_[chunk] = version;
         newest_structure_ = version;
     }
+    /// The same of a chunk that is there.
+    void stamp_structure(std::uint32_t row, std::uint32_t version) {
+        structure_[row / kChunkRows] = version;
+        newest_structure_ = version;
+    }
 
     std::uint32_t index_;
     std::uint32_t size_ = 0;
@@ -267,6 +295,7 @@ class Archetype {
     std::vector<std::uint32_t> structure_;
     std::vector<std::int16_t> column_of_;
     std::vector<ComponentId> components_;
+    std::vector<std::unique_ptr<RowPlan>> plans_;
     VirtualRange entity_range_;
     BlockPool& blocks_;
     std::byte* block_ = nullptr;

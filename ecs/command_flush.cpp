@@ -310,7 +310,8 @@ class CommandFlush {
             world_.core_.entities.place(
                 group.entity, target.index(), target.append(group.entity, now));
         } else if (Archetype* source = source_of(group); source != &target) {
-            world_.move_row(group.entity, *source, target);
+            world_.move_row(
+                group.entity, world_.core_.entities.find(group.entity), source->plan_to(target));
         }
         const std::uint32_t row = world_.core_.entities.find(group.entity).row;
         for (const Change& change : changes_of(group)) {

@@ -8,42 +8,12 @@ EntityTable::EntityTable() : range_(std::size_t{kMaxEntities} * kSlotBytes, skew
     slots_ = range_.data();
 }
 
-void EntityTable::set_free(std::uint32_t index, std::uint32_t generation, std::uint32_t next) {
-    Slot slot = slot_at(index);
-    slot.set_generation(generation);
-    slot.set_low(next);
-    slot.set_high(kFree);
-}
-
-Entity EntityTable::allocate() {
-    if (free_count_ > kReuseDistance) {
-        const std::uint32_t index = first_free_;
-        const Slot slot = slot_at(index);
-        first_free_ = slot.low();
-        --free_count_;
-        return {index, slot.generation()};
-    }
+Entity EntityTable::allocate_new() {
     LIMN_CHECK_NOTE(slot_count_ < kMaxEntities, "too many entities");
     const std::uint32_t index = slot_count_++;
     range_.commit(std::size_t{slot_count_} * kSlotBytes);
     set_free(index, 1, kEnd);
     return {index, 1};
-}
-
-void EntityTable::free(Entity entity) {
-    const std::uint32_t generation = entity.generation + 1;
-    if (generation == kPlaceholderBit) {
-        // Worn out: no handle has generation 0, and the slot is not used again.
-        set_free(entity.index, 0, kEnd);
-        return;
-    }
-    set_free(entity.index, generation, kEnd);
-    if (free_count_++ == 0) {
-        first_free_ = entity.index;
-    } else {
-        slot_at(last_free_).set_low(entity.index);
-    }
-    last_free_ = entity.index;
 }
 
 EntityTableImage EntityTable::image() const {

@@ -46,8 +46,31 @@ class EntityTable {
     EntityTable();
 
     /// A new handle, which find() does not know before place().
-    [[nodiscard]] Entity allocate();
-    void free(Entity entity);
+    [[nodiscard]] Entity allocate() {
+        if (free_count_ <= kReuseDistance) {
+            return allocate_new();
+        }
+        const std::uint32_t index = first_free_;
+        const Slot slot = slot_at(index);
+        first_free_ = slot.low();
+        --free_count_;
+        return {index, slot.generation()};
+    }
+    void free(Entity entity) {
+        const std::uint32_t generation = entity.generation + 1;
+        if (generation == kPlaceholderBit) {
+            // Worn out: no handle has generation 0, and the slot is not used again.
+            set_free(entity.index, 0, kEnd);
+            return;
+        }
+        set_free(entity.index, generation, kEnd);
+        if (free_count_++ == 0) {
+            first_free_ = entity.index;
+        } else {
+            slot_at(last_free_).set_low(entity.index);
+        }
+        last_free_ = entity.index;
+    }
     void place(Entity entity, std::uint32_t archetype, std::uint32_t row) {
         Slot slot = slot_at(entity.index);
         slot.set_low(archetype << kRowBits | row);
@@ -108,7 +131,13 @@ class EntityTable {
     [[nodiscard]] Slot slot_at(std::uint32_t index) const {
         return Slot(slots_ + std::size_t{index} * kSlotBytes);
     }
-    void set_free(std::uint32_t index, std::uint32_t generation, std::uint32_t next);
+    void set_free(std::uint32_t index, std::uint32_t generation, std::uint32_t next) {
+        Slot slot = slot_at(index);
+        slot.set_generation(generation);
+        slot.set_low(next);
+        slot.set_high(kFree);
+    }
+    [[nodiscard]] Entity allocate_new();
 
     std::byte* slots_ = nullptr;
     std::uint32_t slot_count_ = 0;

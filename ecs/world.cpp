@@ -50,30 +50,28 @@ std::size_t World::entity_count() const {
 
 void World::destroy(Entity entity) {
     core_.check_unlocked();
-    const EntityPlace place = require(entity);
+    EntityPlace place = require(entity);
     bool observed = archetype(place.archetype).observes_remove;
     for (const SparseSet* set : core_.sparse_list) {
         observed = observed || (set->observes_remove && set->has(entity));
     }
     if (observed) {
         notify(ObserverEvent::Remove, components_of(entity), {&entity, 1});
+        place = require(entity);
     }
     destroy_now(entity, place);
 }
 
 void World::destroy_now(Entity entity, EntityPlace place) {
-    const std::uint32_t row = place.row;
     Archetype& rows = archetype(place.archetype);
     for (SparseSet* set : core_.sparse_list) {
         if (const std::uint32_t position = set->find(entity); position != SparseSet::kAbsent) {
             set->remove(position, core_.now());
         }
     }
-    rows.destroy_components(row, 1);
-    const Entity moved = rows.fill_hole(row, core_.now());
-    if (!moved.is_null()) {
-        core_.entities.place(moved, rows.index(), row);
-    }
+    rows.destroy_components(place.row, 1);
+    rows.fill_hole(place.row, core_.now());
+    place_filler(rows, place.row);
     core_.entities.free(entity);
 }
 
@@ -119,32 +117,24 @@ Archetype& World::archetype_of(std::span<const ComponentId> components) {
     return made;
 }
 
-Archetype& World::archetype_with(Archetype& from, ComponentId id) {
-    if (id < from.add_edges.size() && from.add_edges[id] != kNoArchetype) {
-        return archetype(from.add_edges[id]);
+const RowPlan& World::plan_with(Archetype& from, ComponentId id) {
+    if (id < from.add_edges.size() && from.add_edges[id] != nullptr) {
+        return *from.add_edges[id];
     }
     std::vector<ComponentId> components(from.components().begin(), from.components().end());
     components.insert(std::upper_bound(components.begin(), components.end(), id), id);
-    Archetype& to = archetype_of(components);
-    if (id >= from.add_edges.size()) {
-        from.add_edges.resize(component_count(), kNoArchetype);
-    }
-    from.add_edges[id] = to.index();
-    return to;
+    from.add_edges.resize(component_count());
+    return *(from.add_edges[id] = &from.plan_to(archetype_of(components)));
 }
 
-Archetype& World::archetype_without(Archetype& from, ComponentId id) {
-    if (id < from.remove_edges.size() && from.remove_edges[id] != kNoArchetype) {
-        return archetype(from.remove_edges[id]);
+const RowPlan& World::plan_without(Archetype& from, ComponentId id) {
+    if (id < from.remove_edges.size() && from.remove_edges[id] != nullptr) {
+        return *from.remove_edges[id];
     }
     std::vector<ComponentId> components(from.components().begin(), from.components().end());
     std::erase(components, id);
-    Archetype& to = archetype_of(components);
-    if (id >= from.remove_edges.size()) {
-        from.remove_edges.resize(component_count(), kNoArchetype);
-    }
-    from.remove_edges[id] = to.index();
-    return to;
+    from.remove_edges.resize(component_count());
+    return *(from.remove_edges[id] = &from.plan_to(archetype_of(components)));
 }
 
 const World::Bundle&
@@ -171,33 +161,12 @@ World::make_bundle(std::uint32_t index, std::span<const ComponentId> components)
     return *bundles_[index];
 }
 
-std::uint32_t World::move_row(Entity entity, Archetype& from, Archetype& to) {
-    const std::uint32_t old_row = core_.entities.find(entity).row;
-    const std::uint32_t new_row = to.append(entity, core_.now());
-    // Both lists of columns ascend by component: walk them together.
-    const std::span<Column> targets = to.columns();
-    std::size_t target = 0;
-    for (Column& source : from.columns()) {
-        while (target < targets.size() && targets[target].info->id < source.info->id) {
-            ++target;
-        }
-        if (target < targets.size() && targets[target].info == source.info) {
-            relocate_elements(source, targets[target].at(new_row), source.at(old_row), 1);
-            ++target;  // the next may be another lane of it
-        } else if (!source.info->trivially_destructible) {
-            source.info->ops.destroy(source.at(old_row), 1);
-        }
-    }
-    if (to.has_row_bits()) {
-        to.bits().receive(from.bits(), old_row, new_row, 1);
-    }
-    const Entity moved = from.fill_hole(old_row, core_.now());
-    if (!moved.is_null()) {
-        core_.entities.place(moved, from.index(), old_row);
-    }
-    core_.entities.place(entity, to.index(), new_row);
-    ++to.rows_moved_in;
-    return new_row;
+std::uint32_t World::move_row(Entity entity, EntityPlace place, const RowPlan& plan) {
+    Archetype& from = archetype(place.archetype);
+    const std::uint32_t row = from.move_row(place.row, plan, core_.now());
+    place_filler(from, place.row);
+    core_.entities.place(entity, plan.to->index(), row);
+    return row;
 }
 
 SparseSet& World::use_sparse_set(ComponentId id) {
@@ -237,9 +206,10 @@ std::vector<ComponentId> World::components_of(Entity entity) const {
 
 bool World::has(Entity entity, ComponentId id) const {
     const EntityPlace place = core_.entities.find(entity);
-    if (!place) {
-        return false;
-    }
+    return place && has_at(entity, place, id);
+}
+
+bool World::has_at(Entity entity, EntityPlace place, ComponentId id) const {
     const SparseSet* set = core_.sparse_set(id);
     return archetype(place.archetype).has(id) || (set != nullptr && set->has(entity));
 }
@@ -279,18 +249,19 @@ void* World::find(Entity entity, ComponentId id) {
     return const_cast<void*>(value);
 }
 
-void* World::make_room(Entity entity, ComponentId id) {
-    const EntityPlace place = require(entity);
-    const ComponentInfo& info = component_info(id);
-    if (info.storage == Storage::Sparse) {
+void* World::make_room(Entity entity, EntityPlace place, ComponentId id) {
+    if (component_info(id).storage == Storage::Sparse) {
         SparseSet& set = use_sparse_set(id);
         return set.value(set.append(entity, core_.now()));
     }
-    Archetype& from = archetype(place.archetype);
-    Archetype& to = archetype_with(from, id);
-    const std::uint32_t row = move_row(entity, from, to);
-    const int column = to.column_of(id);
-    return column < 0 || !has_address(info) ? nullptr : to.column(column).at(row);
+    return make_room_in_row(entity, place, id);
+}
+
+void* World::make_room_in_row(Entity entity, EntityPlace place, ComponentId id) {
+    const RowPlan& plan = plan_with(archetype(place.archetype), id);
+    const std::uint32_t row = move_row(entity, place, plan);
+    const int column = plan.to->column_of(id);
+    return column < 0 ? nullptr : plan.to->column(column).at(row);
 }
 
 bool World::read(Entity entity, ComponentId id, void* raw) const {
@@ -327,7 +298,7 @@ bool World::write(Entity entity, ComponentId id, void* value) {
 void World::put_bytes(Entity entity, ComponentId id, const void* value) {
     const bool is_new = !has(entity, id);
     if (is_new) {
-        make_room(entity, id);
+        make_room(entity, require(entity), id);
     }
     const EntityPlace place = core_.entities.find(entity);
     Archetype& rows = archetype(place.archetype);
@@ -351,7 +322,7 @@ void* World::add(Entity entity, ComponentId id) {
     }
     if (!has(entity, id)) {
         LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_default != nullptr, info.name.c_str());
-        void* room = make_room(entity, id);
+        void* room = make_room(entity, require(entity), id);
         if (!info.is_tag) {
             info.ops.construct_default(room, 1);
         }
@@ -372,7 +343,7 @@ void* World::add_copy(Entity entity, ComponentId id, const void* value) {
     }
     void* present = find(entity, id);
     const bool is_new = present == nullptr;
-    void* room = is_new ? make_room(entity, id) : present;
+    void* room = is_new ? make_room(entity, require(entity), id) : present;
     if (!info.is_tag && room != value) {
         if (!is_new) {
             info.ops.destroy(room, 1);
@@ -396,7 +367,7 @@ void* World::add_move(Entity entity, ComponentId id, void* value) {
     }
     void* present = find(entity, id);
     const bool is_new = present == nullptr;
-    void* room = is_new ? make_room(entity, id) : present;
+    void* room = is_new ? make_room(entity, require(entity), id) : present;
     if (!info.is_tag && room != value) {
         if (!is_new) {
             info.ops.destroy(room, 1);
@@ -413,24 +384,25 @@ void* World::add_move(Entity entity, ComponentId id, void* value) {
 
 bool World::remove(Entity entity, ComponentId id) {
     core_.check_unlocked();
-    static_cast<void>(require(entity));
-    if (!has(entity, id)) {
+    const EntityPlace place = require(entity);
+    if (!has_at(entity, place, id)) {
         return false;
     }
     if (observes(id, ObserverEvent::Remove)) {
         notify(ObserverEvent::Remove, {&id, 1}, {&entity, 1});
+        remove_now(entity, require(entity), id);
+    } else {
+        remove_now(entity, place, id);
     }
-    remove_now(entity, id);
     return true;
 }
 
-void World::remove_now(Entity entity, ComponentId id) {
+void World::remove_now(Entity entity, EntityPlace place, ComponentId id) {
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->remove(set->find(entity), core_.now());
-        return;
+    } else {
+        move_row(entity, place, plan_without(archetype(place.archetype), id));
     }
-    Archetype& from = archetype(core_.entities.find(entity).archetype);
-    move_row(entity, from, archetype_without(from, id));
 }
 
 // ---- enabling

@@ -268,13 +268,14 @@ class World {
     const Bundle& bundle_of();
     const Bundle& make_bundle(std::uint32_t index, std::span<const ComponentId> components);
     [[nodiscard]] Archetype& archetype_of(std::span<const ComponentId> components);
-    [[nodiscard]] Archetype& archetype_with(Archetype& from, ComponentId id);
-    [[nodiscard]] Archetype& archetype_without(Archetype& from, ComponentId id);
-    /// Moves the entity's row; components that `to` has more are raw memory, those it has less are
-    /// gone.
-    std::uint32_t move_row(Entity entity, Archetype& from, Archetype& to);
+    [[nodiscard]] const RowPlan& plan_with(Archetype& from, ComponentId id);
+    [[nodiscard]] const RowPlan& plan_without(Archetype& from, ComponentId id);
+    /// Moves the entity's row, as Archetype::move_row; returns where it is then.
+    std::uint32_t move_row(Entity entity, EntityPlace place, const RowPlan& plan);
     /// Room for a component the entity does not have yet: raw memory, nullptr for tags.
-    void* make_room(Entity entity, ComponentId id);
+    void* make_room(Entity entity, EntityPlace place, ComponentId id);
+    /// The same for a component that is not sparse. Not for use if it is split.
+    void* make_room_in_row(Entity entity, EntityPlace place, ComponentId id);
     /// Adding enables what was there, disabled.
     void enable_present(Entity entity, ComponentId id);
     void check_not_iterating() const {
@@ -284,7 +285,16 @@ class World {
             "written term, or Commands");
     }
     void destroy_now(Entity entity, EntityPlace place);
-    void remove_now(Entity entity, ComponentId id);
+    /// Says where the row is that has filled a hole, if one has.
+    void place_filler(const Archetype& rows, std::uint32_t hole) {
+        if (hole < rows.size()) {
+            core_.entities.place(rows.entities()[hole], rows.index(), hole);
+        }
+    }
+    void remove_now(Entity entity, EntityPlace place, ComponentId id);
+    [[nodiscard]] bool has_at(Entity entity, EntityPlace place, ComponentId id) const;
+    template <typename T>
+    [[nodiscard]] T* find_at(Entity entity, EntityPlace place);
     /// Adds or replaces a component without an address.
     void put_bytes(Entity entity, ComponentId id, const void* value);
     [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);

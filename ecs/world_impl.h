@@ -149,7 +149,8 @@ detail::Added<T> World::add(Entity entity, T component) {
     if constexpr (detail::is_split<T>) {
         put_bytes(entity, component_id<T>, &component);
     } else {
-        if (T* present = find<T>(entity); present != nullptr) {
+        const EntityPlace place = require(entity);
+        if (T* present = find_at<T>(entity, place); present != nullptr) {
             if constexpr (detail::is_toggle<T>) {
                 enable_present(entity, component_id<T>);
             }
@@ -161,7 +162,13 @@ detail::Added<T> World::add(Entity entity, T component) {
                 return *present;
             }
         }
-        T* value = static_cast<T*>(make_room(entity, component_id<T>));
+        void* room = nullptr;
+        if constexpr (detail::is_sparse<T>) {
+            room = make_room(entity, place, component_id<T>);
+        } else {
+            room = make_room_in_row(entity, place, component_id<T>);
+        }
+        T* value = static_cast<T*>(room);
         if constexpr (!std::is_empty_v<T>) {
             value = ::new (static_cast<void*>(value)) T(std::move(component));
         }
@@ -181,14 +188,16 @@ detail::Added<T> World::add(Entity entity, T component) {
 
 template <typename T>
 inline T* World::find(Entity entity) {
-    using Value = std::remove_const_t<T>;
     static_assert(
         !detail::is_split<T>,
         "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");
     const EntityPlace place = core_.entities.find(entity);
-    if (!place) {
-        return nullptr;
-    }
+    return place ? find_at<T>(entity, place) : nullptr;
+}
+
+template <typename T>
+inline T* World::find_at([[maybe_unused]] Entity entity, EntityPlace place) {
+    using Value = std::remove_const_t<T>;
     if constexpr (detail::is_sparse<Value>) {
         return detail::SparseOptionalAccess<T>{
             core_.sparse_set(component_id<Value>), &entity, core_.now()}[0];
