@@ -7,7 +7,9 @@
 #include "ecs/resource.h"
 #include "ecs/task_scope.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -24,6 +26,7 @@ namespace limn {
 //     query.each([](Entity entity, const A& a, B& b) { ... });
 //     query.chunks([](ChunkView chunk, std::span<const A> a, std::span<B> b) { ... });
 //     query.par_chunks(...), query.par_each(...)                   the same on several threads
+//     query.gather(entities, [](std::size_t i, const A& a, B& b) { ... });    those of a list
 //
 // The terms are in ecs/query_terms.h. The order is that of the archetypes' creation, then rows, for
 // any number of threads; with a required sparse component, the order of the values of the first
@@ -126,6 +129,42 @@ class Query {
         par_tasks(tasks.size(), [&](std::size_t task) {
             run_chunk(tasks[task], version, function, Data{}, Indices{});
         });
+    }
+
+    /// function(index, arguments as in each()...) for those of the entities that are alive and of
+    /// the query, in the order of the list; returns how many were. Faster than a find() each for
+    /// many entities in any order: what comes next is fetched while the function runs.
+    template <typename F>
+    std::size_t gather(std::span<const Entity> entities, F&& function) const {
+        check_gather_function<F>(Data{});
+        const IterationGuard guard(*core_, lock_);
+        state_->update(*core_);
+        const std::uint32_t version = write_version();
+        constexpr std::size_t kBatch = 16;
+        std::size_t found = 0;
+        for (std::size_t first = 0; first < entities.size(); first += kBatch) {
+            const std::span<const Entity> ahead = entities.subspan(first);
+            const std::size_t size = std::min(kBatch, ahead.size());
+            for (std::size_t i = kBatch; i < std::min(2 * kBatch, ahead.size()); ++i) {
+                core_->entities.prefetch(ahead[i]);
+            }
+            Place places[kBatch];
+            for (std::size_t i = 0; i < size; ++i) {
+                places[i] = place_of(ahead[i]);
+                prefetch_row(places[i], Data{});
+            }
+            for (std::size_t i = 0; i < size; ++i) {
+                if (places[i].match == nullptr) {
+                    continue;
+                }
+                ++found;
+                const auto call = [&]<typename... Args>(Args&&... arguments) {
+                    function(first + i, std::forward<Args>(arguments)...);
+                };
+                run_row(*places[i].match, places[i].row, version, call);
+            }
+        }
+        return found;
     }
 
     /// How many entities each() would visit.
@@ -265,6 +304,14 @@ class Query {
             "each: the function takes the query's components in order (const A&, B&, Optional as "
             "C*), "
             "before them an Entity if it wants one");
+    }
+    template <typename F, typename... Ts>
+    static constexpr void check_gather_function(detail::TypeList<Ts...>) {
+        static_assert(!kChanged, "gather: looks at no versions; use a query without Changed");
+        static_assert(
+            std::is_invocable_v<F&, std::size_t, detail::RowArgument<Ts>...>,
+            "gather: the function takes the index in the list, a std::size_t, and then the query's "
+            "components in order (const A&, B&, Optional as C*)");
     }
     template <typename F, typename... Ts>
     static constexpr void check_chunk_function(detail::TypeList<Ts...>) {
@@ -731,15 +778,21 @@ class Query {
     void each_following(
         std::uint32_t begin, std::uint32_t end, std::uint32_t version, F& function) const {
         visit_following(begin, end, [&](const QueryMatch& match, std::uint32_t row) {
-            each_written(
-                match,
-                [&](Column& column) {
-                    store_version(column.versions[row / kChunkRows], version);
-                    store_version(column.newest, version);
-                },
-                Data{});
-            run_rows(match, row, row + 1, version, function, Data{}, Indices{});
+            run_row(match, row, version, function);
         });
+    }
+
+    template <typename F>
+    void
+    run_row(const QueryMatch& match, std::uint32_t row, std::uint32_t version, F& function) const {
+        each_written(
+            match,
+            [&](Column& column) {
+                store_version(column.versions[row / kChunkRows], version);
+                store_version(column.newest, version);
+            },
+            Data{});
+        run_rows(match, row, row + 1, version, function, Data{}, Indices{});
     }
 
     // ---- one entity
@@ -747,6 +800,20 @@ class Query {
 
     [[nodiscard]] Place locate(Entity entity) const {
         state_->update(*core_);
+        return place_of(entity);
+    }
+
+    template <typename... Ts>
+    static void prefetch_row(const Place& place, detail::TypeList<Ts...>) {
+        for (std::size_t term = 0; place.match != nullptr && term < sizeof...(Ts); ++term) {
+            if (const int column = place.match->columns[term]; column >= 0) {
+                __builtin_prefetch(place.match->archetype->column(column).at(place.row));
+            }
+        }
+    }
+
+    /// The state is up to date.
+    [[nodiscard]] Place place_of(Entity entity) const {
         const EntityPlace place = core_->entities.find(entity);
         if (!place) {
             return {};

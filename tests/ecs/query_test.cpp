@@ -341,3 +341,109 @@ TEST_CASE("query: a const world answers queries of several threads at the same t
     CHECK(total == 4 * 20 * (5000 + 833));
     world.create(Mass{});
 }
+
+TEST_CASE(
+    "query: gather visits those of a list that are alive and match, in the order of the list") {
+    World world;
+    std::vector<Entity> list;
+    std::vector<std::size_t> expected;
+    for (int i = 0; i < 3000; ++i) {
+        const Position position{static_cast<float>(i), 0, 0};
+        const int kind = i * 7 % 5;
+        const Entity entity = kind == 0   ? world.create(Velocity{})
+                              : kind == 1 ? world.create(position, Mass{})
+                                          : world.create(position);
+        list.push_back(entity);
+        if (kind == 2) {
+            world.destroy(entity);
+        }
+    }
+    std::reverse(list.begin(), list.end());
+    list.push_back(list[3]);  // some entities twice
+    list.push_back(list[3]);
+    list.push_back({});
+    list.push_back({123'456'789, 1});
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (world.alive(list[i]) && world.has<Position>(list[i])) {
+            expected.push_back(i);
+        }
+    }
+    const auto query = world.query<const Position, Optional<Mass>>();
+    for (const std::size_t size :
+         {list.size(),
+          std::size_t{0},
+          std::size_t{1},
+          std::size_t{15},
+          std::size_t{16},
+          std::size_t{17},
+          std::size_t{33}}) {
+        std::vector<std::size_t> seen;
+        const std::size_t found = query.gather(
+            std::span<const Entity>(list).first(size),
+            [&](std::size_t i, const Position& position, const Mass* mass) {
+                seen.push_back(i);
+                CHECK(&position == std::as_const(world).find<Position>(list[i]));
+                CHECK(mass == std::as_const(world).find<Mass>(list[i]));
+            });
+        const auto end = std::lower_bound(expected.begin(), expected.end(), size);
+        CHECK(found == seen.size());
+        CHECK(seen == std::vector<std::size_t>(expected.begin(), end));
+    }
+}
+
+TEST_CASE("query: gather marks what it hands out for writing as changed, and nothing else") {
+    World world;
+    const std::vector<Entity> all = world.create_many(5000, Position{}, Velocity{});
+    const std::uint32_t before = world.version();
+    const Entity list[] = {all[2048], all[10], all[3071]};
+    world.query<Position, const Velocity>().gather(
+        list, [](std::size_t i, Position& position, const Velocity&) {
+            position.x = static_cast<float>(i + 1);
+        });
+    CHECK(world.get<const Position>(all[10]).x == 2);
+    CHECK(world.get<const Position>(all[3071]).x == 3);
+    CHECK(world.query<const Position, Changed<Position>>().since(before).count() == 2 * 1024);
+    CHECK(world.query<const Velocity, Changed<Velocity>>().since(before).count() == 0);
+}
+
+TEST_CASE("query: gather looks at sparse components of each entity") {
+    World world;
+    std::vector<Entity> list;
+    for (int i = 0; i < 100; ++i) {
+        list.push_back(world.create(Position{static_cast<float>(i), 0, 0}));
+        if (i % 3 == 0) {
+            world.add(list.back(), Heat{i});
+        }
+        if (i % 2 == 0) {
+            world.add(list.back(), Selected{});
+        }
+    }
+    int sum = 0;
+    CHECK(
+        world.query<Heat, const Position, Without<Selected>>().gather(
+            list,
+            [&](std::size_t i, Heat& heat, const Position& position) {
+                CHECK(heat.degrees == static_cast<int>(i));
+                CHECK(position.x == static_cast<float>(i));
+                heat.degrees = -1;
+                ++sum;
+            })
+        == 17);
+    CHECK(sum == 17);
+    CHECK(world.get<const Heat>(list[3]).degrees == -1);
+    CHECK(world.get<const Heat>(list[6]).degrees == 6);
+    int with_heat = 0;
+    world.query<const Position, Optional<const Heat>>().gather(
+        list, [&](std::size_t, const Position&, const Heat* heat) { with_heat += heat ? 1 : 0; });
+    CHECK(with_heat == 34);
+}
+
+TEST_CASE("query: gather iterates, so the structure is locked meanwhile") {
+    World world;
+    const Entity entity = world.create(Position{});
+    const std::string message = stop_message([&] {
+        world.query<const Position>().gather(
+            {&entity, 1}, [&](std::size_t, const Position&) { world.destroy(entity); });
+    });
+    CHECK(message.find("while iterating") != std::string::npos);
+}
