@@ -264,6 +264,34 @@ void Archetype::commit(std::uint32_t rows) {
     }
 }
 
+void Archetype::shrink() {
+    if (size_ == 0) {
+        leave_block();
+        entity_range_ = {};
+        entities_ = nullptr;
+        for (Column& column : columns_) {
+            column.range = {};
+            column.data = nullptr;
+        }
+        capacity_ = 0;
+    } else if (is_promoted()) {
+        const std::size_t padded = round_up(size_, kRowPadding);
+        entity_range_.shrink(padded * sizeof(Entity));
+        for (Column& column : columns_) {
+            column.range.shrink(padded * column.size);
+        }
+        commit(size_);
+    } else {
+        std::size_t bytes = BlockPool::kSmallest;
+        while (rows_in_block(bytes) < size_) {
+            bytes *= 2;
+        }
+        if (bytes < block_bytes_) {
+            move_to_block(bytes);
+        }
+    }
+}
+
 void Archetype::leave_block() {
     if (block_ != nullptr) {
         blocks_.free(block_, block_bytes_);

@@ -143,6 +143,8 @@ class Archetype {
             grow(rows);
         }
     }
+    /// Gives back the memory that the rows do not need. Rows may move in memory.
+    void shrink();
     /// Moves the last row into `row`, whose components are gone already, unless `row` is the last.
     void fill_hole(std::uint32_t row, std::uint32_t version);
     /// Moves a row to the end of another archetype, and the last row into the hole. Components that

@@ -96,6 +96,18 @@ void VirtualRange::commit_more(std::size_t bytes) {
     usable_ = static_cast<std::size_t>(end - data_);
 }
 
+void VirtualRange::shrink(std::size_t bytes) {
+    std::byte* const end = bytes > 0 ? round_up(data_ + bytes, kPage) : data_ - lead_;
+    if (usable_ == 0 || end >= data_ + usable_) {
+        return;
+    }
+    const std::size_t removed = static_cast<std::size_t>(data_ + usable_ - end);
+    // The address stays reserved, but the memory goes, and reads as zero if it is committed again.
+    madvise(end, removed, MADV_DONTNEED);
+    LIMN_CHECK(mprotect(end, removed, PROT_NONE) == 0);
+    usable_ = bytes > 0 ? static_cast<std::size_t>(end - data_) : 0;
+}
+
 namespace {
 
 int size_class(std::size_t bytes) {
@@ -127,6 +139,21 @@ std::byte* BlockPool::allocate(std::size_t bytes) {
 void BlockPool::free(std::byte* block, std::size_t bytes) {
     free_[size_class(bytes)].push_back(block);
     used_ -= bytes;
+}
+
+void BlockPool::shrink() {
+    bool found = true;
+    while (found && end_ > 0) {
+        found = false;
+        for (int size = 0; size < kSizes && !found; ++size) {
+            const std::size_t bytes = kSmallest << size;
+            if (bytes <= end_ && std::erase(free_[size], range_.data() + end_ - bytes) > 0) {
+                end_ -= bytes;
+                found = true;
+            }
+        }
+    }
+    range_.shrink(end_);
 }
 
 }  // namespace limn

@@ -50,6 +50,9 @@ class VirtualRange {
         }
     }
 
+    /// Gives memory back beyond the first `bytes`, whose contents stay.
+    void shrink(std::size_t bytes);
+
     [[nodiscard]] std::byte* data() const { return data_; }
     /// How much can be used without commit(). [bytes]
     [[nodiscard]] std::size_t usable() const { return usable_; }
@@ -76,6 +79,8 @@ class BlockPool {
     /// A block of `bytes`, which must be one of the five sizes. Its contents are arbitrary.
     [[nodiscard]] std::byte* allocate(std::size_t bytes);
     void free(std::byte* block, std::size_t bytes);
+    /// Gives memory back beyond the last block in use.
+    void shrink();
 
     [[nodiscard]] std::size_t committed() const { return range_.committed(); }
     [[nodiscard]] std::size_t used() const { return used_; }

@@ -74,6 +74,16 @@ void SparseSet::clear(std::uint32_t version) {
     size_ = 0;
 }
 
+void SparseSet::shrink() {
+    const std::size_t padded = (std::size_t{size_} + kRowPadding - 1) / kRowPadding * kRowPadding;
+    entities_.shrink(padded * sizeof(Entity));
+    column_.range.shrink(padded * column_.size);
+    if (size_ == 0) {
+        pages_.clear();
+        pages_.shrink_to_fit();
+    }
+}
+
 void SparseSet::forget_versions_before(std::uint32_t oldest) {
     for (std::uint32_t& version : column_.versions) {
         version = newer_of(version, oldest);

@@ -48,6 +48,8 @@ class SparseSet {
     /// Destroys the value at `position`.
     void remove(std::uint32_t position, std::uint32_t version);
     void clear(std::uint32_t version);
+    /// Gives back the memory that the values do not need.
+    void shrink();
 
     [[nodiscard]] std::uint32_t version(std::uint32_t position) const {
         return column_.versions[position / kChunkRows];

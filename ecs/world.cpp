@@ -81,6 +81,17 @@ void World::clear() {
     drop_all_rows();
 }
 
+void World::shrink() {
+    core_.check_unlocked();
+    for (const auto& archetype : core_.archetypes) {
+        archetype->shrink();
+    }
+    for (SparseSet* set : core_.sparse_list) {
+        set->shrink();
+    }
+    core_.blocks.shrink();
+}
+
 void World::drop_all_rows() {
     for (SparseSet* set : core_.sparse_list) {
         set->clear(core_.now());

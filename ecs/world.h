@@ -62,6 +62,9 @@ class World {
     [[nodiscard]] std::size_t entity_count() const;
     /// Destroys all entities; resources, observers and memory stay.
     void clear();
+    /// Gives back the memory that nothing uses now; handles keep theirs. A structural change: rows
+    /// may move in memory.
+    void shrink();
 
     // ---- components
     // -------------------------------------------------------------------------------

@@ -15,10 +15,15 @@ using namespace limn::test;
 
 namespace {
 
+constexpr std::size_t cell_align(std::size_t number) {
+    constexpr std::size_t kAligns[] = {1, 8, 4, 32, 2, 16, 64, 256};
+    return number == 41 ? 4096 : number == 26 ? 1024 : kAligns[number % 8];
+}
+
 /// 64 types of different sizes and alignments.
-template <std::size_t N>
-struct alignas(N % 8 == 7 ? 256 : (N % 8 == 3 ? 32 : (N % 2 == 1 ? 8 : 1))) Cell {
-    unsigned char bytes[1 + N * 5 % 43] = {};
+template <std::size_t number>
+struct alignas(cell_align(number)) Cell {
+    unsigned char bytes[1 + number * 5 % 43] = {};
 };
 
 template <std::size_t... N>
@@ -30,25 +35,33 @@ bool is_aligned(const void* address, std::size_t alignment) {
     return reinterpret_cast<std::uintptr_t>(address) % alignment == 0;
 }
 
+bool all_are(const std::byte* bytes, std::size_t count, int value) {
+    return count == 0
+           || (bytes[0] == static_cast<std::byte>(value)
+               && std::memcmp(bytes, bytes + 1, count - 1) == 0);
+}
+
 /// Whether all columns are aligned and their padding can be written without changing another
-/// column's rows.
+/// column's rows or padding.
 bool has_sound_columns(World& world, Archetype& rows) {
     const std::uint32_t size = rows.size();
-    const std::uint32_t padded = (size + 15) / 16 * 16;
-    bool sound = padded <= rows.capacity();
+    const std::uint32_t padding = (size + 15) / 16 * 16 - size;
+    bool sound = size + padding <= rows.capacity();
     const auto columns = rows.columns();
     for (std::size_t i = 0; i < columns.size(); ++i) {
         sound = sound && is_aligned(columns[i].data, 64)
                 && is_aligned(columns[i].data, columns[i].info->align);
         std::memset(columns[i].data, static_cast<int>(i + 1), std::size_t{size} * columns[i].size);
     }
-    for (const Column& column : columns) {
-        std::memset(column.at(size), 0xee, std::size_t{padded - size} * column.size);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        std::memset(
+            columns[i].at(size), static_cast<int>(i + 101), std::size_t{padding} * columns[i].size);
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        for (std::size_t byte = 0; byte < std::size_t{size} * columns[i].size; ++byte) {
-            sound = sound && columns[i].data[byte] == static_cast<std::byte>(i + 1);
-        }
+        const Column& column = columns[i];
+        const int value = static_cast<int>(i);
+        sound = sound && all_are(column.data, std::size_t{size} * column.size, value + 1)
+                && all_are(column.at(size), std::size_t{padding} * column.size, value + 101);
     }
     for (std::uint32_t row = 0; row < size; ++row) {
         sound = sound && world.alive(rows.entities()[row]);
@@ -139,7 +152,7 @@ TEST_CASE("column: the pool gives a freed block out again and counts what is use
 
 TEST_CASE("column: every table of 1 to 64 columns is aligned and padded, in blocks and in ranges") {
     const std::vector<ComponentId> ids = cell_ids(std::make_index_sequence<64>());
-    for (const std::uint32_t count : {1u, 15u, 16u, 17u, 100u}) {
+    for (const std::uint32_t count : {1u, 15u, 16u, 17u, 100u, 1023u, 1024u, 1025u, 2047u}) {
         World world;
         std::vector<Entity> entities;
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -212,4 +225,41 @@ TEST_CASE("column: a component larger than a block has columns of its own from t
     world.get<Huge>(entity).bytes[99'999] = 3;
     CHECK(world.core().archetypes.back()->is_promoted());
     CHECK(world.get<Huge>(entity).bytes[99'999] == 3);
+}
+
+TEST_CASE("column: what a range gives back is zero when it is used again, and the rest is kept") {
+    for (const std::size_t expected : {std::size_t{0}, std::size_t{8} << 20}) {
+        VirtualRange range(std::size_t{1} << 30, skew_of(9), expected);
+        range.commit(std::size_t{8} << 20);
+        std::memset(range.data(), 7, range.usable());
+        range.shrink(100'000);
+        CHECK(range.usable() >= 100'000);
+        CHECK(range.committed() < 100'000 + kSkewRange + 4096);
+        CHECK(range.data()[99'999] == std::byte{7});
+        range.commit(std::size_t{8} << 20);
+        CHECK(range.data()[99'999] == std::byte{7});
+        CHECK(range.data()[(std::size_t{8} << 20) - 1] == std::byte{0});
+        range.shrink(0);
+        CHECK(range.committed() == 0);
+        range.commit(1);
+        CHECK(range.data()[0] == std::byte{0});
+    }
+}
+
+TEST_CASE("column: the pool gives back what lies beyond the last block in use") {
+    BlockPool pool;
+    std::vector<std::byte*> blocks;
+    for (int i = 0; i < 20; ++i) {
+        blocks.push_back(pool.allocate(65536));
+    }
+    const std::size_t all = pool.committed();
+    for (int i = 5; i < 20; ++i) {
+        pool.free(blocks[static_cast<std::size_t>(i)], 65536);
+    }
+    pool.shrink();
+    CHECK(pool.committed() <= all - std::size_t{14} * 65536);
+    CHECK(pool.committed() >= std::size_t{5} * 65536);
+    blocks[4][65535] = std::byte{1};
+    CHECK(pool.allocate(65536) == blocks[5]);
+    blocks[5][65535] = std::byte{1};
 }

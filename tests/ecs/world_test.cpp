@@ -413,3 +413,74 @@ TEST_CASE("world: a restored world has the same handles, rows and next handles")
         REQUIRE(copy.create(Position{}) == source.create(Position{}));
     }
 }
+
+TEST_CASE("world: shrink gives back what nothing uses, and all values stay") {
+    World world;
+    const std::vector<Entity> many = world.create_many(100'000, Position{1, 2, 3}, Mass{}, Heat{4});
+    std::vector<Entity> few;
+    for (int i = 0; i < 500; ++i) {
+        few.push_back(world.create(Velocity{static_cast<float>(i), 0, 0}));
+    }
+    const std::size_t before = world.memory().total();
+    for (std::size_t i = 2000; i < many.size(); ++i) {
+        world.destroy(many[i]);
+    }
+    for (std::size_t i = 10; i < few.size(); ++i) {
+        world.destroy(few[i]);
+    }
+    CHECK(world.memory().total() + 1000 > before);
+    world.shrink();
+    CHECK(world.memory().archetypes < 2000 * (sizeof(Entity) + 12 + 8) + 3 * 4096 + kSkewRange);
+    for (std::size_t i = 0; i < 2000; ++i) {
+        REQUIRE(world.get<const Position>(many[i]).z == 3);
+        REQUIRE(world.get<const Heat>(many[i]).degrees == 4);
+    }
+    for (std::size_t i = 0; i < 10; ++i) {
+        REQUIRE(world.get<const Velocity>(few[i]).x == static_cast<float>(i));
+    }
+    world.create_many(100'000, Position{5, 6, 7}, Mass{}, Heat{8});
+    CHECK(world.query<const Position>().count() == 102'000);
+    CHECK(world.get<const Position>(many[1999]).z == 3);
+
+    world.clear();
+    world.shrink();
+    const WorldMemory empty = world.memory();
+    CHECK(empty.archetypes + empty.blocks + empty.sparse == 0);
+    const Entity again = world.create(Position{1, 1, 1}, Heat{2});
+    CHECK(world.get<const Position>(again).x == 1);
+    CHECK(world.get<const Heat>(again).degrees == 2);
+    const std::string message = stop_message(
+        [&] { world.query<const Position>().each([&](const Position&) { world.shrink(); }); });
+    CHECK(message.find("while iterating") != std::string::npos);
+}
+
+TEST_CASE("world: a million rounds of create, change and destroy take no more memory than a few") {
+    World world;
+    std::vector<Entity> living;
+    std::size_t warm = 0;
+    std::size_t next = 0;
+    for (int round = 0; round < 1'000'000; ++round) {
+        const Entity entity = world.create(Position{}, Mass{});
+        if (round % 2 == 0) {
+            world.add(entity, Velocity{});
+        }
+        if (round % 3 == 0) {
+            world.add(entity, Heat{});
+        }
+        if (living.size() < 3000) {
+            living.push_back(entity);
+            continue;
+        }
+        if (round % 5 == 0) {
+            world.remove<Mass>(living[next]);
+        }
+        world.destroy(living[next]);
+        living[next] = entity;
+        next = (next + 1) % living.size();
+        if (round == 50'000) {
+            warm = world.memory().total();
+        }
+    }
+    CHECK(world.memory().total() == warm);
+    CHECK(world.entity_count() == 3000);
+}
