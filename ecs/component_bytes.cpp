@@ -287,6 +287,10 @@ bool read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteRea
     return true;
 }
 
+bool takes_any_bytes(const ComponentInfo& info) {
+    return info.value_bytes == ValueBytes::All && !has_invalid_bytes(info.fields);
+}
+
 std::size_t least_bytes(const ComponentInfo& info) {
     return info.value_bytes == ValueBytes::All ? info.size : least_bytes_of(info.fields);
 }

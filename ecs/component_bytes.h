@@ -29,6 +29,9 @@ void write_rows(const Column& column, std::uint32_t first, std::uint32_t count, 
 [[nodiscard]] bool
 read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteReader& in);
 
+/// Whether its values are all their bytes, and all bytes are values: they may be copied unseen.
+[[nodiscard]] bool takes_any_bytes(const ComponentInfo& info);
+
 /// No value is written in fewer bytes.
 [[nodiscard]] std::size_t least_bytes(const ComponentInfo& info);
 

@@ -468,6 +468,7 @@ std::uint32_t World::begin_run(std::uint32_t systems) {
     if (core_.now() - versions_forgotten_at_ > kInterval
         && core_.iterations.load(std::memory_order_relaxed) == 0) {
         versions_forgotten_at_ = core_.now();
+        ++core_.times_forgotten;
         const std::uint32_t oldest = core_.now() - kMaxVersionAge;
         for (const auto& archetype : core_.archetypes) {
             archetype->forget_versions_before(oldest);
@@ -535,6 +536,12 @@ ResourceSlot& World::require_resource_slot(ComponentId id) {
     return *slot;
 }
 
+std::uint32_t World::resource_version(ComponentId id) const {
+    const ResourceSlot* slot = resource_slot(id);
+    LIMN_CHECK_NOTE(slot != nullptr, component_info(id).name.c_str());
+    return slot->version;
+}
+
 void World::remove_resource(ComponentId id) {
     ResourceSlot* slot = resource_slot(id);
     if (slot == nullptr) {
@@ -566,7 +573,11 @@ Archetype&
 World::restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities) {
     Archetype& rows = archetype_of(components);
     const std::uint32_t first = rows.append(entities, core_.now());
-    rows.construct_default(first, static_cast<std::uint32_t>(entities.size()));
+    for (Column& column : rows.columns()) {
+        if (column.info->value_bytes != ValueBytes::All) {
+            column.info->ops.construct_default(column.at(first), entities.size());
+        }
+    }
     for (std::size_t i = 0; i < entities.size(); ++i) {
         core_.entities.place(entities[i], rows.index(), first + static_cast<std::uint32_t>(i));
     }

@@ -209,6 +209,8 @@ class World {
     void remove_resource(ComponentId id);
     /// The slot of a resource that must be there.
     [[nodiscard]] ResourceSlot& require_resource_slot(ComponentId id);
+    /// When the resource, which must be there, was last taken for writing.
+    [[nodiscard]] std::uint32_t resource_version(ComponentId id) const;
     /// In the order they were inserted.
     [[nodiscard]] std::span<const ComponentId> resources() const { return resource_order_; }
 
@@ -230,7 +232,8 @@ class World {
     /// archetype, an empty one too; then restore_sparse; then end, which calls on_add. `entities`
     /// must be alive in `image`, each once.
     void begin_restore(const EntityTableImage& image);
-    /// Components have their default value until the caller writes them.
+    /// Components are the caller's to write: those whose bytes are their value are raw memory,
+    /// others have their default value.
     Archetype&
     restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities);
     /// The entities have been placed by restore_rows.

@@ -32,6 +32,8 @@ struct WorldCore {
     mutable std::atomic<int> iterations = 0;         ///< > 0: the structure is locked
     std::uint32_t epoch = 0;                         ///< counts how often `archetypes` began anew
 
+    std::uint32_t times_forgotten = 0;               ///< counts how often old versions were
+
     [[nodiscard]] std::uint32_t now() const { return version.load(std::memory_order_relaxed); }
     [[nodiscard]] SparseSet* sparse_set(ComponentId id) const {
         return id < sparse.size() ? sparse[id].get() : nullptr;

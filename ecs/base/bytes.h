@@ -37,6 +37,11 @@ class ByteWriter {
         static_assert(std::is_arithmetic_v<T>);
         std::memcpy(bytes_.data() + offset, &value, sizeof value);
     }
+    void overwrite(std::size_t offset, const void* data, std::size_t size) {
+        if (size > 0) {
+            std::memcpy(bytes_.data() + offset, data, size);
+        }
+    }
     void clear() { bytes_.clear(); }
     void reserve(std::size_t size) { bytes_.reserve(size); }
     [[nodiscard]] std::size_t size() const { return bytes_.size(); }

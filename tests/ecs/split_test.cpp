@@ -3,6 +3,7 @@
 #include "ecs/component_bytes.h"
 #include "ecs/prefab.h"
 #include "ecs/snapshot.h"
+#include "ecs/snapshot_format.h"
 #include "ecs/world.h"
 #include "tests/ecs/stop_message.h"
 #include "tests/ecs/test_components.h"
@@ -548,7 +549,7 @@ TEST_CASE("split: a snapshot has the bytes of the component in a table, and brin
         const std::vector<std::byte> other =
             renamed(*save_snapshot(table), "ball_table", "ball_split");
         REQUIRE(saved.size() == other.size());
-        const std::size_t header = 32;
+        const std::size_t header = kSnapshotHeaderSize;
         CHECK(
             std::memcmp(saved.data() + header, other.data() + header, saved.size() - header) == 0);
 
