@@ -6,6 +6,7 @@
 #include "bench/micro/ecs_page.h"
 #include "bench/micro/ecs_plot.h"
 #include "bench/micro/ecs_report.h"
+#include "bench/micro/ecs_snapshot.h"
 #include "bench/micro/ecs_structure.h"
 #include "bench/micro/ecs_systems.h"
 
@@ -131,6 +132,7 @@ Report measure(const Options& options, bool& failed) {
         {"schedule", [&] { empty_schedule(bench); }},
         {"threads", [&] { on_threads(bench); }},
         {"hash", [&] { hashes(bench); }},
+        {"snapshot", [&] { snapshot(bench); }},
         {"compile", [&] { compile_time(bench); }},
         {"doubling", [&] { doubling(bench); }},
         {"growth", [&] { growth(bench, largest); }},
