@@ -257,9 +257,15 @@ void Archetype::commit(std::uint32_t rows) {
     LIMN_CHECK_NOTE(rows <= kMaxRows, "more rows than an archetype can hold");
     const std::size_t padded = round_up(rows, kRowPadding);
     entity_range_.commit(padded * sizeof(Entity));
-    capacity_ = round_rows_down(entity_range_.usable() / sizeof(Entity));
     for (Column& column : columns_) {
         column.range.commit(padded * column.size);
+    }
+    update_capacity();
+}
+
+void Archetype::update_capacity() {
+    capacity_ = round_rows_down(entity_range_.usable() / sizeof(Entity));
+    for (const Column& column : columns_) {
         capacity_ = std::min(capacity_, round_rows_down(column.range.usable() / column.size));
     }
 }
@@ -324,9 +330,7 @@ std::uint32_t Archetype::append(std::span<const Entity> entities, std::uint32_t 
     reserve(first + count);
     std::copy(entities.begin(), entities.end(), entities_ + first);
     size_ += count;
-    for (std::uint32_t chunk = first / kChunkRows; chunk < chunk_count(); ++chunk) {
-        touch_structure(chunk * kChunkRows, version);
-    }
+    touch_structure({first, count}, version);
     bits_.rows_came(first, count);
     return first;
 }
@@ -440,6 +444,13 @@ void Archetype::clear(std::uint32_t version) {
 
 // ---- change versions
 // -----------------------------------------------------------------------------
+
+void Archetype::touch_structure(RowRange rows, std::uint32_t version) {
+    for (std::uint32_t chunk = rows.first / kChunkRows; chunk < chunks_of(rows.first + rows.count);
+         ++chunk) {
+        touch_structure(chunk * kChunkRows, version);
+    }
+}
 
 void Archetype::touch_column(int column, std::uint32_t version) {
     if (column < 0) {

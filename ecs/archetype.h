@@ -63,6 +63,19 @@ inline void store_version(std::uint32_t& target, std::uint32_t version) {
     return (rows + kChunkRows - 1) / kChunkRows;
 }
 
+/// Neighboring rows.
+struct RowRange {
+    std::uint32_t first;
+    std::uint32_t count;
+};
+
+/// `count` neighboring rows that moved within an archetype.
+struct RowMove {
+    std::uint32_t from;
+    std::uint32_t to;
+    std::uint32_t count;
+};
+
 struct Column {
     std::byte* data = nullptr;
     const ComponentInfo* info = nullptr;
@@ -160,6 +173,23 @@ class Archetype {
     }
     /// Destroys all rows; keeps the memory.
     void clear(std::uint32_t version);
+
+    // ---- many rows at once (ecs/row_moves.cpp); `ranges` ascend and do not overlap
+    // ---------------
+
+    /// Appends the ranges of another archetype, in order; returns the first new row. Components
+    /// that both have are moved, those only this one has are raw memory, those only `from` has are
+    /// destroyed. What is left of the ranges is a gap.
+    std::uint32_t
+    append_from(Archetype& from, std::span<const RowRange> ranges, std::uint32_t version);
+    /// The same for all rows of `from`, which is empty afterwards: instead of copies, the columns
+    /// change hands. False, and nothing is done, if this archetype has rows or `from` so few that
+    /// copies are as good.
+    [[nodiscard]] bool take_over(Archetype& from, std::uint32_t version);
+    /// Takes rows out whose components are gone already. The gaps are filled, the lowest first,
+    /// with the rows beyond the new end, the lowest first; these moves are put into `moves`.
+    void
+    close_gaps(std::span<const RowRange> gaps, std::uint32_t version, std::vector<RowMove>& moves);
 
     // ---- change versions
     // --------------------------------------------------------------------------
@@ -269,11 +299,14 @@ class Archetype {
     void destroy_each(std::uint32_t first, std::uint32_t count);
     void bits_of_hole(std::uint32_t row, std::uint32_t last);
     [[nodiscard]] std::uint32_t rows_in_block(std::size_t bytes) const;
+    void update_capacity();
     void add_chunk(std::uint32_t version);
     [[nodiscard]] const ToggleBits* toggled_tag(ComponentId id) const {
         const ToggleBits* toggle = has_row_bits_ ? bits_.toggle(id) : nullptr;
         return toggle != nullptr && toggle->column < 0 ? toggle : nullptr;
     }
+    void touch_structure(RowRange rows, std::uint32_t version);
+    void receive_bits(const Archetype& from, std::uint32_t row, std::span<const RowRange> ranges);
     void touch_structure(std::uint32_t row, std::uint32_t version) {
         const std::uint32_t chunk = row / kChunkRows;
         if (chunk >= structure_.size()) {

@@ -16,6 +16,31 @@ Entity EntityTable::allocate_new() {
     return {index, 1};
 }
 
+void EntityTable::allocate(std::span<Entity> entities) {
+    for (Entity& entity : entities) {
+        entity = allocate();
+    }
+}
+
+void EntityTable::free(std::span<const Entity> entities) {
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        if (i + kPrefetch < entities.size()) {
+            prefetch(entities[i + kPrefetch]);
+        }
+        free(entities[i]);
+    }
+}
+
+void EntityTable::place(
+    std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row) {
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+        if (i + kPrefetch < entities.size()) {
+            prefetch(entities[i + kPrefetch]);
+        }
+        place(entities[i], archetype, first_row + static_cast<std::uint32_t>(i));
+    }
+}
+
 EntityTableImage EntityTable::image() const {
     EntityTableImage image;
     image.generations.reserve(slot_count_);

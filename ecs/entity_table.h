@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -42,6 +43,8 @@ class EntityTable {
   public:
     static constexpr std::uint32_t kMaxEntities = 1u << 28;
     static constexpr std::uint32_t kReuseDistance = 1024;
+    /// How far ahead loops over entities in any order prefetch their slots.
+    static constexpr std::size_t kPrefetch = 16;
 
     EntityTable();
 
@@ -71,11 +74,17 @@ class EntityTable {
         }
         last_free_ = entity.index;
     }
+    void allocate(std::span<Entity> entities);
+    /// In this order.
+    void free(std::span<const Entity> entities);
     void place(Entity entity, std::uint32_t archetype, std::uint32_t row) {
         Slot slot = slot_at(entity.index);
         slot.set_low(archetype << kRowBits | row);
         slot.set_high(static_cast<std::uint16_t>(archetype >> (32 - kRowBits)));
     }
+
+    /// In neighboring rows.
+    void place(std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row);
 
     [[nodiscard]] EntityPlace find(Entity entity) const {
         if (entity.index >= slot_count_) {
