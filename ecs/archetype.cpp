@@ -464,6 +464,16 @@ void Archetype::touch_column(int column, std::uint32_t version) {
     }
 }
 
+void Archetype::write_rows(int column, RowRange rows, std::uint32_t version) {
+    const std::uint32_t end = rows.first + rows.count;
+    for (std::uint32_t row = rows.first; row < end; row += kChunkRows - row % kChunkRows) {
+        touch_row(column, row, version);
+    }
+    if (TrackedRows* track = bits_.track_of_column(column); track != nullptr) {
+        track->mark(rows.first, rows.count);
+    }
+}
+
 void Archetype::forget_versions_before(std::uint32_t oldest) {
     const auto raise = [oldest](std::uint32_t& version) { version = newer_of(version, oldest); };
     std::for_each(structure_.begin(), structure_.end(), raise);

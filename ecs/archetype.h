@@ -243,6 +243,7 @@ class Archetype {
             }
         }
     }
+    void write_rows(int column, RowRange rows, std::uint32_t version);
     /// Makes versions that are older than `oldest` equal to it, so that differences never overflow.
     void forget_versions_before(std::uint32_t oldest);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/entity.h"
-#include "ecs/reflect.h"
+#include "ecs/record_layout.h"
 #include "ecs/task_scope.h"
 
 #include <cstddef>
@@ -16,24 +16,36 @@ namespace limn {
 class World;
 
 // Where Commands are kept until a sync point. Every thread that records has a stream of its own in
-// the buffer; a stream is cut into segments, each with the place in the system where it was
-// recorded (task_scope.h). Sorted by that, the segments of all streams are what a single thread
-// would have recorded.
+// the buffer. A stream is a list of runs: commands of one kind in a row, their entities in one
+// array, their values in another; to record one more is to append to both. A stream is cut into
+// segments, each with the place in the system where it was recorded (task_scope.h). Sorted by that,
+// the segments of all streams are what a single thread would have recorded.
 
 enum class CommandOp : std::uint8_t { Create, Destroy, Add, Set, Remove, Enable, Disable };
 
-struct Command {
-    Entity entity;
-    void* value;  ///< of Add and Set; null for tags
-    ComponentId component;
+/// What a command does, apart from the entity and the values.
+struct CommandKind {
+    const RecordLayout* layout;
     CommandOp op;
+    bool operator==(const CommandKind&) const = default;
 };
 
-/// Memory that is given out in pieces and taken back all at once. Grows by doubling.
+struct CommandRun {
+    CommandKind kind;
+    std::uint32_t count;
+    Entity* entities;
+    std::byte* records;  ///< layout->stride apart
+};
+
+/// Memory that is given out from the front and taken back all at once. Grows by doubling; what has
+/// grown over several blocks is one block the next time.
 class CommandArena {
   public:
-    [[nodiscard]] void* allocate(std::size_t size, std::size_t align);
-    /// All pieces are free again; the memory is kept.
+    /// What is free in one piece, at least `size` bytes, from a multiple of `align` on.
+    [[nodiscard]] std::span<std::byte> free_piece(std::size_t size, std::size_t align);
+    /// Gives out what is before `end` in the piece.
+    void take_until(const std::byte* end);
+    /// All memory is free again; it is kept.
     void reset();
     [[nodiscard]] std::size_t bytes() const;
 
@@ -43,25 +55,64 @@ class CommandArena {
         std::unique_ptr<std::byte[]> data;
         std::size_t size;
     };
+    void add_block(std::size_t bytes);
+
     std::vector<Block> blocks_;
     std::size_t block_ = 0;
     std::size_t used_ = 0;  ///< of the current block
 };
 
 struct CommandSegment {
-    std::uint32_t sequence;
-    std::uint32_t chunk;
-    std::uint32_t begin;  ///< index of the first command; it ends where the next segment begins
+    TaskScope place;
+    std::uint32_t first_run;  ///< it ends where the next segment begins
 };
 
-struct CommandStream {
-    std::uint64_t thread = 0;
-    std::uint32_t number = 0;   ///< in the buffer
-    std::uint32_t created = 0;  ///< placeholders given out
-    std::vector<Command> commands;
+class CommandStream {
+  public:
+    CommandStream(std::uint64_t of_thread, std::uint32_t position)
+        : thread(of_thread), number(position) {}
+
+    /// Appends a command; returns where its values go.
+    std::byte* record(CommandKind kind, Entity entity) {
+        const TaskScope task = current_task;
+        if (kind != open_.kind || task.sequence != place_.sequence || task.chunk != place_.chunk
+            || open_.count == limit_) {
+            open_run(kind, task);
+        }
+        const std::uint32_t index = open_.count++;
+        open_.entities[index] = entity;
+        return open_.records + std::size_t{index} * kind.layout->stride;
+    }
+    /// Completes the list of runs.
+    void close_run();
+    void reset();
+    [[nodiscard]] bool empty() const { return open_.count == 0 && runs.empty(); }
+    /// Commands.
+    [[nodiscard]] std::size_t size() const;
+    [[nodiscard]] std::size_t bytes() const;
+
+    const std::uint64_t thread;
+    const std::uint32_t number;  ///< in the buffer
+    std::uint32_t created = 0;   ///< placeholders given out
+    std::vector<CommandRun> runs;
     std::vector<CommandSegment> segments;
-    CommandArena values;
+
+  private:
+    void open_run(CommandKind kind, TaskScope task);
+
+    CommandRun open_ = {};
+    std::uint32_t limit_ = 0;  ///< of open_.count
+    TaskScope place_;          ///< of the last segment
+    CommandArena entities_;
+    CommandArena values_;
 };
+
+/// The stream that this thread last recorded into.
+struct StreamCache {
+    std::uint64_t buffer = 0;
+    CommandStream* stream = nullptr;
+};
+inline constinit thread_local StreamCache stream_cache;
 
 class CommandBuffer {
   public:
@@ -70,23 +121,42 @@ class CommandBuffer {
     CommandBuffer& operator=(const CommandBuffer&) = delete;
     ~CommandBuffer();
 
-    /// A placeholder for an entity to come.
-    [[nodiscard]] Entity create();
-    /// Room for the value, if it has a size: the caller constructs it.
-    void* record(
-        CommandOp op, Entity entity, ComponentId id, std::size_t size = 0, std::size_t align = 1);
+    /// Returns a placeholder for an entity to come; `values` is where those of the layout go.
+    [[nodiscard]] Entity create(const RecordLayout& layout, std::byte*& values) {
+        CommandStream& target = stream();
+        const Entity entity{target.created++, placeholder_generation(target)};
+        values = target.record({&layout, CommandOp::Create}, entity);
+        return entity;
+    }
+    /// Returns where the values of the layout go: the caller constructs them.
+    std::byte* record(CommandOp op, Entity entity, const RecordLayout& layout) {
+        return stream().record({&layout, op}, entity);
+    }
 
     [[nodiscard]] bool empty() const;
+    /// How many are recorded.
+    [[nodiscard]] std::size_t size() const;
     /// Forgets everything, values included.
     void discard();
     [[nodiscard]] std::size_t bytes() const;
 
   private:
     friend class CommandFlush;
+    friend class CommandOrder;
 
-    [[nodiscard]] CommandStream& stream();
+    static constexpr std::uint32_t kStreamBits = 8;
+    static constexpr std::uint32_t kPlaceholder = 0x80000000u;
+
+    [[nodiscard]] CommandStream& stream() {
+        return stream_cache.buffer == id_ ? *stream_cache.stream : find_stream();
+    }
     [[nodiscard]] CommandStream& find_stream();
-    [[nodiscard]] std::uint32_t placeholder_generation(const CommandStream& stream) const;
+    [[nodiscard]] std::uint32_t placeholder_generation(const CommandStream& stream) const {
+        return kPlaceholder | (tag_ << kStreamBits) | stream.number;
+    }
+    /// The stream that gave the placeholder out; nullptr: it is of another recording.
+    [[nodiscard]] const CommandStream* stream_of(Entity placeholder) const;
+    void close_runs();
     /// After the values have been moved away or destroyed.
     void reset();
 
@@ -95,6 +165,9 @@ class CommandBuffer {
     std::vector<std::unique_ptr<CommandStream>> streams_;
     std::mutex mutex_;  ///< of streams_
 };
+
+/// Destroys the values of one record.
+void destroy_record(const RecordLayout& layout, std::byte* record);
 
 /// The sync point: applies everything recorded in the buffers, in their order, and empties them.
 void apply_commands(World& world, std::span<CommandBuffer* const> buffers);

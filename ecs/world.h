@@ -18,7 +18,11 @@
 
 namespace limn {
 
+struct FlushStats;
 struct WorldMemory;
+class ChangeApplier;
+class ChangePlans;
+class CommandBuffer;
 class CommandFlush;
 
 // Everything there is: entities with their components, and resources. Entities with the same
@@ -137,6 +141,9 @@ class World {
     template <typename F>
     void run(F&& system);
 
+    /// Applies everything recorded in the buffers, in their order, and empties them.
+    void apply(std::span<CommandBuffer* const> buffers);
+
     /// This moment, for Query::since: what is changed from now on is later.
     [[nodiscard]] std::uint32_t version() const {
         return core_.version.fetch_add(1, std::memory_order_relaxed);
@@ -240,7 +247,8 @@ class World {
     SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
     void end_restore();
 
-    [[nodiscard]] WorldMemory memory() const;  ///< in ecs/world_stats.h
+    [[nodiscard]] WorldMemory memory() const;             ///< in ecs/world_stats.h
+    [[nodiscard]] const FlushStats& flush_stats() const;  ///< in ecs/flush_stats.h
     [[nodiscard]] WorldCore& core() { return core_; }
     [[nodiscard]] const WorldCore& core() const { return core_; }
     /// Starts a run of `systems` systems: the version of what the first one writes; those of the
@@ -250,6 +258,8 @@ class World {
     void set_version(std::uint32_t version);
 
   private:
+    friend class ChangeApplier;
+    friend class ChangePlans;
     friend class CommandFlush;
     friend struct SystemCache;
     struct Internals;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/command_flush.h"
+#include "ecs/flush_stats.h"
 #include "ecs/system.h"
 #include "ecs/world.h"
 
@@ -22,9 +24,9 @@ struct World::Internals {
     std::map<std::vector<ComponentId>, std::uint32_t> archetype_by_components;
     std::vector<std::unique_ptr<Observer>> observers;  ///< in the order they were registered
     std::vector<KnownSystem> systems;
-    std::mutex query_mutex;                    ///< of World::queries_ while the world is const
-    std::vector<std::uint32_t> group_by_slot;  ///< of CommandFlush; all kNoGroup between flushes
-    static constexpr std::uint32_t kNoGroup = 0xffffffffu;
+    std::mutex query_mutex;               ///< of World::queries_ while the world is const
+    std::unique_ptr<CommandFlush> flush;  ///< null while in use, and before the first
+    FlushStats flush_stats;
 };
 
 }  // namespace limn

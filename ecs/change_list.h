@@ -1,0 +1,117 @@
+#pragma once
+
+#include "ecs/archetype.h"
+#include "ecs/change_plan.h"
+#include "ecs/entity.h"
+#include "ecs/observer.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// What is to become of many rows, in the order in which it will be done: all rows of an archetype
+// in their order, archetype by archetype, then the entities to be created. Rows with the same plan
+// are a batch, and a batch is applied column by column.
+
+struct ChangeBatch {
+    const ChangePlan* plan;
+    std::uint32_t rows = 0;
+    std::uint32_t range_count = 0;
+    std::size_t first_range;
+    std::size_t first_record;  ///< of the first range; each range has one for every command
+};
+
+class ChangeList {
+  public:
+    void clear();
+    /// Rows of plan.source; where the plan has none, numbers of `created`. `records` are those of
+    /// the first row, one for every command of the plan. `key` orders the entities for observers.
+    void
+    add(const ChangePlan& plan,
+        RowRange rows,
+        std::span<std::byte* const> records,
+        std::uint32_t key);
+
+    std::vector<ChangeBatch> batches;
+    std::vector<RowRange> ranges;
+    std::vector<std::byte*> records;
+    std::vector<std::uint32_t> keys;  ///< of each range's first row
+    std::vector<Entity> created;
+    /// All rows get copies of the same values; otherwise each takes its own, which is then gone.
+    bool shares_records = false;
+};
+
+/// Applies a list: tells observers of what goes, moves the rows, and gives back whom to tell of
+/// what came.
+class ChangeApplier {
+  public:
+    explicit ChangeApplier(World& world) : world_(world) {}
+
+    /// on_remove, then the changes.
+    void apply(ChangeList& list);
+    /// on_add, of what apply() added. The list may be gone already.
+    void notify_added();
+
+  private:
+    struct Added {
+        ComponentId component;
+        std::vector<Entity> entities;
+    };
+    struct KeyedEntity {
+        std::uint32_t key;
+        Entity entity;
+    };
+
+    void notify_removed();
+    void collect_added();
+    /// Entities that gain or lose the component, in the order of their keys.
+    void collect(ObserverEvent event, ComponentId id, std::vector<Entity>& entities);
+
+    void apply_batch(const ChangeBatch& batch);
+    void drop_values(const ChangeBatch& batch);
+    void destroy_rows(const ChangeBatch& batch);
+    /// Returns the first row in the target.
+    std::uint32_t create_rows(const ChangeBatch& batch);
+    std::uint32_t move_rows(const ChangeBatch& batch);
+    void leave_gaps(const ChangeBatch& batch);
+    void close_gaps(Archetype& archetype);
+    void put_values(const ChangeBatch& batch, const ComponentChange& change, std::uint32_t first);
+    void
+    put_split_values(const ChangeBatch& batch, const ComponentChange& change, std::uint32_t first);
+    void set_enabled(const ChangeBatch& batch, const ComponentChange& change, std::uint32_t first);
+    void change_sparse(const ChangeBatch& batch, const SparseChange& change, std::uint32_t first);
+
+    [[nodiscard]] std::span<const RowRange> ranges_of(const ChangeBatch& batch) const {
+        return {list_->ranges.data() + batch.first_range, batch.range_count};
+    }
+    /// Of a command of the plan; `range` counts in the batch.
+    [[nodiscard]] std::byte*
+    record_of(const ChangeBatch& batch, std::size_t range, std::size_t command) const {
+        return list_->records[batch.first_record + range * batch.plan->commands.size() + command];
+    }
+    [[nodiscard]] std::size_t stride_of(const ChangeBatch& batch, std::size_t command) const {
+        return list_->shares_records ? 0 : batch.plan->commands[command].layout->stride;
+    }
+    /// Before the batch is applied.
+    [[nodiscard]] std::span<const Entity>
+    entities_of(const ChangeBatch& batch, RowRange range) const {
+        return batch.plan->source != nullptr
+                   ? batch.plan->source->entities().subspan(range.first, range.count)
+                   : std::span<const Entity>(list_->created).subspan(range.first, range.count);
+    }
+
+    World& world_;
+    ChangeList* list_ = nullptr;
+    std::vector<RowRange> gaps_;  ///< of the archetype whose rows leave
+    std::vector<RowMove> moves_;
+    std::vector<Added> added_;
+    std::vector<KeyedEntity> keyed_;
+    std::vector<Entity> told_;
+};
+
+}  // namespace limn

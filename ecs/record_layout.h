@@ -1,0 +1,75 @@
+#pragma once
+
+#include "ecs/reflect.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace limn {
+
+// Which components a command is about, and where their values lie in its record: one behind the
+// other, as in a struct. The layout of each combination of types is a constant, so that two
+// commands are alike if they point to the same one.
+
+struct RecordLayout {
+    std::uint32_t size;             ///< components, tags too
+    std::uint32_t stride;           ///< from one record to the next [bytes]; 0: no values
+    std::uint32_t align;            ///< of a record [bytes]
+    const ComponentId* const* ids;  ///< where the ids will be: they are numbered before main
+    const std::uint32_t* offsets;   ///< from the start of the record [bytes]
+
+    [[nodiscard]] ComponentId id(std::uint32_t index) const { return *ids[index]; }
+};
+
+namespace detail {
+
+template <bool has_values, typename... Ts>
+struct RecordLayoutOf {
+    static constexpr std::size_t kSize = sizeof...(Ts);
+    struct Places {
+        std::uint32_t offsets[kSize + 1] = {};
+        std::uint32_t stride = 0;
+        std::uint32_t align = 1;
+    };
+    static constexpr Places make_places() {
+        Places places;
+        if (!has_values) {
+            return places;
+        }
+        std::size_t position = 0;
+        std::uint32_t end = 0;
+        [[maybe_unused]] const auto add =
+            [&](bool empty, std::uint32_t bytes, std::uint32_t align) {
+                if (!empty) {
+                    end = (end + align - 1) / align * align;
+                    places.offsets[position] = end;
+                    end += bytes;
+                    places.align = std::max(places.align, align);
+                }
+                ++position;
+            };
+        (add(std::is_empty_v<Ts>, sizeof(Ts), alignof(Ts)), ...);
+        places.stride = (end + places.align - 1) / places.align * places.align;
+        return places;
+    }
+    static constexpr Places kPlaces = make_places();
+    static constexpr const ComponentId* kIds[kSize + 1] = {&component_id<Ts>..., nullptr};
+    static constexpr RecordLayout kLayout = {
+        kSize, kPlaces.stride, kPlaces.align, kIds, kPlaces.offsets};
+};
+
+}  // namespace detail
+
+/// A value of each.
+template <typename... Ts>
+inline constexpr const RecordLayout& record_layout = detail::RecordLayoutOf<true, Ts...>::kLayout;
+/// The components without values: what is removed.
+template <typename... Ts>
+inline constexpr const RecordLayout& key_layout = detail::RecordLayoutOf<false, Ts...>::kLayout;
+
+/// The same for one component of a type that is not known; `id` must exist.
+[[nodiscard]] const RecordLayout& record_layout_of(ComponentId id);
+[[nodiscard]] const RecordLayout& key_layout_of(ComponentId id);
+
+}  // namespace limn
