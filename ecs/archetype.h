@@ -69,6 +69,12 @@ struct RowRange {
     std::uint32_t count;
 };
 
+/// Rows of one archetype of a world.
+struct ArchetypeRows {
+    std::uint32_t archetype;
+    RowRange rows;
+};
+
 /// `count` neighboring rows that moved within an archetype.
 struct RowMove {
     std::uint32_t from;

@@ -17,19 +17,10 @@ void ChangeList::clear() {
     shares_records = false;
 }
 
-void ChangeList::add(
-    const ChangePlan& plan,
-    RowRange rows,
-    std::span<std::byte* const> first_records,
-    std::uint32_t key) {
-    if (batches.empty() || batches.back().plan != &plan) {
-        batches.push_back({&plan, 0, 0, ranges.size(), records.size()});
-    }
-    batches.back().rows += rows.count;
-    ++batches.back().range_count;
-    ranges.push_back(rows);
-    records.insert(records.end(), first_records.begin(), first_records.end());
-    keys.push_back(key);
+void ChangeList::reserve(std::size_t count) {
+    ranges.reserve(count);
+    records.reserve(count);
+    keys.reserve(count);
 }
 
 // ---- apply

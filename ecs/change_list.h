@@ -29,13 +29,26 @@ struct ChangeBatch {
 class ChangeList {
   public:
     void clear();
-    /// Rows of plan.source; where the plan has none, numbers of `created`. `records` are those of
-    /// the first row, one for every command of the plan. `key` orders the entities for observers.
+    /// Rows of plan.source; where the plan has none, numbers of `created`. `first_records` are
+    /// those of the first row, one for every command of the plan. `key` orders the entities for
+    /// observers.
     void
     add(const ChangePlan& plan,
         RowRange rows,
-        std::span<std::byte* const> records,
-        std::uint32_t key);
+        std::span<std::byte* const> first_records,
+        std::uint32_t key) {
+        if (batches.empty() || batches.back().plan != &plan) {
+            batches.push_back({&plan, 0, 0, ranges.size(), records.size()});
+        }
+        ChangeBatch& batch = batches.back();
+        batch.rows += rows.count;
+        ++batch.range_count;
+        ranges.push_back(rows);
+        records.insert(records.end(), first_records.begin(), first_records.end());
+        keys.push_back(key);
+    }
+    /// For so many calls of add().
+    void reserve(std::size_t count);
 
     std::vector<ChangeBatch> batches;
     std::vector<RowRange> ranges;

@@ -2,6 +2,7 @@
 
 #include "ecs/world_internals.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace limn {
@@ -65,6 +66,17 @@ class FlushLoan {
 void World::apply(std::span<CommandBuffer* const> buffers) {
     core_.check_unlocked();
     FlushLoan(*this, internals_->flush)->run(buffers);
+}
+
+void World::change_rows(CommandKind kind, std::byte* record, std::vector<ArchetypeRows> rows) {
+    core_.check_unlocked();
+    const auto before = [](const ArchetypeRows& a, const ArchetypeRows& b) {
+        return a.archetype != b.archetype ? a.archetype < b.archetype : a.rows.first < b.rows.first;
+    };
+    if (!std::is_sorted(rows.begin(), rows.end(), before)) {
+        std::sort(rows.begin(), rows.end(), before);
+    }
+    FlushLoan(*this, internals_->flush)->run(kind, record, rows);
 }
 
 void apply_commands(World& world, std::span<CommandBuffer* const> buffers) {

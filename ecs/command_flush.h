@@ -11,12 +11,6 @@ namespace limn {
 
 class World;
 
-/// Rows of one archetype of the world.
-struct ArchetypeRows {
-    std::uint32_t archetype;
-    RowRange rows;
-};
-
 /// Applies commands. A world keeps one, whose lists have grown to their size after a few frames;
 /// then a sync point allocates nothing.
 class CommandFlush {

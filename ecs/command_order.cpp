@@ -216,8 +216,10 @@ void radix_sort(
         const auto bucket = [shift](std::uint64_t value) {
             return (value >> (32 + shift)) % kBuckets;
         };
-        for (const std::uint64_t value : values) {
-            ++next[bucket(value)];
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            ++next[bucket(values[i])];
+            // In order, memory comes quickly; scattered stores would wait for each line of it.
+            __builtin_prefetch(&scratch[i], 1);
         }
         std::uint32_t begin = 0;
         for (std::uint32_t& count : next) {
@@ -272,22 +274,35 @@ void CommandOrder::arrange(ChangePlans& plans, ChangeList& list, FlushStats& sta
     if (!is_sorted_) {
         sort_pieces();
     }
-    constexpr std::size_t kAhead = 8;
+    list.reserve(pieces_.size());
+    constexpr std::size_t kAhead = 16;
+    const ChangePlan* plan = nullptr;
+    CommandKind kind{};
+    std::uint32_t archetype = 0;
     for (std::size_t at = 0; at < pieces_.size();) {
         if (!is_sorted_ && at + kAhead < pieces_.size()) {
             __builtin_prefetch(&piece(at + kAhead));
         }
         const Piece& first = piece(at);
-        const bool is_alone =
-            is_sorted_ || at + 1 == pieces_.size() || piece(at + 1).begin() >= first.end();
-        if (!is_alone) {
+        if (!is_sorted_ && at + 1 < pieces_.size() && piece(at + 1).begin() < first.end()) {
             at = fold_overlap(at, stats);
             continue;
         }
-        active_.assign(1, static_cast<std::uint32_t>(&first - pieces_.data()));
-        emit(first.begin(), first.end());
+        const Run& run = runs_[first.run];
+        if (plan == nullptr || first.archetype != archetype || run.commands.kind != kind) {
+            kind = run.commands.kind;
+            archetype = first.archetype;
+            plan = &plans.find(source_of(first), {&kind, 1});
+        }
+        std::byte* const record =
+            run.commands.records + std::size_t{first.first} * kind.layout->stride;
+        list.add(*plan, {first.row, first.count}, {&record, 1}, run.key + first.first);
         ++at;
     }
+}
+
+Archetype* CommandOrder::source_of(const Piece& piece) const {
+    return piece.archetype == kNoArchetype ? nullptr : core_.archetypes[piece.archetype].get();
 }
 
 /// Walks over the places where a piece begins or ends: between two, all rows have the same
@@ -328,11 +343,10 @@ void CommandOrder::emit(std::uint64_t begin, std::uint64_t end) {
         records_.push_back(run.records + first * run.kind.layout->stride);
     }
     const Piece& first = pieces_[active_.front()];
-    Archetype* source =
-        first.archetype == kNoArchetype ? nullptr : core_.archetypes[first.archetype].get();
-    const std::uint32_t key = key_of(first) + static_cast<std::uint32_t>(begin - first.begin());
+    const std::uint32_t key =
+        runs_[first.run].key + first.first + static_cast<std::uint32_t>(begin - first.begin());
     list_->add(
-        plans_->find(source, kinds_),
+        plans_->find(source_of(first), kinds_),
         {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)},
         records_,
         key);

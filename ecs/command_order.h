@@ -75,9 +75,7 @@ class CommandOrder {
     [[nodiscard]] const Piece& piece(std::size_t position) const {
         return pieces_[is_sorted_ ? position : order_[position] & 0xffffffffu];
     }
-    [[nodiscard]] std::uint32_t key_of(const Piece& piece) const {
-        return runs_[piece.run].key + piece.first;
-    }
+    [[nodiscard]] Archetype* source_of(const Piece& piece) const;
 
     static constexpr std::uint32_t kNone = 0xffffffffu;
 

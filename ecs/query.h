@@ -204,6 +204,34 @@ class Query {
     }
     [[nodiscard]] bool empty() const { return count() == 0; }
 
+    /// Calls visit(archetype, first_row, count) for the rows that each() would visit: neighbors
+    /// together, unless each row is looked at for a sparse or toggled component.
+    template <typename Visit>
+    void ranges(const Visit& visit) const {
+        state_->update(*core_);
+        if constexpr (kFollowsSparse) {
+            visit_following(0, leading_size(), [&](const QueryMatch& match, std::uint32_t row) {
+                visit(std::as_const(*match.archetype), row, std::uint32_t{1});
+            });
+        } else if constexpr (kToggles) {
+            each_enabled_row([&](const QueryMatch& match, std::uint32_t row) {
+                visit(std::as_const(*match.archetype), row, std::uint32_t{1});
+            });
+        } else {
+            each_range([&](const QueryMatch& match, std::uint32_t begin, std::uint32_t end) {
+                if constexpr (kFiltersRows) {
+                    for (std::uint32_t row = begin; row < end; ++row) {
+                        if (passes(match, row)) {
+                            visit(std::as_const(*match.archetype), row, std::uint32_t{1});
+                        }
+                    }
+                } else {
+                    visit(std::as_const(*match.archetype), begin, end - begin);
+                }
+            });
+        }
+    }
+
     /// Bound of ChunkView::index().
     [[nodiscard]] std::uint32_t chunk_count() const {
         state_->update(*core_);

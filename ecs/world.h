@@ -137,6 +137,15 @@ class World {
     [[nodiscard]] Query<Terms...> query();
     template <typename... Terms>
     [[nodiscard]] Query<Terms...> query() const;
+    /// To all entities that the query would visit at this moment, whole archetypes at once where
+    /// possible. Observers are told once, in the order of archetypes and rows.
+    template <typename... Terms>
+    void destroy_all(const Query<Terms...>& query);
+    /// Adds a copy of the component, or replaces the value there is with one.
+    template <typename T, typename... Terms>
+    void add_all(const Query<Terms...>& query, const T& component = T{});
+    template <typename T, typename... Terms>
+    void remove_all(const Query<Terms...>& query);
     /// Runs one system, its parameters taken from this world; then applies its commands.
     template <typename F>
     void run(F&& system);
@@ -314,6 +323,8 @@ class World {
     /// Adds or replaces a component without an address.
     void put_bytes(Entity entity, ComponentId id, const void* value);
     [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);
+    /// One command for many rows; `record` has the values for each of them.
+    void change_rows(CommandKind kind, std::byte* record, std::vector<ArchetypeRows> rows);
 
     void observe(Observer observer);
     void refresh_observer_flags();

@@ -305,6 +305,43 @@ Query<Terms...> World::query() const {
     return Query<Terms...>(const_cast<WorldCore&>(core_), state, IterationLock::Shared);
 }
 
+namespace detail {
+
+template <typename... Terms>
+std::vector<ArchetypeRows> rows_of(const Query<Terms...>& query) {
+    std::vector<ArchetypeRows> all;
+    query.ranges([&](const Archetype& archetype, std::uint32_t first, std::uint32_t count) {
+        if (!all.empty() && all.back().archetype == archetype.index()
+            && all.back().rows.first + all.back().rows.count == first) {
+            all.back().rows.count += count;
+        } else {
+            all.push_back({archetype.index(), {first, count}});
+        }
+    });
+    return all;
+}
+
+}  // namespace detail
+
+template <typename... Terms>
+void World::destroy_all(const Query<Terms...>& query) {
+    change_rows({&key_layout<>, CommandOp::Destroy}, nullptr, detail::rows_of(query));
+}
+
+template <typename T, typename... Terms>
+void World::add_all(const Query<Terms...>& query, const T& component) {
+    static_assert(std::is_copy_constructible_v<T>, "add_all: every entity gets a copy");
+    change_rows(
+        {&record_layout<T>, CommandOp::Add},
+        reinterpret_cast<std::byte*>(const_cast<T*>(&component)),
+        detail::rows_of(query));
+}
+
+template <typename T, typename... Terms>
+void World::remove_all(const Query<Terms...>& query) {
+    change_rows({&key_layout<T>, CommandOp::Remove}, nullptr, detail::rows_of(query));
+}
+
 // ---- resources
 // -----------------------------------------------------------------------------------
 
