@@ -90,6 +90,7 @@ void World::shrink() {
         set->shrink();
     }
     core_.blocks.shrink();
+    internals_->flush = nullptr;  // its lists; the next sync point begins new ones
 }
 
 void World::drop_all_rows() {
