@@ -9,6 +9,7 @@
 #include "bench/micro/ecs_snapshot.h"
 #include "bench/micro/ecs_structure.h"
 #include "bench/micro/ecs_systems.h"
+#include "bench/micro/ecs_toggle.h"
 
 #include <fmt/format.h>
 
@@ -124,6 +125,7 @@ Report measure(const Options& options, bool& failed) {
         {"create", [&] { create(bench); }},
         {"destroy", [&] { destroy(bench); }},
         {"add", [&] { add_and_remove(bench); }},
+        {"toggle", [&] { toggles(bench); }},
         {"deferred", [&] { deferred(bench); }},
         {"get", [&] { random_get(bench, kCached, 4.7), random_get(bench, kMany, 18); }},
         {"memory", [&] { memory(bench); }},
