@@ -266,6 +266,11 @@ class Archetype {
         if (!toggle.set_enabled(row, enabled)) {
             return false;
         }
+        touch_toggle(toggle, row, version);
+        return true;
+    }
+    /// Says that the bit of the row has changed.
+    void touch_toggle(ToggleBits& toggle, std::uint32_t row, std::uint32_t version) {
         if (toggle.column < 0) {
             toggle.chunks[row / kChunkRows].version = version;
             store_version(toggle.newest, version);
@@ -274,7 +279,6 @@ class Archetype {
         } else {
             touch_row(toggle.column, row, version);
         }
-        return true;
     }
     /// The same by component; one that cannot be toggled stays enabled.
     void set_enabled(ComponentId id, std::uint32_t row, bool enabled, std::uint32_t version) {

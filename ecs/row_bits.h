@@ -41,7 +41,7 @@ struct ToggleBits {
         ToggleChunk& chunk = chunks[row / RowMask::kRows];
         std::uint64_t& word = chunk.disabled.words[row % RowMask::kRows / RowMask::kWordRows];
         const std::uint64_t bit = std::uint64_t{1} << row % RowMask::kWordRows;
-        if (((word & bit) == 0) == enabled) {
+        if ((word >> row % RowMask::kWordRows & 1) != static_cast<std::uint64_t>(enabled)) {
             return false;
         }
         word ^= bit;

@@ -280,7 +280,15 @@ bool World::set_enabled(Entity entity, bool enabled) {
     Archetype& rows = archetype(place.archetype);
     ToggleBits* toggle = rows.bits().toggle(component_id<T>);
     LIMN_CHECK_NOTE(toggle != nullptr, component_info<T>().name.c_str());
-    return rows.set_enabled(*toggle, place.row, enabled, core_.now());
+    if (!toggle->set_enabled(place.row, enabled)) {
+        return false;
+    }
+    if constexpr (std::is_empty_v<T> || detail::tracks_rows<T>) {
+        rows.touch_toggle(*toggle, place.row, core_.now());
+    } else {
+        rows.touch_row(toggle->column, place.row, core_.now());
+    }
+    return true;
 }
 
 // ---- queries
