@@ -2,6 +2,7 @@
 
 #include "bench/micro/ecs_measure.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -39,31 +40,35 @@ inline void toggle_by_handle(Bench& bench) {
     }
     std::vector<std::uint8_t> flags(kMany, 1);
     // Off and on again: two changes an entity.
-    const auto all = [&](const std::vector<Entity>& order, const auto& set) {
+    const auto all = [&](const std::vector<Entity>& order, const auto& off, const auto& on) {
         return per(
             time_of([&] {
-                for (const bool enabled : {false, true}) {
-                    for (const Entity entity : order) {
-                        set(entity, enabled);
-                    }
-                    keep(enabled);
-                }
+                std::for_each(order.begin(), order.end(), off);
+                keep(order);
+                std::for_each(order.begin(), order.end(), on);
+                keep(order);
             }),
             2 * kMany);
     };
-    const auto set_bit = [&](Entity entity, bool enabled) {
-        world.set_enabled<ToggledExtra>(entity, enabled);
+    const auto bits = [&](const std::vector<Entity>& order) {
+        return all(
+            order,
+            [&](Entity entity) { world.disable<ToggledExtra>(entity); },
+            [&](Entity entity) { world.enable<ToggledExtra>(entity); });
     };
-    const auto set_byte = [&](Entity entity, bool enabled) {
-        flags[entity.index] = static_cast<std::uint8_t>(enabled);
+    const auto bytes = [&](const std::vector<Entity>& order) {
+        return all(
+            order,
+            [&](Entity entity) { flags[entity.index] = 0; },
+            [&](Entity entity) { flags[entity.index] = 1; });
     };
     const auto times = take_turns(
         bench.repeats,
         [&] { return bench.time_reference(); },
-        [&] { return all(entities, set_byte); },
-        [&] { return all(entities, set_bit); },
-        [&] { return all(mixed, set_byte); },
-        [&] { return all(mixed, set_bit); });
+        [&] { return bytes(entities); },
+        [&] { return bits(entities); },
+        [&] { return bytes(mixed); },
+        [&] { return bits(mixed); });
     bench.check(world.query<With<ToggledExtra>>().count() == kMany, "enable");
     world.disable<ToggledExtra>(entities[5]);
     bench.check(world.query<With<ToggledExtra>>().count() == kMany - 1, "disable");
