@@ -140,7 +140,9 @@ class Query {
         const IterationGuard guard(*core_, lock_);
         state_->update(*core_);
         const std::uint32_t version = write_version();
-        constexpr std::size_t kBatch = 16;
+        // Rows are fetched a batch at a time and slots a batch ahead. Of 16 .. 128, the smallest
+        // that hides most of the latency.
+        constexpr std::size_t kBatch = 64;
         std::size_t found = 0;
         for (std::size_t first = 0; first < entities.size(); first += kBatch) {
             const std::span<const Entity> ahead = entities.subspan(first);

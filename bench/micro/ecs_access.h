@@ -42,6 +42,12 @@ inline void random_get(Bench& bench, std::size_t count, double limit) {
             ecs_sum += readable.get<Position>(entity).x;
         }
     };
+    float gathered_sum = 0;
+    const auto query = world.query<const Position>();
+    const auto gather = [&] {
+        gathered_sum = 0;
+        query.gather(mixed, [&](std::size_t, const Position& p) { gathered_sum += p.x; });
+    };
     const auto timed = [&](auto&& once) {
         return per(time_of_rounds(rounds_for(count), once), count);
     };
@@ -49,19 +55,15 @@ inline void random_get(Bench& bench, std::size_t count, double limit) {
         bench.repeats,
         [&] { return bench.time_reference(); },
         [&] { return timed(get_raw); },
-        [&] { return timed(get_ecs); });
-    bench.check(raw_sum == ecs_sum, "random get");
-    bench.add(
-        {16,
-         "random get",
-         count,
-         "ns",
-         times[2],
-         times[1],
-         times[0],
-         Figure::OfReference,
-         limit,
-         ""});
+        [&] { return timed(get_ecs); },
+        [&] { return timed(gather); });
+    bench.check(raw_sum == ecs_sum && raw_sum == gathered_sum, "random get");
+    const auto row = [&](int gate, const char* name, const Timing& time, double most) {
+        bench.add(
+            {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, most, ""});
+    };
+    row(16, "random get", times[2], limit);
+    row(0, "    by query.gather", times[3], 0);
 }
 
 inline void memory(Bench& bench) {

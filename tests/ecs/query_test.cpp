@@ -376,7 +376,10 @@ TEST_CASE(
           std::size_t{15},
           std::size_t{16},
           std::size_t{17},
-          std::size_t{33}}) {
+          std::size_t{63},
+          std::size_t{64},
+          std::size_t{65},
+          std::size_t{129}}) {
         std::vector<std::size_t> seen;
         const std::size_t found = query.gather(
             std::span<const Entity>(list).first(size),
