@@ -856,3 +856,63 @@ TEST_CASE("toggle: copies of a prefab have disabled what it has") {
     CHECK(world.query<With<ToggledSign>>().count() == 4);
     CHECK(world.query<With<Parent>, Without<ToggledCharge>>().count() == 4);
 }
+
+TEST_CASE("toggle: bits go along when ranges of rows, whole archetypes and holes in them move") {
+    for (const std::size_t count : {1023u, 1024u, 1025u, 3000u}) {
+        World world;
+        const std::vector<Entity> entities = world.create_many(count, Power{}, Lit{}, Body{});
+        const auto is_on = [](std::size_t i) { return i % 3 != 0 && (i < 1024 || i >= 2048); };
+        for (std::size_t i = 0; i < count; ++i) {
+            world.set_enabled<Power>(entities[i], is_on(i));
+            world.set_enabled<Lit>(entities[i], !is_on(i));
+        }
+        std::vector<bool> alive(count, true);
+        const auto check = [&] {
+            std::size_t wrong = 0;
+            std::size_t on = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                on += alive[i] && is_on(i) ? 1 : 0;
+                wrong += world.is_enabled<Power>(entities[i]) == (alive[i] && is_on(i)) ? 0 : 1;
+                wrong += world.is_enabled<Lit>(entities[i]) == (alive[i] && !is_on(i)) ? 0 : 1;
+            }
+            CHECK(wrong == 0);
+            CHECK(world.query<const Power>().count() == on);
+        };
+        world.add_all(world.query<const Body>(), Motto{"all"});  // hands the columns over
+        check();
+        world.run([](Query<const Body> rows, Commands commands) {
+            rows.each([&](Entity entity, const Body&) { commands.remove<Motto>(entity); });
+        });
+        check();
+        world.run([&](Query<const Body> rows, Commands commands) {
+            rows.each([&](Entity entity, const Body&) {
+                if (entity.index % 7 < 3) {
+                    commands.add(entity, Motto{"some"});
+                }
+            });
+        });
+        check();
+        for (std::size_t i = 0; i < count; ++i) {
+            alive[i] = !(entities[i].index % 7 < 3 && i % 2 == 0);
+        }
+        world.run([&](Query<const Motto> rows, Commands commands) {
+            rows.each([&](Entity entity, const Motto&) {
+                const auto found = std::find(entities.begin(), entities.end(), entity);
+                if (!alive[static_cast<std::size_t>(found - entities.begin())]) {
+                    commands.destroy(entity);
+                }
+            });
+        });
+        check();
+        world.remove_all<Motto>(world.query<With<Body>>());  // behind the rows that stayed
+        check();
+        const std::size_t off = world.query<Without<Power>>().count();
+        world.destroy_all(world.query<const Power>());
+        CHECK(world.entity_count() == off);
+        CHECK(world.query<With<Lit>>().count() == off);
+        world.destroy_all(world.query<const Body>());
+        CHECK(world.entity_count() == 0);
+        world.create_many(count, Power{}, Lit{}, Body{});
+        CHECK(world.query<const Power, With<Lit>>().count() == count);
+    }
+}
