@@ -20,6 +20,7 @@ namespace limn::test::model {
 struct Template {
     struct Member {
         Mask mask = 0;
+        Mask disabled = 0;
         std::array<Value, kKinds> values = {};
         std::array<std::uint32_t, kKinds> inside =
             {};  ///< member + 1 that a link names; 0: as it says
@@ -38,7 +39,9 @@ struct Planned {
         AddUntyped,
         Set,
         Remove,
-        Spawn
+        Spawn,
+        Enable,
+        Disable,
     };
 
     Op op = Op::Add;
@@ -91,6 +94,14 @@ class Recorder {
             break;
         case Planned::Op::Remove:
             with_kind(planned.kind, [&]<typename T>() { commands_.remove<T>(target); });
+            break;
+        case Planned::Op::Enable:
+        case Planned::Op::Disable:
+            with_kind(planned.kind, [&]<typename T>() {
+                if constexpr (can_toggle<T>) {
+                    commands_.set_enabled<T>(target, planned.op == Planned::Op::Enable);
+                }
+            });
             break;
         case Planned::Op::Spawn:
             placeholders_[planned.target] = spawn(commands_, planned.spawned->prefab, link);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/math.h"
 #include "ecs/hierarchy.h"
 #include "ecs/reflect.h"
 #include "tests/ecs/model_reference.h"
@@ -55,6 +56,17 @@ struct ModelMemo {
     std::string text;
 };
 struct ModelChosen {};
+/// Split into four columns.
+struct ModelPose {
+    Vec3 at = {0, 0, 0};
+    std::int32_t number = 0;
+};
+/// Can be disabled.
+struct ModelLamp {
+    std::int32_t watts = 0;
+};
+/// A tag that can be disabled.
+struct ModelAwake {};
 
 template <typename Visitor>
 void visit_fields(ModelSerial& serial, Visitor&& visit) {
@@ -97,6 +109,19 @@ struct limn::ComponentTraits<limn::test::ModelChosen> : limn::DefaultTraits {
     static constexpr Storage storage = Storage::Sparse;
 };
 
+template <>
+struct limn::ComponentTraits<limn::test::ModelPose> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
+template <>
+struct limn::ComponentTraits<limn::test::ModelLamp> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Toggle;
+};
+template <>
+struct limn::ComponentTraits<limn::test::ModelAwake> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Toggle;
+};
+
 namespace limn::test::model {
 
 /// In the order of Kind.
@@ -111,7 +136,10 @@ using Components = std::tuple<
     Parent,
     ModelWarmth,
     ModelMemo,
-    ModelChosen>;
+    ModelChosen,
+    ModelPose,
+    ModelLamp,
+    ModelAwake>;
 static_assert(std::tuple_size_v<Components> == kKinds);
 
 /// The kinds that make_prefab leaves out.
@@ -180,6 +208,11 @@ template <typename T>
         return ModelTally(static_cast<int>(number));
     } else if constexpr (std::is_same_v<T, ModelWarmth>) {
         return {static_cast<std::int32_t>(number)};
+    } else if constexpr (std::is_same_v<T, ModelPose>) {
+        const float x = static_cast<float>(number);
+        return {{x, 2 * x, -x}, static_cast<std::int32_t>(number)};
+    } else if constexpr (std::is_same_v<T, ModelLamp>) {
+        return {static_cast<std::int32_t>(number)};
     } else if constexpr (std::is_same_v<T, ModelLink> || std::is_same_v<T, Parent>) {
         return {entity, static_cast<std::uint32_t>(number)};
     } else {
@@ -203,6 +236,11 @@ template <typename T>
         return value.value;
     } else if constexpr (std::is_same_v<T, ModelWarmth>) {
         return value.degrees;
+    } else if constexpr (std::is_same_v<T, ModelPose>) {
+        const float x = static_cast<float>(value.number);
+        return value.at == Vec3(x, 2 * x, -x) ? value.number : -1;
+    } else if constexpr (std::is_same_v<T, ModelLamp>) {
+        return value.watts;
     } else if constexpr (std::is_same_v<T, Parent>) {
         return value.order;
     } else {
@@ -219,6 +257,12 @@ template <typename T>
         return {};
     }
 }
+
+/// Whether the function for enabling takes it.
+template <typename T>
+inline constexpr bool can_toggle = (bit(kind_of<T>()) & kToggles) != 0;
+template <typename T>
+inline constexpr bool has_address = !std::is_same_v<T, ModelPose>;
 
 inline void register_components() {
     for_each_kind([]<typename T>() { register_component<T>(); });

@@ -41,7 +41,7 @@ class ModelDirect : public ModelRun {
             create_one<ModelSpeed, ModelPlace>(value);
             break;
         case 2:
-            create_one<ModelTitle, ModelWarmth, ModelPlace, ModelBadge>(value);
+            create_one<ModelTitle, ModelWarmth, ModelAwake, ModelPlace, ModelBadge>(value);
             break;
         case 3:
             create_one<ModelChosen, ModelTally, ModelLink, ModelSerial>(value);
@@ -50,7 +50,7 @@ class ModelDirect : public ModelRun {
             create_one<ModelPlace, ModelSpeed, ModelMemo>(value);
             break;
         default:
-            create_one<ModelSerial, Parent, ModelPlace>(value);
+            create_one<ModelSerial, Parent, ModelPlace, ModelPose, ModelLamp>(value);
         }
     }
 
@@ -65,7 +65,7 @@ class ModelDirect : public ModelRun {
             create_alike<ModelTally, ModelMemo, ModelTitle>(size, value);
             break;
         default:
-            create_alike<ModelWarmth, ModelBadge, ModelPlace>(size, value);
+            create_alike<ModelWarmth, ModelBadge, ModelLamp, ModelPose>(size, value);
         }
     }
 
@@ -97,16 +97,21 @@ class ModelDirect : public ModelRun {
             case 2:
                 if (kind != Kind::Serial) {
                     world_.add(entity, component_id<T>);
-                    if (!reference_.has(id, kind)) {
+                    if (reference_.has(id, kind)) {
+                        reference_.set_enabled(id, kind, true);
+                    } else {
                         reference_.add(id, kind, {});
                     }
                     return;
                 }
                 [[fallthrough]];
-            default: {
-                T& added = world_.add(entity, std::move(component));
-                expect(read(added) == value.number, "add returns something else");
-            }
+            default:
+                if constexpr (has_address<T>) {
+                    T& added = world_.add(entity, std::move(component));
+                    expect(read(added) == value.number, "add returns something else");
+                } else {
+                    world_.add(entity, component);
+                }
             }
             reference_.add(id, kind, value);
         });
@@ -138,29 +143,82 @@ class ModelDirect : public ModelRun {
         const Value value = any_value(kind, id);
         const Entity entity = reference_.handle(id);
         with_kind(kind, [&]<typename T>() {
-            T* place = nullptr;
-            const std::uint32_t way = roll(4);
+            const T component = make<T>(value.number, reference_.handle(value.entity));
+            const std::uint32_t way = roll(7);
+            bool is_there = reference_.has(id, kind);
             if (way == 0) {
+                T copy = component;
+                is_there = world_.write(entity, component_id<T>, &copy);
+            } else if (way == 1 || !has_address<T>) {
+                if (is_there) {
+                    world_.set<T>(entity, component);
+                }
+            } else {
+                is_there = write_in_place(entity, kind, component, way);
+            }
+            expect(is_there == reference_.has(id, kind), "a component is lost or extra");
+        });
+        reference_.set(id, kind, value);
+    }
+
+    /// Whether it was there; to a query it is there if it is enabled.
+    template <typename T>
+    bool write_in_place(Entity entity, Kind kind, const T& component, std::uint32_t way) {
+        if constexpr (has_address<T>) {
+            T* place = nullptr;
+            if (way == 2) {
                 place = static_cast<T*>(world_.find(entity, component_id<T>));
-            } else if (way == 1) {
+            } else if (way == 3) {
                 place = world_.query<T>().template find<T>(entity);
-            } else if (way == 2 && world_.has<T>(entity)) {
+                const Record& record = reference_.at(reference_.id_of(entity));
+                expect(
+                    (place != nullptr) == record.is_enabled(kind), "a query finds other entities");
+                place = world_.find<T>(entity);
+            } else if (way == 4 && world_.has<T>(entity)) {
                 place = &world_.get<T>(entity);
             } else {
                 place = world_.find<T>(entity);
             }
-            expect((place != nullptr) == reference_.has(id, kind), "a component is lost or extra");
             if (place != nullptr && !std::is_empty_v<T>) {
-                *place = make<T>(value.number, reference_.handle(value.entity));
+                *place = component;
             }
-        });
-        reference_.set(id, kind, value);
+            return place != nullptr;
+        }
+        return false;
+    }
+
+    void toggle() {
+        if (reference_.living().empty()) {
+            return;
+        }
+        count("enable or disable");
+        const Id id = any_living();
+        const Kind kind = chance(50) ? Kind::Lamp : Kind::Awake;
+        if (!reference_.has(id, kind)) {
+            return;
+        }
+        const bool enabled = chance(50);
+        const Entity entity = reference_.handle(id);
+        const bool was_otherwise =
+            kind == Kind::Lamp ? world_.set_enabled<ModelLamp>(entity, enabled)
+                               : world_.set_enabled(entity, component_id<ModelAwake>, enabled);
+        expect(
+            was_otherwise == reference_.set_enabled(id, kind, enabled),
+            "set_enabled says something else");
     }
 
     /// Writes a component of all that a query visits.
     void sweep() {
         count("sweep");
-        const std::uint32_t way = roll(3);
+        const std::uint32_t way = roll(5);
+        if (way == 3) {
+            sweep_poses();
+            return;
+        }
+        if (way == 4) {
+            sweep_lamps();
+            return;
+        }
         const std::int64_t offset = roll(1000);
         const auto query = world_.query<ModelSpeed, const ModelPlace>();
         const auto write_row = [offset](ModelSpeed& speed, const ModelPlace& place) {
@@ -185,6 +243,51 @@ class ModelDirect : public ModelRun {
         }
     }
 
+    /// Lane by lane.
+    void sweep_poses() {
+        const std::int32_t offset = static_cast<std::int32_t>(roll(1000));
+        world_.query<ModelPose, Without<ModelAwake>>().chunks(
+            [&](ChunkView chunk, SplitSpan<ModelPose> poses) {
+                const RowMask enabled = chunk.enabled();
+                const auto at = poses.template field<&ModelPose::at>();
+                const auto numbers = poses.template field<&ModelPose::number>();
+                for (std::uint32_t row = 0; row < chunk.size(); ++row) {
+                    if (enabled.test(row)) {
+                        numbers[row] = (numbers[row] + offset) % 1'000'000;
+                        const float x = static_cast<float>(numbers[row]);
+                        at[0][row] = x;
+                        at[1][row] = 2 * x;
+                        at[2][row] = -x;
+                    }
+                }
+            });
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.matches(bit(Kind::Pose), bit(Kind::Awake))) {
+                const std::int64_t number = (record.value(Kind::Pose).number + offset) % 1'000'000;
+                reference_.set(id, Kind::Pose, {number, kNoId});
+            }
+        }
+    }
+
+    /// Enables and disables while iterating.
+    void sweep_lamps() {
+        const std::uint32_t modulus = 2 + roll(3);
+        const auto is_lit = [modulus](std::int64_t number) {
+            return static_cast<std::uint64_t>(number) % modulus != 0;
+        };
+        world_.query<const ModelPlace, Optional<ModelLamp>>().par_chunks(
+            [&](ChunkView chunk, std::span<const ModelPlace> places, std::span<ModelLamp>) {
+                for (std::uint32_t row = 0; chunk.has<ModelLamp>() && row < chunk.size(); ++row) {
+                    chunk.set_enabled<ModelLamp>(row, is_lit(read(places[row])));
+                }
+            });
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.has(Kind::Place) && record.has(Kind::Lamp)) {
+                reference_.set_enabled(id, Kind::Lamp, is_lit(record.value(Kind::Place).number));
+            }
+        }
+    }
+
     void use_stale_handle() {
         const Id id = any_dead();
         if (id == kNoId) {
@@ -195,13 +298,16 @@ class ModelDirect : public ModelRun {
         expect(!world_.alive(entity), "a stale handle is alive");
         with_kind(any_kind(), [&]<typename T>() {
             expect(!world_.has<T>(entity), "a stale handle has a component");
-            expect(world_.find<T>(entity) == nullptr, "a stale handle has a component");
-            expect(
-                world_.find(entity, component_id<T>) == nullptr, "a stale handle has a component");
+            if constexpr (has_address<T>) {
+                expect(world_.find<T>(entity) == nullptr, "a stale handle has a component");
+                expect(
+                    world_.query<const T>().template find<const T>(entity) == nullptr,
+                    "a query finds a stale handle");
+            }
+            expect(!world_.is_enabled<T>(entity), "a stale handle has a component");
+            alignas(T) std::byte raw[sizeof(T)];
+            expect(!world_.read(entity, component_id<T>, raw), "a stale handle has a component");
             expect(!world_.query<T>().contains(entity), "a query contains a stale handle");
-            expect(
-                world_.query<const T>().template find<const T>(entity) == nullptr,
-                "a query finds a stale handle");
         });
         expect(children_of(world_, entity).empty(), "a stale handle has children");
         if (!reference_.living().empty()) {

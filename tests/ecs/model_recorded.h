@@ -48,6 +48,7 @@ class ModelRecorded : public ModelDirect {
             Template::Member& member = made->members.emplace_back();
             const Record& record = reference_.at(subtree[i]);
             member.mask = record.mask & ~kNotInPrefabs & ~(i == 0 ? bit(Kind::Parent) : 0);
+            member.disabled = record.disabled;
             member.values = record.values;
             for (const Kind kind : {Kind::Link, Kind::Parent}) {
                 const Id named = record.value(kind).entity;
@@ -79,6 +80,9 @@ class ModelRecorded : public ModelDirect {
                         value.entity = copies[member.inside[kind] - 1];
                     }
                     reference_.add(copies[i], static_cast<Kind>(kind), value);
+                    if ((member.disabled >> kind & 1u) != 0) {
+                        reference_.set_enabled(copies[i], static_cast<Kind>(kind), false);
+                    }
                 }
             }
         }
@@ -189,7 +193,10 @@ class ModelRecorded : public ModelDirect {
             planned.kind = Kind::Place;  // by its serial it will be found
         }
         planned.value = any_value(planned.kind, target, own);
-        if (choice < 24) {
+        if ((bit(planned.kind) & kToggles) != 0 && chance(40)) {
+            planned.op = chance(50) ? Planned::Op::Enable : Planned::Op::Disable;
+            reference_.set_enabled(target, planned.kind, planned.op == Planned::Op::Enable);
+        } else if (choice < 24) {
             planned.op = chance(80) ? Planned::Op::Add : Planned::Op::AddUntyped;
             reference_.add(target, planned.kind, planned.value);
         } else if (choice < 32) {

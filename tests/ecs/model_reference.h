@@ -31,15 +31,19 @@ enum class Kind : std::uint8_t {
     Warmth,
     Memo,
     Chosen,
+    Pose,
+    Lamp,
+    Awake,
 };
-inline constexpr std::size_t kKinds = 11;
+inline constexpr std::size_t kKinds = 14;
 
 using Mask = std::uint32_t;  ///< a bit a kind
 [[nodiscard]] constexpr Mask bit(Kind kind) {
     return Mask{1} << static_cast<unsigned>(kind);
 }
 inline constexpr Mask kSparseKinds = bit(Kind::Warmth) | bit(Kind::Memo) | bit(Kind::Chosen);
-inline constexpr Mask kTags = bit(Kind::Badge) | bit(Kind::Chosen);
+inline constexpr Mask kTags = bit(Kind::Badge) | bit(Kind::Chosen) | bit(Kind::Awake);
+inline constexpr Mask kToggles = bit(Kind::Lamp) | bit(Kind::Awake);
 inline constexpr Mask kLinks = bit(Kind::Link) | bit(Kind::Parent);
 
 using Id = std::uint32_t;
@@ -53,12 +57,20 @@ struct Value {
 
 struct Record {
     Mask mask = 0;
+    Mask disabled = 0;
     Mask changed = 0;  ///< written or moved since forget_changes
     std::array<Value, kKinds> values = {};
     std::size_t position = 0;  ///< in the list of the living
 
     [[nodiscard]] bool has(Kind kind) const { return (mask & bit(kind)) != 0; }
+    [[nodiscard]] bool is_enabled(Kind kind) const { return (seen() & bit(kind)) != 0; }
+    /// What queries see.
+    [[nodiscard]] Mask seen() const { return mask & ~disabled; }
     [[nodiscard]] bool matches(Mask required, Mask excluded) const {
+        return (seen() & required) == required && (seen() & excluded) == 0;
+    }
+    /// The same, disabled or not.
+    [[nodiscard]] bool is_made_of(Mask required, Mask excluded) const {
         return (mask & required) == required && (mask & excluded) == 0;
     }
     [[nodiscard]] Value& value(Kind kind) { return values[static_cast<std::size_t>(kind)]; }
@@ -153,7 +165,7 @@ class Reference {
         }
     }
 
-    /// Adds or replaces.
+    /// Adds or replaces, and enables.
     void add(Id id, Kind kind, Value value) {
         if (!alive(id)) {
             return;
@@ -165,6 +177,7 @@ class Reference {
             tell(added_, bit(kind), handles_[id]);
         }
         record.mask |= bit(kind);
+        record.disabled &= ~bit(kind);
         record.changed |= bit(kind);
         record.value(kind) = value;
     }
@@ -172,8 +185,23 @@ class Reference {
     /// Replaces what is there.
     void set(Id id, Kind kind, Value value) {
         if (has(id, kind)) {
-            add(id, kind, value);
+            records_.at(id).changed |= bit(kind);
+            records_.at(id).value(kind) = value;
         }
+    }
+
+    /// Whether it was otherwise.
+    bool set_enabled(Id id, Kind kind, bool enabled) {
+        if (!has(id, kind) || at(id).is_enabled(kind) == enabled) {
+            return false;
+        }
+        if (in_batch_) {
+            touch(id);  // it may be undone before anybody sees it
+        } else {
+            records_.at(id).changed |= bit(kind);
+        }
+        records_.at(id).disabled ^= bit(kind);
+        return true;
     }
 
     bool remove(Id id, Kind kind) {
@@ -185,6 +213,7 @@ class Reference {
         }
         if (present) {
             records_.at(id).mask &= ~bit(kind);
+            records_.at(id).disabled &= ~bit(kind);
             records_.at(id).value(kind) = {};
         }
         return present;
@@ -233,6 +262,7 @@ class Reference {
                 tell(removed_, before.mask, handles_[id]);
             } else {
                 const Mask after = found->second.mask;
+                found->second.changed |= before.disabled ^ found->second.disabled;
                 tell(removed_, before.mask & (~after | before.removed), handles_[id]);
                 tell(added_, after & (~before.mask | before.removed), handles_[id]);
             }
@@ -302,11 +332,18 @@ class Reference {
                 return entry.second.matches(required, excluded);
             }));
     }
+    [[nodiscard]] std::size_t count_made_of(Mask required, Mask excluded) const {
+        return static_cast<std::size_t>(
+            std::count_if(records_.begin(), records_.end(), [&](const auto& entry) {
+                return entry.second.is_made_of(required, excluded);
+            }));
+    }
 
   private:
     struct Touched {
-        Mask mask = 0;     ///< before
-        Mask removed = 0;  ///< at some time in between
+        Mask mask = 0;      ///< before
+        Mask disabled = 0;  ///< before
+        Mask removed = 0;   ///< at some time in between
         bool is_new = false;
     };
 
@@ -314,6 +351,7 @@ class Reference {
         const auto [found, is_first] = touched_.try_emplace(id);
         if (is_first) {
             found->second.mask = records_.at(id).mask;
+            found->second.disabled = records_.at(id).disabled;
         }
         return found->second;
     }

@@ -155,7 +155,7 @@ class ModelRun {
         expect(removed_ == reference_.told_removed(), "on_remove was told something else");
         expect(
             static_cast<std::size_t>(ModelTally::living - tallies_before_)
-                == reference_.count(bit(Kind::Tally), 0),
+                == reference_.count_made_of(bit(Kind::Tally), 0),
             "values are lost or were never destroyed");
         comparison_.run(static_cast<unsigned>(comparisons_));
         ++comparisons_;

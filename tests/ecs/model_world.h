@@ -40,8 +40,10 @@ class ModelWorld : public ModelRecorded {
             add();
         } else if (choice < 620) {
             remove();
-        } else if (choice < 780) {
+        } else if (choice < 740) {
             write();
+        } else if (choice < 780) {
+            toggle();
         } else if (choice < 850) {
             reparent();
         } else if (choice < 852) {
@@ -52,11 +54,11 @@ class ModelWorld : public ModelRecorded {
             spawn_directly();
         } else if (choice < 913) {
             make_template();
-        } else if (choice < 915) {
-            sweep();
         } else if (choice < 916) {
+            sweep();
+        } else if (choice < 917) {
             save_or_restore();
-        } else if (choice < 918) {
+        } else if (choice < 919) {
             run_systems();
         } else if (choice < 960) {
             record_and_flush();
@@ -113,8 +115,8 @@ class ModelWorld : public ModelRecorded {
         const bool sparse = steered_ % 5 == 4;
         const std::uint32_t chunks = 1 + steered_ / 5 % 3;
         const auto size = [&] {
-            return sparse ? reference_.count(bit(Kind::Chosen), 0)
-                          : reference_.count(kWhole, ~kWhole & ~kSparseKinds);
+            return sparse ? reference_.count_made_of(bit(Kind::Chosen), 0)
+                          : reference_.count_made_of(kWhole, ~kWhole & ~kSparseKinds);
         };
         const std::size_t middle = std::size_t{chunks} * 1024;
         for (std::size_t target = middle - 1; target <= middle + 1; ++target) {
@@ -203,7 +205,7 @@ class ModelWorld : public ModelRecorded {
         const std::size_t start = roll(living.size());
         for (std::size_t i = 0; i < living.size(); ++i) {
             const Id id = living[(start + i) % living.size()];
-            if (reference_.at(id).matches(required, excluded)) {
+            if (reference_.at(id).is_made_of(required, excluded)) {
                 return id;
             }
         }
