@@ -37,7 +37,9 @@ class ObserverFunction {
     explicit ObserverFunction(F function)
         : body_(new F(std::move(function)), [](void* body) { delete static_cast<F*>(body); }),
           call_([](void* body, World& world, std::span<const Entity> entities) {
-              (*static_cast<F*>(body))(world, entities);
+              if constexpr (std::is_invocable_v<F&, World&, std::span<const Entity>>) {
+                  (*static_cast<F*>(body))(world, entities);  // or on_add has said what is wrong
+              }
           }) {}
     void operator()(World& world, std::span<const Entity> entities) const {
         call_(body_.get(), world, entities);

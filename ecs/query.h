@@ -49,6 +49,10 @@ class Query {
     static constexpr bool kTakes = (detail::TermTraits<Terms>::is_take || ...);
     using Data = detail::DataTerms<Terms...>;
     static_assert(Data::size <= kMaxQueryColumns, "too many components in one query");
+    static_assert(detail::has_each_once<Data>, "a query has each component once");
+    static_assert(
+        !(detail::term_is_excluded<Terms, Terms...> || ...),
+        "a query that asks for a component Without itself has no entities");
 
   public:
     static constexpr bool kReadOnly = !(detail::TermTraits<Terms>::is_write || ...) && !kTakes;

@@ -177,6 +177,27 @@ struct TermTraits<Changed<Ts...>> : FilterTraits<Ts...> {
     }
 };
 
+/// Whether T (without const) is among the components that the term asks for, or excludes.
+template <typename T, typename Term>
+inline constexpr bool term_excludes = false;
+template <typename T, typename... Ts>
+inline constexpr bool
+    term_excludes<T, Without<Ts...>> = (std::is_same_v<T, std::remove_const_t<Ts>> || ...);
+template <typename Term, typename... Terms>
+inline constexpr bool term_is_excluded = (term_excludes<std::remove_const_t<Term>, Terms> || ...);
+template <typename... Ts, typename... Terms>
+inline constexpr bool
+    term_is_excluded<With<Ts...>, Terms...> = (term_is_excluded<Ts, Terms...> || ...);
+template <typename... Ts, typename... Terms>
+inline constexpr bool
+    term_is_excluded<Changed<Ts...>, Terms...> = (term_is_excluded<Ts, Terms...> || ...);
+
+template <typename List>
+inline constexpr bool has_each_once = true;
+template <typename... Ts>
+inline constexpr bool has_each_once<TypeList<Ts...>> =
+    all_different<std::remove_const_t<typename TermTraits<Ts>::Value>...>;
+
 /// The terms that arrive as arguments, in order.
 template <typename Found, typename... Terms>
 struct DataTermsOf {

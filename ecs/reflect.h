@@ -212,6 +212,12 @@ concept HasFields = requires(T& value, AnyVisitor visitor) {
     visit_fields(value, visitor);
 };
 
+template <typename... Ts>
+inline constexpr bool all_different = true;
+template <typename T, typename... Rest>
+inline constexpr bool all_different<T, Rest...> = (!std::is_same_v<T, Rest> && ...)
+                                                  && all_different<Rest...>;
+
 template <typename T>
 inline constexpr bool is_list = false;
 template <typename T, typename Allocator>
@@ -404,7 +410,10 @@ void check_storage() {
 
 template <typename T>
 ComponentId make_component_id() {
-    static_assert(std::is_nothrow_move_constructible_v<T> && std::is_nothrow_destructible_v<T>);
+    static_assert(
+        std::is_nothrow_move_constructible_v<T> && std::is_nothrow_destructible_v<T>,
+        "a component is moved and destroyed without exceptions: give it a noexcept move "
+        "constructor");
     check_storage<T>();
     ComponentInfo info;
     info.name = snake_case(short_name(type_name<T>()));

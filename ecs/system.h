@@ -84,10 +84,31 @@ concept SystemFunction = std::is_pointer_v<F> || requires {
     &F::operator();
 };
 
+/// Says in one line what is wrong with a parameter.
+template <typename P>
+struct ParameterCheck {
+    using Value = std::remove_cvref_t<P>;
+    static constexpr bool kIsGood = SystemParameter<P>;
+    static constexpr bool kIsWorld = std::is_same_v<Value, World>;
+    static constexpr bool kIsReference = SystemParameter<Value>;
+    static_assert(kIsGood || !kIsWorld, "a system takes the World by reference");
+    static_assert(
+        kIsGood || !kIsReference,
+        "a system takes Query, Res, Commands and the like by value, without &");
+    static_assert(
+        kIsGood || kIsWorld || kIsReference,
+        "a parameter of a system is Query<..>, Res<T>, Res<const T>, Commands, World& or const "
+        "World&; components come through a Query");
+};
+
 template <typename... Ps>
 SystemAccess access_of_parameters(TypeList<Ps...>) {
+    static_assert(
+        (int{0} + ... + int{std::is_same_v<Ps, Commands>}) <= 1, "a system has one Commands");
     SystemAccess access;
-    (SystemParam<Ps>::declare(access), ...);
+    if constexpr ((ParameterCheck<Ps>::kIsGood && ...)) {
+        (SystemParam<Ps>::declare(access), ...);
+    }
     access.normalize();
     return access;
 }
@@ -97,12 +118,6 @@ class SystemBody;
 
 template <typename F, typename... Ps>
 class SystemBody<F, TypeList<Ps...>> final : public System::Body {
-    static_assert(
-        (SystemParameter<Ps> && ...),
-        "a parameter of a system is Query<...>, Res<T>, Res<const T>, Commands, World& or const "
-        "World&; "
-        "Query, Res and Commands by value");
-
   public:
     explicit SystemBody(F function) : function_(std::move(function)) {}
 
@@ -125,8 +140,6 @@ class SystemBody<F, TypeList<Ps...>> final : public System::Body {
     }
 
   private:
-    static_assert(
-        (int{0} + ... + int{std::is_same_v<Ps, Commands>}) <= 1, "one Commands is enough");
     F function_;
     std::tuple<SystemParam<Ps>...> states_;
 };

@@ -183,10 +183,12 @@ class World {
     /// function(World&, std::span<const Entity>)
     template <typename T, typename F>
     void on_add(F function) {
+        check_observer<T, F>();
         observe({ObserverEvent::Add, component_id<T>, ObserverFunction(std::move(function))});
     }
     template <typename T, typename F>
     void on_remove(F function) {
+        check_observer<T, F>();
         observe({ObserverEvent::Remove, component_id<T>, ObserverFunction(std::move(function))});
     }
 
@@ -326,6 +328,14 @@ class World {
     /// One command for many rows; `record` has the values for each of them.
     void change_rows(CommandKind kind, std::byte* record, std::vector<ArchetypeRows> rows);
 
+    template <typename T, typename F>
+    static constexpr void check_observer() {
+        static_assert(
+            detail::Component<T>, "components are values, not pointers, arrays or entities");
+        static_assert(
+            std::is_invocable_v<F&, World&, std::span<const Entity>>,
+            "an observer is a function of (World&, std::span<const Entity>)");
+    }
     void observe(Observer observer);
     void refresh_observer_flags();
     [[nodiscard]] bool observes(ComponentId id, ObserverEvent event) const {

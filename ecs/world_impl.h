@@ -17,12 +17,6 @@ inline const std::uint32_t bundle_index = next_bundle_index();
 template <typename... Terms>
 inline const std::uint32_t query_index = next_query_index();
 
-template <typename... Ts>
-inline constexpr bool all_different = true;
-template <typename T, typename... Rest>
-inline constexpr bool all_different<T, Rest...> = (!std::is_same_v<T, Rest> && ...)
-                                                  && all_different<Rest...>;
-
 }  // namespace detail
 
 // ---- entities
@@ -188,6 +182,8 @@ detail::Added<T> World::add(Entity entity, T component) {
 
 template <typename T>
 inline T* World::find(Entity entity) {
+    static_assert(detail::Component<T>, "components are values, not pointers, arrays or entities");
+    using Value = std::remove_const_t<T>;
     static_assert(
         !detail::is_split<T>,
         "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");

@@ -1,0 +1,8 @@
+// expects: components are values, not pointers, arrays or entities
+#include "ecs/schedule.h"
+#include "ecs/world.h"
+#include "tests/ecs/compile_errors/parts.h"
+
+void blow(limn::Commands commands, Position* position) {
+    commands.create(position);
+}

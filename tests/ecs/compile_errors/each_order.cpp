@@ -1,0 +1,9 @@
+// expects: each: the function takes the query's components in order (const A&, B&, Optional as C*),
+// before them an Entity if it wants one
+#include "ecs/schedule.h"
+#include "ecs/world.h"
+#include "tests/ecs/compile_errors/parts.h"
+
+void blow(limn::Query<const Velocity, Position> moving) {
+    moving.each([](Position& position, const Velocity& velocity) { position.x += velocity.x; });
+}

@@ -1,0 +1,11 @@
+// expects: a parameter of a system is Query<..>, Res<T>, Res<const T>, Commands, World& or const
+// World&; components come through a Query
+#include "ecs/schedule.h"
+#include "ecs/world.h"
+#include "tests/ecs/compile_errors/parts.h"
+
+void blow(int strength);
+
+void add_to(limn::Schedule& schedule) {
+    schedule.add<blow>();
+}
