@@ -183,7 +183,6 @@ detail::Added<T> World::add(Entity entity, T component) {
 template <typename T>
 inline T* World::find(Entity entity) {
     static_assert(detail::Component<T>, "components are values, not pointers, arrays or entities");
-    using Value = std::remove_const_t<T>;
     static_assert(
         !detail::is_split<T>,
         "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");

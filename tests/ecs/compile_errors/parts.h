@@ -24,3 +24,12 @@ template <>
 struct limn::ComponentTraits<Burning> : limn::DefaultTraits {
     static constexpr Storage storage = Storage::Sparse;
 };
+
+struct Drift {
+    float x = 0;
+    float y = 0;
+};
+template <>
+struct limn::ComponentTraits<Drift> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
