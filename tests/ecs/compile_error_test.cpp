@@ -45,13 +45,40 @@ std::vector<Snippet> read_snippets() {
     return snippets;
 }
 
+fs::path work_folder() {
+    return fs::path(LIMN_BUILD_DIR) / "compile_errors";
+}
+
+/// Runs the compiler; what it says goes to `said`.
+bool run_compiler(const std::string& arguments, const fs::path& said) {
+    const std::string command = "LC_ALL=C '" LIMN_CXX
+                                "' -std=c++20 -Wall -Wextra -I '" LIMN_SOURCE_DIR "' "
+                                + arguments + " > '" + said.string() + "' 2>&1";
+    return std::system(command.c_str()) == 0;
+}
+
+/// What all snippets include, compiled once: four times as fast.
+void precompile_headers() {
+    fs::remove_all(work_folder());
+    fs::create_directories(work_folder());
+    const std::string header = (work_folder() / "all.h").string();
+    std::ofstream(header) << "#include \"ecs/schedule.h\"\n#include \"ecs/world.h\"\n"
+                             "#include \"tests/ecs/compile_errors/parts.h\"\n";
+#if defined(__clang__)
+    const std::string compiled = header + ".pch";
+#else
+    const std::string compiled = header + ".gch";
+#endif
+    REQUIRE(run_compiler(
+        "-x c++-header '" + header + "' -o '" + compiled + "'", work_folder() / "all.txt"));
+}
+
 void compile(Snippet& snippet) {
-    const fs::path said =
-        fs::path(LIMN_BUILD_DIR) / ("compile_error_" + snippet.path.stem().string() + ".txt");
-    const std::string command = "LC_ALL=C '" LIMN_CXX "' -std=c++20 -Wall -Wextra -fsyntax-only "
-                                "-I '" LIMN_SOURCE_DIR "' '"
-                                + snippet.path.string() + "' > '" + said.string() + "' 2>&1";
-    snippet.compiled = std::system(command.c_str()) == 0;
+    const fs::path said = work_folder() / (snippet.path.stem().string() + ".txt");
+    snippet.compiled = run_compiler(
+        "-include '" + (work_folder() / "all.h").string() + "' -fsyntax-only '"
+            + snippet.path.string() + "'",
+        said);
     std::ifstream file(said);
     for (std::string line; std::getline(file, line);) {
         if (line.find(" error: ") != std::string::npos
@@ -66,6 +93,7 @@ void compile(Snippet& snippet) {
 
 TEST_CASE("compile errors: the first line says what is wrong") {
     std::vector<Snippet> snippets = read_snippets();
+    precompile_headers();
     std::atomic<std::size_t> next = 0;
     const auto work = [&] {
         for (std::size_t i = next++; i < snippets.size(); i = next++) {
