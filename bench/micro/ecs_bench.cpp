@@ -2,6 +2,7 @@
 #include "bench/micro/ecs_compile.h"
 #include "bench/micro/ecs_growth.h"
 #include "bench/micro/ecs_iteration.h"
+#include "bench/micro/ecs_kinds.h"
 #include "bench/micro/ecs_measure.h"
 #include "bench/micro/ecs_page.h"
 #include "bench/micro/ecs_plot.h"
@@ -131,6 +132,7 @@ Report measure(const Options& options, bool& failed) {
         {"memory", [&] { memory(bench); }},
         {"changed", [&] { changed(bench); }},
         {"snapshot", [&] { snapshots(bench); }},
+        {"split", [&] { split(bench); }},
         {"schedule", [&] { empty_schedule(bench); }},
         {"threads", [&] { on_threads(bench); }},
         {"hash", [&] { hashes(bench); }},

@@ -1,0 +1,337 @@
+#pragma once
+
+#include "bench/micro/ecs_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+// Components that are not kept in plain columns: toggled ones, and those that are split into a
+// column per scalar so that kernels fill the vector units.
+
+namespace limn::bench {
+
+struct ToggledExtra {
+    float value[4] = {1, 2, 3, 4};
+};
+struct Sphere {
+    float x = 0, y = 0, z = 0, radius = 0.1f;
+};
+struct SplitSphere {
+    float x = 0, y = 0, z = 0, radius = 0.1f;
+};
+struct SplitRotation {
+    float x = 0, y = 0, z = 0, w = 1;
+};
+struct SplitTurn {
+    float x = 0, y = 0, z = 0;
+};
+struct Seen {
+    std::uint32_t yes = 0;
+};
+
+inline void start(ToggledExtra& extra, std::size_t row) {
+    extra.value[0] = noise(row, 13);
+}
+inline void start(Sphere& s, std::size_t row) {
+    s = {noise(row, 0), noise(row, 1), noise(row, 2), 0.1f};
+}
+inline void start(SplitSphere& s, std::size_t row) {
+    s = {noise(row, 0), noise(row, 1), noise(row, 2), 0.1f};
+}
+inline void start(SplitRotation& r, std::size_t row) {
+    r = {noise(row, 6), 0, 0, 1};
+}
+inline void start(SplitTurn& t, std::size_t row) {
+    t = {noise(row, 7), noise(row, 8), noise(row, 9)};
+}
+inline void start(Seen& seen, std::size_t) {
+    seen = {};
+}
+
+}  // namespace limn::bench
+
+template <>
+struct limn::ComponentTraits<limn::bench::ToggledExtra> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Toggle;
+};
+template <>
+struct limn::ComponentTraits<limn::bench::SplitSphere> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
+template <>
+struct limn::ComponentTraits<limn::bench::SplitRotation> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
+template <>
+struct limn::ComponentTraits<limn::bench::SplitTurn> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
+
+namespace limn::bench {
+
+// ---- enable bits
+// --------------------------------------------------------------------------------
+
+inline void toggled(Bench& bench) {
+    World world;
+    const std::vector<Entity> entities =
+        fill<Position, Velocity, Rotation, ToggledExtra>(world, kMany);
+    std::vector<std::uint32_t> numbers(kMany);
+    for (std::size_t i = 0; i < kMany; ++i) {
+        numbers[i] = static_cast<std::uint32_t>(i);
+    }
+    std::vector<std::uint64_t> bits(kMany / 64 + 1);
+    const auto set_bits = [&] {
+        return time_of([&] {
+            for (const std::uint32_t number : numbers) {
+                bits[number / 64] ^= std::uint64_t{1} << (number % 64);
+            }
+        });
+    };
+    bool enabled = true;
+    const auto toggle_all = [&] {
+        enabled = !enabled;
+        const double time = time_of([&] {
+            for (const Entity entity : entities) {
+                world.set_enabled<ToggledExtra>(entity, enabled);
+            }
+        });
+        bench.check(world.query<const ToggledExtra>().count() == (enabled ? kMany : 0), "toggle");
+        return time;
+    };
+    const auto times = take_turns(
+        2 * bench.slow_repeats,
+        [&] { return bench.time_reference(); },
+        [&] { return per(set_bits(), kMany); },
+        [&] { return per(toggle_all(), kMany); });
+    bench.add(
+        {13,
+         "toggle, enable bit",
+         kMany,
+         "ns",
+         times[2],
+         times[1],
+         times[0],
+         Figure::OfReference,
+         5,
+         ""});
+}
+
+// ---- a column per scalar
+// ------------------------------------------------------------------------
+
+/// The planes of a view, pointing inwards: normal and distance.
+inline constexpr float kPlanes[6][4] = {
+    {0.9f, 0.1f, 0.2f, 0.4f},
+    {-0.9f, 0.1f, 0.2f, 0.4f},
+    {0.1f, 0.9f, 0.2f, 0.4f},
+    {0.1f, -0.9f, 0.2f, 0.4f},
+    {0.0f, 0.1f, 0.9f, 0.3f},
+    {0.0f, 0.1f, -0.9f, 0.3f}};
+
+inline std::uint32_t is_seen(float x, float y, float z, float radius) {
+    float least = INFINITY;
+    for (const auto& plane : kPlanes) {
+        const float distance = plane[0] * x + plane[1] * y + plane[2] * z + plane[3];
+        least = distance < least ? distance : least;
+    }
+    return least + radius >= 0 ? 1 : 0;
+}
+
+[[gnu::noinline]] inline void cull_table(const Query<const Sphere, Seen>& query) {
+    query.chunks([](ChunkView chunk, std::span<const Sphere> spheres, std::span<Seen> seen) {
+        const std::uint32_t size = chunk.size();
+        for (std::uint32_t i = 0; i < size; ++i) {
+            const Sphere& s = spheres[i];
+            seen[i].yes = is_seen(s.x, s.y, s.z, s.radius);
+        }
+    });
+}
+
+/// Over plain arrays, which is what both a chunk and the raw loop hand it.
+inline void cull_lanes(
+    std::size_t size,
+    const float* x,
+    const float* y,
+    const float* z,
+    const float* radius,
+    Seen* seen) {
+    for (std::size_t i = 0; i < size; ++i) {
+        seen[i].yes = is_seen(x[i], y[i], z[i], radius[i]);
+    }
+}
+
+[[gnu::noinline]] inline void cull_split(const Query<const SplitSphere, Seen>& query) {
+    query.chunks([](ChunkView chunk, SplitSpan<const SplitSphere> spheres, std::span<Seen> seen) {
+        cull_lanes(
+            chunk.size(),
+            spheres.lane(0).data(),
+            spheres.lane(1).data(),
+            spheres.lane(2).data(),
+            spheres.lane(3).data(),
+            seen.data());
+    });
+}
+
+/// q += (dt / 2) q (t, 0), then q /= |q|.
+inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty, float tz) {
+    const float half = 0.5f * kStep;
+    const float nx = x + half * (tx * w + ty * z - tz * y);
+    const float ny = y + half * (ty * w + tz * x - tx * z);
+    const float nz = z + half * (tz * w + tx * y - ty * x);
+    const float nw = w - half * (tx * x + ty * y + tz * z);
+    const float scale = 1.0f / std::sqrt(nx * nx + ny * ny + nz * nz + nw * nw);
+    x = nx * scale;
+    y = ny * scale;
+    z = nz * scale;
+    w = nw * scale;
+}
+
+[[gnu::noinline]] inline void turn_table(const Query<const Turn, Rotation>& query) {
+    query.chunks([](ChunkView chunk, std::span<const Turn> turns, std::span<Rotation> rotations) {
+        const std::uint32_t size = chunk.size();
+        for (std::uint32_t i = 0; i < size; ++i) {
+            Rotation& r = rotations[i];
+            turn_one(r.x, r.y, r.z, r.w, turns[i].x, turns[i].y, turns[i].z);
+        }
+    });
+}
+
+/// A chunk at a time: as many arrays as these are too many for the compiler to compare.
+inline void turn_lanes(std::size_t size, float* const* r, const float* const* t) {
+    float* __restrict x = r[0];
+    float* __restrict y = r[1];
+    float* __restrict z = r[2];
+    float* __restrict w = r[3];
+    const float* __restrict tx = t[0];
+    const float* __restrict ty = t[1];
+    const float* __restrict tz = t[2];
+    for (std::size_t i = 0; i < size; ++i) {
+        turn_one(x[i], y[i], z[i], w[i], tx[i], ty[i], tz[i]);
+    }
+}
+
+[[gnu::noinline]] inline void turn_split(const Query<const SplitTurn, SplitRotation>& query) {
+    query.chunks([](ChunkView chunk,
+                    SplitSpan<const SplitTurn> turns,
+                    SplitSpan<SplitRotation> rotations) {
+        float* const r[] = {
+            rotations.lane(0).data(),
+            rotations.lane(1).data(),
+            rotations.lane(2).data(),
+            rotations.lane(3).data()};
+        const float* const t[] = {turns.lane(0).data(), turns.lane(1).data(), turns.lane(2).data()};
+        turn_lanes(chunk.size(), r, t);
+    });
+}
+
+struct KindTimes {
+    Timing table;
+    Timing split;
+    Timing raw;
+};
+
+/// How a component that is split does beside raw arrays, and beside the same in a table.
+inline void split_rows(Bench& bench, const char* name, std::size_t count, const KindTimes& times) {
+    bench.add(
+        {0,
+         fmt::format("{}, split", name),
+         count,
+         "ns",
+         times.split,
+         times.raw,
+         {},
+         Figure::OfRaw,
+         0,
+         ""});
+    bench.add(
+        {0,
+         fmt::format("{}, table", name),
+         count,
+         "ns",
+         times.table,
+         times.raw,
+         {},
+         Figure::OfRaw,
+         0,
+         ""});
+}
+
+inline void split(Bench& bench) {
+    for (const std::size_t count : {kCached, kMany}) {
+        World world;
+        const std::vector<Entity> table = fill<Sphere, Seen, Turn, Rotation>(world, count);
+        World split_world;
+        const std::vector<Entity> lanes =
+            split_world.create_many(count, SplitSphere{}, Seen{}, SplitTurn{}, SplitRotation{});
+        for (std::size_t i = 0; i < count; ++i) {
+            SplitSphere sphere;
+            SplitTurn turn;
+            SplitRotation rotation;
+            start(sphere, i);
+            start(turn, i);
+            start(rotation, i);
+            split_world.set(lanes[i], sphere);
+            split_world.set(lanes[i], turn);
+            split_world.set(lanes[i], rotation);
+        }
+        const RawArrays<Seen> raw_seen(count);
+        std::vector<std::vector<float>> raw(11, std::vector<float>(count));
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::uint32_t lane = 0; lane < 3; ++lane) {
+                raw[lane][i] = noise(i, lane);
+                raw[8 + lane][i] = noise(i, 7 + lane);
+            }
+            raw[3][i] = 0.1f;
+            raw[4][i] = noise(i, 6);
+            raw[7][i] = 1;
+        }
+        float* const r[] = {raw[4].data(), raw[5].data(), raw[6].data(), raw[7].data()};
+        const float* const t[] = {raw[8].data(), raw[9].data(), raw[10].data()};
+
+        const auto cull_query = world.query<const Sphere, Seen>();
+        const auto turn_query = world.query<const Turn, Rotation>();
+        const auto split_cull_query = split_world.query<const SplitSphere, Seen>();
+        const auto split_turn_query = split_world.query<const SplitTurn, SplitRotation>();
+        const auto timed = [&](auto&& once) {
+            return per(time_of_rounds(rounds_for(count), once), count);
+        };
+        const auto times = take_turns(
+            bench.repeats,
+            [&] { return timed([&] { cull_table(cull_query); }); },
+            [&] { return timed([&] { cull_split(split_cull_query); }); },
+            [&] {
+                return timed([&] {
+                    cull_lanes(
+                        count,
+                        raw[0].data(),
+                        raw[1].data(),
+                        raw[2].data(),
+                        raw[3].data(),
+                        raw_seen.column<Seen>());
+                });
+            },
+            [&] { return timed([&] { turn_table(turn_query); }); },
+            [&] { return timed([&] { turn_split(split_turn_query); }); },
+            [&] { return timed([&] { turn_lanes(count, r, t); }); });
+        split_rows(bench, "frustum cull", count, {times[0], times[1], times[2]});
+        split_rows(bench, "turn and normalize", count, {times[3], times[4], times[5]});
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Rotation rotation = world.get<const Rotation>(table[i]);
+            const SplitRotation turned = split_world.value<SplitRotation>(lanes[i]);
+            const bool seen = raw_seen.column<Seen>()[i].yes == 1;
+            different += rotation.x != turned.x || rotation.w != turned.w || turned.x != raw[4][i]
+                         || turned.w != raw[7][i]
+                         || (world.get<const Seen>(table[i]).yes == 1) != seen
+                         || (split_world.get<const Seen>(lanes[i]).yes == 1) != seen;
+        }
+        bench.check(different == 0, "split");
+    }
+}
+
+}  // namespace limn::bench
