@@ -201,32 +201,34 @@ inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty,
     });
 }
 
-/// A chunk at a time: as many arrays as these are too many for the compiler to compare.
-inline void turn_lanes(std::size_t size, float* const* r, const float* const* t) {
-    float* __restrict x = r[0];
-    float* __restrict y = r[1];
-    float* __restrict z = r[2];
-    float* __restrict w = r[3];
-    const float* __restrict tx = t[0];
-    const float* __restrict ty = t[1];
-    const float* __restrict tz = t[2];
+/// Restricted: seven arrays are too many for the compiler to compare at run time.
+inline void turn_lanes(
+    std::size_t size,
+    float* __restrict x,
+    float* __restrict y,
+    float* __restrict z,
+    float* __restrict w,
+    const float* __restrict tx,
+    const float* __restrict ty,
+    const float* __restrict tz) {
     for (std::size_t i = 0; i < size; ++i) {
         turn_one(x[i], y[i], z[i], w[i], tx[i], ty[i], tz[i]);
     }
 }
 
 [[gnu::noinline]] inline void turn_split(const Query<const SplitTurn, SplitRotation>& query) {
-    query.chunks([](ChunkView chunk,
-                    SplitSpan<const SplitTurn> turns,
-                    SplitSpan<SplitRotation> rotations) {
-        float* const r[] = {
-            rotations.lane(0).data(),
-            rotations.lane(1).data(),
-            rotations.lane(2).data(),
-            rotations.lane(3).data()};
-        const float* const t[] = {turns.lane(0).data(), turns.lane(1).data(), turns.lane(2).data()};
-        turn_lanes(chunk.size(), r, t);
-    });
+    query.chunks(
+        [](ChunkView chunk, SplitSpan<const SplitTurn> turns, SplitSpan<SplitRotation> rotations) {
+            turn_lanes(
+                chunk.size(),
+                rotations.lane(0).data(),
+                rotations.lane(1).data(),
+                rotations.lane(2).data(),
+                rotations.lane(3).data(),
+                turns.lane(0).data(),
+                turns.lane(1).data(),
+                turns.lane(2).data());
+        });
 }
 
 struct KindTimes {
@@ -290,9 +292,6 @@ inline void split(Bench& bench) {
             raw[4][i] = noise(i, 6);
             raw[7][i] = 1;
         }
-        float* const r[] = {raw[4].data(), raw[5].data(), raw[6].data(), raw[7].data()};
-        const float* const t[] = {raw[8].data(), raw[9].data(), raw[10].data()};
-
         const auto cull_query = world.query<const Sphere, Seen>();
         const auto turn_query = world.query<const Turn, Rotation>();
         const auto split_cull_query = split_world.query<const SplitSphere, Seen>();
@@ -317,7 +316,19 @@ inline void split(Bench& bench) {
             },
             [&] { return timed([&] { turn_table(turn_query); }); },
             [&] { return timed([&] { turn_split(split_turn_query); }); },
-            [&] { return timed([&] { turn_lanes(count, r, t); }); });
+            [&] {
+                return timed([&] {
+                    turn_lanes(
+                        count,
+                        raw[4].data(),
+                        raw[5].data(),
+                        raw[6].data(),
+                        raw[7].data(),
+                        raw[8].data(),
+                        raw[9].data(),
+                        raw[10].data());
+                });
+            });
         split_rows(bench, "frustum cull", count, {times[0], times[1], times[2]});
         split_rows(bench, "turn and normalize", count, {times[3], times[4], times[5]});
         std::size_t different = 0;
