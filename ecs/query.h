@@ -106,9 +106,9 @@ class Query {
                 each_following(begin, chunk_end(begin, size), version, function);
             });
         } else {
-            const std::vector<ChunkTask> tasks = chunk_tasks(version);
-            par_tasks(tasks.size(), [&](std::size_t task) {
-                run_enabled(tasks[task], version, function);
+            const ChunkTasks tasks(*this, version);
+            par_tasks(tasks.list.size(), [&](std::size_t task) {
+                run_enabled(tasks.list[task], version, function);
             });
         }
     }
@@ -129,9 +129,9 @@ class Query {
         const IterationGuard guard(*core_, lock_);
         state_->update(*core_);
         const std::uint32_t version = write_version();
-        const std::vector<ChunkTask> tasks = chunk_tasks(version);
-        par_tasks(tasks.size(), [&](std::size_t task) {
-            run_chunk(tasks[task], version, function, Data{}, Indices{});
+        const ChunkTasks tasks(*this, version);
+        par_tasks(tasks.list.size(), [&](std::size_t task) {
+            run_chunk(tasks.list[task], version, function, Data{}, Indices{});
         });
     }
 
@@ -319,6 +319,19 @@ class Query {
         std::uint32_t index;
         std::uint32_t offset;
     };
+    /// The chunks of a parallel loop, in memory that the thread keeps for its next one. A loop
+    /// within the loop finds it taken and has its own.
+    struct ChunkTasks {
+        ChunkTasks(const Query& query, std::uint32_t version) : list(std::move(kept)) {
+            list.clear();
+            query.list_chunks(version, list);
+        }
+        ChunkTasks(const ChunkTasks&) = delete;
+        ChunkTasks& operator=(const ChunkTasks&) = delete;
+        ~ChunkTasks() { kept = std::move(list); }
+        std::vector<ChunkTask> list;
+        static inline thread_local std::vector<ChunkTask> kept;
+    };
     struct Place {
         const QueryMatch* match = nullptr;
         std::uint32_t row = 0;
@@ -484,8 +497,7 @@ class Query {
 
     /// The chunks to visit; their columns' upper bounds are raised already, since tasks must not
     /// share them.
-    [[nodiscard]] std::vector<ChunkTask> chunk_tasks(std::uint32_t version) const {
-        std::vector<ChunkTask> tasks;
+    void list_chunks(std::uint32_t version, std::vector<ChunkTask>& tasks) const {
         each_chunk([&](const ChunkTask& task) {
             if constexpr (kToggles) {
                 RowMask rows;
@@ -496,7 +508,6 @@ class Query {
             raise_newest(*task.match, version, Data{});
             tasks.push_back(task);
         });
-        return tasks;
     }
 
     template <typename Work>
@@ -507,8 +518,10 @@ class Query {
             }
             return;
         }
+        // Handing out a range costs as much as some hundred rows: enough of them for every thread.
+        const std::size_t grain = 1 + count / (32 * static_cast<std::size_t>(thread_count()));
         const std::uint32_t sequence = ++current_task.sequence;
-        parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+        parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const TaskScopeGuard scope({sequence, static_cast<std::uint32_t>(i) + 1});
                 work(i);

@@ -63,7 +63,9 @@ inline void random_get(Bench& bench, std::size_t count, double limit) {
             {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, most, ""});
     };
     row(16, "random get", times[2], limit);
-    row(0, "    by query.gather", times[3], 0);
+    // In the cache there is nothing to fetch ahead.
+    const bool is_large = count > kCached;
+    row(is_large ? 16 : 0, "random get, by gather", times[3], is_large ? limit : 0);
 }
 
 inline void memory(Bench& bench) {
@@ -152,20 +154,12 @@ inline SnapshotTimes time_snapshot(Bench& bench, World& world) {
     return times;
 }
 
-inline void snapshots(Bench& bench) {
+inline void hash_time(Bench& bench) {
     World world;
     fill<Position, Velocity, Rotation>(world, kMany);
     const Payload arrays(kMany);
-    SnapshotTimes found;
     const auto times = take_turns(
         bench.slow_repeats,
-        [&] { return bench.time_reference(); },
-        [&] {
-            found = time_snapshot(bench, world);
-            return per(found.save, kMany);
-        },
-        [&] { return per(found.restore, kMany); },
-        [&] { return per(found.copy, kMany); },
         [&] { return per(time_of([&] { keep(state_hash(world)); }), kMany); },
         [&] {
             return per(
@@ -177,12 +171,17 @@ inline void snapshots(Bench& bench) {
                 }),
                 kMany);
         });
-    const auto row = [&](const char* name, const Timing& time, const Timing& raw) {
-        bench.add({0, name, kMany, "ns", time, raw, times[0], Figure::OfRaw, 0, ""});
-    };
-    row("snapshot, save; beside memcpy of its bytes", times[1], times[3]);
-    row("snapshot, restore; beside memcpy of its bytes", times[2], times[3]);
-    row("state hash; beside hashing the raw arrays", times[4], times[5]);
+    bench.add(
+        {0,
+         "state hash; beside hashing the raw arrays",
+         kMany,
+         "ns",
+         times[0],
+         times[1],
+         {},
+         Figure::OfRaw,
+         0,
+         ""});
 }
 
 }  // namespace limn::bench

@@ -2,12 +2,12 @@
 #include "bench/micro/ecs_compile.h"
 #include "bench/micro/ecs_growth.h"
 #include "bench/micro/ecs_iteration.h"
-#include "bench/micro/ecs_kinds.h"
 #include "bench/micro/ecs_measure.h"
 #include "bench/micro/ecs_page.h"
 #include "bench/micro/ecs_plot.h"
 #include "bench/micro/ecs_report.h"
 #include "bench/micro/ecs_snapshot.h"
+#include "bench/micro/ecs_split.h"
 #include "bench/micro/ecs_structure.h"
 #include "bench/micro/ecs_systems.h"
 #include "bench/micro/ecs_toggle.h"
@@ -109,7 +109,6 @@ Report measure(const Options& options, bool& failed) {
     register_component<Tint>();
     register_component<Life>();
     register_component<Scale>();
-
     Bench bench;
     bench.report.flags = LIMN_BENCH_FLAGS;
     bench.report.machine = machine_text();
@@ -131,11 +130,10 @@ Report measure(const Options& options, bool& failed) {
         {"get", [&] { random_get(bench, kCached, 4.7), random_get(bench, kMany, 18); }},
         {"memory", [&] { memory(bench); }},
         {"changed", [&] { changed(bench); }},
-        {"snapshot", [&] { snapshots(bench); }},
         {"split", [&] { split(bench); }},
         {"schedule", [&] { empty_schedule(bench); }},
         {"threads", [&] { on_threads(bench); }},
-        {"hash", [&] { hashes(bench); }},
+        {"hash", [&] { hashes(bench), hash_time(bench); }},
         {"snapshot", [&] { snapshot(bench); }},
         {"compile", [&] { compile_time(bench); }},
         {"doubling", [&] { doubling(bench); }},

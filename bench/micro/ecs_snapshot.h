@@ -13,13 +13,6 @@ namespace limn::bench {
 
 /// Saving makes new memory, restoring writes to memory that was there; so do the copies.
 inline void snapshot(Bench& bench) {
-    register_component<Position>();
-    register_component<Velocity>();
-    register_component<Rotation>();
-    register_component<Turn>();
-    register_component<Tint>();
-    register_component<Life>();
-    register_component<Scale>();
     World world;
     const std::vector<Entity> entities =
         fill<Position, Velocity, Rotation, Turn, Tint, Life, Scale>(world, kMany);

@@ -9,14 +9,11 @@
 #include <span>
 #include <vector>
 
-// Components that are not kept in plain columns: toggled ones, and those that are split into a
-// column per scalar so that kernels fill the vector units.
+// Components that are split into a column per scalar, so that kernels fill the vector units: beside
+// the same in a column of structs, and beside raw arrays of scalars.
 
 namespace limn::bench {
 
-struct ToggledExtra {
-    float value[4] = {1, 2, 3, 4};
-};
 struct Sphere {
     float x = 0, y = 0, z = 0, radius = 0.1f;
 };
@@ -33,9 +30,6 @@ struct Seen {
     std::uint32_t yes = 0;
 };
 
-inline void start(ToggledExtra& extra, std::size_t row) {
-    extra.value[0] = noise(row, 13);
-}
 inline void start(Sphere& s, std::size_t row) {
     s = {noise(row, 0), noise(row, 1), noise(row, 2), 0.1f};
 }
@@ -55,10 +49,6 @@ inline void start(Seen& seen, std::size_t) {
 }  // namespace limn::bench
 
 template <>
-struct limn::ComponentTraits<limn::bench::ToggledExtra> : limn::DefaultTraits {
-    static constexpr Storage storage = Storage::Toggle;
-};
-template <>
 struct limn::ComponentTraits<limn::bench::SplitSphere> : limn::DefaultTraits {
     static constexpr Storage storage = Storage::Split;
 };
@@ -72,57 +62,6 @@ struct limn::ComponentTraits<limn::bench::SplitTurn> : limn::DefaultTraits {
 };
 
 namespace limn::bench {
-
-// ---- enable bits
-// --------------------------------------------------------------------------------
-
-inline void toggled(Bench& bench) {
-    World world;
-    const std::vector<Entity> entities =
-        fill<Position, Velocity, Rotation, ToggledExtra>(world, kMany);
-    std::vector<std::uint32_t> numbers(kMany);
-    for (std::size_t i = 0; i < kMany; ++i) {
-        numbers[i] = static_cast<std::uint32_t>(i);
-    }
-    std::vector<std::uint64_t> bits(kMany / 64 + 1);
-    const auto set_bits = [&] {
-        return time_of([&] {
-            for (const std::uint32_t number : numbers) {
-                bits[number / 64] ^= std::uint64_t{1} << (number % 64);
-            }
-        });
-    };
-    bool enabled = true;
-    const auto toggle_all = [&] {
-        enabled = !enabled;
-        const double time = time_of([&] {
-            for (const Entity entity : entities) {
-                world.set_enabled<ToggledExtra>(entity, enabled);
-            }
-        });
-        bench.check(world.query<const ToggledExtra>().count() == (enabled ? kMany : 0), "toggle");
-        return time;
-    };
-    const auto times = take_turns(
-        2 * bench.slow_repeats,
-        [&] { return bench.time_reference(); },
-        [&] { return per(set_bits(), kMany); },
-        [&] { return per(toggle_all(), kMany); });
-    bench.add(
-        {13,
-         "toggle, enable bit",
-         kMany,
-         "ns",
-         times[2],
-         times[1],
-         times[0],
-         Figure::OfReference,
-         5,
-         ""});
-}
-
-// ---- a column per scalar
-// ------------------------------------------------------------------------
 
 /// The planes of a view, pointing inwards: normal and distance.
 inline constexpr float kPlanes[6][4] = {
