@@ -56,9 +56,9 @@ inline std::vector<Operation> bulk_operations(Bench& bench) {
          100,
          [&](std::size_t count) { return time_destroy(bench, count, Order::Creation); },
          time_raw_free},
-        {"destroy, World::clear",
+        {"destroy, all of a query",
          100,
-         [&](std::size_t count) { return time_destroy_all(bench, count, destroy_by_clear); },
+         [&](std::size_t count) { return time_destroy_all(bench, count, destroy_by_query); },
          time_raw_free},
         {"add, one by one",
          400,
@@ -67,6 +67,18 @@ inline std::vector<Operation> bulk_operations(Bench& bench) {
         {"remove, one by one",
          400,
          [&](std::size_t count) { return time_add_and_remove<Extra>(bench, count).remove; },
+         copy_rows},
+        {"add, all of a query",
+         400,
+         [&](std::size_t count) {
+             return time_add_and_remove_all(bench, count, Target::Occupied).add;
+         },
+         copy_rows},
+        {"remove, all of a query",
+         400,
+         [&](std::size_t count) {
+             return time_add_and_remove_all(bench, count, Target::Occupied).remove;
+         },
          copy_rows},
         {"deferred add", 500, deferred_add, copy_rows},
         {"snapshot, save",

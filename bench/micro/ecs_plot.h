@@ -123,14 +123,16 @@ inline constexpr std::array<CurveStyle, 4> kIterationCurves = {{
     {"2 columns, 2 threads", "#2a6fbb", true},
 }};
 
-inline constexpr std::array<CurveStyle, 9> kStructureCurves = {{
+inline constexpr std::array<CurveStyle, 11> kStructureCurves = {{
     {"create, one by one", "#2a6fbb"},
     {"create, bulk", "#2a6fbb", true},
     {"destroy, one by one", "#8a4f9e"},
-    {"destroy, World::clear", "#8a4f9e", true},
+    {"destroy, all of a query", "#8a4f9e", true},
     {"add, one by one", "#c8553d"},
-    {"remove, one by one", "#e09f3e"},
-    {"deferred add", "#c8553d", true},
+    {"add, all of a query", "#c8553d", true},
+    {"remove, one by one", "#d08a1d"},
+    {"remove, all of a query", "#d08a1d", true},
+    {"deferred add", "#6b6b6b", true},
     {"snapshot, save", "#2e8b6f"},
     {"snapshot, restore", "#2e8b6f", true},
 }};

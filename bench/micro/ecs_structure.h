@@ -289,10 +289,40 @@ inline double time_add_to_quarter(Bench& bench, std::size_t count) {
     return time;
 }
 
+enum class Target { Empty, Occupied };
+
+/// To all by one call. Where nobody else is, whole columns can change hands; where somebody is,
+/// they are copied.
+inline AddTimes time_add_and_remove_all(Bench& bench, std::size_t count, Target target) {
+    AddWorld made(count);
+    World& world = made.world;
+    std::size_t others = 0;
+    if (target == Target::Occupied) {
+        world.create(Position{}, Velocity{}, Rotation{}, Extra{});
+        world.create(Position{}, Velocity{}, Rotation{});
+        others = 1;
+    }
+    const auto without = world.query<const Position, Without<Extra>>();
+    AddTimes times;
+    times.add = time_of([&] { world.add_all(without, Extra{{7, 1, 2, 3}}); });
+    bench.check(
+        world.query<const Extra>().count() == count + 2 * others
+            && world.get<const Extra>(made.entities[count / 2]).value[0] == 7,
+        "add to all");
+    if (target == Target::Occupied) {
+        world.create(Position{}, Velocity{}, Rotation{});
+    }
+    times.remove = time_of([&] { world.remove_all<Extra>(world.query<const Extra>()); });
+    bench.check(world.query<const Extra>().count() == 0, "remove from all");
+    return times;
+}
+
 inline void add_and_remove(Bench& bench) {
     const RawMove copy(kMany);
     AddTimes table;
     AddTimes sparse;
+    AddTimes empty;
+    AddTimes occupied;
     const auto times = take_turns(
         bench.slow_repeats,
         [&] { return bench.time_reference(); },
@@ -307,7 +337,17 @@ inline void add_and_remove(Bench& bench) {
             return per(sparse.add, kMany);
         },
         [&] { return per(sparse.remove, kMany); },
-        [&] { return per(time_add_to_quarter(bench, kMany), kMany / 4); });
+        [&] { return per(time_add_to_quarter(bench, kMany), kMany / 4); },
+        [&] {
+            empty = time_add_and_remove_all(bench, kMany, Target::Empty);
+            return per(empty.add, kMany);
+        },
+        [&] { return per(empty.remove, kMany); },
+        [&] {
+            occupied = time_add_and_remove_all(bench, kMany, Target::Occupied);
+            return per(occupied.add, kMany);
+        },
+        [&] { return per(occupied.remove, kMany); });
     const auto row = [&](int gate,
                          const char* name,
                          std::size_t count,
@@ -321,6 +361,10 @@ inline void add_and_remove(Bench& bench) {
     row(12, "add, sparse, one by one", kMany, times[4], 15);
     row(12, "remove, sparse, one by one", kMany, times[5], 15);
     row(0, "add, table, to a random quarter, one by one", kMany / 4, times[6], 0);
+    row(0, "add, all of a query", kMany, times[7], 0);
+    row(0, "remove, all of a query", kMany, times[8], 0);
+    row(0, "add, all of a query, to rows that are there", kMany, times[9], 0);
+    row(0, "remove, all of a query, to rows that are there", kMany, times[10], 0);
 }
 
 // ---- deferred
