@@ -312,6 +312,14 @@ class SnapshotReader {
             image_.free_slots.push_back(slot);
             slot = links[slot];
         }
+        if (slot != kNoLink) {
+            return fail("slots: found one more free slot than the {} there are", free_count_);
+        }
+        for (std::size_t i = 0; i < links.size(); ++i) {
+            if (links[i] != kNoLink && uses_[i] != SlotUse::Free) {
+                return fail("slots: found a link in slot {}, which is not free", i);
+            }
+        }
         return Done{};
     }
 
@@ -408,7 +416,8 @@ class SnapshotReader {
     static bool are_disabled_rows(std::span<const std::byte> bytes, std::uint32_t count) {
         RowMask beyond = mask_of(bytes);
         beyond -= RowMask::first(count);
-        return bytes.empty() || (bytes.size() == disabled_size(count) && !beyond.any());
+        return bytes.empty()
+               || (bytes.size() == disabled_size(count) && !beyond.any() && mask_of(bytes).any());
     }
 
     static RowMask mask_of(std::span<const std::byte> bytes) {

@@ -311,6 +311,32 @@ TEST_CASE("snapshot: any altered byte with a fitting checksum gives an error or 
     CHECK(refused > 300);
 }
 
+TEST_CASE("snapshot: a free slot that is missing, there twice or linked by a living one is found") {
+    World world;
+    register_snapshot_types();
+    const std::vector<Entity> all = world.create_many(4, SnapMark{});
+    world.destroy(all[1]);
+    world.destroy(all[3]);
+    const std::vector<std::byte> bytes = save(world);
+    // The links 0xffffffff, 3, 0xffffffff, 0xffffffff come behind the generations 1, 2, 1, 2.
+    const std::uint32_t links[] = {1, 2, 1, 2, kNoLink, 3, kNoLink, kNoLink};
+    const auto* pattern = reinterpret_cast<const std::byte*>(links);
+    const auto found = std::search(bytes.begin(), bytes.end(), pattern, pattern + sizeof links);
+    REQUIRE(found != bytes.end());
+    const auto refusal_with = [&](std::size_t slot, std::uint32_t link) {
+        std::vector<std::byte> altered = bytes;
+        std::memcpy(&altered[found - bytes.begin() + 16 + 4 * slot], &link, sizeof link);
+        seal_snapshot(altered);
+        return refusal(altered);
+    };
+    CHECK(refusal_with(3, 2) == "snapshot: slots: found one more free slot than the 2 there are");
+    CHECK(
+        refusal_with(1, 1) == "snapshot: slots: found free slot 1 twice or beyond the 4 there are");
+    CHECK(
+        refusal_with(1, 7) == "snapshot: slots: found free slot 7 twice or beyond the 4 there are");
+    CHECK(refusal_with(0, 2) == "snapshot: slots: found a link in slot 0, which is not free");
+}
+
 TEST_CASE("snapshot: a component this program does not know, or knows differently, is named") {
     World world;
     register_snapshot_types();

@@ -1,9 +1,13 @@
-// Restores snapshots that nobody wrote. The first byte of the input chooses: an odd one takes the
-// rest as it is, behind a header that fits; an even one takes it as edits (place, place, value) of
-// a good snapshot, since a fuzzer would not guess the layout numbers of its components. Whatever is
-// restored is hashed, saved and lived in.
+// Restores snapshots and applies deltas that nobody wrote. The first byte of the input chooses:
+//
+//     0  a snapshot that is the rest of the input, behind a header that fits
+//     1  a good snapshot with the rest as edits: what (1 byte), place (2), value (1)
+//     2  the same with a good delta
+//
+// since a fuzzer would not guess the layout numbers of components. Checksums are made to fit, so
+// that the parser behind them is reached. Whatever is restored is hashed, saved and lived in; and
+// nothing may allocate more than the size of the input allows.
 
-#include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
 #include "ecs/components/all.h"
@@ -15,6 +19,9 @@
 #include "ecs/hierarchy.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
+#include "tests/ecs/allocation_count.h"
+#include "tests/ecs/snapshot_seal.h"
+#include "tests/ecs/snapshot_story.h"
 
 #include <cstdint>
 #include <cstdlib>
@@ -23,6 +30,7 @@
 namespace {
 
 using namespace limn;
+using namespace snapshot_story;
 
 struct Pocket {
     std::vector<std::string> texts;
@@ -36,95 +44,82 @@ void visit_fields(Pocket& pocket, Visitor&& visit) {
     visit("lights", pocket.lights);
 }
 
-struct Pin {
-    bool straight = true;
-    int length = 3;
-};
-template <typename Visitor>
-void visit_fields(Pin& pin, Visitor&& visit) {
-    visit("straight", pin.straight);
-    visit("length", pin.length);
-}
+using Bytes = std::vector<std::byte>;
 
-constexpr std::size_t kHeaderSize = 32;
+/// A snapshot with something of everything, and a delta to what came after it.
+struct Good {
+    Bytes snapshot;
+    Bytes delta;
 
-std::vector<std::byte> with_header(std::vector<std::byte> payload) {
-    std::vector<std::byte> bytes(kHeaderSize + payload.size());
-    const std::uint32_t version = 1;
-    const std::uint64_t size = payload.size();
-    const std::uint64_t checksum = hash_bytes(payload.data(), payload.size());
-    std::memcpy(bytes.data(), "LIMNSNAP", 8);
-    std::memcpy(bytes.data() + 8, &version, 4);
-    std::memcpy(bytes.data() + 16, &size, 8);
-    std::memcpy(bytes.data() + 24, &checksum, 8);
-    if (!payload.empty()) {
-        std::memcpy(bytes.data() + kHeaderSize, payload.data(), payload.size());
+    Good() {
+        register_all_components();
+        register_component<Pocket>();
+        Story story(1);
+        World& world = story.world;
+        const Entity root = world.create(Transform{}, Name{"root"});
+        const Entity child = world.create(Transform{}, Parent{root}, PointLight{});
+        const Entity other = world.create(StorySpin{}, StoryLamp{}, StoryAwake{}, StoryLife{});
+        world.create(Pocket{{"a", ""}, {root, child}, {PointLight{}}}, Teleport{});
+        world.destroy(world.create(OrbitCamera{}));
+        world.create(StoryRoute{{1, 2}, {{root, 30, false}}});
+        world.disable<StoryLamp>(other);
+        world.add(child, StoryHeat{});
+        world.add(child, StoryNote{"note"});
+        world.add(other, StoryPicked{});
+        world.insert_resource(FrameTime{});
+        world.insert_resource(StoryTitle{"title"});
+        SnapshotMark mark;
+        snapshot = save(world, &mark);
+        world.create(StoryText{"text"});
+        world.get<Transform>(root).position.x = 1;
+        delta = save_delta(world, mark).value();
     }
-    return bytes;
-}
-
-}  // namespace
-
-template <>
-struct limn::ComponentTraits<Pin> : DefaultTraits {
-    static constexpr Storage storage = Storage::Sparse;
 };
 
-namespace {
-
-std::vector<std::byte> good_payload() {
-    register_all_components();
-    register_component<Pocket>();
-    register_component<Pin>();
-    World world;
-    const Entity root = world.create(Transform{}, Name{"root"});
-    const Entity child = world.create(Transform{}, Parent{root}, PointLight{});
-    world.create(Pocket{{"a", ""}, {root, child}, {PointLight{}}}, Teleport{});
-    world.destroy(world.create(OrbitCamera{}));
-    world.add(child, Pin{});
-    world.insert_resource(FrameTime{});
-    const std::vector<std::byte> bytes = save_snapshot(world).value();
-    return {bytes.begin() + kHeaderSize, bytes.end()};
-}
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const std::vector<std::byte> good = good_payload();
-    set_thread_count(1);
-    set_log_level(LogLevel::Error);
-    if (size == 0) {
-        return 0;
-    }
-    std::vector<std::byte> payload;
-    if (data[0] % 2 == 1) {
-        payload.assign(
-            reinterpret_cast<const std::byte*>(data + 1),
-            reinterpret_cast<const std::byte*>(data + size));
-    } else {
-        payload = good;
-        for (std::size_t i = 1; i + 3 <= size; i += 3) {
-            payload[(data[i] * 256u + data[i + 1]) % payload.size()] = std::byte{data[i + 2]};
-        }
-        if (data[0] >= 128) {
-            payload.resize(payload.size() * (data[0] - 128) / 128);
-        }
-    }
-
-    World world;
-    const Entity before = world.create(Name{"before"}, Transform{});
-    if (!restore_snapshot(world, with_header(payload))) {
-        if (!world.alive(before) || world.entity_count() != 1) {
-            std::abort();  // a refused snapshot changed the world
-        }
-        return 0;
-    }
-    const std::uint64_t hash = state_hash(world);
-    const Result<std::vector<std::byte>> saved = save_snapshot(world);
-    World copy;
-    if (!saved || !restore_snapshot(copy, *saved) || state_hash(copy) != hash) {
+void require(bool condition) {
+    if (!condition) {
         std::abort();
     }
+}
+
+void edit(Bytes& bytes, const std::uint8_t* edits, std::size_t size) {
+    for (std::size_t i = 0; i + 4 <= size && !bytes.empty(); i += 4) {
+        const std::size_t place = (edits[i + 1] * 256u + edits[i + 2]) % bytes.size();
+        const std::uint8_t value = edits[i + 3];
+        const auto at = bytes.begin() + static_cast<std::ptrdiff_t>(place);
+        switch (edits[i] % 5) {
+        case 0:
+            *at = std::byte{value};
+            break;
+        case 1:
+            *at ^= static_cast<std::byte>(1u << value % 8);
+            break;
+        case 2:  // a large number
+            std::memset(&*at, value, std::min<std::size_t>(4, bytes.size() - place));
+            break;
+        case 3:
+            bytes.erase(at, at + std::min<std::ptrdiff_t>(value, bytes.end() - at));
+            break;
+        default:
+            bytes.insert(at, value, std::byte{value});
+            break;
+        }
+    }
+}
+
+Bytes with_header(const std::uint8_t* data, std::size_t size) {
+    SnapshotHeader header;
+    if (size >= 3) {
+        header.head_size = data[0] * 256u + data[1];
+        header.piece_count = data[2];
+    }
+    ByteWriter out;
+    write_header(header, out);
+    out.bytes(data, size);
+    return out.take();
+}
+
+void live_in(World& world) {
     static_cast<void>(hierarchy(world));
     std::vector<Entity> all;
     world.each_entity([&](Entity entity) { all.push_back(entity); });
@@ -134,6 +129,74 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     for (const Entity entity : all) {
         world.destroy(entity);
+    }
+}
+
+void try_restore(const Bytes& bytes) {
+    World world;
+    const Entity before = world.create(Name{"before"}, Transform{});
+    bool restored = false;
+    SnapshotMark mark;
+    const std::size_t allocated =
+        test::bytes_allocated_by([&] { restored = restore_snapshot(world, bytes, &mark).ok(); });
+    require(allocated <= 200 * bytes.size() + (512 << 10));
+    if (!restored) {
+        require(world.alive(before) && world.entity_count() == 1);
+        return;
+    }
+    const std::uint64_t hash = state_hash(world);
+    const Result<Bytes> saved = save_snapshot(world);
+    const Result<Bytes> delta = save_delta(world, mark);
+    require(saved.ok() && delta.ok());
+    const Result<Bytes> applied = apply_delta(bytes, *delta);
+    require(applied.ok() && *applied == *saved);
+    World copy;
+    require(restore_snapshot(copy, *saved).ok() && state_hash(copy) == hash);
+    require(save_snapshot(copy).value() == *saved);
+    live_in(world);
+}
+
+void try_apply(const Bytes& base, const Bytes& delta) {
+    Bytes later;
+    const std::size_t allocated = test::bytes_allocated_by([&] {
+        if (Result<Bytes> applied = apply_delta(base, delta); applied) {
+            later = std::move(*applied);
+        }
+    });
+    require(allocated <= 4 * (base.size() + delta.size()) + (64 << 10));
+    if (!later.empty()) {
+        try_restore(later);
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const Good good;
+    set_thread_count(1);
+    set_log_level(LogLevel::Error);
+    if (size == 0) {
+        return 0;
+    }
+    Bytes bytes;
+    switch (data[0] % 3) {
+    case 0:
+        bytes = with_header(data + 1, size - 1);
+        test::seal_snapshot(bytes);
+        try_restore(bytes);
+        break;
+    case 1:
+        bytes = good.snapshot;
+        edit(bytes, data + 1, size - 1);
+        test::seal_snapshot(bytes);
+        try_restore(bytes);
+        break;
+    default:
+        bytes = good.delta;
+        edit(bytes, data + 1, size - 1);
+        test::seal_delta(bytes);
+        try_apply(good.snapshot, bytes);
+        break;
     }
     return 0;
 }

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+// Counts what the program asks operator new for. Replaces the operators, so one source file of a
+// program may include it.
+
+namespace limn::test {
+
+inline std::atomic<std::size_t> allocated_bytes = 0;
+
+inline void* count_allocation(std::size_t size, std::size_t align) {
+    allocated_bytes.fetch_add(size, std::memory_order_relaxed);
+    void* memory = align <= alignof(std::max_align_t)
+                       ? std::malloc(size > 0 ? size : 1)
+                       : std::aligned_alloc(align, (size + align - 1) / align * align);
+    if (memory == nullptr) {
+        std::abort();
+    }
+    return memory;
+}
+
+/// Bytes asked for while `work` ran, by all threads, whether they were given back or not.
+template <typename Work>
+std::size_t bytes_allocated_by(const Work& work) {
+    const std::size_t before = allocated_bytes.load(std::memory_order_relaxed);
+    work();
+    return allocated_bytes.load(std::memory_order_relaxed) - before;
+}
+
+}  // namespace limn::test
+
+void* operator new(std::size_t size) {
+    return limn::test::count_allocation(size, 1);
+}
+void* operator new[](std::size_t size) {
+    return limn::test::count_allocation(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t align) {
+    return limn::test::count_allocation(size, static_cast<std::size_t>(align));
+}
+void* operator new[](std::size_t size, std::align_val_t align) {
+    return limn::test::count_allocation(size, static_cast<std::size_t>(align));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
