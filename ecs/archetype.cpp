@@ -387,6 +387,7 @@ std::uint32_t Archetype::move_row(std::uint32_t row, const RowPlan& plan, std::u
     }
     entities_[row] = entities_[last];
     ++plan.to->rows_moved_in;
+    ++rows_moved_out;
     return new_row;
 }
 

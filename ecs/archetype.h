@@ -299,7 +299,8 @@ class Archetype {
     std::vector<const RowPlan*> remove_edges;  ///< to one component less
     bool observes_add = false;                 ///< some observer waits for a component of it
     bool observes_remove = false;
-    std::uint64_t rows_moved_in = 0;  ///< for the inspector
+    std::uint64_t rows_moved_in = 0;  ///< from other archetypes, for the inspector
+    std::uint64_t rows_moved_out = 0;
 
   private:
     void grow(std::uint32_t rows);

@@ -77,7 +77,7 @@ class Query {
     void each(F&& function) const {
         check_row_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
-        state_->update(*core_);
+        state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         if constexpr (kFollowsSparse) {
             each_following(0, leading_size(), version, function);
@@ -97,7 +97,7 @@ class Query {
     void par_each(F&& function) const {
         check_row_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
-        state_->update(*core_);
+        state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         if constexpr (kFollowsSparse) {
             const std::uint32_t size = leading_size();
@@ -117,7 +117,7 @@ class Query {
     void chunks(F&& function) const {
         check_chunk_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
-        state_->update(*core_);
+        state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         each_chunk(
             [&](const ChunkTask& task) { run_chunk(task, version, function, Data{}, Indices{}); });
@@ -127,7 +127,7 @@ class Query {
     void par_chunks(F&& function) const {
         check_chunk_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
-        state_->update(*core_);
+        state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         const ChunkTasks tasks(*this, version);
         par_tasks(tasks.list.size(), [&](std::size_t task) {
@@ -142,7 +142,7 @@ class Query {
     std::size_t gather(std::span<const Entity> entities, F&& function) const {
         check_gather_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
-        state_->update(*core_);
+        state_->begin_call(*core_);
         const std::uint32_t version = write_version();
         // Rows are fetched a batch at a time and slots a batch ahead. Of 16 .. 128, the smallest
         // that hides most of the latency.

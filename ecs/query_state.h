@@ -4,6 +4,7 @@
 #include "ecs/world_core.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,6 +54,15 @@ class QueryState {
             extend(core);
         }
     }
+    /// The same before an iteration, which is counted.
+    void begin_call(const WorldCore& core) {
+        // Not one step: threads that share a query of a const world may lose a count.
+        const std::atomic_ref<std::uint64_t> count(calls_);
+        count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+        update(core);
+    }
+    /// How often the query has iterated or gathered, for statistics.
+    [[nodiscard]] std::uint64_t calls() const { return calls_; }
     [[nodiscard]] std::span<const QueryMatch> matches() const { return matches_; }
     /// nullptr: the archetype does not match.
     [[nodiscard]] const QueryMatch* match_of(std::uint32_t archetype) const {
@@ -94,6 +104,7 @@ class QueryState {
     std::vector<std::int32_t> match_of_;  ///< by archetype; -1: none
     std::size_t seen_ = 0;
     std::uint32_t epoch_ = 0;
+    std::uint64_t calls_ = 0;
     std::vector<std::uint8_t> table_groups_;  ///< groups of Changed terms without sparse components
     std::vector<std::uint8_t> sparse_groups_;  ///< those with
 };

@@ -141,6 +141,7 @@ Archetype::append_from(Archetype& from, std::span<const RowRange> ranges, std::u
     size_ += count;
     touch_structure({first, count}, version);
     rows_moved_in += count;
+    from.rows_moved_out += count;
 
     std::uint32_t row = first;
     while (!ranges.empty()) {
@@ -204,6 +205,7 @@ bool Archetype::take_over(Archetype& from, std::uint32_t version) {
     size_ = all.count;
     from.size_ = 0;
     rows_moved_in += all.count;
+    from.rows_moved_out += all.count;
     commit(size_);
     from.update_capacity();
     touch_structure(all, version);

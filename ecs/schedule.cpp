@@ -73,6 +73,9 @@ void Schedule::reset_timings() {
     for (SystemTiming& timing : timings_) {
         timing = {timing.name, 0, 0, 0};
     }
+    for (SyncTiming& timing : sync_timings_) {
+        timing = {timing.system};
+    }
 }
 
 // ---- stages
@@ -80,6 +83,7 @@ void Schedule::reset_timings() {
 
 void Schedule::build() const {
     stages_.clear();
+    sync_timings_.clear();
     for (std::size_t i = 0; i < systems_.size(); ++i) {
         const bool exclusive = systems_[i].access().exclusive;
         const bool begins =
@@ -94,6 +98,15 @@ void Schedule::build() const {
     }
     for (Stage& stage : stages_) {
         build_stage(stage);
+        for (std::size_t i = stage.first; i < stage.first + stage.count; ++i) {
+            if (systems_[i].access().commands) {
+                stage.recorders.push_back(i);
+            }
+        }
+        if (!stage.recorders.empty()) {
+            stage.sync = sync_timings_.size();
+            sync_timings_.push_back({stage.first + stage.count - 1});
+        }
     }
     is_built_ = true;
 }
@@ -154,11 +167,8 @@ void Schedule::run(World& world) {
     for (Stage& stage : stages_) {
         // Buffers belong to systems that may have been moved since the stage was built.
         stage.commands.clear();
-        for (std::size_t i = 0; i < stage.count; ++i) {
-            if (CommandBuffer* const buffer = systems_[stage.first + i].commands();
-                buffer != nullptr) {
-                stage.commands.push_back(buffer);
-            }
+        for (const std::size_t system : stage.recorders) {
+            stage.commands.push_back(systems_[system].commands());
         }
         run_stage(world, stage);
         apply(world, stage);
@@ -209,13 +219,25 @@ void Schedule::note_time(std::size_t system, double duration) {
 }
 
 void Schedule::apply(World& world, const Stage& stage) {
-    const bool any =
-        std::any_of(stage.commands.begin(), stage.commands.end(), [](const CommandBuffer* buffer) {
-            return !buffer->empty();
-        });
-    if (any) {
-        apply_commands(world, stage.commands);
+    std::uint64_t recorded = 0;
+    for (std::size_t i = 0; i < stage.commands.size(); ++i) {
+        if (const std::size_t count = stage.commands[i]->size(); count > 0) {
+            SystemTiming& timing = timings_[stage.recorders[i]];
+            timing.commands += count;
+            timing.last_commands = count;
+            recorded += count;
+        }
     }
+    if (recorded == 0) {
+        return;
+    }
+    const Clock::time_point start = Clock::now();
+    apply_commands(world, stage.commands);
+    SyncTiming& sync = sync_timings_[stage.sync];
+    ++sync.runs;
+    sync.commands += recorded;
+    sync.last = seconds(Clock::now() - start);
+    sync.mean += (sync.last - sync.mean) / static_cast<double>(sync.runs);
 }
 
 // ---- printing
@@ -249,6 +271,15 @@ std::string Schedule::to_text() const {
             }
             add_part(text, "after", before);
             text += '\n';
+        }
+        if (!stage.recorders.empty() && sync_timings_[stage.sync].runs > 0) {
+            const SyncTiming& sync = sync_timings_[stage.sync];
+            text += "  " + align_left("commands applied", width)
+                    + format_text(
+                        "  {} ms  mean {} ms  {} of them\n",
+                        ms_text(sync.last),
+                        ms_text(sync.mean),
+                        sync.commands);
         }
     }
     return text;

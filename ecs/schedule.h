@@ -35,6 +35,17 @@ struct SystemTiming {
     double last = 0.0;  ///< of the last run [s]
     double mean = 0.0;  ///< over all runs since the schedule was made or reset_timings() [s]
     std::uint64_t runs = 0;
+    std::uint64_t commands = 0;       ///< recorded in all runs
+    std::uint64_t last_commands = 0;  ///< recorded in the last run that recorded any
+};
+
+/// How long applying the commands of a stage took. Runs without commands do not count.
+struct SyncTiming {
+    std::size_t system = 0;  ///< the last of the stage
+    double last = 0.0;       ///< [s]
+    double mean = 0.0;       ///< [s]
+    std::uint64_t runs = 0;
+    std::uint64_t commands = 0;
 };
 
 class Schedule {
@@ -59,6 +70,9 @@ class Schedule {
     [[nodiscard]] std::size_t size() const { return systems_.size(); }
     /// In the order of the list.
     [[nodiscard]] std::span<const SystemTiming> timings() const { return timings_; }
+    /// Of every stage with systems that take Commands, in order. Empty before the first run.
+    [[nodiscard]] std::span<const SyncTiming> sync_timings() const { return sync_timings_; }
+    [[nodiscard]] std::span<const System> systems() const { return systems_; }
     void reset_timings();
     /// Whether stages with something to gain are run by several threads even if measurements speak
     /// against it: for tests. At start, no.
@@ -81,6 +95,8 @@ class Schedule {
         std::vector<std::vector<std::size_t>>
             waits_for;  ///< systems of the stage, from 0; without what follows
         std::vector<CommandBuffer*> commands;
+        std::vector<std::size_t> recorders;  ///< the systems whose commands they are
+        std::size_t sync = 0;                ///< in sync_timings_
     };
 
     void build() const;
@@ -94,6 +110,7 @@ class Schedule {
 
     std::vector<System> systems_;
     std::vector<SystemTiming> timings_;
+    mutable std::vector<SyncTiming> sync_timings_;
     std::vector<double> expected_;          ///< running average of each system [s]
     std::vector<std::size_t> sync_points_;  ///< before the system of this number
     mutable std::vector<Stage> stages_;

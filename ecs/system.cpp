@@ -100,6 +100,14 @@ System* SystemCache::find(World& world, const void* type, const void* function) 
     return nullptr;
 }
 
+std::vector<const System*> SystemCache::all(const World& world) {
+    std::vector<const System*> systems;
+    for (const auto& known : world.internals_->systems) {
+        systems.push_back(known.system.get());
+    }
+    return systems;
+}
+
 System& SystemCache::insert(World& world, const void* type, const void* function, System system) {
     world.internals_->systems.push_back(
         {type, function, std::make_unique<System>(std::move(system))});

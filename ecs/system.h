@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -30,6 +31,7 @@ class System {
         virtual void prepare(World& world) = 0;
         virtual void run(World& world, std::uint32_t version, std::uint32_t since) = 0;
         virtual CommandBuffer* commands() = 0;
+        virtual void list_queries(std::vector<const QueryState*>& queries) const = 0;
     };
 
     System(std::string name, SystemAccess access, std::unique_ptr<Body> body)
@@ -50,6 +52,12 @@ class System {
     void run_locked(World& world, std::uint32_t version);
     /// For apply_commands after the run; nullptr if the system takes no Commands.
     [[nodiscard]] CommandBuffer* commands() { return body_->commands(); }
+    /// Those of its parameters, in their order.
+    [[nodiscard]] std::vector<const QueryState*> queries() const {
+        std::vector<const QueryState*> queries;
+        body_->list_queries(queries);
+        return queries;
+    }
 
   private:
     std::string name_;
@@ -138,6 +146,14 @@ class SystemBody<F, TypeList<Ps...>> final : public System::Body {
         std::apply([&](auto&... states) { (look(states), ...); }, states_);
         return found;
     }
+    void list_queries(std::vector<const QueryState*>& queries) const override {
+        const auto look = [&](const auto& state) {
+            if constexpr (requires { state.state.matches(); }) {
+                queries.push_back(&state.state);
+            }
+        };
+        std::apply([&](const auto&... states) { (look(states), ...); }, states_);
+    }
 
   private:
     F function_;
@@ -182,6 +198,8 @@ void run_system(World& world, System& system);
 struct SystemCache {
     /// nullptr: not yet.
     static System* find(World& world, const void* type, const void* function);
+    /// In the order in which they first ran.
+    static std::vector<const System*> all(const World& world);
     static System& insert(World& world, const void* type, const void* function, System system);
 };
 

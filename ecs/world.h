@@ -258,6 +258,8 @@ class World {
     SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
     void end_restore();
 
+    /// Those made by query(), by type; null where this world has not met the type.
+    [[nodiscard]] std::span<const std::unique_ptr<QueryState>> queries() const { return queries_; }
     [[nodiscard]] WorldMemory memory() const;             ///< in ecs/world_stats.h
     [[nodiscard]] const FlushStats& flush_stats() const;  ///< in ecs/flush_stats.h
     [[nodiscard]] WorldCore& core() { return core_; }

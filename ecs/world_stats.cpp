@@ -1,6 +1,7 @@
 #include "ecs/world_stats.h"
 
 #include "ecs/base/text.h"
+#include "ecs/schedule.h"
 #include "ecs/world.h"
 
 namespace limn {
@@ -15,8 +16,43 @@ std::uint32_t row_bytes(const Archetype& archetype) {
     return bytes;
 }
 
-std::string kib(std::size_t bytes) {
-    return fixed_text(static_cast<double>(bytes) / 1024.0, 0);
+/// A term as it is written in the source, with the component's name.
+std::string term_text(const QueryTerm& term) {
+    const std::string& name = component_info(term.id).name;
+    switch (term.kind) {
+    case TermKind::Read:
+        return "const " + name;
+    case TermKind::Write:
+        return name;
+    case TermKind::OptionalRead:
+        return "Optional<const " + name + ">";
+    case TermKind::OptionalWrite:
+        return "Optional<" + name + ">";
+    case TermKind::With:
+        return "With<" + name + ">";
+    case TermKind::Without:
+        return "Without<" + name + ">";
+    case TermKind::Changed:
+        return "Changed<" + name + ">";
+    case TermKind::TakeRows:
+        return "TakeRows<" + name + ">";
+    }
+    return name;
+}
+
+/// Changed terms of one group are one Changed of several components.
+std::string terms_text(std::span<const QueryTerm> terms) {
+    std::string text;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        std::string term = term_text(terms[i]);
+        while (terms[i].kind == TermKind::Changed && i + 1 < terms.size()
+               && terms[i + 1].kind == TermKind::Changed && terms[i + 1].group == terms[i].group) {
+            ++i;
+            term.insert(term.size() - 1, ", " + component_info(terms[i].id).name);
+        }
+        text += (text.empty() ? "" : ", ") + term;
+    }
+    return text;
 }
 
 }  // namespace
@@ -42,6 +78,18 @@ WorldMemory World::memory() const {
     return memory;
 }
 
+QueryStats query_stats(const QueryState& query) {
+    QueryStats stats;
+    stats.terms = terms_text(query.terms());
+    stats.archetypes = query.matches().size();
+    for (const QueryMatch& match : query.matches()) {
+        stats.chunks += match.archetype->chunk_count();
+        stats.rows += match.archetype->size();
+    }
+    stats.calls = query.calls();
+    return stats;
+}
+
 WorldStats world_stats(const World& world) {
     WorldStats stats;
     stats.entities = world.entity_count();
@@ -59,6 +107,7 @@ WorldStats world_stats(const World& world) {
         one.committed = archetype->committed();
         one.promoted = archetype->is_promoted();
         one.rows_moved_in = archetype->rows_moved_in;
+        one.rows_moved_out = archetype->rows_moved_out;
         for (const ToggleBits& toggle : archetype->bits().toggles()) {
             if (const std::uint32_t count = toggle.disabled_count(); count > 0) {
                 one.disabled.emplace_back(component_info(toggle.id).name, count);
@@ -69,35 +118,45 @@ WorldStats world_stats(const World& world) {
     for (const SparseSet* set : world.sparse_sets()) {
         stats.sparse_sets.push_back({set->info().name, set->size(), set->committed()});
     }
+    for (const auto& query : world.queries()) {
+        if (query != nullptr) {
+            stats.queries.push_back(query_stats(*query));
+        }
+    }
+    for (const System* system : SystemCache::all(world)) {
+        for (const QueryState* query : system->queries()) {
+            stats.queries.push_back(query_stats(*query));
+        }
+    }
+    stats.flush = world.flush_stats();
     return stats;
 }
 
-std::string to_text(const WorldStats& stats) {
-    std::string text = format_text("{} entities\n", stats.entities);
-    for (const ArchetypeStats& archetype : stats.archetypes) {
-        text += format_text(
-            "{} rows {} chunks {} B/row {} % filled  {}\n",
-            align_right(archetype.rows, 9),
-            align_right(archetype.chunks, 6),
-            align_right(archetype.row_bytes, 5),
-            align_right(fixed_text(100.0 * archetype.fill(), 1), 5),
-            join_text(archetype.components, " "));
-        for (const auto& [component, rows] : archetype.disabled) {
-            text += format_text("{} of them with {} disabled\n", align_right(rows, 9), component);
+ScheduleStats schedule_stats(const Schedule& schedule) {
+    ScheduleStats stats;
+    for (std::size_t i = 0; i < schedule.size(); ++i) {
+        const SystemTiming& timing = schedule.timings()[i];
+        SystemStats one;
+        one.name = timing.name;
+        one.last = timing.last;
+        one.mean = timing.mean;
+        one.runs = timing.runs;
+        one.commands = timing.commands;
+        one.last_commands = timing.last_commands;
+        for (const QueryState* query : schedule.systems()[i].queries()) {
+            one.queries.push_back(query_stats(*query));
         }
+        stats.systems.push_back(std::move(one));
     }
-    for (const SparseStats& set : stats.sparse_sets) {
-        text += format_text("{} values, sparse  {}\n", align_right(set.values, 9), set.component);
+    for (const SyncTiming& timing : schedule.sync_timings()) {
+        stats.syncs.push_back(
+            {schedule.timings()[timing.system].name,
+             timing.last,
+             timing.mean,
+             timing.runs,
+             timing.commands});
     }
-    text += format_text(
-        "{} KiB: columns {}, blocks {}, handles {}, sparse {}, versions {}\n",
-        kib(stats.memory.total()),
-        kib(stats.memory.archetypes),
-        kib(stats.memory.blocks),
-        kib(stats.memory.slots),
-        kib(stats.memory.sparse),
-        kib(stats.memory.versions));
-    return text;
+    return stats;
 }
 
 }  // namespace limn

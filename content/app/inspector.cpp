@@ -38,12 +38,6 @@ bool is_editable(const ComponentInfo& info) {
     return !info.fields.empty() && info.ops.construct_copy != nullptr;
 }
 
-void draw_bar(float share, const char* text) {
-    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImGui::GetColorU32(ImGuiCol_HeaderActive));
-    ImGui::ProgressBar(share, {-1, 0}, text);
-    ImGui::PopStyleColor();
-}
-
 }  // namespace
 
 void Inspector::reset() {
@@ -54,9 +48,10 @@ void Inspector::reset() {
     collapsed_.clear();
     dragging_.clear();
     material_ = 0;
+    storage_.reset();
 }
 
-void Inspector::draw(const HudStyle& style, World& world) {
+void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedule) {
     if (!ImGui::IsAnyItemActive()) {
         dragging_.clear();
     }
@@ -84,7 +79,7 @@ void Inspector::draw(const HudStyle& style, World& world) {
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem("Storage")) {
-            draw_storage(style, world);
+            storage_.draw(style, world, schedule);
             ImGui::EndTabItem();
         }
         ImGui::EndTabBar();
@@ -347,57 +342,6 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
     ImGui::PushID(static_cast<int>(material_));
     edit_copy(style, world, std::move(edit), component_info<Material>(), &material, material.name);
     ImGui::PopID();
-    ImGui::EndChild();
-}
-
-void Inspector::draw_storage(const HudStyle& style, const World& world) {
-    std::size_t used = 0;
-    std::size_t bytes = 0;
-    for (const std::unique_ptr<Archetype>& archetype : world.archetypes()) {
-        used += archetype->size() > 0 ? 1 : 0;
-        bytes += archetype->committed();
-    }
-    ImGui::Text("%zu entities in %zu archetypes", world.entity_count(), used);
-    ImGui::TextColored(kHudDim, "%.1f MiB of columns", static_cast<double>(bytes) / (1 << 20));
-    ImGui::Separator();
-    ImGui::BeginChild("##archetypes");
-    for (const std::unique_ptr<Archetype>& archetype : world.archetypes()) {
-        if (archetype->size() == 0) {
-            continue;
-        }
-        ImGui::PushID(static_cast<int>(archetype->index()));
-        std::string names;
-        for (const ComponentId id : archetype->components()) {
-            names += (names.empty() ? "" : "  ") + component_info(id).name;
-        }
-        ImGui::PushTextWrapPos(0);
-        ImGui::TextUnformatted(names.c_str());
-        ImGui::PopTextWrapPos();
-        const std::uint32_t rows = archetype->chunk_count() * kChunkRows;
-        std::array<char, 96> text;
-        *fmt::format_to_n(
-             text.data(),
-             text.size() - 1,
-             "{} rows, {} chunks, {:.0f} KiB",
-             archetype->size(),
-             archetype->chunk_count(),
-             static_cast<double>(archetype->committed()) / 1024.0)
-             .out = '\0';
-        ImGui::PushFont(style.numbers);
-        draw_bar(
-            static_cast<float>(archetype->size()) / static_cast<float>(std::max(rows, 1u)),
-            text.data());
-        ImGui::PopFont();
-        ImGui::Spacing();
-        ImGui::PopID();
-    }
-    for (const SparseSet* set : world.sparse_sets()) {
-        if (set->size() > 0) {
-            ImGui::Text("%s (sparse)", set->info().name.c_str());
-            ImGui::SameLine();
-            ImGui::TextColored(kHudDim, "%u values", static_cast<unsigned>(set->size()));
-        }
-    }
     ImGui::EndChild();
 }
 

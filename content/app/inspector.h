@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/app/storage_panel.h"
 #include "content/app/undo.h"
 #include "ecs/any_component.h"
 #include "ecs/entity.h"
@@ -13,16 +14,17 @@ namespace limn {
 
 class Hierarchy;
 struct HudStyle;
+class Schedule;
 class World;
 
 // F2: the world, open for changes. Entities as a tree with search, every component of the selected
-// one, resources, materials, and how full the archetypes' chunks are. Nothing is touched until a
+// one, resources, materials, and what the ECS is made of. Nothing is touched until a
 // value really changes, so that looking costs no change versions and no uploads.
 
 class Inspector {
   public:
     /// The panel; edits go to `world` at once and onto the undo stack.
-    void draw(const HudStyle& style, World& world);
+    void draw(const HudStyle& style, World& world, const Schedule& schedule);
 
     void select(Entity entity) {
         selected_ = entity;
@@ -50,7 +52,6 @@ class Inspector {
     void draw_add_button(World& world);
     void draw_resources(const HudStyle& style, World& world);
     void draw_materials(const HudStyle& style, World& world);
-    void draw_storage(const HudStyle& style, const World& world);
 
     void rebuild_rows(World& world);
     void add_rows(const Hierarchy& tree, Entity entity, int depth);
@@ -71,6 +72,7 @@ class Inspector {
     double rows_built_at_ = -1.0;  // [s]
     bool reveal_ = false;          // scroll to the selected entity
     std::uint32_t material_ = 0;
+    StoragePanel storage_;
     std::string dragging_;  // label of the edit that goes on while the mouse is held
 };
 

@@ -419,7 +419,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .scale_auto = scale_.automatic,
          .paused = paused_,
          .error = shader_error_.c_str()});
-    inspector_.draw(hud_->style(), stage_->world);
+    inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
     hud_->end_frame();

@@ -8,6 +8,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
+#include "ecs/schedule.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
 
@@ -79,7 +80,7 @@ TEST_CASE("inspector: looking at every component changes nothing") {
     inspector.select(entity);
     const std::uint64_t before = state_hash(world);
     for (int i = 0; i < 5; ++i) {
-        hud.frame([&] { inspector.draw(hud.style, world); });
+        hud.frame([&] { inspector.draw(hud.style, world, Schedule()); });
     }
     CHECK(state_hash(world) == before);
     CHECK(inspector.undo_stack().undo_count() == 0);
@@ -107,7 +108,7 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     Inspector inspector;
     inspector.open = true;
     inspector.select(entity);
-    const auto draw = [&] { inspector.draw(hud.style, world); };
+    const auto draw = [&] { inspector.draw(hud.style, world, Schedule()); };
     for (int i = 0; i < 3; ++i) {
         hud.frame(draw);
     }
@@ -156,7 +157,7 @@ TEST_CASE("inspector: the selected entity may vanish at any time") {
     Inspector inspector;
     inspector.open = true;
     inspector.select(child);
-    const auto draw = [&] { inspector.draw(hud.style, world); };
+    const auto draw = [&] { inspector.draw(hud.style, world, Schedule()); };
     hud.frame(draw);
     world.destroy(child);
     hud.frame(draw);
