@@ -132,8 +132,13 @@ void fill_values(Column* lanes, std::uint32_t row, std::size_t count, const void
 }
 
 Archetype::Archetype(
-    std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks)
-    : index_(index), components_(components.begin(), components.end()), blocks_(blocks) {
+    std::uint32_t index,
+    std::span<const ComponentId> components,
+    BlockPool& blocks,
+    std::span<const SharedValue> shared)
+    : index_(index), components_(components.begin(), components.end()),
+      shared_(shared.begin(), shared.end()), blocks_(blocks) {
+    std::size_t shared_count = 0;
     column_of_.assign(components.empty() ? 0 : components.back() + 1, std::int16_t{kNoColumn});
     for (const ComponentId id : components) {
         const ComponentInfo& info = component_info(id);
@@ -147,6 +152,14 @@ Archetype::Archetype(
         }
         if (info.is_tag) {
             column_of_[id] = kTagColumn;
+            continue;
+        }
+        if (info.storage == Storage::Shared) {
+            LIMN_CHECK_NOTE(
+                shared_count < shared.size() && shared[shared_count].component == id,
+                info.name.c_str());
+            ++shared_count;
+            column_of_[id] = kSharedColumn;
             continue;
         }
         LIMN_CHECK_NOTE(info.align <= 4096, "components are aligned to 4096 bytes at most");

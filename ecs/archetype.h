@@ -4,6 +4,7 @@
 #include "ecs/entity.h"
 #include "ecs/reflect.h"
 #include "ecs/row_bits.h"
+#include "ecs/shared_values.h"
 
 #include <atomic>
 #include <cstddef>
@@ -14,12 +15,13 @@
 
 namespace limn {
 
-// All entities with the same set of table components, one row each. Every component has a column:
-// an array over all rows, at least 64-byte aligned, without gaps, so that a system is a plain loop
-// over arrays. The first rows live in a block shared by all columns; from some hundred rows on, at
-// 1024 at the latest, each column has a VirtualRange of its own and never moves again. Rows up to
-// the next multiple of 16 can be read and written, so vector loops need no tail. A split component
-// has a column, a lane, for each of its 4-byte scalars.
+// All entities with the same set of components, sparse ones apart, and with the same values of
+// those of Storage::Shared, one row each. Every component has a column: an array over all rows, at
+// least 64-byte aligned, without gaps, so that a system is a plain loop over arrays. The first rows
+// live in a block shared by all columns; from some hundred rows on, at 1024 at the latest, each
+// column has a VirtualRange of its own and never moves again. Rows up to the next multiple of 16
+// can be read and written, so vector loops need no tail. A split component has a column, a lane,
+// for each of its 4-byte scalars.
 //
 // 1024 rows are a chunk, the unit of work and of change versions. A version is the number of the
 // system run (or the moment between runs) that last took the chunk of the column for writing; rows
@@ -43,7 +45,8 @@ inline constexpr std::size_t kLaneBytes = 4;
 using LaneScalar [[gnu::may_alias]] = std::uint32_t;
 
 inline constexpr int kNoColumn = -1;
-inline constexpr int kTagColumn = -2;  ///< present, but has no data
+inline constexpr int kTagColumn = -2;     ///< present, but has no data
+inline constexpr int kSharedColumn = -3;  ///< present, with one value for all rows
 
 /// Whether `version` is later than `since`; numbers wrap around, so only the difference counts.
 [[nodiscard]] constexpr bool is_newer(std::uint32_t version, std::uint32_t since) {
@@ -110,7 +113,12 @@ struct RowPlan {
 class Archetype {
   public:
     /// `components` ascending, none of Storage::Sparse.
-    Archetype(std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks);
+    /// `shared` has the values of those of Storage::Shared, in the same order.
+    Archetype(
+        std::uint32_t index,
+        std::span<const ComponentId> components,
+        BlockPool& blocks,
+        std::span<const SharedValue> shared = {});
     Archetype(const Archetype&) = delete;
     Archetype& operator=(const Archetype&) = delete;
     ~Archetype();
@@ -122,13 +130,24 @@ class Archetype {
     [[nodiscard]] std::span<const Entity> entities() const { return {entities_, size_}; }
     /// Ascending, tags too.
     [[nodiscard]] std::span<const ComponentId> components() const { return components_; }
+    /// The shared components and their values, ascending by component.
+    [[nodiscard]] std::span<const SharedValue> shared() const { return shared_; }
+    /// nullptr: it has no such shared component.
+    [[nodiscard]] const SharedValue* shared_value(ComponentId id) const {
+        for (const SharedValue& value : shared_) {
+            if (value.component == id) {
+                return &value;
+            }
+        }
+        return nullptr;
+    }
     [[nodiscard]] std::span<const Column> columns() const { return columns_; }
     [[nodiscard]] std::span<Column> columns() { return columns_; }
     [[nodiscard]] const Column& column(int index) const {
         return columns_[static_cast<std::size_t>(index)];
     }
     [[nodiscard]] Column& column(int index) { return columns_[static_cast<std::size_t>(index)]; }
-    /// Where the component is: a column, kTagColumn or kNoColumn.
+    /// Where the component is: a column, kTagColumn, kSharedColumn or kNoColumn.
     [[nodiscard]] int column_of(ComponentId id) const {
         return id < column_of_.size() ? column_of_[id] : kNoColumn;
     }
@@ -343,6 +362,7 @@ class Archetype {
     std::vector<std::int16_t> column_of_;
     std::vector<ComponentId> components_;
     std::vector<std::unique_ptr<RowPlan>> plans_;
+    std::vector<SharedValue> shared_;
     VirtualRange entity_range_;
     BlockPool& blocks_;
     std::byte* block_ = nullptr;

@@ -17,6 +17,43 @@ void ChangeList::clear() {
     shares_records = false;
 }
 
+void ChangeList::add_shared(
+    ChangePlans& plans,
+    const ChangePlan& plan,
+    RowRange rows,
+    std::span<std::byte* const> first_records,
+    std::uint32_t key) {
+    const auto stride_of = [&](std::size_t command) {
+        return shares_records ? std::size_t{0} : plan.commands[command].layout->stride;
+    };
+    const auto is_same = [&](std::uint32_t a, std::uint32_t b) {
+        return std::all_of(
+            plan.table.begin(), plan.table.end(), [&](const ComponentChange& change) {
+                if (!change.sets_shared()) {
+                    return true;
+                }
+                const auto command = static_cast<std::size_t>(change.command);
+                const std::byte* values = first_records[command] + change.offset;
+                return std::memcmp(
+                           values + a * stride_of(command),
+                           values + b * stride_of(command),
+                           change.info->size)
+                       == 0;
+            });
+    };
+    std::vector<std::byte*> some(first_records.begin(), first_records.end());
+    for (std::uint32_t begin = 0, end = 0; begin < rows.count; begin = end) {
+        end = begin + 1;
+        while (end < rows.count && (shares_records || is_same(begin, end))) {
+            ++end;
+        }
+        for (std::size_t command = 0; command < some.size(); ++command) {
+            some[command] = first_records[command] + begin * stride_of(command);
+        }
+        append(plans.with_shared(plan, some), {rows.first + begin, end - begin}, some, key + begin);
+    }
+}
+
 void ChangeList::reserve(std::size_t count) {
     ranges.reserve(count);
     records.reserve(count);
@@ -57,7 +94,7 @@ void ChangeApplier::apply_batch(const ChangeBatch& batch) {
         first = move_rows(batch);
     }
     for (const ComponentChange& change : plan.table) {
-        if (change.command >= 0 && change.is_present) {
+        if (change.command >= 0 && change.is_present && !change.sets_shared()) {
             put_values(batch, change, first);
         }
         if (change.enabling != Enabling::Keep && change.is_present) {

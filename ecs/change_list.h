@@ -31,9 +31,33 @@ class ChangeList {
     void clear();
     /// Rows of plan.source; where the plan has none, numbers of `created`. `first_records` are
     /// those of the first row, one for every command of the plan. `key` orders the entities for
-    /// observers.
+    /// observers. If the plan sets shared components, rows of equal values get the plan for those.
     void
-    add(const ChangePlan& plan,
+    add(ChangePlans& plans,
+        const ChangePlan& plan,
+        RowRange rows,
+        std::span<std::byte* const> first_records,
+        std::uint32_t key) {
+        if (plan.sets_shared) {
+            add_shared(plans, plan, rows, first_records, key);
+        } else {
+            append(plan, rows, first_records, key);
+        }
+    }
+    /// For so many calls of add().
+    void reserve(std::size_t count);
+
+    std::vector<ChangeBatch> batches;
+    std::vector<RowRange> ranges;
+    std::vector<std::byte*> records;
+    std::vector<std::uint32_t> keys;  ///< of each range's first row
+    std::vector<Entity> created;
+    /// All rows get copies of the same values; otherwise each takes its own, which is then gone.
+    bool shares_records = false;
+
+  private:
+    void append(
+        const ChangePlan& plan,
         RowRange rows,
         std::span<std::byte* const> first_records,
         std::uint32_t key) {
@@ -47,16 +71,12 @@ class ChangeList {
         records.insert(records.end(), first_records.begin(), first_records.end());
         keys.push_back(key);
     }
-    /// For so many calls of add().
-    void reserve(std::size_t count);
-
-    std::vector<ChangeBatch> batches;
-    std::vector<RowRange> ranges;
-    std::vector<std::byte*> records;
-    std::vector<std::uint32_t> keys;  ///< of each range's first row
-    std::vector<Entity> created;
-    /// All rows get copies of the same values; otherwise each takes its own, which is then gone.
-    bool shares_records = false;
+    void add_shared(
+        ChangePlans& plans,
+        const ChangePlan& plan,
+        RowRange rows,
+        std::span<std::byte* const> first_records,
+        std::uint32_t key);
 };
 
 /// Applies a list: tells observers of what goes, moves the rows, and gives back whom to tell of

@@ -154,16 +154,42 @@ ChangePlans::make(Archetype* source, std::span<const CommandKind> commands) {
             plan->table.push_back(fold(commands, id, was_present, plan->dropped));
         }
     }
-    find_target(*plan);
+    plan->sets_shared =
+        std::any_of(plan->table.begin(), plan->table.end(), [](const ComponentChange& change) {
+            return change.sets_shared();
+        });
+    if (!plan->sets_shared) {
+        plan->target = &find_target(*plan, {});
+    }
     return plan;
 }
 
-/// The archetype with the components that the entity has afterwards.
-void ChangePlans::find_target(ChangePlan& plan) {
+const ChangePlan&
+ChangePlans::with_shared(const ChangePlan& plan, std::span<std::byte* const> records) {
+    Archetype& target = find_target(plan, records);
+    std::unique_ptr<ChangePlan>& known = plan.by_target[&target];
+    if (known == nullptr) {
+        known = std::make_unique<ChangePlan>();
+        known->source = plan.source;
+        known->target = &target;
+        known->commands = plan.commands;
+        known->table = plan.table;
+        known->sparse = plan.sparse;
+        known->dropped = plan.dropped;
+        commands_ += plan.commands.size();
+    }
+    return *known;
+}
+
+/// The archetype with the components that the entity has afterwards. `records` are looked at if the
+/// plan sets shared components.
+Archetype& ChangePlans::find_target(const ChangePlan& plan, std::span<std::byte* const> records) {
     std::vector<ComponentId> components;
+    std::vector<SharedValue> shared;
     if (plan.source != nullptr) {
         const auto present = plan.source->components();
         components.assign(present.begin(), present.end());
+        shared.assign(plan.source->shared().begin(), plan.source->shared().end());
     }
     for (const ComponentChange& change : plan.table) {
         const auto place = std::lower_bound(components.begin(), components.end(), change.info->id);
@@ -172,8 +198,19 @@ void ChangePlans::find_target(ChangePlan& plan) {
         } else if (!change.is_present && change.was_present) {
             components.erase(place);
         }
+        if (change.sets_shared() || !change.is_present) {
+            std::erase_if(shared, [&](const SharedValue& value) {
+                return value.component == change.info->id;
+            });
+        }
+        if (change.sets_shared()) {
+            const std::byte* value =
+                records[static_cast<std::size_t>(change.command)] + change.offset;
+            SharedValues& values = world_.core().shared;
+            insert_shared(shared, values.value(values.add(*change.info, value)));
+        }
     }
-    plan.target = &world_.archetype_of(components);
+    return world_.archetype_of(components, shared);
 }
 
 void ChangePlans::clear_if_stale() {

@@ -3,7 +3,9 @@
 #include "ecs/archetype.h"
 #include "ecs/command_buffer.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,7 +16,8 @@ class World;
 
 // What a list of commands does to an entity, apart from the values: which archetype its row moves
 // to and whose values are new there. That depends on the kinds of the commands and on the archetype
-// the entity is in, not on the entity, so it is worked out once and kept.
+// the entity is in, not on the entity, so it is worked out once and kept. The values of shared
+// components are the exception: each combination of them has a plan of its own.
 
 /// What commands say of a component that can be disabled.
 enum class Enabling : std::uint8_t { Keep, Enable, Disable };
@@ -32,6 +35,10 @@ struct ComponentChange {
 
     [[nodiscard]] bool gains() const { return is_present && (!was_present || was_removed); }
     [[nodiscard]] bool loses() const { return was_present && (!is_present || was_removed); }
+    /// Whether the value decides the archetype.
+    [[nodiscard]] bool sets_shared() const {
+        return info->storage == Storage::Shared && is_present && command >= 0;
+    }
 };
 
 /// A value that nobody needs in the end, and that has a destructor.
@@ -56,6 +63,10 @@ struct ChangePlan {
     std::vector<ComponentChange> table;
     std::vector<SparseChange> sparse;
     std::vector<DroppedValue> dropped;
+    /// Some command has the value of a shared component. Such a plan has no target; those of
+    /// with_shared have, and are kept here by it.
+    bool sets_shared = false;
+    mutable std::map<const Archetype*, std::unique_ptr<ChangePlan>> by_target;
 
     [[nodiscard]] bool is_for(const Archetype* from, std::span<const CommandKind> kinds) const;
 };
@@ -72,6 +83,9 @@ class ChangePlans {
         }
         return find_or_make(source, commands);
     }
+    /// Of a plan that sets shared components: the one for the values in these records, one for each
+    /// command.
+    const ChangePlan& with_shared(const ChangePlan& plan, std::span<std::byte* const> records);
     /// Between two uses: forgets the plans if the archetypes began anew or there are many.
     void clear_if_stale();
 
@@ -79,7 +93,8 @@ class ChangePlans {
     const ChangePlan& find_or_make(Archetype* source, std::span<const CommandKind> commands);
     [[nodiscard]] std::unique_ptr<ChangePlan>
     make(Archetype* source, std::span<const CommandKind> commands);
-    void find_target(ChangePlan& plan);
+    [[nodiscard]] Archetype&
+    find_target(const ChangePlan& plan, std::span<std::byte* const> records);
 
     World& world_;
     const ChangePlan* last_ = nullptr;

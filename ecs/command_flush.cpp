@@ -32,7 +32,7 @@ void CommandFlush::run(CommandKind kind, std::byte* record, std::span<const Arch
     std::uint32_t key = 0;
     for (const ArchetypeRows& part : rows) {
         Archetype* source = world_.core_.archetypes[part.archetype].get();
-        list_.add(plans_.find(source, {&kind, 1}), part.rows, {&record, 1}, key);
+        list_.add(plans_, plans_.find(source, {&kind, 1}), part.rows, {&record, 1}, key);
         key += part.rows.count;
     }
     stats.commands += key;

@@ -296,7 +296,7 @@ void CommandOrder::arrange(ChangePlans& plans, ChangeList& list, FlushStats& sta
         }
         std::byte* const record =
             run.commands.records + std::size_t{first.first} * kind.layout->stride;
-        list.add(*plan, {first.row, first.count}, {&record, 1}, run.key + first.first);
+        list.add(plans, *plan, {first.row, first.count}, {&record, 1}, run.key + first.first);
         ++at;
     }
 }
@@ -346,6 +346,7 @@ void CommandOrder::emit(std::uint64_t begin, std::uint64_t end) {
     const std::uint32_t key =
         runs_[first.run].key + first.first + static_cast<std::uint32_t>(begin - first.begin());
     list_->add(
+        *plans_,
         plans_->find(source_of(first), kinds_),
         {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)},
         records_,

@@ -320,8 +320,11 @@ hash_rows(const Column& column, std::uint32_t first, std::uint32_t count, std::u
 }
 
 std::uint64_t layout_hash(const ComponentInfo& info) {
-    const std::uint64_t kind =
-        hash_combine(static_cast<std::uint64_t>(info.value_bytes), info.is_tag ? 1 : 0);
+    const std::uint64_t kind = hash_combine(
+        static_cast<std::uint64_t>(info.value_bytes),
+        info.is_tag                       ? 1
+        : info.storage == Storage::Shared ? 2  // one value, not one a row
+                                          : 0);
     return layout_of(
         info.fields, hash_combine(kind, info.value_bytes == ValueBytes::All ? info.size : 0));
 }

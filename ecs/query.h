@@ -29,7 +29,8 @@ namespace limn {
 //     query.gather(entities, [](std::size_t i, const A& a, B& b) { ... });    those of a list
 //
 // The terms are in ecs/query_terms.h. The order is that of the archetypes' creation, then rows, for
-// any number of threads; with a required sparse component, the order of the values of the first
+// any number of threads; archetypes with equal values of the shared components that it reads follow
+// each other. With a required sparse component, the order of the values of the first
 // such component. The loop of each() runs over arrays, without a call or a look-up a row, unless a
 // sparse component is involved.
 //
@@ -41,6 +42,7 @@ class Query {
     static constexpr bool kChanged = (detail::TermTraits<Terms>::is_changed || ...);
     /// A sparse component is required: the iteration follows its set.
     static constexpr bool kFollowsSparse = (detail::TermTraits<Terms>::needs_sparse || ...);
+    static constexpr bool kKeyed = (std::is_same_v<Terms, detail::Keyed> || ...);
     static constexpr bool kFiltersRows = (detail::TermTraits<Terms>::filters_rows || ...);
     /// Rows are left out by their enable bits.
     static constexpr bool kToggles = (detail::TermTraits<Terms>::is_toggled || ...);
@@ -70,6 +72,17 @@ class Query {
         Query copy = *this;
         copy.since_ = version;
         copy.has_since_ = true;
+        return copy;
+    }
+
+    /// The same query of the entities only whose shared component T equals `key`, byte by byte. T
+    /// need not be a term. Looks at the archetypes with that value and no others.
+    template <typename T>
+    [[nodiscard]] auto where(const T& key) const {
+        static_assert(detail::is_shared<T>, "where: T must be a component of Storage::Shared");
+        using Result = std::conditional_t<kKeyed, Query, Query<Terms..., detail::Keyed>>;
+        Result copy(*this);
+        copy.keys_.add(core_->shared.find(component_info<T>(), &key));
         return copy;
     }
 
@@ -242,9 +255,7 @@ class Query {
     [[nodiscard]] std::uint32_t chunk_count() const {
         state_->update(*core_);
         std::uint32_t total = 0;
-        for (const QueryMatch& match : state_->matches()) {
-            total += match.archetype->chunk_count();
-        }
+        each_match([&](const QueryMatch& match) { total += match.archetype->chunk_count(); });
         return total;
     }
 
@@ -298,6 +309,13 @@ class Query {
     }
 
   private:
+    template <typename... Others>
+    friend class Query;
+    template <typename... Others>
+    explicit Query(const Query<Others...>& other)
+        : core_(other.core_), state_(other.state_), version_(other.version_), since_(other.since_),
+          has_since_(other.has_since_), lock_(other.lock_) {}
+
     using Indices = std::make_index_sequence<Data::size>;
 
     template <typename Term, bool = detail::TermTraits<Term>::is_data>
@@ -368,8 +386,9 @@ class Query {
         static_assert(
             std::is_invocable_v<F&, ChunkView, detail::ChunkArgument<Ts>...>,
             "chunks: the function takes a ChunkView and one std::span a component, in order: "
-            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>; of "
-            "TakeRows, const RowMask&");
+            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>; of a "
+            "shared "
+            "one, const D&; of TakeRows, const RowMask&");
     }
 
     /// A toggled tag may be there, to be enabled and disabled: its array is empty.
@@ -394,6 +413,31 @@ class Query {
         return has_since_ ? since_ : core_->now() - kNeverRan;
     }
 
+    /// Whether the archetype has the values that where() asks for.
+    [[nodiscard]] bool has_keys([[maybe_unused]] const QueryMatch& match) const {
+        if constexpr (kKeyed) {
+            return keys_.are_in(*match.archetype);
+        }
+        return true;
+    }
+
+    template <typename Visit>
+    void each_match(const Visit& visit) const {
+        if constexpr (kKeyed) {
+            // By way of the value's list: there may be a thousand others.
+            for (const std::uint32_t archetype : keys_.archetypes(core_->shared)) {
+                const QueryMatch* match = state_->match_of(archetype);
+                if (match != nullptr && has_keys(*match)) {
+                    visit(*match);
+                }
+            }
+        } else {
+            for (const QueryMatch& match : state_->matches()) {
+                visit(match);
+            }
+        }
+    }
+
     /// visit(match, begin, end): whole archetypes or, with Changed, their changed chunks.
     template <typename Visit>
     void each_range(const Visit& visit) const {
@@ -403,11 +447,11 @@ class Query {
                 visit(*task.match, begin, chunk_end(begin, task.match->archetype->size()));
             });
         } else {
-            for (const QueryMatch& match : state_->matches()) {
+            each_match([&](const QueryMatch& match) {
                 if (match.archetype->size() > 0) {
                     visit(match, std::uint32_t{0}, match.archetype->size());
                 }
-            }
+            });
         }
     }
 
@@ -415,14 +459,14 @@ class Query {
     void each_chunk(const Visit& visit) const {
         [[maybe_unused]] const std::uint32_t since = since_version();
         ChunkTask task{nullptr, 0, 0, 0};
-        for (const QueryMatch& match : state_->matches()) {
+        each_match([&](const QueryMatch& match) {
             task.match = &match;
             const std::uint32_t chunk_count = match.archetype->chunk_count();
             if constexpr (kChanged) {
                 if (!state_->archetype_changed(*match.archetype, since)) {
                     task.index += chunk_count;
                     task.offset += match.archetype->size();
-                    continue;
+                    return;
                 }
             }
             const std::uint32_t end = task.offset + match.archetype->size();
@@ -439,7 +483,7 @@ class Query {
                 task.offset += kChunkRows;
             }
             task.offset = end;
-        }
+        });
     }
 
     [[nodiscard]] static std::uint32_t task_end(const ChunkTask& task) {
@@ -766,6 +810,13 @@ class Query {
             return match.archetype->bits().track_of_column(column)->take(chunk, size);
         } else if constexpr (std::is_empty_v<T>) {
             return {};
+        } else if constexpr (detail::is_shared<T>) {
+            T* const value = detail::find_shared<T>(*match.archetype);
+            if constexpr (Traits::is_optional) {
+                return value;
+            } else {
+                return *value;
+            }
         } else if constexpr (detail::is_split<T>) {
             return column < 0 ? SplitSpan<T>()
                               : SplitSpan<T>(&match.archetype->column(column), begin, size);
@@ -783,7 +834,7 @@ class Query {
 
     /// Whether the row passes the filters that need a look at each row.
     [[nodiscard]] bool passes(const QueryMatch& match, std::uint32_t row) const {
-        if (!state_->row_matches(*core_, match.archetype->entities()[row])) {
+        if (!state_->row_matches(*core_, *match.archetype, match.archetype->entities()[row])) {
             return false;
         }
         if constexpr (kChanged) {
@@ -803,7 +854,7 @@ class Query {
         for (std::uint32_t i = begin; i < end; ++i) {
             const EntityPlace place = core_->entities.find(set->entities()[i]);
             const QueryMatch* match = state_->match_of(place.archetype);
-            if (match == nullptr || !passes(*match, place.row)) {
+            if (match == nullptr || !has_keys(*match) || !passes(*match, place.row)) {
                 continue;
             }
             if constexpr (kToggles) {
@@ -866,7 +917,8 @@ class Query {
             return {};
         }
         const QueryMatch* match = state_->match_of(place.archetype);
-        if (match == nullptr || (kFiltersRows && !state_->row_matches(*core_, entity))) {
+        if (match == nullptr || !has_keys(*match)
+            || (kFiltersRows && !state_->row_matches(*core_, *match->archetype, entity))) {
             return {};
         }
         if constexpr (kToggles) {
@@ -962,6 +1014,7 @@ class Query {
     std::uint32_t since_ = 0;
     bool has_since_ = false;
     IterationLock lock_;
+    [[no_unique_address]] std::conditional_t<kKeyed, detail::SharedKeys, detail::NoKeys> keys_;
 };
 
 }  // namespace limn

@@ -36,11 +36,21 @@ bool all_groups(
 
 }  // namespace
 
+bool detail::SharedKeys::are_in(const Archetype& archetype) const {
+    const auto shared = archetype.shared();
+    return std::all_of(keys_.begin(), keys_.begin() + count_, [&](std::uint32_t key) {
+        return std::any_of(shared.begin(), shared.end(), [key](const SharedValue& value) {
+            return value.key == key;
+        });
+    });
+}
+
 QueryState::QueryState(std::span<const QueryTerm> terms) : terms_(terms.begin(), terms.end()) {
     for (QueryTerm& term : terms_) {
         const Storage storage = component_info(term.id).storage;
         term.is_sparse = storage == Storage::Sparse;
         term.is_toggle = storage == Storage::Toggle;
+        reads_shared_ = reads_shared_ || (storage == Storage::Shared && has_data(term.kind));
     }
     for (const QueryTerm& term : terms_) {
         if (term.kind != TermKind::Changed) {
@@ -58,10 +68,22 @@ QueryState::QueryState(std::span<const QueryTerm> terms) : terms_(terms.begin(),
     }
 }
 
+/// `if_sparse`: what to think of sparse components, which are decided by row.
+bool QueryState::group_matches(
+    const Archetype& archetype, std::uint8_t group, bool if_sparse) const {
+    return std::any_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
+        return term.kind == TermKind::AnyOf && term.group == group
+               && (term.is_sparse ? if_sparse : archetype.has(term.id));
+    });
+}
+
 bool QueryState::matches(const Archetype& archetype) const {
     return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
         if (term.is_sparse) {
             return true;  // decided by row
+        }
+        if (term.kind == TermKind::AnyOf) {
+            return group_matches(archetype, term.group, true);
         }
         if (term.kind == TermKind::Without) {
             return term.is_toggle || !archetype.has(term.id);  // disabled rows are without
@@ -95,6 +117,31 @@ void QueryState::extend(const WorldCore& core) {
         match_of_[seen_] = static_cast<std::int32_t>(matches_.size());
         matches_.push_back(match);
     }
+    if (reads_shared_) {
+        sort_by_shared();
+    }
+}
+
+void QueryState::sort_by_shared() {
+    const auto key_of = [](const Archetype& archetype, ComponentId id) {
+        const SharedValue* value = archetype.shared_value(id);
+        return value != nullptr ? value->key : SharedValues::kUnknown;
+    };
+    std::sort(matches_.begin(), matches_.end(), [&](const QueryMatch& a, const QueryMatch& b) {
+        for (const QueryTerm& term : terms_) {
+            if (has_data(term.kind)) {
+                const std::uint32_t left = key_of(*a.archetype, term.id);
+                const std::uint32_t right = key_of(*b.archetype, term.id);
+                if (left != right) {
+                    return left < right;
+                }
+            }
+        }
+        return a.archetype->index() < b.archetype->index();
+    });
+    for (std::size_t i = 0; i < matches_.size(); ++i) {
+        match_of_[matches_[i].archetype->index()] = static_cast<std::int32_t>(i);
+    }
 }
 
 bool QueryState::archetype_changed(const Archetype& archetype, std::uint32_t since) const {
@@ -125,15 +172,27 @@ bool QueryState::row_changed(
     });
 }
 
-bool QueryState::row_matches(const WorldCore& core, Entity entity) const {
+bool QueryState::row_matches(
+    const WorldCore& core, const Archetype& archetype, Entity entity) const {
+    const auto has_sparse = [&](ComponentId id) {
+        const SparseSet* set = core.sparse_set(id);
+        return set != nullptr && set->has(entity);
+    };
     return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
+        if (term.kind == TermKind::AnyOf) {
+            return !term.is_sparse || has_sparse(term.id)
+                   || group_matches(archetype, term.group, false)
+                   || std::any_of(terms_.begin(), terms_.end(), [&](const QueryTerm& other) {
+                          return other.kind == TermKind::AnyOf && other.group == term.group
+                                 && other.is_sparse && has_sparse(other.id);
+                      });
+        }
         const bool matters =
             term.is_sparse && (is_required(term.kind) || term.kind == TermKind::Without);
         if (!matters) {
             return true;
         }
-        const SparseSet* set = core.sparse_set(term.id);
-        return (set != nullptr && set->has(entity)) == is_required(term.kind);
+        return has_sparse(term.id) == is_required(term.kind);
     });
 }
 

@@ -13,7 +13,9 @@ namespace limn {
 
 // The part of a query that does not depend on types: which components it asks for, and the
 // archetypes that have them. The list is kept and only extended, by the archetypes that are new
-// since it was last looked at.
+// since it was last looked at. It is in the order of their creation; of a query that reads shared
+// components, archetypes with equal values follow each other, values in the order of their first
+// use.
 
 inline constexpr std::size_t kMaxQueryColumns = 16;
 
@@ -26,12 +28,13 @@ enum class TermKind : std::uint8_t {
     Without,        ///< Without<T>
     Changed,        ///< Changed<T>: T must be there, its versions are compared
     TakeRows,       ///< TakeRows<T>: T must be there, the marks of its rows are taken
+    AnyOf,          ///< AnyOf<T..>: one of those of its group must be there
 };
 
 struct QueryTerm {
     TermKind kind;
     ComponentId id;
-    std::uint8_t group = 0;  ///< Changed terms of one group: any of them
+    std::uint8_t group = 0;  ///< Changed and AnyOf terms of one group: any of them
     bool is_sparse = false;
     bool is_toggle = false;
 };
@@ -43,6 +46,31 @@ struct QueryMatch {
     Archetype* archetype;
     std::array<std::int16_t, kMaxQueryColumns> columns;  ///< of each term with data, in order
 };
+
+namespace detail {
+
+/// What Query::where asks for: numbers of shared values, all of which an archetype must have.
+class SharedKeys {
+  public:
+    static constexpr std::size_t kMax = 4;
+    void add(std::uint32_t key) {
+        LIMN_CHECK_NOTE(count_ < kMax, "where: too many values in one query");
+        keys_[count_++] = key;
+    }
+    [[nodiscard]] bool are_in(const Archetype& archetype) const;
+    /// Those that have the first value; some may lack another.
+    [[nodiscard]] std::span<const std::uint32_t> archetypes(const SharedValues& values) const {
+        return keys_[0] != SharedValues::kUnknown ? values.archetypes(keys_[0])
+                                                  : std::span<const std::uint32_t>();
+    }
+
+  private:
+    std::array<std::uint32_t, kMax> keys_ = {};
+    std::size_t count_ = 0;
+};
+struct NoKeys {};
+
+}  // namespace detail
 
 class QueryState {
   public:
@@ -84,8 +112,10 @@ class QueryState {
         const Archetype& archetype,
         std::uint32_t row,
         std::uint32_t since) const;
-    /// Whether the entity has the required sparse components and none of the excluded.
-    [[nodiscard]] bool row_matches(const WorldCore& core, Entity entity) const;
+    /// Whether the entity, of that archetype, has the required sparse components and none of the
+    /// excluded.
+    [[nodiscard]] bool
+    row_matches(const WorldCore& core, const Archetype& archetype, Entity entity) const;
     /// Which rows of the chunk are enabled for the toggled terms: With and the like want the bit,
     /// Without does not. Fills `rows` if it is Some.
     [[nodiscard]] EnabledRows
@@ -99,12 +129,16 @@ class QueryState {
   private:
     void extend(const WorldCore& core);
     [[nodiscard]] bool matches(const Archetype& archetype) const;
+    [[nodiscard]] bool
+    group_matches(const Archetype& archetype, std::uint8_t group, bool if_sparse) const;
+    void sort_by_shared();
     std::vector<QueryTerm> terms_;
     std::vector<QueryMatch> matches_;
     std::vector<std::int32_t> match_of_;  ///< by archetype; -1: none
     std::size_t seen_ = 0;
     std::uint32_t epoch_ = 0;
     std::uint64_t calls_ = 0;
+    bool reads_shared_ = false;               ///< some term with data is shared
     std::vector<std::uint8_t> table_groups_;  ///< groups of Changed terms without sparse components
     std::vector<std::uint8_t> sparse_groups_;  ///< those with
 };

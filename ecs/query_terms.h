@@ -23,6 +23,10 @@ struct With {};
 template <typename... Ts>
 struct Without {};
 
+/// Must have at least one of them; ChunkView::has<T>() tells which.
+template <typename... Ts>
+struct AnyOf {};
+
 /// Arrives as T*, null where the entity has none.
 template <typename T>
 struct Optional {};
@@ -60,9 +64,13 @@ inline constexpr bool tracks_rows = ComponentTraits<std::remove_const_t<T>>::tra
 template <typename T>
 inline constexpr bool is_split = ComponentTraits<std::remove_const_t<T>>::storage == Storage::Split;
 
+template <typename T>
+inline constexpr bool is_shared =
+    ComponentTraits<std::remove_const_t<T>>::storage == Storage::Shared;
+
 /// What World::add returns.
 template <typename T>
-using Added = std::conditional_t<is_split<T>, void, T&>;
+using Added = std::conditional_t<is_split<T> || is_shared<T>, void, T&>;
 
 /// A component type as such, not a pointer, a reference or another term.
 template <typename T>
@@ -74,8 +82,11 @@ template <typename T>
 struct TermTraits {
     static_assert(
         Component<T>,
-        "a query term is T, const T, Optional<T>, With<..>, Without<..> or Changed<..>; "
+        "a query term is T, const T, Optional<T>, With<..>, Without<..>, AnyOf<..> or Changed<..>; "
         "entities arrive without being asked for");
+    static_assert(
+        !is_shared<T> || std::is_const_v<T>,
+        "a shared component is read as const T; world.set or commands.set gives an entity another");
     static constexpr bool is_data = true;
     static constexpr bool is_optional = false;
     static constexpr bool is_write = !std::is_const_v<T>;
@@ -96,6 +107,9 @@ struct TermTraits {
 template <typename T>
 struct TermTraits<Optional<T>> {
     static_assert(Component<T>, "Optional takes one component type");
+    static_assert(
+        !is_shared<T> || std::is_const_v<T>,
+        "a shared component is read as const T; world.set or commands.set gives an entity another");
     static constexpr bool is_data = true;
     static constexpr bool is_optional = true;
     static constexpr bool is_write = !std::is_const_v<T>;
@@ -138,7 +152,7 @@ struct TermTraits<TakeRows<T>> {
 
 template <typename... Ts>
 struct FilterTraits {
-    static_assert((Component<Ts> && ...), "With, Without and Changed take component types");
+    static_assert((Component<Ts> && ...), "With, Without, AnyOf and Changed take component types");
     static constexpr bool is_data = false;
     static constexpr bool is_write = false;
     static constexpr bool filters_rows = (is_sparse<Ts> || ...);
@@ -165,6 +179,37 @@ struct TermTraits<Without<Ts...>> : FilterTraits<Ts...> {
     static void add(Sink&& sink) {
         (sink(TermKind::Without, component_id<std::remove_const_t<Ts>>), ...);
     }
+};
+
+template <typename... Ts>
+struct TermTraits<AnyOf<Ts...>> : FilterTraits<Ts...> {
+    static_assert(sizeof...(Ts) > 0, "AnyOf takes one component type or more");
+    static_assert(
+        !(is_toggle<Ts> || ...),
+        "AnyOf looks at archetypes, not at enable bits: ask for Optional<const T> instead");
+    static constexpr bool needs_sparse = false;
+    static constexpr bool is_changed = false;
+    template <typename Sink>
+    static void add(Sink&& sink) {
+        (sink(TermKind::AnyOf, component_id<std::remove_const_t<Ts>>), ...);
+    }
+};
+
+/// What Query::where adds to the terms: the values are in the query.
+struct Keyed {};
+template <>
+struct TermTraits<Keyed> {
+    static constexpr bool is_data = false;
+    static constexpr bool is_toggled = false;
+    static constexpr bool is_take = false;
+    static constexpr bool is_write = false;
+    static constexpr bool is_optional = false;
+    static constexpr bool is_tracked = false;
+    static constexpr bool needs_sparse = false;
+    static constexpr bool filters_rows = false;
+    static constexpr bool is_changed = false;
+    template <typename Sink>
+    static void add(Sink&&) {}
 };
 
 template <typename... Ts>
@@ -281,6 +326,24 @@ struct SparseAccess {
     T& operator[](std::uint32_t row) const { return *optional[row]; }
 };
 
+/// A shared component: one value for all rows.
+template <typename T>
+struct SharedAccess {
+    T* value;
+    T& operator[](std::uint32_t) const { return *value; }
+};
+template <typename T>
+struct SharedOptionalAccess {
+    T* value;
+    T* operator[](std::uint32_t) const { return value; }
+};
+/// nullptr: the archetype has none.
+template <typename T>
+T* find_shared(const Archetype& archetype) {
+    const SharedValue* found = archetype.shared_value(component_id<std::remove_const_t<T>>);
+    return found != nullptr ? static_cast<T*>(found->value) : nullptr;
+}
+
 template <typename T>
 struct SplitAccess {
     Lanes<T> lanes;
@@ -314,6 +377,12 @@ auto access_term(
             return access;
         } else {
             return SparseAccess<T>{access};
+        }
+    } else if constexpr (is_shared<T>) {
+        if constexpr (Traits::is_optional) {
+            return SharedOptionalAccess<T>{find_shared<T>(*match.archetype)};
+        } else {
+            return SharedAccess<T>{find_shared<T>(*match.archetype)};
         }
     } else if constexpr (is_split<T>) {
         if constexpr (Traits::is_optional) {
@@ -354,7 +423,10 @@ using RowArgument = std::conditional_t<
 /// What the function of chunks() is given for a term.
 template <typename Term, typename T = typename TermTraits<Term>::Value>
 struct ChunkArgumentOf {
-    using Type = std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>;
+    using Type = std::conditional_t<
+        is_shared<T>,
+        RowArgument<Term>,
+        std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>>;
 };
 template <typename T>
 struct ChunkArgumentOf<TakeRows<T>> {
@@ -362,6 +434,7 @@ struct ChunkArgumentOf<TakeRows<T>> {
 };
 template <typename Term>
 using ChunkArgument = typename ChunkArgumentOf<Term>::Type;
+/// What it is made from: a value where the argument is a reference.
 template <typename Term>
 using ChunkValue = std::remove_cvref_t<ChunkArgument<Term>>;
 

@@ -160,9 +160,10 @@ struct ComponentInfo {
         nullptr;  ///< a default-constructed instance; null for types without fields
 };
 
-/// Whether a value of the component lies in one place, so that there can be a pointer to it.
+/// Whether the entity's value lies in a place of its own, so that it can be written through a
+/// pointer.
 [[nodiscard]] inline bool has_address(const ComponentInfo& info) {
-    return info.storage != Storage::Split;
+    return info.storage != Storage::Split && info.storage != Storage::Shared;
 }
 
 /// The type with this id, which must exist.
@@ -376,6 +377,8 @@ ComponentOps component_ops() {
     return ops;
 }
 
+/// Size of a shared component at most. [bytes]
+inline constexpr std::size_t kMaxSharedBytes = 256;
 /// Scalars that a split component has at most.
 inline constexpr std::size_t kMaxLanes = 64;
 
@@ -405,6 +408,18 @@ void check_storage() {
             T instance{};
             visit_fields(instance, SplitFieldVisitor{});
         }
+    }
+    if constexpr (ComponentTraits<T>::storage == Storage::Shared) {
+        static_assert(
+            !std::is_empty_v<
+                T> && std::is_trivially_copyable_v<T> && alignof(T) <= alignof(std::max_align_t)
+                && sizeof(T) <= kMaxSharedBytes,
+            "Storage::Shared: the component must be trivially copyable, not empty, and of 256 "
+            "bytes "
+            "at most; big data is better named by an id");
+        LIMN_CHECK_NOTE(
+            has_no_padding<T>(),
+            "Storage::Shared: values are told apart by their bytes, so there must be no padding");
     }
 }
 

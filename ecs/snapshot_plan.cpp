@@ -50,6 +50,7 @@ std::size_t least_size(const SnapshotSection& section) {
 SavedStorage saved_storage(const ComponentInfo& info) {
     return info.storage == Storage::Sparse   ? SavedStorage::Set
            : info.storage == Storage::Toggle ? SavedStorage::Toggled
+           : info.storage == Storage::Shared ? SavedStorage::Shared
                                              : SavedStorage::Rows;
 }
 
@@ -96,9 +97,17 @@ void SnapshotPlan::add_groups() {
                 components.push_back(id);
             }
         }
-        const auto [place, is_new] = places.try_emplace(components, groups_.size());
+        std::vector<ComponentId> identity = components;
+        std::vector<SharedValue> shared;
+        for (const SharedValue& value : archetype->shared()) {
+            if (component_info(value.component).saved) {
+                shared.push_back(value);
+                identity.push_back(value.key);
+            }
+        }
+        const auto [place, is_new] = places.try_emplace(std::move(identity), groups_.size());
         if (is_new) {
-            groups_.push_back({std::move(components), {}});
+            groups_.push_back({std::move(components), std::move(shared), {}});
         }
         SnapshotGroup& group = groups_[place->second];
         group.parts.push_back({archetype.get(), group.rows});
@@ -143,7 +152,7 @@ void SnapshotPlan::list_sections() {
         sections_.push_back({SectionKind::Entities, i, nullptr, group.rows});
         for (const ComponentId id : group.components) {
             const ComponentInfo& info = component_info(id);
-            if (!info.is_tag) {
+            if (!info.is_tag && info.storage != Storage::Shared) {
                 sections_.push_back({SectionKind::Values, i, &info, group.rows});
             }
             if (info.storage == Storage::Toggle) {
@@ -219,6 +228,9 @@ void SnapshotPlan::write_head(ByteWriter& out) const {
         out.value(static_cast<std::uint32_t>(group.components.size()));
         for (const ComponentId id : group.components) {
             out.value(numbers_[id]);
+        }
+        for (const SharedValue& value : group.shared) {
+            write_values(component_info(value.component), value.value, 1, out);
         }
         out.value(group.rows);
     }

@@ -30,6 +30,7 @@ enum class SavedStorage : std::uint32_t {
     Rows,     ///< of a group, in whatever columns
     Toggled,  ///< of a group, with Disabled
     Set,
+    Shared,  ///< of a group, once, in the head
 };
 
 [[nodiscard]] SavedStorage saved_storage(const ComponentInfo& info);
@@ -51,6 +52,7 @@ struct GroupPart {
 /// Archetypes that are one when what is not saved is left out.
 struct SnapshotGroup {
     std::vector<ComponentId> components;  ///< saved ones, ascending
+    std::vector<SharedValue> shared;      ///< of those that are shared
     std::vector<GroupPart> parts;
     std::uint32_t rows = 0;
     std::size_t first_section = 0;  ///< its entities

@@ -29,6 +29,7 @@ struct ReadSection {
 struct ReadGroup {
     std::vector<ComponentId> components;      ///< ascending
     std::vector<const ComponentInfo*> infos;  ///< in the order of the file
+    std::vector<AnyComponent> shared;         ///< ascending
     std::uint32_t rows = 0;
     std::size_t first_section = 0;
 };
@@ -155,6 +156,31 @@ class SnapshotReader {
         return Done{};
     }
 
+    bool read_shared(ReadGroup& group) {
+        for (const ComponentInfo* info : group.infos) {
+            if (info->storage == Storage::Shared) {
+                AnyComponent& value = group.shared.emplace_back(*info);
+                if (!read_values(*info, value.data(), 1, in_)) {
+                    return false;
+                }
+            }
+        }
+        std::sort(group.shared.begin(), group.shared.end(), [](const auto& a, const auto& b) {
+            return a.info().id < b.info().id;
+        });
+        return true;
+    }
+
+    /// What tells groups apart: the components, and the bytes of those that are shared.
+    static std::vector<ComponentId> identity_of(const ReadGroup& group) {
+        std::vector<ComponentId> identity = group.components;
+        for (const AnyComponent& value : group.shared) {
+            const std::uint8_t* const bytes = static_cast<const std::uint8_t*>(value.data());
+            identity.insert(identity.end(), bytes, bytes + value.info().size);
+        }
+        return identity;
+    }
+
     Status read_groups() {
         const std::uint32_t count = in_.count(2 * sizeof(std::uint32_t));
         std::map<std::vector<ComponentId>, bool> seen;
@@ -169,6 +195,9 @@ class SnapshotReader {
                 group.infos.push_back(names_[number]);
                 group.components.push_back(names_[number]->id);
             }
+            if (!in_.failed() && !read_shared(group)) {
+                return cut_off("shared values");
+            }
             group.rows = in_.value<std::uint32_t>();
             if (in_.failed() || group.rows > kMaxRows) {
                 return cut_off("groups");
@@ -176,13 +205,13 @@ class SnapshotReader {
             std::sort(group.components.begin(), group.components.end());
             if (std::adjacent_find(group.components.begin(), group.components.end())
                     != group.components.end()
-                || !seen.try_emplace(group.components, true).second) {
+                || !seen.try_emplace(identity_of(group), true).second) {
                 return fail("group {}: a component or the whole of it is there twice", i);
             }
             group.first_section = sections_.size();
             sections_.push_back({SectionKind::Entities, nullptr, group.rows});
             for (const ComponentInfo* info : group.infos) {
-                if (!info->is_tag) {
+                if (!info->is_tag && info->storage != Storage::Shared) {
                     sections_.push_back({SectionKind::Values, info, group.rows});
                 }
                 if (info->storage == Storage::Toggle) {
@@ -446,9 +475,13 @@ class SnapshotReader {
 
     void restore_group(World& world, const ReadGroup& group) const {
         std::size_t section = group.first_section;
-        Archetype& rows = world.restore_rows(group.components, entities_of(section));
+        std::vector<const void*> shared;
+        for (const AnyComponent& value : group.shared) {
+            shared.push_back(value.data());
+        }
+        Archetype& rows = world.restore_rows(group.components, entities_of(section), shared);
         for (const ComponentInfo* info : group.infos) {
-            if (!info->is_tag) {
+            if (!info->is_tag && info->storage != Storage::Shared) {
                 Column& column = rows.column(rows.column_of(info->id));
                 for_each_piece(
                     sections_[++section],

@@ -120,7 +120,10 @@ std::uint64_t state_hash(const World& world) {
                 continue;
             }
             const int column = archetype->column_of(id);
-            if (column >= 0 && has_bytes(info)) {
+            if (column == kSharedColumn) {
+                const void* const value = archetype->shared_value(id)->value;
+                hasher.add_column(&info, static_cast<const std::byte*>(value), 1);
+            } else if (column >= 0 && has_bytes(info)) {
                 hasher.add_rows(archetype->column(column), archetype->size());
             } else {
                 hasher.add_presence(info);

@@ -82,6 +82,7 @@ std::string archetype_json(const ArchetypeStats& archetype) {
     }
     return JsonObject()
         .add_json("components", array_of(archetype.components, quoted))
+        .add_json("kinds", array_of(archetype.kinds, quoted))
         .add("rows", archetype.rows)
         .add("capacity", archetype.capacity)
         .add("chunks", archetype.chunks)

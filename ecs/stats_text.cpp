@@ -9,6 +9,15 @@ namespace limn {
 
 namespace {
 
+std::vector<std::string> labels_of(const ArchetypeStats& archetype) {
+    std::vector<std::string> labels;
+    for (std::size_t i = 0; i < archetype.components.size(); ++i) {
+        const std::string& kind = archetype.kinds[i];
+        labels.push_back(archetype.components[i] + (kind.empty() ? "" : "(" + kind + ")"));
+    }
+    return labels;
+}
+
 std::string kib(std::size_t bytes) {
     return fixed_text(static_cast<double>(bytes) / 1024.0, 0);
 }
@@ -37,7 +46,7 @@ std::string archetype_lines(const ArchetypeStats& archetype) {
         align_right(fixed_text(100.0 * archetype.fill(), 1), 5),
         align_right(archetype.rows_moved_in, 7),
         align_right(archetype.rows_moved_out, 7),
-        join_text(archetype.components, " "));
+        join_text(labels_of(archetype), " "));
     for (const auto& [component, rows] : archetype.disabled) {
         text += format_text("{} of them with {} disabled\n", align_right(rows, 9), component);
     }

@@ -62,6 +62,7 @@ struct SystemParam<Query<Terms...>> {
                 break;
             case TermKind::With:
             case TermKind::Without:
+            case TermKind::AnyOf:
                 // The structure is fixed while systems run; enable bits are not.
                 if (component_info(term.id).storage == Storage::Toggle) {
                     access.reads.push_back(term.id);

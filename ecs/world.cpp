@@ -4,6 +4,7 @@
 #include "ecs/world_internals.h"
 
 #include <algorithm>
+#include <cstring>
 #include <new>
 
 namespace limn {
@@ -108,15 +109,26 @@ void World::drop_all_rows() {
 // ---- archetypes
 // ----------------------------------------------------------------------------------
 
-Archetype& World::archetype_of(std::span<const ComponentId> components) {
+Archetype&
+World::archetype_of(std::span<const ComponentId> components, std::span<const SharedValue> shared) {
     std::vector<ComponentId> key(components.begin(), components.end());
+    if (!shared.empty()) {
+        key.push_back(kMaxComponents);  // no component: the numbers of the values follow
+        for (const SharedValue& value : shared) {
+            key.push_back(value.key);
+        }
+    }
     const auto found = internals_->archetype_by_components.find(key);
     if (found != internals_->archetype_by_components.end()) {
         return archetype(found->second);
     }
     const std::uint32_t index = static_cast<std::uint32_t>(core_.archetypes.size());
     LIMN_CHECK_NOTE(index < kMaxArchetypes, "too many archetypes");
-    core_.archetypes.push_back(std::make_unique<Archetype>(index, components, core_.blocks));
+    core_.archetypes.push_back(
+        std::make_unique<Archetype>(index, components, core_.blocks, shared));
+    for (const SharedValue& value : shared) {
+        core_.shared.add_archetype(value.key, index);
+    }
     internals_->archetype_by_components.emplace(std::move(key), index);
     Archetype& made = *core_.archetypes.back();
     const auto observed = [&](ObserverEvent event) {
@@ -136,7 +148,25 @@ const RowPlan& World::plan_with(Archetype& from, ComponentId id) {
     std::vector<ComponentId> components(from.components().begin(), from.components().end());
     components.insert(std::upper_bound(components.begin(), components.end(), id), id);
     from.add_edges.resize(component_count());
-    return *(from.add_edges[id] = &from.plan_to(archetype_of(components)));
+    return *(from.add_edges[id] = &from.plan_to(archetype_of(components, from.shared())));
+}
+
+Archetype&
+World::archetype_with_value(Archetype& from, const ComponentInfo& info, const void* value) {
+    const SharedValue wanted = core_.shared.value(core_.shared.add(info, value));
+    if (const SharedValue* present = from.shared_value(info.id); present != nullptr) {
+        if (present->key == wanted.key) {
+            return from;
+        }
+        std::vector<SharedValue> shared(from.shared().begin(), from.shared().end());
+        shared[static_cast<std::size_t>(present - from.shared().data())] = wanted;
+        return archetype_of(from.components(), shared);
+    }
+    std::vector<ComponentId> components(from.components().begin(), from.components().end());
+    components.insert(std::upper_bound(components.begin(), components.end(), info.id), info.id);
+    std::vector<SharedValue> shared(from.shared().begin(), from.shared().end());
+    insert_shared(shared, wanted);
+    return archetype_of(components, shared);
 }
 
 const RowPlan& World::plan_without(Archetype& from, ComponentId id) {
@@ -145,32 +175,66 @@ const RowPlan& World::plan_without(Archetype& from, ComponentId id) {
     }
     std::vector<ComponentId> components(from.components().begin(), from.components().end());
     std::erase(components, id);
+    std::vector<SharedValue> shared(from.shared().begin(), from.shared().end());
+    std::erase_if(shared, [id](const SharedValue& value) { return value.component == id; });
     from.remove_edges.resize(component_count());
-    return *(from.remove_edges[id] = &from.plan_to(archetype_of(components)));
+    return *(from.remove_edges[id] = &from.plan_to(archetype_of(components, shared)));
 }
 
-const World::Bundle&
-World::make_bundle(std::uint32_t index, std::span<const ComponentId> components) {
+World::Bundle& World::make_bundle(std::uint32_t index, std::span<const ComponentId> components) {
     Bundle bundle;
     bundle.components.assign(components.begin(), components.end());
-    std::vector<ComponentId> table;
+    bool has_shared = false;
     for (const ComponentId id : components) {
-        if (component_info(id).storage == Storage::Sparse) {
-            bundle.has_sparse = true;
-        } else {
-            table.push_back(id);
+        const Storage storage = component_info(id).storage;
+        bundle.has_sparse = bundle.has_sparse || storage == Storage::Sparse;
+        has_shared = has_shared || storage == Storage::Shared;
+        if (storage != Storage::Sparse) {
+            bundle.table.push_back(id);
         }
     }
-    std::sort(table.begin(), table.end());
-    bundle.archetype = &archetype_of(table);
-    for (const ComponentId id : components) {
-        bundle.columns.push_back(bundle.archetype->column_of(id));
+    std::sort(bundle.table.begin(), bundle.table.end());
+    if (!has_shared) {
+        bundle.archetype = &archetype_of(bundle.table);
+        for (const ComponentId id : components) {
+            bundle.columns.push_back(bundle.archetype->column_of(id));
+        }
     }
     if (index >= bundles_.size()) {
         bundles_.resize(index + 1);
     }
     bundles_[index] = std::make_unique<Bundle>(std::move(bundle));
     return *bundles_[index];
+}
+
+void World::choose_archetype(Bundle& bundle, std::span<const void* const> values) {
+    const auto is_same = [&](std::size_t i) {
+        const ComponentInfo& info = component_info(bundle.components[i]);
+        return info.storage != Storage::Shared
+               || std::memcmp(bundle.archetype->shared_value(info.id)->value, values[i], info.size)
+                      == 0;
+    };
+    if (bundle.archetype != nullptr) {
+        bool all_same = true;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            all_same = all_same && is_same(i);
+        }
+        if (all_same) {
+            return;
+        }
+    }
+    std::vector<SharedValue> shared;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const ComponentInfo& info = component_info(bundle.components[i]);
+        if (info.storage == Storage::Shared) {
+            insert_shared(shared, core_.shared.value(core_.shared.add(info, values[i])));
+        }
+    }
+    bundle.archetype = &archetype_of(bundle.table, shared);
+    bundle.columns.clear();
+    for (const ComponentId id : bundle.components) {
+        bundle.columns.push_back(bundle.archetype->column_of(id));
+    }
 }
 
 std::uint32_t World::move_row(Entity entity, EntityPlace place, const RowPlan& plan) {
@@ -240,6 +304,9 @@ const void* World::find(Entity entity, ComponentId id) const {
     if (column == kTagColumn) {
         return &rows;  // some address: tags have no value
     }
+    if (column == kSharedColumn) {
+        return rows.shared_value(id)->value;
+    }
     LIMN_CHECK_NOTE(
         column == kNoColumn || has_address(component_info(id)),
         "a split component has no address; use read and write");
@@ -251,6 +318,9 @@ void* World::find(Entity entity, ComponentId id) {
     if (value == nullptr) {
         return nullptr;
     }
+    LIMN_CHECK_NOTE(
+        has_address(component_info(id)),
+        "the value of a shared component is that of others too; use read and write");
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->touch(set->find(entity), core_.now());
     } else {
@@ -308,15 +378,26 @@ bool World::write(Entity entity, ComponentId id, void* value) {
 }
 
 void World::put_bytes(Entity entity, ComponentId id, const void* value) {
+    const ComponentInfo& info = component_info(id);
     const bool is_new = !has(entity, id);
-    if (is_new) {
-        make_room(entity, require(entity), id);
+    if (info.storage == Storage::Shared) {
+        core_.check_unlocked();
+        const EntityPlace place = require(entity);
+        Archetype& from = archetype(place.archetype);
+        Archetype& to = archetype_with_value(from, info, value);
+        if (&to != &from) {
+            move_row(entity, place, from.plan_to(to));
+        }
+    } else {
+        if (is_new) {
+            make_room(entity, require(entity), id);
+        }
+        const EntityPlace place = core_.entities.find(entity);
+        Archetype& rows = archetype(place.archetype);
+        const int column = rows.column_of(id);
+        scatter_values(&rows.column(column), place.row, 1, value);
+        rows.write_row(column, place.row, core_.now());
     }
-    const EntityPlace place = core_.entities.find(entity);
-    Archetype& rows = archetype(place.archetype);
-    const int column = rows.column_of(id);
-    scatter_values(&rows.column(column), place.row, 1, value);
-    rows.write_row(column, place.row, core_.now());
     if (is_new) {
         notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
     }
@@ -565,14 +646,25 @@ void World::begin_restore(const EntityTableImage& image) {
     core_.sparse.clear();
     core_.sparse_list.clear();
     internals_->archetype_by_components.clear();
+    core_.shared.clear();
     ++core_.epoch;
     core_.entities.restore(image);
     static_cast<void>(archetype_of({}));
 }
 
-Archetype&
-World::restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities) {
-    Archetype& rows = archetype_of(components);
+Archetype& World::restore_rows(
+    std::span<const ComponentId> components,
+    std::span<const Entity> entities,
+    std::span<const void* const> shared) {
+    std::vector<SharedValue> values;
+    for (const ComponentId id : components) {
+        const ComponentInfo& info = component_info(id);
+        if (info.storage == Storage::Shared) {
+            LIMN_CHECK_NOTE(values.size() < shared.size(), info.name.c_str());
+            values.push_back(core_.shared.value(core_.shared.add(info, shared[values.size()])));
+        }
+    }
+    Archetype& rows = archetype_of(components, values);
     const std::uint32_t first = rows.append(entities, core_.now());
     for (Column& column : rows.columns()) {
         if (column.info->value_bytes != ValueBytes::All) {

@@ -74,7 +74,8 @@ class World {
     // -------------------------------------------------------------------------------
 
     /// Adds the component or replaces its value. Returns a reference that holds until the next
-    /// structural change; of a split component, which has no address, nothing.
+    /// structural change; of a split or shared component nothing. Another value of a shared
+    /// component moves the entity.
     template <typename T>
     detail::Added<T> add(Entity entity, T component = T{});
     /// Returns whether it was there.
@@ -100,7 +101,8 @@ class World {
     /// A copy of the component, which must be there. For all kinds of storage.
     template <typename T>
     [[nodiscard]] T value(Entity entity) const;
-    /// Replaces the component, which must be there. For all kinds of storage.
+    /// Replaces the component, which must be there. For all kinds of storage; for a shared
+    /// component it is a structural change.
     template <typename T>
     void set(Entity entity, T component);
 
@@ -199,7 +201,8 @@ class World {
     [[nodiscard]] std::vector<ComponentId> components_of(Entity entity) const;
     [[nodiscard]] bool has(Entity entity, ComponentId id) const;
     /// The value; nullptr if there is none. Of tags, not null and not to be read. Counts as a
-    /// change if not const. Split components have no address: use read and write.
+    /// change if not const. Split components have no address, and shared ones only a const one: use
+    /// read and write.
     [[nodiscard]] void* find(Entity entity, ComponentId id);
     [[nodiscard]] const void* find(Entity entity, ComponentId id) const;
     /// Copies the value to raw memory, where it is the caller's to destroy. False: there is none.
@@ -208,8 +211,8 @@ class World {
     /// Replaces the value by moving from `value`. False: there is none to replace. For all kinds of
     /// storage.
     bool write(Entity entity, ComponentId id, void* value);
-    /// Adds with the default value, or leaves the value there is. Returns it; nullptr of a split
-    /// component, here and below.
+    /// Adds with the default value, or leaves the value there is. Returns it; nullptr of split and
+    /// shared components, here and below.
     void* add(Entity entity, ComponentId id);
     /// Adds a copy of `value`, or replaces the value there is with one.
     void* add_copy(Entity entity, ComponentId id, const void* value);
@@ -252,8 +255,11 @@ class World {
     void begin_restore(const EntityTableImage& image);
     /// Components are the caller's to write: those whose bytes are their value are raw memory,
     /// others have their default value.
-    Archetype&
-    restore_rows(std::span<const ComponentId> components, std::span<const Entity> entities);
+    /// `shared` are the values of those of Storage::Shared, in the order of `components`.
+    Archetype& restore_rows(
+        std::span<const ComponentId> components,
+        std::span<const Entity> entities,
+        std::span<const void* const> shared = {});
     /// The entities have been placed by restore_rows.
     SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
     void end_restore();
@@ -279,8 +285,9 @@ class World {
 
     /// Where the components of a create() go.
     struct Bundle {
-        Archetype* archetype = nullptr;
+        Archetype* archetype = nullptr;       ///< with shared components, that of the last values
         std::vector<ComponentId> components;  ///< in the order of the call
+        std::vector<ComponentId> table;       ///< those that are not sparse, ascending
         std::vector<int> columns;
         bool has_sparse = false;
     };
@@ -294,9 +301,18 @@ class World {
         return *core_.archetypes[index];
     }
     template <typename... Ts>
-    const Bundle& bundle_of();
-    const Bundle& make_bundle(std::uint32_t index, std::span<const ComponentId> components);
-    [[nodiscard]] Archetype& archetype_of(std::span<const ComponentId> components);
+    Bundle& bundle_of();
+    Bundle& make_bundle(std::uint32_t index, std::span<const ComponentId> components);
+    /// The bundle of components with these values; chooses the archetype by those that are shared.
+    template <typename... Ts>
+    const Bundle& bundle_with(const Ts&... components);
+    void choose_archetype(Bundle& bundle, std::span<const void* const> values);
+    /// `shared` has the values of those that are shared, in the same order.
+    [[nodiscard]] Archetype&
+    archetype_of(std::span<const ComponentId> components, std::span<const SharedValue> shared = {});
+    /// The archetype with this value of a shared component, which `from` may have or not.
+    [[nodiscard]] Archetype&
+    archetype_with_value(Archetype& from, const ComponentInfo& info, const void* value);
     [[nodiscard]] const RowPlan& plan_with(Archetype& from, ComponentId id);
     [[nodiscard]] const RowPlan& plan_without(Archetype& from, ComponentId id);
     /// Moves the entity's row, as Archetype::move_row; returns where it is then.

@@ -3,6 +3,7 @@
 #include "ecs/archetype.h"
 #include "ecs/base/check.h"
 #include "ecs/entity_table.h"
+#include "ecs/shared_values.h"
 #include "ecs/sparse_set.h"
 
 #include <atomic>
@@ -27,12 +28,13 @@ struct WorldCore {
     BlockPool blocks;
     std::vector<std::unique_ptr<Archetype>> archetypes;  ///< in the order of their creation
     std::vector<std::unique_ptr<SparseSet>> sparse;      ///< by ComponentId; null: never used
+    SharedValues shared;
     std::vector<SparseSet*> sparse_list;  ///< those in use, in the order of their first use
     mutable std::atomic<std::uint32_t> version = 1;  ///< of what is changed now
     mutable std::atomic<int> iterations = 0;         ///< > 0: the structure is locked
     std::uint32_t epoch = 0;                         ///< counts how often `archetypes` began anew
 
-    std::uint32_t times_forgotten = 0;               ///< counts how often old versions were
+    std::uint32_t times_forgotten = 0;  ///< counts how often old versions were
 
     [[nodiscard]] std::uint32_t now() const { return version.load(std::memory_order_relaxed); }
     [[nodiscard]] SparseSet* sparse_set(ComponentId id) const {

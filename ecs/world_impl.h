@@ -23,7 +23,7 @@ inline const std::uint32_t query_index = next_query_index();
 // ------------------------------------------------------------------------------------
 
 template <typename... Ts>
-const World::Bundle& World::bundle_of() {
+World::Bundle& World::bundle_of() {
     static_assert(detail::all_different<Ts...>, "an entity has each component once");
     static_assert(
         (detail::Component<Ts> && ...), "components are values, not pointers, arrays or entities");
@@ -36,9 +36,19 @@ const World::Bundle& World::bundle_of() {
 }
 
 template <typename... Ts>
+const World::Bundle& World::bundle_with(const Ts&... components) {
+    Bundle& bundle = bundle_of<Ts...>();
+    if constexpr ((detail::is_shared<Ts> || ...)) {
+        const void* const values[] = {&components...};
+        choose_archetype(bundle, values);
+    }
+    return bundle;
+}
+
+template <typename... Ts>
 Entity World::create(Ts&&... components) {
     core_.check_unlocked();
-    const Bundle& bundle = bundle_of<std::remove_cvref_t<Ts>...>();
+    const Bundle& bundle = bundle_with<std::remove_cvref_t<Ts>...>(components...);
     const std::uint32_t now = core_.now();
     const Entity entity = core_.entities.allocate();
     const std::uint32_t row = bundle.archetype->append(entity, now);
@@ -53,6 +63,8 @@ Entity World::create(Ts&&... components) {
             if constexpr (!std::is_empty_v<Value>) {
                 ::new (static_cast<void*>(set.value(place))) Value(std::forward<T>(component));
             }
+        } else if constexpr (detail::is_shared<Value>) {
+            // The archetype has it.
         } else if constexpr (detail::is_split<Value>) {
             detail::Lanes<Value>(&bundle.archetype->column(bundle.columns[position]), 0)
                 .store(row, component);
@@ -74,7 +86,7 @@ Entity World::create(Ts&&... components) {
 template <typename... Ts>
 void World::create_many(std::span<Entity> entities, const Ts&... components) {
     core_.check_unlocked();
-    const Bundle& bundle = bundle_of<Ts...>();
+    const Bundle& bundle = bundle_with<Ts...>(components...);
     const std::uint32_t now = core_.now();
     for (Entity& entity : entities) {
         entity = core_.entities.allocate();
@@ -95,6 +107,8 @@ void World::create_many(std::span<Entity> entities, const Ts&... components) {
                     ::new (static_cast<void*>(set.value(place))) T(component);
                 }
             }
+        } else if constexpr (detail::is_shared<T>) {
+            // The archetype has it.
         } else if constexpr (detail::is_split<T>) {
             fill_values(
                 &bundle.archetype->column(bundle.columns[position]),
@@ -140,7 +154,7 @@ template <typename T>
 detail::Added<T> World::add(Entity entity, T component) {
     static_assert(detail::Component<T>, "components are values, not pointers, arrays or entities");
     core_.check_unlocked();
-    if constexpr (detail::is_split<T>) {
+    if constexpr (detail::is_split<T> || detail::is_shared<T>) {
         put_bytes(entity, component_id<T>, &component);
     } else {
         const EntityPlace place = require(entity);
@@ -186,6 +200,9 @@ inline T* World::find(Entity entity) {
     static_assert(
         !detail::is_split<T>,
         "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");
+    static_assert(
+        !detail::is_shared<T> || std::is_const_v<T>,
+        "get, find: a shared component is read as const T; set(entity, value) gives it another");
     const EntityPlace place = core_.entities.find(entity);
     return place ? find_at<T>(entity, place) : nullptr;
 }
@@ -202,7 +219,9 @@ inline T* World::find_at([[maybe_unused]] Entity entity, EntityPlace place) {
         if (column == kNoColumn) {
             return nullptr;
         }
-        if constexpr (std::is_empty_v<Value>) {
+        if constexpr (detail::is_shared<Value>) {
+            return static_cast<T*>(rows.shared_value(component_id<Value>)->value);
+        } else if constexpr (std::is_empty_v<Value>) {
             return &detail::tag_value<Value>;
         } else {
             if constexpr (!std::is_const_v<T>) {
@@ -257,6 +276,9 @@ void World::set(Entity entity, T component) {
         LIMN_CHECK_NOTE(column >= 0, component_info<T>().name.c_str());
         detail::Lanes<T>(&rows.column(column), 0).store(place.row, component);
         rows.write_row(column, place.row, core_.now());
+    } else if constexpr (detail::is_shared<T>) {
+        static_cast<void>(get<const T>(entity));
+        put_bytes(entity, component_id<T>, &component);
     } else if constexpr (std::is_empty_v<T>) {
         static_cast<void>(get<const T>(entity));
     } else {

@@ -1,6 +1,7 @@
 #include "ecs/world_stats.h"
 
 #include "ecs/base/text.h"
+#include "ecs/field_access.h"
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 
@@ -34,25 +35,54 @@ std::string term_text(const QueryTerm& term) {
         return "Without<" + name + ">";
     case TermKind::Changed:
         return "Changed<" + name + ">";
+    case TermKind::AnyOf:
+        return "AnyOf<" + name + ">";
     case TermKind::TakeRows:
         return "TakeRows<" + name + ">";
     }
     return name;
 }
 
-/// Changed terms of one group are one Changed of several components.
+/// Changed terms of one group are one Changed of several components, and so are AnyOf terms.
 std::string terms_text(std::span<const QueryTerm> terms) {
     std::string text;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         std::string term = term_text(terms[i]);
-        while (terms[i].kind == TermKind::Changed && i + 1 < terms.size()
-               && terms[i + 1].kind == TermKind::Changed && terms[i + 1].group == terms[i].group) {
+        const TermKind kind = terms[i].kind;
+        const bool is_list = kind == TermKind::Changed || kind == TermKind::AnyOf;
+        while (is_list && i + 1 < terms.size() && terms[i + 1].kind == kind
+               && terms[i + 1].group == terms[i].group) {
             ++i;
             term.insert(term.size() - 1, ", " + component_info(terms[i].id).name);
         }
         text += (text.empty() ? "" : ", ") + term;
     }
     return text;
+}
+
+/// How the archetype keeps the component: "" in a column, otherwise the kind of storage or, of a
+/// shared one, the value.
+std::string kind_text(const Archetype& archetype, ComponentId id) {
+    const ComponentInfo& info = component_info(id);
+    if (info.storage == Storage::Split) {
+        return "split";
+    }
+    if (info.storage == Storage::Toggle) {
+        return "toggle";
+    }
+    if (info.storage != Storage::Shared) {
+        return "";
+    }
+    const SharedValue& shared = *archetype.shared_value(id);
+    if (info.fields.empty()) {
+        return format_text("value {}", shared.key);
+    }
+    std::vector<std::string> fields;
+    for (const FieldInfo& field : info.fields) {
+        fields.push_back(
+            format_text("{}={}", field.name, value_text(field, field_ptr(shared.value, field))));
+    }
+    return join_text(fields, " ");
 }
 
 }  // namespace
@@ -99,6 +129,7 @@ WorldStats world_stats(const World& world) {
         ArchetypeStats one;
         for (const ComponentId id : archetype->components()) {
             one.components.push_back(component_info(id).name);
+            one.kinds.push_back(kind_text(*archetype, id));
         }
         one.rows = archetype->size();
         one.capacity = archetype->capacity();

@@ -34,6 +34,7 @@ struct WorldMemory {
 
 struct ArchetypeStats {
     std::vector<std::string> components;
+    std::vector<std::string> kinds;  ///< of the components: "" of a table, "split", "id=3" ...
     std::uint32_t rows = 0;
     std::uint32_t capacity = 0;  ///< rows without asking for memory
     std::uint32_t chunks = 0;

@@ -39,6 +39,16 @@ struct Excited {};
 struct Glow {
     float light = 0;
 };
+
+}  // namespace determinism_test
+
+template <>
+struct limn::ComponentTraits<determinism_test::Glow> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Sparse;
+};
+
+namespace determinism_test {
+
 /// Who came just before it, in the same task.
 struct Elder {
     Entity entity;
@@ -241,11 +251,6 @@ Schedule make_schedule() {
 }
 
 }  // namespace determinism_test
-
-template <>
-struct limn::ComponentTraits<determinism_test::Glow> : limn::DefaultTraits {
-    static constexpr Storage storage = Storage::Sparse;
-};
 
 using namespace limn;
 using namespace determinism_test;
