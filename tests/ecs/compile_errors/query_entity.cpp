@@ -1,4 +1,4 @@
-// expects: a query term is T, const T, Optional<T>, With<..>, Without<..> or Changed<..>; entities
+// expects: a query term is T, const T, Optional<T>, With<..>, Without<..>, AnyOf<..> or Changed<..>; entities
 // arrive without being asked for
 #include "ecs/schedule.h"
 #include "ecs/world.h"
