@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <bitset>
 #include <cstdint>
-#include <utility>
 #include <sstream>  // a bitset prints itself
+#include <utility>
 #include <vector>
 
 using namespace limn;
