@@ -76,9 +76,10 @@ void System::run(World& world, std::uint32_t version) {
 void System::run_locked(World& world, std::uint32_t version) {
     // In a task of its own: its commands are numbered from the start, wherever it was stolen to.
     const TaskScopeGuard scope({});
-    body_->run(world, version, has_run_ ? last_version_ : version - kNeverRan);
+    const bool has_run = last_epoch_ == world.core().epoch;
+    body_->run(world, version, has_run ? last_version_ : version - kNeverRan);
     last_version_ = version;
-    has_run_ = true;
+    last_epoch_ = world.core().epoch;
 }
 
 void run_system(World& world, System& system) {

@@ -64,7 +64,8 @@ class System {
     SystemAccess access_;
     std::unique_ptr<Body> body_;
     std::uint32_t last_version_ = 0;
-    bool has_run_ = false;
+    std::uint32_t last_epoch_ =
+        0;  ///< of the world (WorldCore::epoch) that it last ran on; 0: none
 };
 
 namespace detail {

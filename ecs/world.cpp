@@ -4,6 +4,7 @@
 #include "ecs/world_internals.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <new>
 
@@ -25,6 +26,11 @@ std::uint32_t next_query_index() {
 }
 
 }  // namespace detail
+
+std::uint32_t next_epoch() {
+    static std::atomic<std::uint32_t> last = 0;
+    return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
 
 World::World() : internals_(std::make_unique<Internals>()) {
     static_cast<void>(archetype_of({}));  // the one without components is always number 0
@@ -647,7 +653,7 @@ void World::begin_restore(const EntityTableImage& image) {
     core_.sparse_list.clear();
     internals_->archetype_by_components.clear();
     core_.shared.clear();
-    ++core_.epoch;
+    core_.epoch = next_epoch();
     core_.entities.restore(image);
     static_cast<void>(archetype_of({}));
 }

@@ -23,6 +23,9 @@ inline constexpr std::uint32_t kNeverRan = 0x7fffffffu;
 
 static_assert(kMaxRows <= kMaxRowsOfSlot);
 
+/// Counts from 1.
+[[nodiscard]] std::uint32_t next_epoch();
+
 struct WorldCore {
     EntityTable entities;
     BlockPool blocks;
@@ -32,8 +35,9 @@ struct WorldCore {
     std::vector<SparseSet*> sparse_list;  ///< those in use, in the order of their first use
     mutable std::atomic<std::uint32_t> version = 1;  ///< of what is changed now
     mutable std::atomic<int> iterations = 0;         ///< > 0: the structure is locked
-    std::uint32_t epoch = 0;                         ///< counts how often `archetypes` began anew
-
+    /// Of `archetypes` from when they last began anew; no other world has had the same, so that a
+    /// system can tell worlds apart.
+    std::uint32_t epoch = next_epoch();
     std::uint32_t times_forgotten = 0;  ///< counts how often old versions were
 
     [[nodiscard]] std::uint32_t now() const { return version.load(std::memory_order_relaxed); }

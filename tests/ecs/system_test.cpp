@@ -119,6 +119,29 @@ TEST_CASE("system: a structural change inside of one stops, unless it has the wo
     CHECK(world.entity_count() == 2);
 }
 
+TEST_CASE("system: one that moves on to another world sees that one, all of it new") {
+    World first;
+    World second;
+    first.create(Position{1});
+    second.create(Position{2});
+    for (int i = 0; i < 100; ++i) {
+        static_cast<void>(first.version());  // its clock is ahead
+    }
+    float sum = 0;
+    System system = make_system("sum", [&](Query<const Position, Changed<Position>> positions) {
+        sum = 0;
+        positions.each([&](const Position& position) { sum += position.x; });
+    });
+    run_system(first, system);
+    CHECK(sum == 1);
+    run_system(second, system);
+    CHECK(sum == 2);
+    run_system(second, system);
+    CHECK(sum == 0);
+    run_system(first, system);
+    CHECK(sum == 1);
+}
+
 TEST_CASE("system: a resource that is missing is named") {
     World world;
     CHECK(stop_message([&] { world.run(integrate); }).find("mass") != std::string::npos);
