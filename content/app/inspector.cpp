@@ -235,6 +235,13 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
     const bool editable = is_editable(info);
     const ImGuiTreeNodeFlags flags =
         info.is_registered && editable ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
+    if (info.storage == Storage::Toggle) {
+        bool enabled = world.is_enabled(selected_, info.id);
+        if (ImGui::Checkbox("##enabled", &enabled)) {
+            world.set_enabled(selected_, info.id, enabled);
+        }
+        ImGui::SameLine();
+    }
     if (info.is_tag || !editable) {
         ImGui::CollapsingHeader(info.name.c_str(), &keep, flags | kNoFields);
     } else if (ImGui::CollapsingHeader(info.name.c_str(), &keep, flags)) {

@@ -16,7 +16,13 @@ bool apply_to_component(World& world, const Edit& edit, const AnyComponent& valu
         const AnyComponent& other = edit.before.is_empty() ? edit.after : edit.before;
         world.remove(edit.entity, other.info().id);
     } else {
-        world.add_copy(edit.entity, value.info().id, value.data());
+        // Adding enables, but a value that is only replaced stays as disabled as it was.
+        const ComponentId id = value.info().id;
+        const bool is_disabled = world.has(edit.entity, id) && !world.is_enabled(edit.entity, id);
+        world.add_copy(edit.entity, id, value.data());
+        if (is_disabled) {
+            world.set_enabled(edit.entity, id, false);
+        }
     }
     return true;
 }

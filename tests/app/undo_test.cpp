@@ -7,6 +7,16 @@
 #include <doctest/doctest.h>
 
 namespace limn {
+
+/// Can be disabled.
+struct UndoneSwitch {
+    int value = 0;
+};
+template <>
+struct ComponentTraits<UndoneSwitch> : DefaultTraits {
+    static constexpr Storage storage = Storage::Toggle;
+};
+
 namespace {
 
 PointLight bright(float intensity) {
@@ -27,6 +37,25 @@ void edit_intensity(World& world, UndoStack& stack, Entity lamp, float intensity
 }
 
 }  // namespace
+
+TEST_CASE("undo: a value that comes back is as disabled as the one that it replaces") {
+    World world;
+    UndoStack stack;
+    const Entity lamp = world.create(UndoneSwitch{2});
+    Edit edit;
+    edit.entity = lamp;
+    edit.before = AnyComponent::of(UndoneSwitch{1});
+    edit.after = AnyComponent::of(UndoneSwitch{2});
+    stack.record(std::move(edit));
+    world.disable<UndoneSwitch>(lamp);
+    stack.undo(world);
+    CHECK(world.get<const UndoneSwitch>(lamp).value == 1);
+    CHECK_FALSE(world.is_enabled<UndoneSwitch>(lamp));
+    world.enable<UndoneSwitch>(lamp);
+    stack.redo(world);
+    CHECK(world.get<const UndoneSwitch>(lamp).value == 2);
+    CHECK(world.is_enabled<UndoneSwitch>(lamp));
+}
 
 TEST_CASE("undo: goes back edit by edit and forth again") {
     World world;
