@@ -39,10 +39,14 @@ void CommandOrder::collect(CommandBuffer& buffer) {
         return a.place.sequence != b.place.sequence ? a.place.sequence < b.place.sequence
                                                     : a.place.chunk < b.place.chunk;
     };
-    if (!std::is_sorted(segments_.begin(), segments_.end(), before)) {
-        // Stable: segments of one place were recorded by one thread, in order.
-        std::stable_sort(segments_.begin(), segments_.end(), before);
-    }
+    // Segments of one place were recorded by one thread, in the order of its runs.
+    std::sort(segments_.begin(), segments_.end(), [&](const Segment& a, const Segment& b) {
+        if (before(a, b) || before(b, a)) {
+            return before(a, b);
+        }
+        return a.stream != b.stream ? a.stream->number < b.stream->number
+                                    : a.first_run < b.first_run;
+    });
     for (std::size_t i = 1; i < segments_.size(); ++i) {
         LIMN_CHECK_NOTE(
             segments_[i - 1].stream == segments_[i].stream

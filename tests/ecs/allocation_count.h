@@ -45,6 +45,19 @@ void* operator new(std::size_t size, std::align_val_t align) {
 void* operator new[](std::size_t size, std::align_val_t align) {
     return limn::test::count_allocation(size, static_cast<std::size_t>(align));
 }
+// The sanitizers have their own of these, which would not fit the rest.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return limn::test::count_allocation(size, 1);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    return limn::test::count_allocation(size, 1);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+    std::free(memory);
+}
 void operator delete(void* memory) noexcept {
     std::free(memory);
 }
