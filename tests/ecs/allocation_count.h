@@ -23,6 +23,11 @@ inline void* count_allocation(std::size_t size, std::size_t align) {
     return memory;
 }
 
+/// Apart, so that no compiler takes the pair of it and operator new for a mistake.
+[[gnu::noinline]] inline void give_back(void* memory) {
+    std::free(memory);
+}
+
 /// Bytes asked for while `work` ran, by all threads, whether they were given back or not.
 template <typename Work>
 std::size_t bytes_allocated_by(const Work& work) {
@@ -53,32 +58,32 @@ void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
     return limn::test::count_allocation(size, 1);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete[](void* memory, const std::nothrow_t&) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete[](void* memory) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete[](void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    limn::test::give_back(memory);
 }
