@@ -960,7 +960,7 @@ class Query {
                 if constexpr (detail::TermTraits<Term>::is_tracked) {
                     if (found != nullptr) {
                         place.match->archetype->bits()
-                            .track(component_id<T>)
+                            .track(component_id<std::remove_const_t<T>>)
                             ->mark_shared(place.row);
                     }
                 }
