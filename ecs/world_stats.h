@@ -14,7 +14,7 @@ class QueryState;
 class Schedule;
 class World;
 
-// Figures about a world and the systems that run over it, for the inspector, `limn info --storage`
+// Figures about a world and the systems that run over it, for the inspector
 // and tests; as text for people and as JSON for programs. What they cost while nobody looks is one
 // addition a call of a query, a move of a row and a command.
 
