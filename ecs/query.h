@@ -132,8 +132,9 @@ class Query {
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
-        each_chunk(
-            [&](const ChunkTask& task) { run_chunk(task, version, function, Data{}, Indices{}); });
+        each_chunk([&](const ChunkTask& task) {
+            run_chunk<std::remove_reference_t<F>>(task, version, function, Data{}, Indices{});
+        });
     }
 
     template <typename F>
@@ -144,7 +145,8 @@ class Query {
         const std::uint32_t version = write_version();
         const ChunkTasks tasks(*this, version);
         par_tasks(tasks.list.size(), [&](std::size_t task) {
-            run_chunk(tasks.list[task], version, function, Data{}, Indices{});
+            run_chunk<std::remove_reference_t<F>>(
+                tasks.list[task], version, function, Data{}, Indices{});
         });
     }
 
@@ -736,11 +738,22 @@ class Query {
         loop(detail::access_term<Ts>(*core_, match, Positions, version)...);
     }
 
+    /// A small function that has nothing of its own to change is handed on as a copy: the compiler
+    /// knows all who can reach it, and what it captured stays in registers.
+    template <typename F, typename... Ts>
+    static constexpr bool is_copied_of(detail::TypeList<Ts...>) {
+        return std::is_trivially_copyable_v<F> && sizeof(F) <= 64
+               && std::is_invocable_v<const F&, ChunkView, detail::ChunkArgument<Ts>...>;
+    }
+    template <typename F>
+    using Handed = std::conditional_t<is_copied_of<F>(Data{}), const std::remove_const_t<F>, F&>;
+
+    /// Not inlined: the loop of the function would have to share its registers with the loops here.
     template <typename F, typename... Ts, std::size_t... Positions>
-    void run_chunk(
+    [[gnu::noinline]] void run_chunk(
         const ChunkTask& task,
         std::uint32_t version,
-        F& function,
+        Handed<F> function,
         detail::TypeList<Ts...> list,
         std::index_sequence<Positions...>) const {
         const QueryMatch& match = *task.match;
@@ -756,13 +769,13 @@ class Query {
             all_enabled = found == EnabledRows::All;
         }
         std::uint32_t previous[Data::size + 1] = {};
-        [[maybe_unused]] const auto save = [&](std::size_t position) {
+        [[maybe_unused]] const auto save = [&]<typename Term>(std::size_t position) {
             const int column = match.columns[position];
-            if (column >= 0) {
+            if (detail::always_has_column<Term> || column >= 0) {
                 previous[position] = match.archetype->column(column).versions[task.chunk];
             }
         };
-        (save(Positions), ...);
+        (save.template operator()<Ts>(Positions), ...);
         touch(match, begin, begin + size, version, list);
         [[maybe_unused]] std::array<RowMask, kTracks ? Data::size : 1> previous_written;
         if constexpr (kTracks) {
@@ -821,11 +834,9 @@ class Query {
             return column < 0 ? SplitSpan<T>()
                               : SplitSpan<T>(&match.archetype->column(column), begin, size);
         } else {
-            return column < 0
-                       ? std::span<T>()
-                       : std::span<T>(
-                           reinterpret_cast<T*>(match.archetype->column(column).data) + begin,
-                           size);
+            return detail::always_has_column<Term> || column >= 0 ? std::span<T>(
+                       reinterpret_cast<T*>(match.archetype->column(column).data) + begin, size)
+                                                                  : std::span<T>();
         }
     }
 

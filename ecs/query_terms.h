@@ -360,7 +360,8 @@ template <typename Term>
 inline constexpr bool always_has_column =
     !TermTraits<Term>::is_optional
     && !is_sparse<
-        typename TermTraits<Term>::Value> && !std::is_empty_v<typename TermTraits<Term>::Value>;
+        typename TermTraits<Term>::
+            Value> && !is_shared<typename TermTraits<Term>::Value> && !std::is_empty_v<typename TermTraits<Term>::Value>;
 
 template <typename Term>
 auto access_term(
