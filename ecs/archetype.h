@@ -211,6 +211,9 @@ class Archetype {
     /// change hands. False, and nothing is done, if this archetype has rows or `from` so few that
     /// copies are as good.
     [[nodiscard]] bool take_over(Archetype& from, std::uint32_t version);
+    /// Takes the columns of `from`, which has the same components and no rows, as its own, which
+    /// has no rows either.
+    void take_memory(Archetype& from);
     /// Takes rows out whose components are gone already. The gaps are filled, the lowest first,
     /// with the rows beyond the new end, the lowest first; these moves are put into `moves`.
     void

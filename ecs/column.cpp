@@ -96,6 +96,14 @@ void VirtualRange::commit_more(std::size_t bytes) {
     usable_ = static_cast<std::size_t>(end - data_);
 }
 
+void expect_to_fill(const std::byte* first, std::size_t size) {
+    const auto begin = round_up(reinterpret_cast<std::uintptr_t>(first), kHugePage);
+    const auto end = (reinterpret_cast<std::uintptr_t>(first) + size) / kHugePage * kHugePage;
+    if (begin < end) {
+        madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // a wish, as above
+    }
+}
+
 void VirtualRange::shrink(std::size_t bytes) {
     std::byte* const end = bytes > 0 ? round_up(data_ + bytes, kPage) : data_ - lead_;
     if (usable_ == 0 || end >= data_ + usable_) {

@@ -70,6 +70,9 @@ class VirtualRange {
     std::size_t lead_ = 0;  ///< before data_, committed with it
 };
 
+/// Asks for huge pages behind memory that is about to be filled for the first time.
+void expect_to_fill(const std::byte* first, std::size_t size);
+
 /// Blocks of 4, 8, 16, 32 and 64 KiB, page aligned, reused through a free list a size.
 class BlockPool {
   public:

@@ -215,6 +215,19 @@ bool Archetype::take_over(Archetype& from, std::uint32_t version) {
     return true;
 }
 
+void Archetype::take_memory(Archetype& from) {
+    LIMN_CHECK(size_ == 0 && from.size_ == 0 && columns_.size() == from.columns_.size());
+    leave_block();
+    std::swap(entities_, from.entities_);
+    std::swap(entity_range_, from.entity_range_);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        std::swap(columns_[i].data, from.columns_[i].data);
+        std::swap(columns_[i].range, from.columns_[i].range);
+    }
+    update_capacity();
+    from.update_capacity();
+}
+
 void Archetype::close_gaps(
     std::span<const RowRange> gaps, std::uint32_t version, std::vector<RowMove>& moves) {
     moves.clear();

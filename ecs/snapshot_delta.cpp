@@ -226,6 +226,7 @@ bool steps_fit(const Delta& delta) {
 Result<std::vector<std::byte>> apply(const Delta& delta, std::span<const std::byte> base) {
     std::vector<std::byte> bytes;
     bytes.reserve(delta.size);
+    expect_to_fill(bytes.data(), delta.size);
     ByteReader steps = delta.steps;
     std::size_t own = 0;
     while (steps.left() > 0) {

@@ -17,7 +17,9 @@ namespace limn {
 //   head    names      u32 count; each: text, u64 layout of its fields, u32 SavedStorage
 //           resources  u32 count; each: text, u64 layout
 //           slots      u32 count, u32 free, u32 first free
-//           groups     u32 count; each: u32 components, their numbers (u32), u32 rows
+//           groups     u32 count; each: u32 components, their numbers (u32), the values of those
+//           that
+//                      are shared, u32 rows
 //           sets       u32 count; each: u32 number of the component, u32 values
 //   table   of each piece: u64 size, u64 XXH64
 //   data    the pieces, one behind the other

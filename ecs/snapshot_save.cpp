@@ -14,12 +14,15 @@ Result<std::vector<std::byte>> save_snapshot(const World& world, SnapshotMark* m
 
     SnapshotHeader header;
     header.piece_count = plan.piece_count();
+    ByteWriter head;
+    plan.write_head(head);
+    header.head_size = head.size();
+    header.data_size = plan.least_data_size();  // for the time being
     ByteWriter out;
-    out.reserve(
-        kSnapshotHeaderSize + header.piece_count * sizeof(SnapshotPiece) + plan.least_data_size());
+    out.reserve(header.total_size());
+    expect_to_fill(out.data(), header.total_size());
     write_header(header, out);  // to be replaced, as is the table
-    plan.write_head(out);
-    header.head_size = out.size() - kSnapshotHeaderSize;
+    out.bytes(head.data(), head.size());
     std::vector<SnapshotPiece> pieces(header.piece_count);
     out.bytes(pieces.data(), pieces.size() * sizeof(SnapshotPiece));
     const std::size_t data = out.size();
@@ -49,8 +52,7 @@ Result<std::vector<std::byte>> save_snapshot(const World& world, SnapshotMark* m
     if (mark != nullptr) {
         SnapshotIndex index = plan.make_index(world.version());
         index.header = header;
-        index.head.assign(
-            out.data() + kSnapshotHeaderSize, out.data() + kSnapshotHeaderSize + header.head_size);
+        index.head = head.take();
         index.pieces = std::move(pieces);
         index.offsets = std::move(offsets);
         mark->index = std::make_shared<const SnapshotIndex>(std::move(index));

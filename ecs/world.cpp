@@ -648,6 +648,11 @@ void World::remove_resource(ComponentId id) {
 void World::begin_restore(const EntityTableImage& image) {
     clear();
     bundles_.clear();
+    for (std::unique_ptr<Archetype>& archetype : core_.archetypes) {
+        if (archetype->is_promoted()) {
+            internals_->spare_archetypes.push_back(std::move(archetype));
+        }
+    }
     core_.archetypes.clear();
     core_.sparse.clear();
     core_.sparse_list.clear();
@@ -671,6 +676,9 @@ Archetype& World::restore_rows(
         }
     }
     Archetype& rows = archetype_of(components, values);
+    if (!entities.empty() && rows.capacity() == 0) {
+        reuse_memory(rows);
+    }
     const std::uint32_t first = rows.append(entities, core_.now());
     for (Column& column : rows.columns()) {
         if (column.info->value_bytes != ValueBytes::All) {
@@ -681,6 +689,21 @@ Archetype& World::restore_rows(
         core_.entities.place(entities[i], rows.index(), first + static_cast<std::uint32_t>(i));
     }
     return rows;
+}
+
+void World::reuse_memory(Archetype& rows) {
+    std::vector<std::unique_ptr<Archetype>>& spare = internals_->spare_archetypes;
+    const auto found = std::find_if(spare.begin(), spare.end(), [&](const auto& archetype) {
+        return std::equal(
+            archetype->components().begin(),
+            archetype->components().end(),
+            rows.components().begin(),
+            rows.components().end());
+    });
+    if (found != spare.end()) {
+        rows.take_memory(**found);
+        spare.erase(found);
+    }
 }
 
 SparseSet& World::restore_sparse(ComponentId id, std::span<const Entity> entities) {
@@ -696,6 +719,7 @@ SparseSet& World::restore_sparse(ComponentId id, std::span<const Entity> entitie
 }
 
 void World::end_restore() {
+    internals_->spare_archetypes.clear();
     for (std::size_t i = 0; i < internals_->observers.size(); ++i) {
         const Observer& observer = *internals_->observers[i];
         if (observer.event != ObserverEvent::Add) {

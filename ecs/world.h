@@ -329,6 +329,8 @@ class World {
             "enabling or disabling while iterating or inside a system; use chunk.set_enabled of a "
             "written term, or Commands");
     }
+    /// Of an archetype that was there before the snapshot that is being restored, if there is one.
+    void reuse_memory(Archetype& rows);
     void destroy_now(Entity entity, EntityPlace place);
     /// Says where the row is that has filled a hole, if one has.
     void place_filler(const Archetype& rows, std::uint32_t hole) {

@@ -27,6 +27,8 @@ struct World::Internals {
     std::mutex query_mutex;               ///< of World::queries_ while the world is const
     std::unique_ptr<CommandFlush> flush;  ///< null while in use, and before the first
     FlushStats flush_stats;
+    /// While a snapshot is restored: large archetypes of before, for their memory.
+    std::vector<std::unique_ptr<Archetype>> spare_archetypes;
 };
 
 }  // namespace limn

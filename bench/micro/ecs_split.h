@@ -140,8 +140,9 @@ inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty,
     });
 }
 
-/// Restricted: seven arrays are too many for the compiler to compare at run time.
-inline void turn_lanes(
+/// Restricted: seven arrays are too many for the compiler to compare at run time; not inlined,
+/// since g++ 12 forgets the restriction there and leaves the loop scalar.
+[[gnu::noinline]] inline void turn_lanes(
     std::size_t size,
     float* __restrict x,
     float* __restrict y,

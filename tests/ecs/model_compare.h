@@ -229,6 +229,8 @@ class Comparison {
         }
         expect(query.count() == visits.size(), "count differs from what each visits");
 
+        compare_gather(query, visits);
+
         std::atomic<std::uint64_t> par_sum = 0;
         query.par_each([&](Entity entity, const auto&... components) {
             par_sum.fetch_add(row_hash(entity, components...), std::memory_order_relaxed);
@@ -239,6 +241,38 @@ class Comparison {
             !(detail::TermTraits<Terms>::filters_rows || ...) && !(takes_rows<Terms> || ...)) {
             compare_chunks(query, sum, sequence, detail::DataTerms<Terms...>{});
         }
+    }
+
+    /// A list in another order than the rows, with some twice and some that are gone.
+    template <typename Query>
+    void compare_gather(const Query& query, const std::map<Id, int>& visits) {
+        std::vector<Entity> list;
+        for (const Id id : reference_.living()) {
+            list.push_back(reference_.handle(id));
+            if (id % 7 == 0) {
+                list.push_back(list.front());
+                list.push_back({});
+            }
+        }
+        for (const Id id : reference_.dead()) {
+            list.push_back(reference_.handle(id));
+        }
+        std::size_t expected = 0;
+        for (const Entity entity : list) {
+            expected += visits.contains(reference_.id_of(entity)) ? 1 : 0;
+        }
+        std::size_t calls = 0;
+        std::size_t last = 0;
+        const std::size_t found =
+            query.gather(list, [&](std::size_t index, const auto&... components) {
+                expect(calls == 0 || index > last, "gather leaves the order of the list");
+                const Id id = reference_.id_of(list[index]);
+                expect(visits.contains(id), "gather finds what is not the query's");
+                (expect_argument(components, reference_.at(id)), ...);
+                last = index;
+                ++calls;
+            });
+        expect(found == expected && calls == expected, "gather leaves some out");
     }
 
     template <typename Query, typename... Data>

@@ -288,6 +288,68 @@ class ModelDirect : public ModelRun {
         }
     }
 
+    /// All of a query at once.
+    void change_all() {
+        switch (roll(3)) {
+        case 0:
+            change_all_of<const ModelTitle, Without<ModelBadge>>();
+            break;
+        case 1:
+            change_all_of<With<ModelPlace>, Without<ModelLamp>>();
+            break;
+        default:
+            change_all_of<const ModelWarmth, With<ModelSpeed>>();
+        }
+    }
+
+    template <typename... Terms>
+    void change_all_of() {
+        constexpr Mask kRequired = (Mask{0} | ... | ShapeOf<Terms>::required);
+        constexpr Mask kExcluded = (Mask{0} | ... | ShapeOf<Terms>::excluded);
+        std::vector<Id> ids;
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.matches(kRequired, kExcluded)) {
+                ids.push_back(id);
+            }
+        }
+        const auto query = world_.query<Terms...>();
+        const std::uint32_t way = roll(8);
+        if (way == 0) {
+            count("destroy_all");
+            world_.destroy_all(query);
+            for (const Id id : ids) {
+                reference_.destroy(id);
+            }
+            return;
+        }
+        constexpr Kind kOften[] = {Kind::Tally, Kind::Memo, Kind::Badge, Kind::Pose, Kind::Lamp};
+        const Kind kind = kOften[roll(std::size(kOften))];
+        const Value value = any_value(kind, kNoId);
+        with_kind(kind, [&]<typename T>() {
+            if constexpr (bulk_kind<T>) {
+                if (way < 4) {
+                    count("add_all");
+                    world_.add_all(query, make<T>(value.number, {}));
+                } else {
+                    count("remove_all");
+                    world_.remove_all<T>(query);
+                }
+            }
+        });
+        for (const Id id : ids) {
+            if (way < 4) {
+                reference_.add(id, kind, value);
+            } else {
+                reference_.remove(id, kind);
+            }
+        }
+    }
+    template <typename T>
+    static constexpr bool bulk_kind = (bit(kind_of<T>())
+                                       & (bit(Kind::Tally) | bit(Kind::Memo) | bit(Kind::Badge)
+                                          | bit(Kind::Pose) | bit(Kind::Lamp)))
+                                      != 0;
+
     void use_stale_handle() {
         const Id id = any_dead();
         if (id == kNoId) {

@@ -56,10 +56,12 @@ class ModelWorld : public ModelRecorded {
             make_template();
         } else if (choice < 916) {
             sweep();
-        } else if (choice < 917) {
+        } else if (choice < 918) {
             save_or_restore();
-        } else if (choice < 919) {
+        } else if (choice < 920) {
             run_systems();
+        } else if (choice < 922) {
+            change_all();
         } else if (choice < 960) {
             record_and_flush();
         } else {
@@ -73,6 +75,11 @@ class ModelWorld : public ModelRecorded {
     void new_goal() {
         constexpr std::size_t kGoals[] = {0, 3, 60, 700, 1500, 2600};
         goal_ = kGoals[roll(std::size(kGoals))];
+        if (chance(50)) {
+            count("shrink");
+            world_.shrink();
+            compare();
+        }
         if (goal_ == 0) {
             count("clear");
             world_.clear();
@@ -86,6 +93,7 @@ class ModelWorld : public ModelRecorded {
     struct Saved {
         std::vector<std::byte> bytes;
         std::uint64_t hash = 0;
+        SnapshotMark mark;
         Reference reference;
         std::vector<std::shared_ptr<const Template>> templates;
     };
@@ -93,10 +101,15 @@ class ModelWorld : public ModelRecorded {
     void save_or_restore() {
         if (saved_ == nullptr || chance(40)) {
             count("save");
-            Result<std::vector<std::byte>> bytes = save_snapshot(world_);
+            SnapshotMark mark;
+            Result<std::vector<std::byte>> bytes = save_snapshot(world_, &mark);
             expect(bytes.ok(), "a snapshot fails");
             saved_ = std::make_unique<Saved>(
-                Saved{std::move(*bytes), state_hash(world_), reference_, templates_});
+                Saved{std::move(*bytes), state_hash(world_), mark, reference_, templates_});
+            return;
+        }
+        if (chance(50)) {
+            save_difference();
             return;
         }
         count("restore");
@@ -105,6 +118,19 @@ class ModelWorld : public ModelRecorded {
         reference_.restore(saved_->reference);
         templates_ = saved_->templates;
         compare();
+    }
+
+    /// Goes on from what was saved before, or from the last difference.
+    void save_difference() {
+        count("delta");
+        SnapshotMark mark;
+        const auto delta = save_delta(world_, saved_->mark, &mark);
+        expect(delta.ok(), "a delta fails");
+        auto whole = apply_delta(saved_->bytes, *delta);
+        expect(whole.ok(), "a delta is refused");
+        expect(*whole == *save_snapshot(world_), "a delta gives another snapshot");
+        saved_ = std::make_unique<Saved>(
+            Saved{std::move(*whole), state_hash(world_), mark, reference_, templates_});
     }
 
     // ---- around full chunks

@@ -84,6 +84,8 @@ std::vector<std::byte> small_snapshot(Story& story, SnapshotMark* mark = nullptr
     const Entity e = story.world.create(StoryPlace{}, StoryText{"text"}, StoryLamp{});
     story.world.create(StorySpin{}, StoryAwake{}, StoryLife{});
     story.world.create(StoryRoute{{1, 2}, {{e, 30, false}}});
+    story.world.create(StoryShade{1, e}, StoryPlace{});
+    story.world.create(StoryShade{2, e}, StoryPlace{});
     story.world.add(e, StoryHeat{});
     story.world.add(e, StoryNote{"note"});
     story.world.disable<StoryLamp>(e);

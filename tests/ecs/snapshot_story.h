@@ -71,6 +71,20 @@ struct StoryLamp {
     std::uint16_t watts = 40;
 };
 struct StoryAwake {};
+/// Shared.
+struct StoryShade {
+    std::uint32_t color = 0;
+    Entity source;
+};
+template <typename Visitor>
+void visit_fields(StoryShade& shade, Visitor&& visit) {
+    visit("color", shade.color);
+    visit("source", shade.source);
+}
+/// Shared, not saved.
+struct StoryBatch {
+    std::uint32_t number = 0;
+};
 struct StoryHeat {
     int degrees = 0;
 };
@@ -111,6 +125,16 @@ struct limn::ComponentTraits<snapshot_story::StoryAwake> : DefaultTraits {
     static constexpr Storage storage = Storage::Toggle;
 };
 template <>
+struct limn::ComponentTraits<snapshot_story::StoryShade> : DefaultTraits {
+    static constexpr Storage storage = Storage::Shared;
+};
+template <>
+struct limn::ComponentTraits<snapshot_story::StoryBatch> : DefaultTraits {
+    static constexpr Storage storage = Storage::Shared;
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+};
+template <>
 struct limn::ComponentTraits<snapshot_story::StoryHeat> : DefaultTraits {
     static constexpr Storage storage = Storage::Sparse;
 };
@@ -136,6 +160,7 @@ inline void register_types() {
     register_component<StoryLife>();
     register_component<StoryText>();
     register_component<StoryFlag>();
+    register_component<StoryShade>();
     register_component<StoryRoute>();
     register_component<StorySpin>();
     register_component<StoryLamp>();
@@ -153,7 +178,7 @@ inline std::vector<std::byte> save(const World& world, SnapshotMark* mark = null
 
 /// A world to which anything may happen.
 struct Story {
-    static constexpr std::uint32_t kComponents = 12;
+    static constexpr std::uint32_t kComponents = 14;
 
     World world;
     Random rng;
@@ -167,7 +192,7 @@ struct Story {
 
     void create(std::uint32_t count) {
         const auto f = static_cast<float>(rng.below(100));
-        switch (rng.below(8)) {
+        switch (rng.below(9)) {
         case 0:
             keep(world.create_many(count, StoryPlace{f, 0, 0}));
             break;
@@ -188,6 +213,9 @@ struct Story {
             break;
         case 6:
             keep(world.create_many(count, StoryLamp{}, StoryAwake{}));
+            break;
+        case 7:
+            keep(world.create_many(count, StoryPlace{}, StoryShade{rng.below(3), {}}));
             break;
         default:
             keep(world.create_many(count, StoryHeat{3}));
@@ -246,6 +274,12 @@ struct Story {
         case 10:
             flip(StoryRoute{{1, 2, 3}, {{entity, 45, true}}});
             break;
+        case 11:
+            flip(StoryShade{rng.below(4), {}});
+            break;
+        case 12:
+            flip(StoryBatch{rng.below(3)});
+            break;
         default:
             flip(StoryLife{false, 4});
             break;
@@ -271,6 +305,9 @@ struct Story {
         }
         if (world.has<StorySpin>(entity)) {
             world.set(entity, StorySpin{1, 2, rng.below(5)});
+        }
+        if (world.has<StoryShade>(entity)) {
+            world.set(entity, StoryShade{rng.below(4), rng.below(2) == 0 ? any() : Entity{}});
         }
         if (world.has<StoryLamp>(entity)) {
             world.set_enabled<StoryLamp>(entity, rng.below(2) == 0);

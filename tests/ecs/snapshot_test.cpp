@@ -6,6 +6,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
+#include "ecs/world_stats.h"
 #include "tests/ecs/snapshot_seal.h"
 
 #include <doctest/doctest.h>
@@ -191,6 +192,32 @@ TEST_CASE("snapshot: rolling back undoes whatever happened since") {
     CHECK(world.find_resource<RandomSeed>() == nullptr);  // was not there
     CHECK(world.resource<SnapEngine>().value == 5);       // is not part of it
     CHECK(world.query<const Transform>().count() == 1500 + 1 + 26);
+}
+
+TEST_CASE("snapshot: rolling back uses the memory there is") {
+    World world;
+    register_snapshot_types();
+    world.create_many(50'000, Transform{});
+    const std::vector<std::byte> bytes = save(world);
+    const Transform* before = nullptr;
+    const Transform* after = nullptr;
+    const auto look = [&](const Transform*& first) {
+        first = nullptr;
+        world.query<const Transform>().chunks([&](ChunkView, std::span<const Transform> some) {
+            first = first == nullptr ? some.data() : first;
+        });
+    };
+    look(before);
+    world.create_many(10, Transform{}, Name{"more"});
+    REQUIRE(restore_snapshot(world, bytes).ok());
+    look(after);
+    CHECK(before == after);
+    CHECK(save(world) == bytes);
+    const std::size_t memory = world.memory().total();
+    for (int i = 0; i < 10; ++i) {
+        REQUIRE(restore_snapshot(world, bytes).ok());
+    }
+    CHECK(world.memory().total() == memory);
 }
 
 TEST_CASE("snapshot: observers see the old world go and the new one come") {

@@ -62,6 +62,8 @@ struct Good {
         world.create(Pocket{{"a", ""}, {root, child}, {PointLight{}}}, Teleport{});
         world.destroy(world.create(OrbitCamera{}));
         world.create(StoryRoute{{1, 2}, {{root, 30, false}}});
+        world.create(StoryShade{1, root});
+        world.create(StoryShade{2, root});
         world.disable<StoryLamp>(other);
         world.add(child, StoryHeat{});
         world.add(child, StoryNote{"note"});
