@@ -222,15 +222,18 @@ inline void split(Bench& bench) {
             split_world.set(lanes[i], rotation);
         }
         const RawArrays<Seen> raw_seen(count);
-        std::vector<std::vector<float>> raw(11, std::vector<float>(count));
+        std::vector<RawColumn<float>> raw;
+        for (std::size_t lane = 0; lane < 11; ++lane) {
+            raw.emplace_back(count, lane);
+        }
         for (std::size_t i = 0; i < count; ++i) {
             for (std::uint32_t lane = 0; lane < 3; ++lane) {
-                raw[lane][i] = noise(i, lane);
-                raw[8 + lane][i] = noise(i, 7 + lane);
+                raw[lane].data()[i] = noise(i, lane);
+                raw[8 + lane].data()[i] = noise(i, 7 + lane);
             }
-            raw[3][i] = 0.1f;
-            raw[4][i] = noise(i, 6);
-            raw[7][i] = 1;
+            raw[3].data()[i] = 0.1f;
+            raw[4].data()[i] = noise(i, 6);
+            raw[7].data()[i] = 1;
         }
         const auto cull_query = world.query<const Sphere, Seen>();
         const auto turn_query = world.query<const Turn, Rotation>();
@@ -276,8 +279,8 @@ inline void split(Bench& bench) {
             const Rotation rotation = world.get<const Rotation>(table[i]);
             const SplitRotation turned = split_world.value<SplitRotation>(lanes[i]);
             const bool seen = raw_seen.column<Seen>()[i].yes == 1;
-            different += rotation.x != turned.x || rotation.w != turned.w || turned.x != raw[4][i]
-                         || turned.w != raw[7][i]
+            different += rotation.x != turned.x || rotation.w != turned.w
+                         || turned.x != raw[4].data()[i] || turned.w != raw[7].data()[i]
                          || (world.get<const Seen>(table[i]).yes == 1) != seen
                          || (split_world.get<const Seen>(lanes[i]).yes == 1) != seen;
         }
