@@ -417,6 +417,73 @@ TEST_CASE("flush: all of a query are destroyed, added to and removed from in one
     }
 }
 
+TEST_CASE("flush: a query that follows sparse values changes its rows in their own order") {
+    World world;
+    const std::vector<Entity> all = world.create_many(3000, Position{});
+    // Heat comes from behind, so that the query visits the rows from behind.
+    for (std::size_t i = all.size(); i-- > 0;) {
+        if (i % 2 == 0) {
+            world.add(all[i], Heat{static_cast<int>(i)});
+        }
+    }
+    std::vector<Entity> told;
+    world.on_add<Label>([&](World&, std::span<const Entity> entities) {
+        told.insert(told.end(), entities.begin(), entities.end());
+    });
+    world.add_all(world.query<const Position, With<Heat>>(), Label{text_of(3), {}});
+    CHECK(world.query<const Label>().count() == 1500);
+    CHECK(told.size() == 1500);
+    CHECK(std::is_sorted(
+        told.begin(), told.end(), [](Entity a, Entity b) { return a.index < b.index; }));
+    world.destroy_all(world.query<const Position, With<Heat>>());
+    CHECK(world.query<const Position>().count() == 1500);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        CHECK(world.alive(all[i]) == (i % 2 != 0));
+    }
+}
+
+TEST_CASE("flush: what it learned about archetypes is forgotten when they begin anew") {
+    World world;
+    const auto grow = [&](auto value) {
+        world.run([&](Query<const Position> rows, Commands commands) {
+            rows.each([&](Entity entity, const Position&) { commands.add(entity, value); });
+        });
+    };
+    world.create_many(5, Position{1, 2, 3});
+    grow(Mass{4});
+    CHECK(world.query<const Mass>().count() == 5);
+    // The same archetypes, made in another order, perhaps where the old ones lay.
+    for (int round = 0; round < 8; ++round) {
+        CAPTURE(round);
+        world.clear();
+        world.create_many(round % 3, Velocity{});
+        world.create_many(4, Position{1, 2, 3}, Marked{});
+        world.create_many(5, Position{5, 6, 7});
+        grow(Mass{8});
+        REQUIRE(world.query<const Mass>().count() == 9);
+        REQUIRE(world.query<const Mass, With<Marked>>().count() == 4);
+        world.query<const Mass, const Position, Without<Marked>>().each(
+            [](const Mass& mass, const Position& place) {
+                CHECK(mass.value == 8);
+                CHECK(place.z == 7);
+            });
+    }
+}
+
+TEST_CASE("flush: only sync points with commands count") {
+    World world;
+    world.create_many(3, Position{});
+    const auto idle = [](Query<const Position>, Commands) {};
+    world.run(idle);
+    CHECK(world.flush_stats().flushes == 0);
+    world.run([](Query<const Position> rows, Commands commands) {
+        rows.each([&](Entity entity, const Position&) { commands.add(entity, Marked{}); });
+    });
+    world.run(idle);
+    CHECK(world.flush_stats().flushes == 1);
+    CHECK(world.flush_stats().commands == 3);
+}
+
 TEST_CASE("flush: disabled rows are none of the query's") {
     World world;
     const std::vector<Entity> entities = world.create_many(2500, Switch{1});

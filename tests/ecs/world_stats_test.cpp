@@ -188,6 +188,24 @@ TEST_CASE("statistics: rows that move leave one archetype and come to another") 
     CHECK(came == 1 + 2999 + 2000);
 }
 
+TEST_CASE("statistics: what archetypes have asked for adds up to the memory report") {
+    World world;
+    world.create_many(100'000, Position{}, Velocity{});  // in ranges of its own
+    world.create_many(5, Position{}, Mass{});            // in pooled blocks
+    std::size_t own = 0;
+    std::size_t pooled = 0;
+    for (const ArchetypeStats& archetype : world_stats(world).archetypes) {
+        (archetype.promoted ? own : pooled) += archetype.committed;
+        CHECK(archetype.fill() >= 0);
+        CHECK(archetype.fill() <= 1);
+        CHECK(archetype.committed >= std::size_t{archetype.rows} * archetype.row_bytes);
+    }
+    CHECK(own == world.memory().archetypes);
+    CHECK(own >= 100'000 * (sizeof(Position) + sizeof(Velocity) + sizeof(Entity)));
+    CHECK(pooled > 0);
+    CHECK(pooled <= world.memory().blocks);
+}
+
 TEST_CASE("statistics: as JSON they are JSON, whatever a system is called") {
     World world;
     world.create_many(2000, Position{}, Marked{});
