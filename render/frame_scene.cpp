@@ -70,7 +70,12 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
     std::vector<gpu::ShaderDefine> defines;
     const std::uint32_t key = lighting_key(scene);
     constexpr const char* kNames[] = {
-        "DIRECTIONAL_LIGHTS", "SPOT_LIGHTS", "SPOT_ANGLES", "CLASSIC_MODELS", "LINEAR_FADE"};
+        "DIRECTIONAL_LIGHTS",
+        "SPOT_LIGHTS",
+        "SPOT_ANGLES",
+        "CLASSIC_MODELS",
+        "LINEAR_FADE",
+        "SHADOWS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -82,7 +87,7 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
 std::uint32_t lighting_key(const FrameScene& scene) {
     return (scene.lights.directional > 0 ? 1u : 0u) | (scene.lights.spots > 0 ? 2u : 0u)
            | (scene.lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
-           | (scene.lights.linear_fade ? 16u : 0u);
+           | (scene.lights.linear_fade ? 16u : 0u) | (scene.lights.shadows ? 32u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

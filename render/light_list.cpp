@@ -132,6 +132,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     list.sun_color = Vec3(0);
     list.spot_angles = false;
     list.linear_fade = false;
+    list.shadows = false;
     const auto* frame = world.find_resource<FrameTime>();
     const double time =
         frame == nullptr ? 0.0 : frame->time - (1.0 - alpha) * static_cast<double>(frame->step);

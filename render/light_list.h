@@ -30,6 +30,7 @@ struct LightList {
     int points = 0;
     int spots = 0;
     bool linear_fade = false;        ///< some polynomial has a linear term
+    bool shadows = false;            ///< some record has a shadow
     bool spot_angles = false;        ///< some spot has SpotProfile::LinearAngle
     Vec3 sun_direction = {0, 1, 0};  ///< toward the first directional light, unit
     Vec3 sun_color = {0, 0, 0};      ///< [lx]; black: there is none

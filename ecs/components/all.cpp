@@ -6,6 +6,7 @@
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -27,6 +28,8 @@ void register_all_components() {
     register_component<SpotLight>();
     register_component<DirectionalLight>();
     register_component<LightPulse>();
+    register_component<Shadow>();
+    register_component<NoShadow>();
     register_component<Camera>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();

@@ -13,9 +13,17 @@ struct LightRecord {
     vec4 color;       // [cd]; of a directional light [lx]. w: multiplier of Falloff::Smooth, 0 = Karis window
     vec4 polynomial;  // c, l, q of 1 / (c + l d + q d^2). w: SpotProfile
     vec4 axis;        // where a spot shines, times the scale of its profile. w: offset of its profile
+    vec4 shadow;      // first shadow view (or mask layer), kShadow*, number of views, size of the source
 };
 
-const uint kLightTexels = 4u;
+const uint kLightTexels = 5u;
+
+// LightRecord::shadow.y: what light_visibility() reads.
+const float kShadowNone = 0.0;      // always lit
+const float kShadowView = 1.0;      // one view: a spot, or a perspective map
+const float kShadowCube = 2.0;      // six faces: a point light
+const float kShadowCascades = 3.0;  // a sun's, near to far
+const float kShadowMask = 4.0;      // a layer of the screen's mask: shadow volumes
 
 #ifdef __cplusplus
 static_assert(sizeof(LightRecord) == 16 * kLightTexels);

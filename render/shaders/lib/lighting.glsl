@@ -4,6 +4,7 @@
 //   SPOT_LIGHTS         some light is a spot
 //   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
 //   LINEAR_FADE         some polynomial has a linear term
+//   SHADOWS             some light has a shadow
 
 #include "lib/light.glsl"
 #include "lib/reflection_map.glsl"
@@ -11,17 +12,26 @@
 #include "lib/sky.glsl"
 #include "lib/view.glsl"
 #include "light_gpu.h"
+#ifdef SHADOWS
+#include "lib/shadow.glsl"
+#endif
 
 layout(binding = 7) uniform sampler2D reflection_map;
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
 layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the grid's cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 
-Incoming incoming_directional(int index) {
-    return Incoming(texelFetch(lights, index * int(kLightTexels)).xyz, texelFetch(lights, index * int(kLightTexels) + 1).rgb);
+Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
+    vec3 to_light = texelFetch(lights, index * int(kLightTexels)).xyz;
+    vec3 irradiance = texelFetch(lights, index * int(kLightTexels) + 1).rgb;
+#ifdef SHADOWS
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+    irradiance *= light_visibility(shadow, position_ws, normal, to_light, pixel);
+#endif
+    return Incoming(to_light, irradiance);
 }
 
-Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
+Incoming incoming_local(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
     vec4 place = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
@@ -32,6 +42,10 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
 #ifdef SPOT_LIGHTS
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
     fade *= spot_attenuation(to_light, axis.xyz, axis.w, polynomial.w);
+#endif
+#ifdef SHADOWS
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+    fade *= light_visibility(shadow, position_ws, normal, to_light, pixel);
 #endif
     return Incoming(to_light, color.rgb * fade);
 }
@@ -59,7 +73,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
     int directional = int(view.grid_depth.z);
     int n = 0;
     do {
-        add_light(sum, r, incoming_directional(n));
+        add_light(sum, r, incoming_directional(n, position_ws, r.normal, pixel));
     } while (++n < directional);
 #endif
     uvec2 list = texelFetch(light_cells, light_cell(pixel, distance)).xy;
@@ -67,7 +81,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
     uint i = 0u;
     do {
         int index = int(texelFetch(light_indices, int(list.x + i)).x);
-        Incoming light = incoming_local(index, position_ws, r.normal);
+        Incoming light = incoming_local(index, position_ws, r.normal, pixel);
         light.irradiance *= counts;
         add_light(sum, r, light);
     } while (++i < list.y);
