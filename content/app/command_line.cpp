@@ -9,6 +9,8 @@
 #include "content/app/log_sink.h"
 #include "content/app/picture_file.h"
 #include "content/app/play_command.h"
+#include "content/app/quality.h"
+#include "content/app/quality_command.h"
 #include "content/app/render_command.h"
 #include "ecs/base/type_name.h"
 
@@ -253,6 +255,24 @@ Command add_hash(CLI::App& program, HashOptions& options) {
     return {app, [&options] { return run_hash(options); }};
 }
 
+Command add_quality(CLI::App& program, QualityOptions& options) {
+    CLI::App* app = program.add_subcommand("quality", "Measure the effects against their oracles");
+    app->add_option("effect", options.effect, "one of them; all if absent")->type_name("EFFECT");
+    app->add_option("--json", options.json, "write the numbers")->type_name("FILE");
+    app->add_option("--html", options.html, "write a page with pictures")->type_name("FILE");
+    std::string names;
+    for (const QualityEffect& effect : quality_effects()) {
+        names += fmt::format("  {:<12}against {}\n", effect.name, effect.oracle);
+    }
+    app->footer(
+        "Each number is printed with its bound; the exit status is 1 if one is not kept.\n\n"
+        "Effects:\n"
+        + names
+        + "\nExample:\n"
+          "  limn quality --html quality.html");
+    return {app, [&options] { return run_quality(options); }};
+}
+
 Command add_compare(CLI::App& program, CompareOptions& options) {
     CLI::App* app = program.add_subcommand("compare", "Measure how different two pictures are");
     app->add_option("a", options.a, "first picture")->type_name("A")->required();
@@ -301,6 +321,7 @@ struct AllOptions {
     RenderOptions render;
     BenchOptions bench;
     HashOptions hash;
+    QualityOptions quality;
     CompareOptions compare;
     std::string info_file;
     bool schema = false;
@@ -312,6 +333,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_render(program, options.render),
         add_bench(program, options.bench),
         add_hash(program, options.hash),
+        add_quality(program, options.quality),
         add_compare(program, options.compare),
         add_info(program, options.info_file),
         add_levels(program),

@@ -36,8 +36,8 @@ encode_png(int width, int height, int channels, OIIO::TypeDesc type, const void*
     return bytes;
 }
 
-Status write_values(
-    const std::string& path,
+/// The same of checked sizes and without exceptions.
+Result<std::vector<unsigned char>> encode_values(
     int width,
     int height,
     int channels,
@@ -50,15 +50,26 @@ Status write_values(
         == static_cast<std::size_t>(width) * static_cast<std::size_t>(height)
                * static_cast<std::size_t>(channels));
     try {
-        const Result<std::vector<unsigned char>> bytes =
-            encode_png(width, height, channels, type, values);
-        if (!bytes) {
-            return fail("{}: {}", path, bytes.error().message);
-        }
-        return write_file(path, std::as_bytes(std::span(*bytes)));
+        return encode_png(width, height, channels, type, values);
     } catch (const std::exception& exception) {
-        return fail("{}: cannot encode PNG: {}", path, exception.what());
+        return fail("cannot encode PNG: {}", exception.what());
     }
+}
+
+Status write_values(
+    const std::string& path,
+    int width,
+    int height,
+    int channels,
+    OIIO::TypeDesc type,
+    std::size_t count,
+    const void* values) {
+    const Result<std::vector<unsigned char>> bytes =
+        encode_values(width, height, channels, type, count, values);
+    if (!bytes) {
+        return fail("{}: {}", path, bytes.error().message);
+    }
+    return write_file(path, std::as_bytes(std::span(*bytes)));
 }
 
 }  // namespace
@@ -81,6 +92,11 @@ Status write_png16(
     std::span<const std::uint16_t> pixels) {
     return write_values(
         path, width, height, channels, OIIO::TypeUInt16, pixels.size(), pixels.data());
+}
+
+Result<std::vector<std::uint8_t>>
+png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pixels) {
+    return encode_values(width, height, channels, OIIO::TypeUInt8, pixels.size(), pixels.data());
 }
 
 }  // namespace limn

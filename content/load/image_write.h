@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace limn {
 
@@ -28,5 +29,9 @@ namespace limn {
     int height,
     int channels,
     std::span<const std::uint16_t> pixels);
+
+/// The file of write_png as bytes, for pictures within other files.
+[[nodiscard]] Result<std::vector<std::uint8_t>>
+png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pixels);
 
 }  // namespace limn

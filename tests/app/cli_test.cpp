@@ -58,7 +58,15 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play", "render", "bench", "hash", "compare", "info", "levels", "components"}) {
+         {"play",
+          "render",
+          "bench",
+          "hash",
+          "quality",
+          "compare",
+          "info",
+          "levels",
+          "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
         CHECK(run.exit_code == 0);

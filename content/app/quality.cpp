@@ -1,0 +1,28 @@
+#include "content/app/quality.h"
+
+#include "content/app/quality_surfaces.h"
+
+namespace limn {
+
+std::span<const QualityEffect> quality_effects() {
+    static constexpr QualityEffect kEffects[] = {
+        {"surfaces",
+         "the reflection models in double precision, at the point that each pixel shows",
+         measure_surfaces},
+    };
+    return kEffects;
+}
+
+bool holds(const QualityRow& row) {
+    switch (row.bound) {
+    case QualityBound::AtMost:
+        return row.found <= row.limit;
+    case QualityBound::AtLeast:
+        return row.found >= row.limit;
+    case QualityBound::None:
+        return true;
+    }
+    return false;
+}
+
+}  // namespace limn

@@ -1,0 +1,104 @@
+#include "content/app/quality.h"
+#include "tests/app/run_program.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace limn {
+
+using test::ProgramRun;
+using test::read_text;
+using test::run_limn;
+using test::TemporaryFolder;
+
+namespace {
+
+QualityReport small_report() {
+    const ColorImage gray = {.width = 2, .height = 1, .pixels = {Vec3(0.25f), Vec3(0.5f)}};
+    const ColorImage lighter = {.width = 2, .height = 1, .pixels = {Vec3(0.25f), Vec3(1.0f)}};
+    return {
+        .rows =
+            {{"error", 0.5, QualityBound::AtMost, 1, "px"},
+             {"psnr <of> it", 30, QualityBound::AtLeast, 32, "dB"},
+             {"told", 7}},
+        .pictures = {{"plate & lamp", gray, lighter}, {"alone", gray}}};
+}
+
+MeasuredQuality measured() {
+    static const QualityEffect effect = {"sample", "what is exact", nullptr};
+    return {&effect, small_report()};
+}
+
+std::size_t count_of(const std::string& text, std::string_view word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("quality: a bound holds up to its limit, and never for what is no number") {
+    CHECK(holds({"", 1, QualityBound::AtMost, 1}));
+    CHECK_FALSE(holds({"", 1.001, QualityBound::AtMost, 1}));
+    CHECK(holds({"", 1, QualityBound::AtLeast, 1}));
+    CHECK_FALSE(holds({"", 0.999, QualityBound::AtLeast, 1}));
+    CHECK_FALSE(holds({"", std::nan(""), QualityBound::AtMost, 1}));
+    CHECK_FALSE(holds({"", std::nan(""), QualityBound::AtLeast, 1}));
+    CHECK(holds({"", std::nan(""), QualityBound::None, 0}));
+}
+
+TEST_CASE("quality: table, JSON and page say of every row whether it holds") {
+    const MeasuredQuality one = measured();
+    const std::string table = quality_table({&one, 1});
+    CHECK(count_of(table, "\n") == 4);
+    CHECK(count_of(table, "DOES NOT HOLD") == 1);
+    CHECK(table.find("0.5 px") != std::string::npos);
+
+    const auto json = nlohmann::json::parse(quality_json({&one, 1}, "some GPU"));
+    CHECK(json["gl"] == "some GPU");
+    CHECK(json["effects"][0]["name"] == "sample");
+    const auto& rows = json["effects"][0]["rows"];
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0]["holds"] == true);
+    CHECK(rows[1]["holds"] == false);
+    CHECK(rows[1]["bound"] == "at_least");
+    CHECK(rows[2]["bound"] == "none");
+}
+
+TEST_CASE("quality: the page has effect, oracle and difference of each picture within itself") {
+    const MeasuredQuality one = measured();
+    const Result<std::string> page = quality_html({&one, 1}, "GPU <x>");
+    REQUIRE(page);
+    CHECK(count_of(*page, "<img ") == 3 + 1);
+    // Every picture is a whole PNG: signature and end in base64.
+    CHECK(count_of(*page, "src=\"data:image/png;base64,iVBORw0KGgo") == 4);
+    CHECK(count_of(*page, "\" alt=\"") == 4);
+    CHECK(page->find("GPU &lt;x&gt;") != std::string::npos);
+    CHECK(page->find("psnr &lt;of&gt; it") != std::string::npos);
+    CHECK(page->find("plate &amp; lamp") != std::string::npos);
+    CHECK(page->find("<x>") == std::string::npos);
+}
+
+TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {
+    const TemporaryFolder folder;
+    const ProgramRun run =
+        run_limn(folder, {"quality", "surfaces", "--json", "q.json", "--html", "q.html"});
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.starts_with("surfaces: "));
+    CHECK(run.out.find("DOES NOT HOLD") == std::string::npos);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    CHECK(json["effects"].size() == 1);
+    CHECK(json["effects"][0]["rows"].size() == 4);
+    CHECK(read_text(folder.file("q.html")).ends_with("</html>\n"));
+
+    const ProgramRun wrong = run_limn(folder, {"quality", "surfacs"});
+    CHECK(wrong.exit_code == 1);
+    CHECK(wrong.err.find("perhaps surfaces") != std::string::npos);
+}
+
+}  // namespace limn
