@@ -81,6 +81,19 @@ void cull_boxes(
     HWY_DYNAMIC_DISPATCH(cull_boxes_simd)(frustum, boxes, count, visible.data());
 }
 
+void cull_boxes_by_distance(
+    const Vec3& middle,
+    float radius,
+    const BoxBlock& boxes,
+    int count,
+    std::span<std::uint8_t> visible) {
+    for (int i = 0; i < count; ++i) {
+        const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
+        const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
+        visible[static_cast<std::size_t>(i)] &= ball_touches(middle, radius, {c - h, c + h});
+    }
+}
+
 void cull_boxes_scalar(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible) {
     LIMN_CHECK(count <= kCullBlock && visible.size() >= static_cast<std::size_t>(count));

@@ -2,6 +2,9 @@
 
 #include "ecs/base/math.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <cstdint>
 #include <span>
 
@@ -52,7 +55,21 @@ struct BoxBlock {
 void cull_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 
-/// The same, one box after the other.
+/// Whether the ball touches the box (shadow.caster-cull); an endless one touches all.
+[[nodiscard]] inline bool ball_touches(const Vec3& middle, float radius, const Bounds& box) {
+    const Vec3 outside = glm::max(glm::abs(middle - center(box)) - half_extent(box), Vec3(0));
+    return glm::dot(outside, outside) <= radius * radius;
+}
+
+/// visible[i] = 0 where the ball does not touch box i.
+void cull_boxes_by_distance(
+    const Vec3& middle,
+    float radius,
+    const BoxBlock& boxes,
+    int count,
+    std::span<std::uint8_t> visible);
+
+/// cull_boxes, one box after the other.
 void cull_boxes_scalar(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 

@@ -30,9 +30,8 @@ constexpr FeatureName kFeatureNames[] = {
 };
 
 /// The instance streams point into this frame's part of the ring.
-void set_instance_streams(const FrameScene& scene) {
+void set_instance_streams(const FrameScene& scene, const InstanceList& list) {
     const GLuint id = scene.meshes->vertices().id();
-    const InstanceList& list = scene.instances;
     glVertexArrayVertexBuffer(
         id,
         kInstanceStream,
@@ -45,6 +44,22 @@ void set_instance_streams(const FrameScene& scene) {
     glVertexArrayVertexBuffer(
         id, kBeforeStream, before.buffer, static_cast<GLintptr>(before.offset), sizeof(Affine));
     glVertexArrayBindingDivisor(id, kBeforeStream, 1);
+}
+
+/// What all runs of a list share.
+void bind_instances(gpu::Device& device, const FrameScene& scene, const InstanceList& list) {
+    set_instance_streams(scene, list);
+    scene.materials->records().bind(device, kMaterialsUnit);
+    device.bind_vertex_array(scene.meshes->vertices());
+    device.bind_indirect(list.commands.buffer);
+}
+
+void draw_run(gpu::Device& device, const InstanceList& list, const DrawRun& run) {
+    device.draw_indexed_indirect(
+        GL_TRIANGLES,
+        GL_UNSIGNED_INT,
+        list.commands.offset + run.first_command * sizeof(DrawCommand),
+        static_cast<int>(run.command_count));
 }
 
 }  // namespace
@@ -63,7 +78,19 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
     scene.light_records->bind(device, kLightsUnit);
     scene.light_indices->bind(device, kLightIndicesUnit);
     scene.light_cells->bind(device, kLightCellsUnit);
+    if (scene.lights.shadows) {
+        device.bind_texture(kShadowAtlasUnit, *scene.shadow_atlas);
+        scene.shadow_views->bind(device, kShadowViewsUnit);
+    }
     scene.materials->records().bind(device, kSurfaceMaterialsUnit);
+}
+
+std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads) {
+    std::vector<Use> all = reads;
+    if (scene.shadow_maps.valid()) {
+        all.emplace_back(scene.shadow_maps);
+    }
+    return all;
 }
 
 std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
@@ -75,7 +102,10 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SPOT_ANGLES",
         "CLASSIC_MODELS",
         "LINEAR_FADE",
-        "SHADOWS"};
+        "SHADOWS",
+        "SHADOW_CUBES",
+        "SHADOW_CASCADES",
+        "SHADOW_SOFT"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -85,9 +115,12 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
 }
 
 std::uint32_t lighting_key(const FrameScene& scene) {
-    return (scene.lights.directional > 0 ? 1u : 0u) | (scene.lights.spots > 0 ? 2u : 0u)
-           | (scene.lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
-           | (scene.lights.linear_fade ? 16u : 0u) | (scene.lights.shadows ? 32u : 0u);
+    const LightList& lights = scene.lights;
+    const ShadowList& maps = scene.shadows;
+    return (lights.directional > 0 ? 1u : 0u) | (lights.spots > 0 ? 2u : 0u)
+           | (lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
+           | (lights.linear_fade ? 16u : 0u) | (lights.shadows ? 32u : 0u) | (maps.cubes ? 64u : 0u)
+           | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(
@@ -131,10 +164,7 @@ void draw_runs(
     if (runs.empty()) {
         return;
     }
-    set_instance_streams(scene);
-    scene.materials->records().bind(device, kMaterialsUnit);
-    device.bind_vertex_array(scene.meshes->vertices());
-    device.bind_indirect(scene.instances.commands.buffer);
+    bind_instances(device, scene, scene.instances);
     for (const DrawRun& run : runs) {
         const gpu::Program* program = programs.get(run.features | more_features, more_key, more);
         if (program == nullptr) {
@@ -148,11 +178,29 @@ void draw_runs(
                            : GL_BACK);
         device.use(gpu::Pipeline{program, run_state});
         scene.materials->bind_textures(run.textures);
-        device.draw_indexed_indirect(
-            GL_TRIANGLES,
-            GL_UNSIGNED_INT,
-            scene.instances.commands.offset + run.first_command * sizeof(DrawCommand),
-            static_cast<int>(run.command_count));
+        draw_run(device, scene.instances, run);
+    }
+}
+
+void draw_casters(
+    gpu::Device& device,
+    const FrameScene& scene,
+    const InstanceList& casters,
+    SurfacePrograms& programs,
+    const gpu::PipelineState& state) {
+    constexpr std::uint32_t kHoles = kAlphaMask | kBaseColorMap | kUvMap | kUvMaps | kVertexColor;
+    bind_instances(device, scene, casters);
+    for (const DrawRun& run : casters.opaque) {
+        const bool holes = (run.features & kAlphaMask) != 0;
+        const gpu::Program* program = programs.get(holes ? run.features & kHoles : 0, 0, {});
+        if (program == nullptr) {
+            continue;
+        }
+        device.use(gpu::Pipeline{program, state});
+        if (holes) {
+            scene.materials->bind_textures(run.textures);
+        }
+        draw_run(device, casters, run);
     }
 }
 

@@ -4,10 +4,12 @@
 #include "render/buffer_texture.h"
 #include "render/gpu/program.h"
 #include "render/gpu/shader_source.h"
+#include "render/graph/frame_graph.h"
 #include "render/instance_list.h"
 #include "render/light_grid.h"
 #include "render/mesh_pool.h"
 #include "render/shaders/environment_gpu.h"
+#include "render/shadow/shadow_list.h"
 
 #include <unordered_map>
 #include <vector>
@@ -36,6 +38,8 @@ inline constexpr unsigned kLightCellsUnit = 11;
 inline constexpr unsigned kMaterialsUnit = 12;
 inline constexpr unsigned kSurfaceMaterialsUnit = 13;
 inline constexpr unsigned kVelocityUnit = 14;
+inline constexpr unsigned kShadowAtlasUnit = 15;
+inline constexpr unsigned kShadowViewsUnit = 16;
 
 /// The surroundings of this frame, and what was made of them.
 struct SceneEnvironment {
@@ -51,6 +55,7 @@ struct FrameScene {
     InstanceList instances;
     LightList lights;
     LightGrid grid;
+    ShadowList shadows;
     SceneEnvironment environment;
     RenderView view;
     GLenum radiance_format = GL_RGBA16F;
@@ -59,11 +64,19 @@ struct FrameScene {
     const BufferTexture* light_records = nullptr;
     const BufferTexture* light_indices = nullptr;
     const BufferTexture* light_cells = nullptr;
+    const BufferTexture* shadow_views = nullptr;
+    const gpu::Texture* shadow_atlas = nullptr;
+    TextureId
+        shadow_maps;  ///< the atlas as this frame's graph knows it; not valid() without shadows
 };
 
 /// The view's uniform block and, of lit passes, all that lib/lighting.glsl reads.
 void bind_view(gpu::Device& device, const FrameScene& scene);
 void bind_lighting(gpu::Device& device, const FrameScene& scene);
+
+/// What a pass that lights reads beside `reads`.
+[[nodiscard]] std::vector<Use>
+lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads);
 
 /// The definitions that lib/lighting.glsl and lib/reflector.glsl want for this scene.
 [[nodiscard]] std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene);
@@ -100,6 +113,15 @@ void draw_runs(
     std::uint32_t more_features,
     std::uint32_t more_key,
     const std::vector<gpu::ShaderDefine>& more,
+    const gpu::PipelineState& state);
+
+/// Draws casters for their depth alone, both sides: `programs` get no more features than decide
+/// where a surface has holes.
+void draw_casters(
+    gpu::Device& device,
+    const FrameScene& scene,
+    const InstanceList& casters,
+    SurfacePrograms& programs,
     const gpu::PipelineState& state);
 
 }  // namespace limn

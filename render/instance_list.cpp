@@ -1,7 +1,9 @@
 #include "render/instance_list.h"
 
+#include "ecs/components/shadow.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/instance_rows.h"
 #include "render/shaders/instance_gpu.h"
 
 #include <glm/geometric.hpp>
@@ -34,59 +36,6 @@ constexpr bool is_mirrored(std::uint64_t key) {
 }
 constexpr std::uint32_t mesh_of(std::uint64_t key) {
     return static_cast<std::uint32_t>(key);
-}
-
-float determinant(const Affine& a) {
-    const auto& r = a.row;
-    return r[0].x * (r[1].y * r[2].z - r[1].z * r[2].y)
-           - r[0].y * (r[1].x * r[2].z - r[1].z * r[2].x)
-           + r[0].z * (r[1].x * r[2].y - r[1].y * r[2].x);
-}
-
-/// What a chunk of a query shows of its rows.
-struct Rows {
-    std::span<const MeshInstance> surfaces;
-    std::span<const WorldTransform> now;
-    std::span<const PreviousWorldTransform> before;  ///< empty: never moved
-
-    [[nodiscard]] Affine at(std::size_t i, float alpha) const {
-        return before.empty() || alpha == 1.0f ? now[i].world
-                                               : mix_affine(before[i].world, now[i].world, alpha);
-    }
-};
-
-using InstanceQuery =
-    Query<const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>>;
-
-/// World boxes of the rows; what has no triangles or is not finite gets a box that is nowhere.
-/// `mirrored` gets the sign of each determinant.
-void fill_boxes(
-    const Rows& rows,
-    float alpha,
-    const std::vector<MeshRange>& meshes,
-    BoxBlock& boxes,
-    std::uint8_t* mirrored) {
-    for (std::size_t i = 0; i < rows.now.size(); ++i) {
-        const std::uint32_t mesh = rows.surfaces[i].mesh.index;
-        Bounds box;
-        float det = 1;
-        if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
-            const Affine a = rows.at(i, alpha);
-            box = transform_bounds(a, meshes[mesh].bounds);
-            det = determinant(a);
-        }
-        const Vec3 c = center(box);
-        const Vec3 h = half_extent(box);
-        const float sum = c.x + c.y + c.z + h.x + h.y + h.z + det;
-        const bool finite = std::abs(sum) < INFINITY;
-        boxes.center_x[i] = finite ? c.x : 0.0f;
-        boxes.center_y[i] = finite ? c.y : 0.0f;
-        boxes.center_z[i] = finite ? c.z : 0.0f;
-        boxes.half_x[i] = finite ? h.x : -1e30f;
-        boxes.half_y[i] = finite ? h.y : -1e30f;
-        boxes.half_z[i] = finite ? h.z : -1e30f;
-        mirrored[i] = det < 0 ? 1 : 0;
-    }
 }
 
 }  // namespace
@@ -134,15 +83,52 @@ void InstanceCollector::collect(
     bool velocity,
     gpu::RingBuffer& ring,
     InstanceList& list) {
-    list = {};
-    const InstanceQuery query = world.query<
+    const auto query = world.query<
         const MeshInstance,
         const WorldTransform,
         Optional<const PreviousWorldTransform>>();
-    const Frustum frustum = make_frustum(view.clip_from_world);
     const auto& camera = view.world_from_camera.row;
-    const Vec3 eye = {camera[0].w, camera[1].w, camera[2].w};
-    const Vec3 forward = {-camera[0].z, -camera[1].z, -camera[2].z};
+    const Selection seen = {
+        .frustum = make_frustum(view.clip_from_world),
+        .eye = {camera[0].w, camera[1].w, camera[2].w},
+        .forward = {-camera[0].z, -camera[1].z, -camera[2].z},
+        .alpha = view.alpha,
+        .alpha_before = view.alpha_before,
+        .velocity = velocity};
+    collect_from(query, seen, meshes, materials, ring, list);
+}
+
+void InstanceCollector::collect_casters(
+    const World& world,
+    const CasterVolume& volume,
+    float alpha,
+    const MeshPool& meshes,
+    const MaterialPool& materials,
+    gpu::RingBuffer& ring,
+    InstanceList& list) {
+    const auto query = world.query<
+        const MeshInstance,
+        const WorldTransform,
+        Optional<const PreviousWorldTransform>,
+        Without<NoShadow>>();
+    const Selection casters = {
+        .frustum = volume.frustum,
+        .eye = volume.eye,
+        .reach = volume.reach,
+        .alpha = alpha,
+        .casters = true};
+    collect_from(query, casters, meshes, materials, ring, list);
+}
+
+template <typename Instances>
+void InstanceCollector::collect_from(
+    const Instances& query,
+    const Selection& selection,
+    const MeshPool& meshes,
+    const MaterialPool& materials,
+    gpu::RingBuffer& ring,
+    InstanceList& list) {
+    list = {};
     list.total = static_cast<int>(query.count());
     chunks_.resize(query.chunk_count());
 
@@ -153,28 +139,39 @@ void InstanceCollector::collect(
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
+        const auto count = static_cast<int>(chunk.size());
         ChunkWork& work = chunks_[chunk.index()];
-        fill_boxes({surfaces, now, before}, view.alpha, meshes.meshes(), boxes, mirrored);
-        cull_boxes(frustum, boxes, static_cast<int>(chunk.size()), visible);
+        fill_boxes({surfaces, now, before}, selection.alpha, meshes.meshes(), boxes, mirrored);
+        cull_boxes(selection.frustum, boxes, count, visible);
+        if (selection.casters) {
+            cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
+        }
         KeyTable table(work.keys);
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             work.local[i] = kHidden;
-            if (visible[i] != 0) {
-                const std::uint32_t batch =
-                    materials.batch_of(materials.record_of(surfaces[i].material));
-                // To the far side of its box: floors and walls, which surround all, come last.
-                const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
-                const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-                const float far_side = glm::dot(forward, c - eye) + glm::dot(glm::abs(forward), h);
-                const std::uint64_t key = make_key(
-                    materials.batch(batch).blend, batch, mirrored[i] != 0, surfaces[i].mesh.index);
-                work.local[i] = table.count(key, far_side);
+            if (visible[i] == 0) {
+                continue;
             }
+            const std::uint32_t batch =
+                materials.batch_of(materials.record_of(surfaces[i].material));
+            const bool blend = materials.batch(batch).blend;
+            if (selection.casters && blend) {
+                continue;
+            }
+            // To the far side of its box: floors and walls, which surround all, come last.
+            const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
+            const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
+            const float far_side = glm::dot(selection.forward, c - selection.eye)
+                                   + glm::dot(glm::abs(selection.forward), h);
+            const std::uint64_t key =
+                make_key(blend, batch, mirrored[i] != 0, surfaces[i].mesh.index);
+            work.local[i] = table.count(key, far_side);
         }
     });
 
     commands_.clear();
     place_keys(meshes, materials, list);
+    const bool velocity = selection.velocity;
     list.visible = static_cast<int>(visible_count_);
     list.instances = ring.allocate(visible_count_ * sizeof(layout::InstanceRecord));
     list.before = ring.allocate(velocity ? visible_count_ * sizeof(Affine) : 0);
@@ -187,14 +184,14 @@ void InstanceCollector::collect(
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before) {
         ChunkWork& work = chunks_[chunk.index()];
-        const Rows rows = {surfaces, now, before};
+        const InstanceRows rows = {surfaces, now, before};
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             if (work.local[i] == kHidden) {
                 continue;
             }
             KeyCount& kind = work.keys[work.local[i]];
             const std::uint32_t place = kind.place++;
-            const Affine a = rows.at(i, view.alpha);
+            const Affine a = rows.at(i, selection.alpha);
             const std::uint32_t record = materials.record_of(surfaces[i].material);
             instances[place] = {
                 {a.row[0], a.row[1], a.row[2]},
@@ -203,12 +200,13 @@ void InstanceCollector::collect(
                 chunk.entities()[i].index,
                 0};
             if (velocity) {
-                moments_before[place] = rows.at(i, view.alpha_before);
+                moments_before[place] = rows.at(i, selection.alpha_before);
             }
             if (is_blended(kind.key)) {
                 const Vec3 middle =
                     transform_point(a, center(meshes.meshes()[mesh_of(kind.key)].bounds));
-                blended_[place - opaque_count_] = {glm::dot(forward, middle), place, kind.key};
+                blended_[place - opaque_count_] = {
+                    glm::dot(selection.forward, middle), place, kind.key};
             }
         }
     });

@@ -49,6 +49,13 @@ struct InstanceList {
     std::int64_t triangles = 0;
 };
 
+/// Where what casts a light's shadows may be.
+struct CasterVolume {
+    Frustum frustum;
+    Vec3 eye = {0, 0, 0};
+    float reach = INFINITY;  ///< from the eye [m]
+};
+
 /// Keeps its memory from frame to frame.
 class InstanceCollector {
   public:
@@ -61,8 +68,28 @@ class InstanceCollector {
         bool velocity,
         gpu::RingBuffer& ring,
         InstanceList& list);
+    /// The same of what casts shadows from where `volume` is: no blended surfaces, no NoShadow.
+    void collect_casters(
+        const World& world,
+        const CasterVolume& volume,
+        float alpha,
+        const MeshPool& meshes,
+        const MaterialPool& materials,
+        gpu::RingBuffer& ring,
+        InstanceList& list);
 
   private:
+    /// Which instances, and at which moment.
+    struct Selection {
+        Frustum frustum;
+        Vec3 eye = {0, 0, 0};
+        Vec3 forward = {0, 0, 0};
+        float reach = INFINITY;
+        float alpha = 1;
+        float alpha_before = 0;
+        bool velocity = false;
+        bool casters = false;
+    };
     /// A kind of draw that occurs in a chunk, and how often; later, where its next instance goes.
     struct KeyCount {
         std::uint64_t key = 0;
@@ -94,6 +121,14 @@ class InstanceCollector {
     };
     class KeyTable;
 
+    template <typename Instances>
+    void collect_from(
+        const Instances& query,
+        const Selection& selection,
+        const MeshPool& meshes,
+        const MaterialPool& materials,
+        gpu::RingBuffer& ring,
+        InstanceList& list);
     void group_keys();
     void place_keys(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
     void order_blended(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);

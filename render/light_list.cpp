@@ -61,7 +61,15 @@ float reach_radius(const layout::LightRecord& record) {
     return record.position.w > 0 ? 1 / std::sqrt(record.position.w) : INFINITY;
 }
 
-/// Calls use(light, world transform, intensity factor) for every enabled light of a type.
+/// What goes with a light, whatever its type.
+struct LightEntity {
+    Entity entity;
+    const Affine& pose;
+    float factor;  ///< of its intensity
+    const Shadow* shadow;
+};
+
+/// Calls use(light, what goes with it) for every enabled light of a type.
 template <typename Light, typename Use>
 void each_light(const World& world, double time, float alpha, Use&& use) {
     world
@@ -69,18 +77,42 @@ void each_light(const World& world, double time, float alpha, Use&& use) {
             const Light,
             const WorldTransform,
             Optional<const PreviousWorldTransform>,
-            Optional<const LightPulse>>()
-        .each([&](const Light& light,
+            Optional<const LightPulse>,
+            Optional<const Shadow>>()
+        .each([&](Entity entity,
+                  const Light& light,
                   const WorldTransform& now,
                   const PreviousWorldTransform* before,
-                  const LightPulse* pulse) {
+                  const LightPulse* pulse,
+                  const Shadow* shadow) {
             if (light.enabled) {
                 const Affine world_from_light = alpha == 1.0f || before == nullptr
                                                     ? now.world
                                                     : mix_affine(before->world, now.world, alpha);
-                use(light, world_from_light, pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f);
+                const float factor = pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f;
+                use(light, LightEntity{entity, world_from_light, factor, shadow});
             }
         });
+}
+
+/// Notes that the record added last casts shadows, if it does.
+void add_shadow(
+    LightList& list,
+    const LightEntity& light,
+    LightKind kind,
+    float radius = INFINITY,
+    float outer_angle = 0) {
+    if (light.shadow != nullptr) {
+        list.shadowed.push_back(
+            {static_cast<std::uint32_t>(list.records.size() - 1),
+             light.entity,
+             kind,
+             *light.shadow,
+             position_of(light.pose),
+             axis_of(light.pose),
+             radius,
+             outer_angle});
+    }
 }
 
 }  // namespace
@@ -129,6 +161,7 @@ layout::LightRecord make_record(const DirectionalLight& light, const Vec3& axis,
 void collect_lights(const World& world, float alpha, LightList& list) {
     list.records.clear();
     list.reach.clear();
+    list.shadowed.clear();
     list.sun_color = Vec3(0);
     list.spot_angles = false;
     list.linear_fade = false;
@@ -138,44 +171,47 @@ void collect_lights(const World& world, float alpha, LightList& list) {
         frame == nullptr ? 0.0 : frame->time - (1.0 - alpha) * static_cast<double>(frame->step);
 
     each_light<DirectionalLight>(
-        world, time, alpha, [&](const DirectionalLight& light, const Affine& a, float factor) {
-            const layout::LightRecord record = make_record(light, axis_of(a), factor);
+        world, time, alpha, [&](const DirectionalLight& light, const LightEntity& its) {
+            const layout::LightRecord record = make_record(light, axis_of(its.pose), its.factor);
             if (shines(record)) {
                 if (list.records.empty()) {
                     list.sun_direction = Vec3(record.position);
                     list.sun_color = Vec3(record.color);
                 }
                 list.records.push_back(record);
+                add_shadow(list, its, LightKind::Directional);
             }
         });
     list.directional = static_cast<int>(list.records.size());
 
     each_light<PointLight>(
-        world, time, alpha, [&](const PointLight& light, const Affine& a, float factor) {
-            const layout::LightRecord record = make_record(light, position_of(a), factor);
+        world, time, alpha, [&](const PointLight& light, const LightEntity& its) {
+            const layout::LightRecord record =
+                make_record(light, position_of(its.pose), its.factor);
             if (shines(record)) {
                 list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                 list.records.push_back(record);
-                list.reach.push_back({position_of(a), reach_radius(record)});
+                list.reach.push_back({position_of(its.pose), reach_radius(record)});
+                add_shadow(list, its, LightKind::Point, reach_radius(record));
             }
         });
     list.points = static_cast<int>(list.reach.size());
 
-    each_light<SpotLight>(
-        world, time, alpha, [&](const SpotLight& light, const Affine& a, float factor) {
-            const layout::LightRecord record =
-                make_record(light, position_of(a), axis_of(a), factor);
-            if (shines(record)) {
-                list.linear_fade = list.linear_fade || record.polynomial.y != 0;
-                list.spot_angles = list.spot_angles || light.profile == SpotProfile::LinearAngle;
-                list.records.push_back(record);
-                list.reach.push_back(
-                    {position_of(a),
-                     reach_radius(record),
-                     axis_of(a),
-                     std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
-            }
-        });
+    each_light<SpotLight>(world, time, alpha, [&](const SpotLight& light, const LightEntity& its) {
+        const layout::LightRecord record =
+            make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
+        if (shines(record)) {
+            list.linear_fade = list.linear_fade || record.polynomial.y != 0;
+            list.spot_angles = list.spot_angles || light.profile == SpotProfile::LinearAngle;
+            list.records.push_back(record);
+            list.reach.push_back(
+                {position_of(its.pose),
+                 reach_radius(record),
+                 axis_of(its.pose),
+                 std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
+            add_shadow(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
+        }
+    });
     list.spots = static_cast<int>(list.reach.size()) - list.points;
 }
 

@@ -2,6 +2,8 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/light.h"
+#include "ecs/components/shadow.h"
+#include "ecs/entity.h"
 #include "render/shaders/light_gpu.h"
 
 #include <vector>
@@ -23,14 +25,29 @@ struct LightReach {
     float cosine = -1;      ///< of the cone's half angle
 };
 
+enum class LightKind : std::uint8_t { Directional, Point, Spot };
+
+/// A light that casts shadows.
+struct ShadowedLight {
+    std::uint32_t record = 0;  ///< index into LightList::records
+    Entity entity;
+    LightKind kind = LightKind::Point;
+    Shadow settings;
+    Vec3 position = {0, 0, 0};  ///< of a directional light: nothing
+    Vec3 axis = {0, 0, -1};     ///< where it shines, unit; of a point light: nothing
+    float radius = INFINITY;    ///< [m]
+    float outer_angle = 0;      ///< of a spot [rad]
+};
+
 struct LightList {
     std::vector<layout::LightRecord> records;
-    std::vector<LightReach> reach;  ///< of the point and spot lights alone
+    std::vector<LightReach> reach;        ///< of the point and spot lights alone
+    std::vector<ShadowedLight> shadowed;  ///< in the order of the records
     int directional = 0;
     int points = 0;
     int spots = 0;
     bool linear_fade = false;        ///< some polynomial has a linear term
-    bool shadows = false;            ///< some record has a shadow
+    bool shadows = false;            ///< some record has a shadow; set by who draws them
     bool spot_angles = false;        ///< some spot has SpotProfile::LinearAngle
     Vec3 sun_direction = {0, 1, 0};  ///< toward the first directional light, unit
     Vec3 sun_color = {0, 0, 0};      ///< [lx]; black: there is none

@@ -10,6 +10,7 @@
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/reflection_pass.h"
+#include "render/passes/shadow_pass.h"
 #include "render/passes/tone_map_pass.h"
 #include "render/shaders/view_gpu.h"
 
@@ -68,6 +69,7 @@ struct Passes {
     ToneMapPass tone_map;
     AovPass aovs;
     ReflectionPass reflection;
+    ShadowPass shadows;
     const gpu::Program* accumulate = nullptr;
 };
 
@@ -107,9 +109,11 @@ class Renderer {
     MeshPool meshes_;
     MaterialPool materials_;
     InstanceCollector collector_;
+    ShadowCollector shadow_collector_;
     BufferTexture light_records_;
     BufferTexture light_indices_;
     BufferTexture light_cells_;
+    BufferTexture shadow_views_;
     gpu::Texture specular_albedo_;
     gpu::Texture accumulation_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
@@ -126,6 +130,7 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
       ring_(gpu_device.caps(), "frame data", kRingBytes),
       materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
       light_indices_("light indices", GL_R32UI), light_cells_("light cells", GL_RG32UI),
+      shadow_views_("shadow views", GL_RGBA32F),
       specular_albedo_(
           "specular albedo",
           {.format = GL_RG32F, .width = kSpecularAlbedoSize, .height = kSpecularAlbedoSize}) {
@@ -140,6 +145,8 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.light_records = &light_records_;
     scene.light_indices = &light_indices_;
     scene.light_cells = &light_cells_;
+    scene.shadow_views = &shadow_views_;
+    scene.shadow_atlas = &passes.shadows.atlas;
     scene.environment.reflection = &passes.reflection.map;
     scene.environment.specular_albedo = &specular_albedo_;
 }
@@ -183,6 +190,9 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     update_environment(world);
     build_light_grid(view, scene.lights, scene.grid);
     collector_.collect(world, view, meshes_, materials_, velocity, ring_, scene.instances);
+    shadow_collector_.collect(
+        world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
+    resize_shadow_atlas(passes.shadows, scene.shadows);
 
     const std::size_t alignment = BufferTexture::alignment();
     const auto push = [&](const auto& items) {
@@ -197,6 +207,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     light_records_.set(push(scene.lights.records));
     light_indices_.set(push(scene.grid.indices));
     light_cells_.set(push(scene.grid.cells));
+    shadow_views_.set(push(scene.shadows.records));
     scene.view_block =
         ring_.push_value(make_view_block(view, scene.grid.shape, scene.lights.directional));
     scene.environment_block = ring_.push_value(scene.environment.block);
@@ -216,6 +227,7 @@ TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
     if (reflection_due_) {
         draw_reflection(graph, passes.reflection, scene);
     }
+    scene.shadow_maps = draw_shadows(graph, passes.shadows, scene);
     TextureId radiance = draw_lights(graph, passes.lights, scene, gbuffer);
     radiance = draw_sky(graph, passes.lights, scene, radiance, gbuffer);
     return draw_blended(graph, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
@@ -288,6 +300,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!reflection) {
         return reflection.error();
     }
+    Result<ShadowPass> shadows = create_shadow_pass(device);
+    if (!shadows) {
+        return shadows.error();
+    }
     const Result<const gpu::Program*> accumulate =
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
     if (!accumulate) {
@@ -300,6 +316,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(tone_map),
         *std::move(aovs),
         *std::move(reflection),
+        *std::move(shadows),
         *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }

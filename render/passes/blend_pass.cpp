@@ -18,10 +18,12 @@ TextureId draw_blended(
     TextureId radiance,
     const Gbuffer& gbuffer) {
     if (!scene.instances.blended.empty()) {
+        const std::vector<Use> reads = lighting_reads(scene, {depth_tested(gbuffer.depth)});
+        const Use writes[] = {radiance};
         graph.add_pass(
             "blended",
-            {depth_tested(gbuffer.depth)},
-            {radiance},
+            std::span<const Use>(reads),
+            std::span<const Use>(writes),
             [&pass, &scene](PassContext& context) {
                 bind_lighting(context.device(), scene);
                 draw_runs(

@@ -38,10 +38,13 @@ draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const G
          .format = scene.radiance_format,
          .width = scene.view.width,
          .height = scene.view.height});
+    const std::vector<Use> reads =
+        lighting_reads(scene, {gbuffer.surface, depth_tested(gbuffer.depth)});
+    const Use writes[] = {cleared(radiance)};
     graph.add_pass(
         "lights",
-        {gbuffer.surface, depth_tested(gbuffer.depth)},
-        {cleared(radiance)},
+        std::span<const Use>(reads),
+        std::span<const Use>(writes),
         [&pass, &scene, gbuffer](PassContext& context) {
             const gpu::Program* program =
                 pass.lights.get(0, lighting_key(scene), lighting_defines(scene));

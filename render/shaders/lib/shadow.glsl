@@ -1,9 +1,206 @@
-// Whether a light sees a point.
+// Whether a light sees a point: lookups in the shadow atlas (render/shadow/shadow_list.h).
+//
+// No bias needs tuning. A point is looked up a little way along its normal, as far as a texel of the map is wide in
+// the world and the more the flatter the light falls; and every texel of a filter is compared with the depth that
+// the surface's plane has there, not with that of its middle. Planes have no acne at any angle, curved surfaces are
+// helped by the offset, and a shadow is no farther from its caster than two texels.
+// After Isidoro, "Shadow Mapping: GPU-based Tips and Techniques", 2006; King, "Shadow Mapping Algorithms", 2004.
+//
+// Definitions, which only spare a software OpenGL work that nobody needs:
+//   SHADOW_CUBES     some light has six faces
+//   SHADOW_CASCADES  some light has cascades
+//   SHADOW_SOFT      some filter is wider than 2x2
+
+#include "shadow_gpu.h"
+
+layout(binding = 15) uniform sampler2D shadow_atlas;     // reversed depth, 0 where nothing is
+layout(binding = 16) uniform samplerBuffer shadow_views;  // ShadowViewRecord
+
+const float kCascadeBlend = 0.1;  // share of a cascade over which the next one takes its place
+
+// ShadowFilter.
+const float kFilterHard = 0.0;
+const float kFilterBilinear = 1.0;
+const float kFilterSoft = 2.0;
+const float kFilterContactHardening = 3.0;
+
+const float kOffsetFacing = 0.1;  // along the normal [texels] where the light falls straight: rounding
+const float kOffsetGrazing = 1.0;  // more of it where the light grazes
+const float kLeastCosine = 0.05;  // of light and plane: beyond, the plane's slope means little
+
+const float kSoftHalf = 2.0;      // of the square that the soft filter covers [texels]
+const int kSearchTaps = 16;       // for what blocks the light
+const int kPenumbraTaps = 32;
+const vec2 kGoldenTurn = vec2(-0.73736888, 0.67549029);  // cosine and sine of the golden angle
+
+// A point as a view sees it.
+struct ShadowPoint {
+    vec2 st;      // texels of the atlas
+    float depth;
+    vec2 slope;   // of the surface's plane: depth a texel
+    vec4 rect;    // texels that may be read
+};
+
+// Depth of the surface's plane at texels; nowhere farther from the light than at the point, so that the ground
+// before a wall, nearer than the wall's plane below it, does not shade the wall.
+vec4 plane_depths(ShadowPoint p, vec4 s, vec4 t) {
+    return p.depth + max(p.slope.x * (s - p.st.x) + p.slope.y * (t - p.st.y), 0.0);
+}
+
+// How much of a square of side 2 `half_side` about `st` the 2x2 texels right and above of `corner` cover where they
+// are lit [texels].
+float lit_area(ShadowPoint p, vec2 st, vec2 corner, float half_side) {
+    vec4 s = corner.xxxx + vec4(0.5, 1.5, 1.5, 0.5);
+    vec4 t = corner.yyyy + vec4(1.5, 1.5, 0.5, 0.5);
+    vec4 nearest = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+    vec4 lit = vec4(lessThanEqual(nearest, plane_depths(p, s, t)));
+    vec4 covered = clamp(half_side + 0.5 - abs(s - st.x), 0.0, 1.0) * clamp(half_side + 0.5 - abs(t - st.y), 0.0, 1.0);
+    return dot(lit, covered);
+}
+
+// The corner of the 2x2 texels nearest to a point of the view.
+vec2 corner_at(ShadowPoint p, vec2 st) {
+    return floor(clamp(st, p.rect.xy + 1.0, p.rect.zw - 1.0) - 0.5);
+}
+
+// 2x2 comparisons, weighted; or the nearest texel alone.
+float lit_share(ShadowPoint p, bool hard) {
+    vec2 corner = corner_at(p, p.st);
+    vec2 st = hard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
+    return lit_area(p, st, corner, 0.5);
+}
+
+#ifdef SHADOW_SOFT
+// Mean depth of what blocks the light within `radius` [texels], or 0.
+float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
+    float sum = 0.0;
+    float count = 0.0;
+    int n = 0;
+    do {
+        vec2 at = p.st + turn * (radius * sqrt((float(n) + 0.5) / float(kSearchTaps)));
+        at = clamp(at, p.rect.xy + 0.5, p.rect.zw - 0.5);
+        float nearest = texelFetch(shadow_atlas, ivec2(at), 0).r;
+        vec2 to = floor(at) + 0.5 - p.st;
+        float blocks = nearest > p.depth + max(dot(p.slope, to), 0.0) ? 1.0 : 0.0;
+        sum += blocks * nearest;
+        count += blocks;
+        turn = vec2(turn.x * kGoldenTurn.x - turn.y * kGoldenTurn.y, turn.x * kGoldenTurn.y + turn.y * kGoldenTurn.x);
+    } while (++n < kSearchTaps);
+    return sum / max(count, 1.0);
+}
+
+// All filters in one loop over 2x2 texels, since a software OpenGL would run one loop a filter, whichever is meant:
+// one step of the narrow filters; nine, six by six texels of which the square covers five by five, of the soft one;
+// and points of a disc as wide as the penumbra of the contact-hardening one (Fernando 2005).
+float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
+    float filter_kind = settings.x;
+    bool contact = filter_kind == kFilterContactHardening;
+    bool soft = filter_kind == kFilterSoft;
+
+    // The disc is turned from pixel to pixel (Jimenez 2014): its steps become a fine grain.
+    float angle = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+    vec2 turn = vec2(cos(angle), sin(angle));
+    float search = min(0.5 * settings.z * (1.0 - p.depth), settings.w);
+    float blocker = contact ? blocker_depth(p, search, turn) : 0.0;
+    float radius = clamp(0.5 * settings.z * (blocker - p.depth), 0.0, settings.w);
+
+    vec2 near = soft ? floor(p.st - kSoftHalf) : corner_at(p, p.st);
+    vec2 middle = filter_kind == kFilterHard ? near + 0.5 + step(0.5, p.st - 0.5 - near) : p.st;
+    float half_side = soft ? kSoftHalf : 0.5;
+    int taps = contact ? kPenumbraTaps : soft ? 9 : 1;
+    float sum = 0.0;
+    int n = 0;
+    do {
+        float row = floor((float(n) + 0.5) / 3.0);
+        vec2 st = p.st + turn * (radius * sqrt((float(n) + 0.5) / float(kPenumbraTaps)));
+        vec2 corner = contact ? corner_at(p, st) : near + (soft ? 2.0 * vec2(float(n) - 3.0 * row, row) : vec2(0.0));
+        sum += lit_area(p, contact ? clamp(st, p.rect.xy + 1.0, p.rect.zw - 1.0) : middle, corner, half_side);
+        turn = vec2(turn.x * kGoldenTurn.x - turn.y * kGoldenTurn.y, turn.x * kGoldenTurn.y + turn.y * kGoldenTurn.x);
+    } while (++n < taps);
+    float lit = sum / (contact ? float(kPenumbraTaps) : soft ? 16.0 : 1.0);
+    return contact && blocker == 0.0 ? 1.0 : lit;
+}
+#endif
+
+// Share of the light that one view lets through; all of it outside the view.
+float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+    int at = view_index * int(kShadowViewTexels);
+    vec4 row_s = texelFetch(shadow_views, at);
+    vec4 row_t = texelFetch(shadow_views, at + 1);
+    vec4 row_r = texelFetch(shadow_views, at + 2);
+    vec4 row_q = texelFetch(shadow_views, at + 3);
+    vec4 settings = texelFetch(shadow_views, at + 8);
+
+    // How wide a texel is here: the inverse of how fast texels go by.
+    vec4 place = vec4(position_ws, 1.0);
+    float q = dot(row_q, place);
+    vec2 st = vec2(dot(row_s, place), dot(row_t, place)) / q;
+    vec3 right = row_s.xyz - st.x * row_q.xyz;
+    vec3 up = row_t.xyz - st.y * row_q.xyz;
+    float texel = abs(q) * inversesqrt(min(dot(right, right), dot(up, up)));
+    float n_l = clamp(dot(normal, to_light), 0.0, 1.0);
+    place.xyz += normal * (settings.y * texel * (kOffsetFacing + kOffsetGrazing * sqrt(1.0 - n_l * n_l)));
+
+    ShadowPoint p;
+    q = dot(row_q, place);
+    p.st = vec2(dot(row_s, place), dot(row_t, place)) / q;
+    p.depth = dot(row_r, place) / q;
+    p.rect = texelFetch(shadow_views, at + 7);
+    vec3 slanted = normal + to_light * max(kLeastCosine - n_l, 0.0);
+    vec4 plane = vec4(slanted, -dot(slanted, place.xyz));
+    vec3 plane_in_shadow = vec3(
+        dot(texelFetch(shadow_views, at + 4), plane),
+        dot(texelFetch(shadow_views, at + 5), plane),
+        dot(texelFetch(shadow_views, at + 6), plane));
+    p.slope = plane_in_shadow.xy * (-min(settings.y, 1.0) / plane_in_shadow.z);
+
+    bool inside = q > 0.0 && all(greaterThan(p.st, p.rect.xy)) && all(lessThan(p.st, p.rect.zw));
+#ifdef SHADOW_SOFT
+    float lit = filtered_share(p, settings, pixel);
+#else
+    float lit = lit_share(p, settings.x == kFilterHard);
+#endif
+    return inside ? lit : 1.0;
+}
+
+// The face of a cube that a direction meets, in the order of make_cube_view.
+int cube_face(vec3 direction) {
+    vec3 size = abs(direction);
+    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    float along = axis == 0 ? direction.x : axis == 1 ? direction.y : direction.z;
+    return 2 * axis + (along < 0.0 ? 1 : 0);
+}
 
 // Share of the light that reaches `position_ws`, 0 .. 1.
 //   shadow  LightRecord::shadow
 //   normal  of the surface, unit
 //   pixel   that shows it, gl_FragCoord.xy
 float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
-    return 1.0;
+    int index = max(int(shadow.x), 0);
+#ifdef SHADOW_CUBES
+    index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
+#endif
+#ifdef SHADOW_CASCADES
+    // Toward the end of a cascade the next one, or none, takes over; only there both are looked at.
+    float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
+    bool cascades = shadow.y == kShadowCascades;
+    float passed = cascades ? dot(step(ends, vec4(along)), vec4(1.0)) : 0.0;
+    float end = passed < 1.0 ? ends.x : passed < 2.0 ? ends.y : passed < 3.0 ? ends.z : ends.w;
+    float next = cascades ? clamp((along / end - 1.0 + kCascadeBlend) / kCascadeBlend, 0.0, 1.0) : 0.0;
+    float weight = 1.0 - next;
+    float lit = 0.0;
+    do {
+        int cascade = int(passed);
+        bool exists = passed < shadow.z;
+        float seen = view_visibility(index + (exists ? cascade : 0), position_ws, normal, to_light, pixel);
+        lit += weight * (exists ? seen : 1.0);
+        passed += 1.0;
+        weight = next;
+        next = 0.0;
+    } while (weight > 0.0);
+#else
+    float lit = view_visibility(index, position_ws, normal, to_light, pixel);
+#endif
+    return shadow.y == kShadowNone ? 1.0 : lit;
 }

@@ -1,0 +1,27 @@
+// One view of the shadow atlas, read from a texture buffer as kShadowViewTexels RGBA32F texels.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+struct ShadowViewRecord {
+    vec4 row_s;     // shadow_from_world: dot with (position, 1) gives texel x times q,
+    vec4 row_t;     // texel y times q,
+    vec4 row_r;     // depth times q
+    vec4 row_q;     // and q, which is > 0 before the light
+    vec4 plane_s;   // columns of world_from_shadow: dot with a plane of the world gives the plane's
+    vec4 plane_t;   // components in shadow space
+    vec4 plane_r;
+    vec4 rect;      // texels that may be read: left, bottom, right, top
+    vec4 settings;  // ShadowFilter, scale of the bias, penumbra [texels] for a depth of 1, its greatest radius
+    vec4 splits;    // of the first cascade: where each ends [m along the camera's axis], INFINITY after the last
+};
+
+const uint kShadowViewTexels = 10u;
+
+#ifdef __cplusplus
+static_assert(sizeof(ShadowViewRecord) == 16 * kShadowViewTexels);
+}  // namespace limn::layout
+#endif

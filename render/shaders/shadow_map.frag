@@ -1,0 +1,14 @@
+// Depth of what casts shadows. Definitions of lib/material.glsl, and
+//   ALPHA_MASK  holes where the opacity is below the cutoff let light through
+#version 450
+#ifdef ALPHA_MASK
+#include "lib/material.glsl"
+#endif
+
+void main() {
+#ifdef ALPHA_MASK
+    if (surface_color().a < material_texel(2).w) {
+        discard;
+    }
+#endif
+}

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace limn {
+
+/// A square of the atlas [texels].
+struct AtlasRect {
+    int x = 0;
+    int y = 0;
+    int size = 0;
+    bool operator==(const AtlasRect&) const = default;
+};
+
+/// Places for squares whose sides are powers of two: a buddy allocator in two dimensions. What was
+/// handed out stays where it is until it is released; four free neighbors become one again.
+class ShadowAtlas {
+  public:
+    /// `size`: a power of two.
+    explicit ShadowAtlas(int size);
+
+    /// Of side `size`, a power of two; none if there is no room.
+    [[nodiscard]] std::optional<AtlasRect> allocate(int size);
+    void release(const AtlasRect& rect);
+
+    [[nodiscard]] int size() const { return size_; }
+
+  private:
+    [[nodiscard]] std::vector<AtlasRect>& free_of(int size);
+
+    int size_;
+    std::vector<std::vector<AtlasRect>> free_;  ///< by log2 of the side
+};
+
+}  // namespace limn

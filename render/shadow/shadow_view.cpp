@@ -1,0 +1,169 @@
+#include "render/shadow/shadow_view.h"
+
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+
+namespace limn {
+namespace {
+
+/// Where a view looks, unit vectors.
+struct Axes {
+    Vec3 right;
+    Vec3 up;
+    Vec3 forward;
+};
+
+Axes axes_along(const Vec3& forward) {
+    const Vec3 right = any_perpendicular(forward);
+    return {right, glm::cross(right, forward), forward};
+}
+
+/// How much wider a view gets for its border.
+float widening(int resolution, int guard) {
+    return static_cast<float>(resolution) / static_cast<float>(resolution - 2 * guard);
+}
+
+/// `tangent` of half the angle shown.
+ShadowView perspective_view(
+    const Vec3& eye, const Axes& axes, float tangent, float near, int resolution, int guard) {
+    Mat4 rows(0.0f);  // its columns are the rows of what is wanted
+    const auto row = [&](const Vec3& axis, float scale) {
+        return Vec4(axis, -glm::dot(axis, eye)) * scale;
+    };
+    rows[0] = row(axes.right, 1 / tangent);
+    rows[1] = row(axes.up, 1 / tangent);
+    rows[2] = {0, 0, 0, near};
+    rows[3] = row(axes.forward, 1);
+    ShadowView view;
+    view.clip_from_world = glm::transpose(rows);
+    view.eye = eye;
+    view.resolution = resolution;
+    view.guard = guard;
+    // (r - b) / b = r (1/b - 1/r) = r (depth_b - depth_r) / near; a texel is 2 tangent r / side.
+    view.penumbra = static_cast<float>(resolution) / (2 * tangent * near);
+    return view;
+}
+
+}  // namespace
+
+ShadowView make_spot_view(
+    const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard) {
+    const float tangent = std::tan(std::min(half_angle, kWidestSpotView));
+    return perspective_view(
+        eye,
+        axes_along(axis),
+        std::max(tangent, 1e-3f) * widening(resolution, guard),
+        near,
+        resolution,
+        guard);
+}
+
+ShadowView make_cube_view(const Vec3& eye, int face, float near, int resolution, int guard) {
+    Axes axes;
+    axes.forward = Vec3(0);
+    axes.forward[face / 2] = (face & 1) != 0 ? -1.0f : 1.0f;
+    axes.right = Vec3(0);
+    axes.right[(face / 2 + 1) % 3] = 1.0f;
+    axes.up = glm::cross(axes.right, axes.forward);
+    return perspective_view(eye, axes, widening(resolution, guard), near, resolution, guard);
+}
+
+std::array<float, kMaxCascades> split_cascades(float near, float far, int count) {
+    std::array<float, kMaxCascades> ends;
+    ends.fill(INFINITY);
+    for (int i = 0; i < count; ++i) {
+        const float share = static_cast<float>(i + 1) / static_cast<float>(count);
+        const float ratios = near * std::pow(far / near, share);
+        const float steps = near + (far - near) * share;
+        ends[static_cast<std::size_t>(i)] = 0.75f * ratios + 0.25f * steps;
+    }
+    return ends;
+}
+
+ShadowView make_cascade_view(
+    const RenderView& camera,
+    const Vec3& to_sun,
+    float slice_near,
+    float slice_far,
+    int resolution,
+    int guard) {
+    // The smallest ball about the slice of the pyramid: its middle lies on the axis.
+    const double t2 = glm::dot(camera.tangent, camera.tangent);
+    const double along =
+        std::min<double>(slice_far, 0.5 * (1 + t2) * (double(slice_near) + double(slice_far)));
+    const double radius =
+        std::sqrt((slice_far - along) * (slice_far - along) + t2 * slice_far * slice_far);
+    const double half = radius * widening(resolution, guard);
+    const double texel = 2 * half / resolution;
+
+    const auto& pose = camera.world_from_camera.row;
+    const Axes axes = axes_along(-to_sun);
+    glm::dvec3 middle;
+    for (int i = 0; i < 3; ++i) {
+        middle[i] = pose[i].w - along * pose[i].z;
+    }
+    // In whole texels along all three axes, so that the depths repeat too.
+    const auto snapped = [&](const Vec3& axis) {
+        return std::floor(glm::dot(glm::dvec3(axis), middle) / texel) * texel;
+    };
+    const double right = snapped(axes.right);
+    const double up = snapped(axes.up);
+    const double forward = snapped(axes.forward);
+
+    // From well before the ball, for what stands between it and the sun, to its far side.
+    constexpr double kBefore = 200;
+    const double far = forward + half;
+    const double range = 2 * half + kBefore;
+    Mat4 rows(0.0f);
+    rows[0] = Vec4(axes.right, -right) * static_cast<float>(1 / half);
+    rows[1] = Vec4(axes.up, -up) * static_cast<float>(1 / half);
+    rows[2] = Vec4(-axes.forward, far) * static_cast<float>(1 / range);
+    rows[3] = {0, 0, 0, 1};
+    ShadowView view;
+    view.clip_from_world = glm::transpose(rows);
+    view.eye = Vec3(
+        right * glm::dvec3(axes.right) + up * glm::dvec3(axes.up)
+        + forward * glm::dvec3(axes.forward));
+    view.resolution = resolution;
+    view.guard = guard;
+    view.clamp_depth = true;
+    view.penumbra = static_cast<float>(range / texel);
+    return view;
+}
+
+layout::ShadowViewRecord make_shadow_record(
+    const ShadowView& view, const AtlasRect& place, float filter, float source_size, float bias) {
+    // From clip space to texels of the atlas: the bias matrix, for depths that are 0 .. 1 already.
+    const double half = 0.5 * place.size;
+    glm::dmat4 texels_from_clip(1.0);
+    texels_from_clip[0][0] = half;
+    texels_from_clip[1][1] = half;
+    texels_from_clip[3][0] = place.x + half;
+    texels_from_clip[3][1] = place.y + half;
+    const glm::dmat4 shadow_from_world = texels_from_clip * glm::dmat4(view.clip_from_world);
+    const glm::dmat4 world_from_shadow = glm::inverse(shadow_from_world);
+    const glm::dmat4 rows = glm::transpose(shadow_from_world);
+
+    const auto scale = static_cast<float>(place.size) / static_cast<float>(view.resolution);
+    layout::ShadowViewRecord record{};
+    record.row_s = Vec4(rows[0]);
+    record.row_t = Vec4(rows[1]);
+    record.row_r = Vec4(rows[2]);
+    record.row_q = Vec4(rows[3]);
+    record.plane_s = Vec4(world_from_shadow[0]);
+    record.plane_t = Vec4(world_from_shadow[1]);
+    record.plane_r = Vec4(world_from_shadow[2]);
+    record.rect = {place.x, place.y, place.x + place.size, place.y + place.size};
+    record.settings = {
+        filter,
+        bias,
+        view.penumbra * scale * source_size,
+        static_cast<float>(std::max(view.guard - 2, 0))};
+    record.splits = Vec4(INFINITY);
+    return record;
+}
+
+}  // namespace limn

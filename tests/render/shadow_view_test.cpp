@@ -1,0 +1,217 @@
+#include "render/culling.h"
+#include "render/shadow/shadow_view.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <random>
+
+namespace limn {
+namespace {
+
+/// Of a point: texel x, texel y, depth, and q.
+Vec4 project(const layout::ShadowViewRecord& record, const Vec3& p) {
+    const Vec4 point = {p, 1};
+    const float q = glm::dot(record.row_q, point);
+    return {
+        glm::dot(record.row_s, point) / q,
+        glm::dot(record.row_t, point) / q,
+        glm::dot(record.row_r, point) / q,
+        q};
+}
+
+constexpr AtlasRect kPlace = {256, 512, 128};
+
+layout::ShadowViewRecord record_of(const ShadowView& view) {
+    return make_shadow_record(view, kPlace, 0, 0.1f, 1);
+}
+
+Vec3 random_point(std::mt19937& random, float reach) {
+    std::uniform_real_distribution<float> along(-reach, reach);
+    return {along(random), along(random), along(random)};
+}
+
+}  // namespace
+
+TEST_CASE("shadow view: clip space goes to the view's square of the atlas, corner by corner") {
+    ShadowView view;
+    view.resolution = 128;
+    const layout::ShadowViewRecord record = record_of(view);  // clip_from_world is the identity
+    CHECK(project(record, {-1, -1, 0}) == Vec4(256, 512, 0, 1));
+    CHECK(project(record, {1, 1, 1}) == Vec4(384, 640, 1, 1));
+    CHECK(project(record, {0, 0, 0.5f}) == Vec4(320, 576, 0.5f, 1));
+}
+
+TEST_CASE("shadow view: a point on the light's axis is in the middle, at near / distance") {
+    const Vec3 eye = {1, 2, 3};
+    const Vec3 axis = glm::normalize(Vec3(0.3f, -0.8f, 0.2f));
+    const auto record = record_of(make_spot_view(eye, axis, radians(30.0f), 0.1f, 128, 2));
+    for (const float distance : {0.1f, 1.0f, 7.0f, 100.0f}) {
+        const Vec4 at = project(record, eye + distance * axis);
+        CHECK(at.x == doctest::Approx(320).epsilon(1e-4));
+        CHECK(at.y == doctest::Approx(576).epsilon(1e-4));
+        CHECK(
+            at.z == doctest::Approx(0.1 / distance).epsilon(1e-4));  // 1 at near, 0 infinitely far
+        CHECK(at.w == doctest::Approx(distance).epsilon(1e-4));
+    }
+    CHECK(project(record, eye - axis).w < 0);  // behind the light: no projection
+}
+
+TEST_CASE("shadow view: what a spot lights lies within its square, and a border is left") {
+    const float angle = radians(30.0f);
+    const auto record = record_of(make_spot_view({0, 0, 0}, {0, 0, -1}, angle, 0.1f, 128, 4));
+    for (int i = 0; i < 16; ++i) {
+        const float turn = 2 * kPi * static_cast<float>(i) / 16;
+        const Vec4 at = project(
+            record, {std::tan(angle) * std::cos(turn), std::tan(angle) * std::sin(turn), -1});
+        CHECK(glm::distance(Vec2(at), Vec2(320, 576)) == doctest::Approx(60).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("shadow view: the map is linear before the division") {
+    std::mt19937 random(1);
+    const auto record =
+        record_of(make_spot_view({1, 0, 2}, {0, -1, 0}, radians(40.0f), 0.05f, 128, 2));
+    for (int i = 0; i < 20; ++i) {
+        const Vec3 a = random_point(random, 3);
+        const Vec3 b = random_point(random, 3);
+        for (const Vec4& row : {record.row_s, record.row_t, record.row_r, record.row_q}) {
+            const float middle = glm::dot(row, Vec4(0.5f * (a + b), 1));
+            CHECK(
+                middle
+                == doctest::Approx(0.5f * (glm::dot(row, Vec4(a, 1)) + glm::dot(row, Vec4(b, 1))))
+                       .epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE("shadow view: a plane's slope is that between its points") {
+    std::mt19937 random(2);
+    const RenderView camera =
+        make_render_view({}, look_at({0, 2, 5}, {0, 0, 0}), look_at({0, 2, 5}, {0, 0, 0}));
+    for (const ShadowView& view :
+         {make_spot_view({1, 4, 2}, {0, -1, 0}, radians(40.0f), 0.05f, 128, 2),
+          make_cube_view({1, 4, 2}, 3, 0.05f, 128, 2),
+          make_cascade_view(camera, glm::normalize(Vec3(1, 2, 0.5f)), 0, 20, 128, 2)}) {
+        const auto record = record_of(view);
+        const Vec3 normal = glm::normalize(Vec3(0.2f, 1, -0.3f));
+        const Vec3 tangent = any_perpendicular(normal);
+        const Vec3 bitangent = glm::cross(normal, tangent);
+        const Vec3 p = {0.5f, 0.2f, 1};
+        const Vec4 plane = {normal, -glm::dot(normal, p)};
+        const Vec3 in_shadow = {
+            glm::dot(record.plane_s, plane),
+            glm::dot(record.plane_t, plane),
+            glm::dot(record.plane_r, plane)};
+        const Vec4 here = project(record, p);
+        for (const Vec3& step : {tangent, bitangent, tangent - bitangent}) {
+            const Vec4 there = project(record, p + 0.3f * step);
+            const float predicted =
+                here.z
+                - (in_shadow.x * (there.x - here.x) + in_shadow.y * (there.y - here.y))
+                      / in_shadow.z;
+            CHECK(predicted == doctest::Approx(there.z).epsilon(2e-3));
+        }
+    }
+}
+
+TEST_CASE("shadow view: six faces see every direction, with a border each") {
+    std::mt19937 random(3);
+    std::array<layout::ShadowViewRecord, 6> faces;
+    for (int face = 0; face < 6; ++face) {
+        faces[static_cast<std::size_t>(face)] =
+            record_of(make_cube_view({1, 2, 3}, face, 0.1f, 128, 4));
+    }
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 d = random_point(random, 1);
+        int owners = 0;
+        for (int face = 0; face < 6; ++face) {
+            const Vec4 at = project(faces[static_cast<std::size_t>(face)], Vec3(1, 2, 3) + d);
+            const bool inside =
+                at.w > 0 && std::abs(at.x - 320) <= 60.001f && std::abs(at.y - 576) <= 60.001f;
+            owners += inside ? 1 : 0;
+            if (inside) {
+                // The depth is that of the major axis.
+                const float m = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+                CHECK(at.z == doctest::Approx(0.1 / m).epsilon(1e-3));
+            }
+        }
+        CHECK(owners == 1);
+    }
+}
+
+TEST_CASE("shadow view: cascades cover the distance without a gap, the near ones shorter") {
+    for (int count = 1; count <= kMaxCascades; ++count) {
+        const auto ends = split_cascades(0.5f, 60, count);
+        float begin = 0.5f;
+        float length = 0;
+        for (int i = 0; i < count; ++i) {
+            const float end = ends[static_cast<std::size_t>(i)];
+            CHECK(end > begin);
+            CHECK(end - begin >= length);
+            length = end - begin;
+            begin = end;
+        }
+        CHECK(begin == doctest::Approx(60));
+        for (int i = count; i < kMaxCascades; ++i) {
+            CHECK(std::isinf(ends[static_cast<std::size_t>(i)]));
+        }
+    }
+}
+
+TEST_CASE("shadow view: a cascade holds all that the camera sees of its slice") {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> share(0, 1);
+    for (int round = 0; round < 40; ++round) {
+        const Affine pose = look_at(random_point(random, 20), random_point(random, 20));
+        const RenderView camera = make_render_view({}, pose, pose, {.width = 320, .height = 180});
+        const Vec3 sun = normalize_or(random_point(random, 1), {0, 1, 0});
+        const auto record = record_of(make_cascade_view(camera, sun, 2, 9, 128, 2));
+        for (int i = 0; i < 50; ++i) {
+            const float z = 2 + 7 * share(random);
+            const Vec3 in_view = {
+                (2 * share(random) - 1) * camera.tangent.x * z,
+                (2 * share(random) - 1) * camera.tangent.y * z,
+                -z};
+            const Vec4 at = project(record, transform_point(pose, in_view));
+            CHECK(std::abs(at.x - 320) <= 63.5f);
+            CHECK(std::abs(at.y - 576) <= 63.5f);
+            CHECK(at.z > 0);
+            CHECK(at.z < 1);
+        }
+    }
+}
+
+TEST_CASE("shadow view: texels of a cascade stay where they are when the camera moves and turns") {
+    std::mt19937 random(5);
+    const Vec3 sun = glm::normalize(Vec3(0.4f, 1, 0.3f));
+    const Vec3 ground = {3, 0, -2};
+    double first_s = -1;
+    double first_t = -1;
+    for (int i = 0; i < 50; ++i) {
+        const Affine pose =
+            look_at(Vec3(0, 2, 8) + random_point(random, 0.3f), random_point(random, 1));
+        const RenderView camera = make_render_view({}, pose, pose);
+        const Vec4 at =
+            project(record_of(make_cascade_view(camera, sun, 0.1f, 15, 128, 2)), ground);
+        const double s = at.x - std::floor(at.x);
+        const double t = at.y - std::floor(at.y);
+        if (i == 0) {
+            first_s = s;
+            first_t = t;
+        }
+        CHECK(s == doctest::Approx(first_s).epsilon(0.01));
+        CHECK(t == doctest::Approx(first_t).epsilon(0.01));
+    }
+}
+
+TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-cull)") {
+    const Bounds box = {{2, 2, 2}, {3, 3, 3}};
+    CHECK_FALSE(ball_touches({0, 0, 0}, 3.4f, box));  // 11.56 < 12
+    CHECK(ball_touches({0, 0, 0}, 3.5f, box));        // 12.25 > 12
+    CHECK(ball_touches({2.5f, 2.5f, 2.5f}, 0, box));
+    CHECK(ball_touches({100, 0, 0}, INFINITY, box));
+}
+
+}  // namespace limn
