@@ -96,30 +96,6 @@ constexpr std::array<float, 9> kHarmonicFactors = {
     0.25f * 15.0f / (16 * kPi),
 };
 
-void project_irradiance(layout::EnvironmentBlock& block) {
-    // Equal areas: rings of equal height, equally divided.
-    constexpr int kRings = 96;
-    constexpr int kSectors = 192;
-    std::array<glm::dvec3, 9> sums{};
-    for (int i = 0; i < kRings; ++i) {
-        const float y = 1 - 2 * (static_cast<float>(i) + 0.5f) / kRings;
-        const float across = std::sqrt(1 - y * y);
-        for (int j = 0; j < kSectors; ++j) {
-            const float phi = 2 * kPi * (static_cast<float>(j) + 0.5f) / kSectors;
-            const Vec3 d = {across * std::cos(phi), y, across * std::sin(phi)};
-            const glm::dvec3 radiance = sky_radiance(block, d);
-            const std::array<float, 9> h = harmonics(d);
-            for (int k = 0; k < 9; ++k) {
-                sums[k] += radiance * static_cast<double>(h[k]);
-            }
-        }
-    }
-    const double solid_angle = 4.0 * kPi / (kRings * kSectors);
-    for (int k = 0; k < 9; ++k) {
-        block.irradiance[k] = Vec4(Vec3(sums[k] * solid_angle) * kHarmonicFactors[k], 0);
-    }
-}
-
 float radical_inverse(std::uint32_t bits) {
     float value = 0;
     for (float digit = 0.5f; bits != 0; bits >>= 1, digit *= 0.5f) {
@@ -188,7 +164,6 @@ layout::EnvironmentBlock make_environment_block(
         block.lamps[i].v = Vec4(v / lamp.half_size.y, 0);
         block.lamps[i].color = Vec4(lamp.radiance * intensity, 0);
     }
-    project_irradiance(block);
     return block;
 }
 
@@ -198,17 +173,45 @@ Vec3 sky_radiance(const layout::EnvironmentBlock& block, const Vec3& direction) 
         return gradient_sky(block, direction);
     case SkyKind::Studio:
         return studio(block, direction);
+    case SkyKind::Panorama:
+        return Vec3(0);
     case SkyKind::Uniform:
         break;
     }
     return rgb(block.zenith);
 }
 
-Vec3 irradiance(const layout::EnvironmentBlock& block, const Vec3& normal) {
+layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block) {
+    // Equal areas: rings of equal height, equally divided.
+    constexpr int kRings = 96;
+    constexpr int kSectors = 192;
+    std::array<glm::dvec3, 9> sums{};
+    for (int i = 0; i < kRings; ++i) {
+        const float y = 1 - 2 * (static_cast<float>(i) + 0.5f) / kRings;
+        const float across = std::sqrt(1 - y * y);
+        for (int j = 0; j < kSectors; ++j) {
+            const float phi = 2 * kPi * (static_cast<float>(j) + 0.5f) / kSectors;
+            const Vec3 d = {across * std::cos(phi), y, across * std::sin(phi)};
+            const glm::dvec3 radiance = sky_radiance(block, d);
+            const std::array<float, 9> h = harmonics(d);
+            for (int k = 0; k < 9; ++k) {
+                sums[k] += radiance * static_cast<double>(h[k]);
+            }
+        }
+    }
+    const double solid_angle = 4.0 * kPi / (kRings * kSectors);
+    layout::Irradiance irradiance;
+    for (int k = 0; k < 9; ++k) {
+        irradiance.coefficients[k] = Vec4(Vec3(sums[k] * solid_angle) * kHarmonicFactors[k], 0);
+    }
+    return irradiance;
+}
+
+Vec3 irradiance_toward(const layout::Irradiance& irradiance, const Vec3& normal) {
     const std::array<float, 9> h = harmonics(normal);
     Vec3 sum = Vec3(0);
     for (int k = 0; k < 9; ++k) {
-        sum += rgb(block.irradiance[k]) * h[k];
+        sum += rgb(irradiance.coefficients[k]) * h[k];
     }
     return glm::max(sum, Vec3(0));
 }

@@ -74,6 +74,7 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
     const gpu::RingSlice& block = scene.environment_block;
     device.bind_uniforms(kEnvironmentBinding, block.buffer, block.offset, block.size);
     device.bind_texture(kReflectionUnit, *scene.environment.reflection);
+    device.bind_uniforms(kSurroundingsBinding, *scene.environment.irradiance);
     device.bind_texture(kSpecularAlbedoUnit, *scene.environment.specular_albedo);
     scene.light_records->bind(device, kLightsUnit);
     scene.light_indices->bind(device, kLightIndicesUnit);

@@ -17,6 +17,7 @@
 namespace limn {
 
 namespace gpu {
+class Buffer;
 class Device;
 class Texture;
 }  // namespace gpu
@@ -27,6 +28,7 @@ class Texture;
 /// Uniform blocks.
 inline constexpr unsigned kViewBinding = 0;
 inline constexpr unsigned kEnvironmentBinding = 1;
+inline constexpr unsigned kSurroundingsBinding = 5;
 /// Texture units; 0 .. 4 are the material's own.
 inline constexpr unsigned kGbufferUnit = 5;
 inline constexpr unsigned kDepthUnit = 6;
@@ -45,7 +47,9 @@ inline constexpr unsigned kShadowViewsUnit = 16;
 struct SceneEnvironment {
     Environment settings;
     layout::EnvironmentBlock block{};
-    const gpu::Texture* reflection = nullptr;
+    const gpu::Texture* reflection = nullptr;  ///< lib/reflection_map.glsl
+    const gpu::Buffer* irradiance = nullptr;   ///< layout::Irradiance of each layer
+    const gpu::Texture* cube = nullptr;        ///< of a Panorama
     const gpu::Texture* specular_albedo = nullptr;
 };
 

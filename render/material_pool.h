@@ -77,6 +77,11 @@ class MaterialPool {
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
     [[nodiscard]] std::size_t image_count() const { return images_.size(); }
+    /// Null: no such image, or a broken one.
+    [[nodiscard]] const gpu::Texture* find_image(ImageId id) const {
+        return id.index < images_.size() && images_[id.index].texture ? &images_[id.index].texture
+                                                                      : nullptr;
+    }
 
   private:
     struct BoundTexture {

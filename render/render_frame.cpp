@@ -9,6 +9,7 @@
 #include "render/passes/blend_pass.h"
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_pass.h"
+#include "render/passes/panorama_pass.h"
 #include "render/passes/reflection_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/tone_map_pass.h"
@@ -40,7 +41,8 @@ Exposure exposure_of(const World& world) {
 
 bool same_light(const Environment& a, const Environment& b) {
     return a.sky == b.sky && a.zenith == b.zenith && a.horizon == b.horizon && a.ground == b.ground
-           && a.intensity == b.intensity;
+           && a.intensity == b.intensity && a.panorama == b.panorama && a.mapping == b.mapping
+           && a.rotation == b.rotation && a.half_angle == b.half_angle;
 }
 
 layout::ViewBlock
@@ -68,6 +70,7 @@ struct Passes {
     BlendPass blend;
     ToneMapPass tone_map;
     AovPass aovs;
+    PanoramaPass panorama;
     ReflectionPass reflection;
     ShadowPass shadows;
     const gpu::Program* accumulate = nullptr;
@@ -147,7 +150,9 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.light_cells = &light_cells_;
     scene.shadow_views = &shadow_views_;
     scene.shadow_atlas = &passes.shadows.atlas;
-    scene.environment.reflection = &passes.reflection.map;
+    scene.environment.reflection = &passes.reflection.maps;
+    scene.environment.irradiance = &passes.reflection.irradiance;
+    scene.environment.cube = &passes.panorama.cube;
     scene.environment.specular_albedo = &specular_albedo_;
 }
 
@@ -161,13 +166,20 @@ void Renderer::update_assets(const World& world) {
     if (fresh) {
         meshes_.clear();
         assets_ = assets.identity.value();
+        environment_.reset();  // its panorama may be another
     }
     meshes_.append(std::span(assets.meshes).subspan(meshes_.meshes().size()));
     materials_.update(assets, fresh);
 }
 
 void Renderer::update_environment(const World& world) {
-    const Environment environment = environment_of(world);
+    Environment environment = environment_of(world);
+    if (environment.sky == SkyKind::Panorama
+        && materials_.find_image(environment.panorama) == nullptr) {
+        // As surfaces show what is missing.
+        environment.sky = SkyKind::Uniform;
+        environment.zenith = {1, 0, 1};
+    }
     layout::EnvironmentBlock& block = scene.environment.block;
     reflection_due_ = !environment_ || !same_light(*environment_, environment);
     if (reflection_due_) {
@@ -225,7 +237,12 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
 
 TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
     if (reflection_due_) {
-        draw_reflection(graph, passes.reflection, scene);
+        const Environment& environment = scene.environment.settings;
+        if (environment.sky == SkyKind::Panorama) {
+            draw_panorama(
+                graph, passes.panorama, *materials_.find_image(environment.panorama), environment);
+        }
+        draw_sky_reflection(graph, passes.reflection, scene);
     }
     scene.shadow_maps = draw_shadows(graph, passes.shadows, scene);
     TextureId radiance = draw_lights(graph, passes.lights, scene, gbuffer);
@@ -296,6 +313,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!aovs) {
         return aovs.error();
     }
+    Result<PanoramaPass> panorama = create_panorama_pass(device);
+    if (!panorama) {
+        return panorama.error();
+    }
     Result<ReflectionPass> reflection = create_reflection_pass(device, settings.environment_size);
     if (!reflection) {
         return reflection.error();
@@ -315,6 +336,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(blend),
         *std::move(tone_map),
         *std::move(aovs),
+        *std::move(panorama),
         *std::move(reflection),
         *std::move(shadows),
         *accumulate};

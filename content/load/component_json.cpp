@@ -1,6 +1,7 @@
 #include "content/load/component_json.h"
 
 #include "ecs/base/text.h"
+#include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
@@ -440,6 +441,12 @@ std::string misfit(const ComponentInfo& info, const void* object) {
                 "found an inner_angle {} beyond the outer_angle {}, expected at most that",
                 light->inner_angle,
                 light->outer_angle);
+        }
+    }
+    if (&info == &component_info<Environment>()) {
+        const auto* environment = static_cast<const Environment*>(object);
+        if (environment->sky == SkyKind::Panorama && environment->panorama.index == kNoAsset) {
+            return "found a sky that is a panorama without the image \"panorama\", expected both";
         }
     }
     return "";

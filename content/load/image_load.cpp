@@ -177,6 +177,40 @@ Result<ImageData> decode(
 
 }  // namespace
 
+namespace {
+
+/// Floats or halves by their bits: all ones in `exponent` is what is not finite.
+template <typename Bits>
+std::size_t replace_bits(std::vector<std::uint8_t>& pixels, Bits exponent, Bits largest_half) {
+    constexpr Bits kSign = static_cast<Bits>(Bits{1} << (8 * sizeof(Bits) - 1));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i + sizeof(Bits) <= pixels.size(); i += sizeof(Bits)) {
+        Bits bits = 0;
+        std::memcpy(&bits, &pixels[i], sizeof(Bits));
+        if ((bits & exponent) == exponent) {
+            const bool infinite = (bits & ~kSign & ~exponent) == 0;
+            bits = static_cast<Bits>(infinite ? (bits & kSign) | largest_half : 0);
+            std::memcpy(&pixels[i], &bits, sizeof(Bits));
+            ++count;
+        }
+    }
+    return count;
+}
+
+}  // namespace
+
+std::size_t replace_non_finite(ImageData& image) {
+    switch (image.format) {
+    case PixelFormat::Rgba16F:
+        return replace_bits<std::uint16_t>(image.pixels, 0x7c00, 0x7bff);
+    case PixelFormat::Rgba32F:
+        return replace_bits<std::uint32_t>(image.pixels, 0x7f800000u, 0x477fe000u);
+    case PixelFormat::Rgba8:
+        break;
+    }
+    return 0;
+}
+
 Result<ImageData> load_image(const std::string& path, bool srgb, const ImageLimits& limits) {
     const Result<std::vector<std::byte>> bytes = read_file(path);
     if (!bytes) {

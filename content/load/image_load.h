@@ -36,4 +36,8 @@ load_image(const std::string& path, bool srgb, const ImageLimits& limits = {});
     bool srgb,
     const ImageLimits& limits = {});
 
+/// Replaces what is not finite in a picture of floats, NaN by 0 and infinities by the largest half
+/// of their sign; returns how many values there were.
+std::size_t replace_non_finite(ImageData& image);
+
 }  // namespace limn

@@ -41,8 +41,7 @@ std::vector<std::string_view> sorted_names(const Names& names) {
     return sorted;
 }
 
-/// Text to Level; the sections in the order of kLevelKeys, so that names are known when they are
-/// used.
+/// Text to Level; the sections in such an order that names are known when they are used.
 class LevelParser {
   public:
     LevelParser(const JsonValue& json, const std::string& file, const LevelLimits& limits)
@@ -85,10 +84,10 @@ class LevelParser {
 Result<Level> LevelParser::parse() {
     Status status = read_keys();
     const std::pair<const char*, ReadMember> sections[] = {
-        {"resources", &LevelParser::read_resource},
         {"images", &LevelParser::read_image},
         {"materials", &LevelParser::read_material},
-        {"meshes", &LevelParser::read_mesh}};
+        {"meshes", &LevelParser::read_mesh},
+        {"resources", &LevelParser::read_resource}};
     for (const auto& [section, read] : sections) {
         if (status) {
             status = read_section(section, read);
@@ -157,7 +156,7 @@ Status LevelParser::read_resource(const JsonMember& member, const JsonPlace& at)
             "the resource " + in_quotes(member.key),
             "one of `limn components`" + resource_suggestion(member.key));
     }
-    Result<AnyComponent> resource = read_component(member.value, *info, at, {});
+    Result<AnyComponent> resource = read_component(member.value, *info, at, asset_names());
     if (!resource) {
         return resource.error();
     }
@@ -477,6 +476,13 @@ Status load_picture(
     }
     pixels_left -=
         static_cast<std::uint64_t>(data->width) * static_cast<std::uint64_t>(data->height);
+    if (const std::size_t bad = replace_non_finite(*data); bad > 0) {
+        log_warn(
+            "{}: {}: {} values are not finite; NaN became 0, infinity 65504",
+            place,
+            image.file,
+            bad);
+    }
     data->name = image.name;
     level.assets.images[image.index] = *std::move(data);
     return Done{};

@@ -124,8 +124,9 @@ void spawn_scene(
     }
 }
 
-void set_resource(World& world, const AnyComponent& resource) {
+void set_resource(World& world, AnyComponent& resource, const AssetOffsets& offsets) {
     const ComponentInfo& info = resource.info();
+    shift_assets(info, resource.data(), offsets);
     void* target = world.find_resource(info.id);
     if (target == nullptr) {
         target = world.insert_default_resource(info.id);
@@ -143,8 +144,8 @@ std::vector<Entity> spawn_level(World& world, Level level) {
     }
     Assets& assets = world.resource<Assets>();
     const AssetOffsets offsets = append_assets(assets, level.assets);
-    for (const AnyComponent& resource : level.resources) {
-        set_resource(world, resource);
+    for (AnyComponent& resource : level.resources) {
+        set_resource(world, resource, offsets);
     }
     std::vector<Entity> entities = create_entities(world, level.entities, offsets);
     for (std::size_t i = 0; i < level.scenes.size(); ++i) {

@@ -18,7 +18,7 @@ Result<LightPass> create_light_pass(gpu::Device& device) {
     if (!plain) {
         return plain.error();
     }
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < kSkyKinds; ++kind) {
         const Result<const gpu::Program*> sky = device.shaders().load(
             {.vertex = "fullscreen.vert",
              .fragment = "sky.frag",
@@ -78,6 +78,9 @@ TextureId draw_sky(
                 const gpu::RingSlice& block = scene.environment_block;
                 context.device().bind_uniforms(
                     kEnvironmentBinding, block.buffer, block.offset, block.size);
+                if (scene.environment.settings.sky == SkyKind::Panorama) {
+                    context.device().bind_texture(kGbufferUnit, *scene.environment.cube);
+                }
                 context.device().draw_fullscreen();
             });
     }

@@ -17,7 +17,7 @@ namespace limn {
 
 struct LightPass {
     SurfacePrograms lights;
-    const gpu::Program* sky[3] = {};  ///< by SkyKind
+    const gpu::Program* sky[kSkyKinds] = {};  ///< by SkyKind
 };
 
 [[nodiscard]] Result<LightPass> create_light_pass(gpu::Device& device);

@@ -7,6 +7,7 @@ namespace limn::layout {
 #endif
 
 const uint kStudioLamps = 6u;
+const uint kReflectionLayers = 9u;  // what can be mirrored: layer 0 the sky, then one a probe
 
 // A soft box at infinity: the unit square of (dot(d, u), dot(d, v)) / dot(d, center).
 struct StudioLamp {
@@ -22,12 +23,17 @@ struct EnvironmentBlock {
     vec4 ground;
     vec4 sun_direction;  // unit, toward the first directional light
     vec4 sun_color;      // its irradiance [lx]; black: none
-    vec4 reflection;     // x: levels of the reflection map, y: its size [px]
-    vec4 irradiance[9];  // irradiance / pi = sum irradiance[i] Y_i(normal), cosine lobe and Y's constants folded in
+    vec4 reflection;     // x: levels of the reflection maps, y: their size [px]
     StudioLamp lamps[kStudioLamps];
 };
 
+// Irradiance / pi = sum coefficients[i] Y_i(normal), with the cosine lobe and the constants of Y folded in.
+struct Irradiance {
+    vec4 coefficients[9];
+};
+
 #ifdef __cplusplus
-static_assert(sizeof(EnvironmentBlock) == 16 * (6 + 9 + 4 * kStudioLamps));
+static_assert(sizeof(EnvironmentBlock) == 16 * (6 + 4 * kStudioLamps));
+static_assert(sizeof(Irradiance) == 144);
 }  // namespace limn::layout
 #endif

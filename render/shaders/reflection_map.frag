@@ -1,5 +1,7 @@
-// Blurs the surroundings for one roughness: one level of the reflection map. The mean of radiance over GGX
-// half vectors, weighted by n.l, for a view along the normal (Karis 2013).
+// Blurs the surroundings for one roughness: one level of a reflection map. The mean of radiance over GGX half
+// vectors, weighted by n.l, for a view along the normal (Karis 2013). A cube map is read at the mip level whose
+// texels are as large as what each sample stands for: few samples then see even a small sun, and none of them
+// alone (Krivanek and Colbert, "Real-time Shading with Filtered Importance Sampling", 2008).
 #version 450
 #include "lib/sky.glsl"
 #include "lib/reflection_map.glsl"
@@ -12,11 +14,24 @@ layout(location = 0) out vec4 radiance;
 
 const float kTwoPi = 6.28318530718;
 
+// Mean radiance from about `l`, over a solid angle where the surroundings are a cube map.
+vec3 radiance_about(vec3 l, float solid_angle) {
+#if SKY_KIND == 3
+    float face = float(textureSize(sky_cube, 0).x);
+    float texels = solid_angle * 6.0 * face * face / (2.0 * kTwoPi);
+    return textureLod(sky_cube, l, 0.5 * log2(max(texels, 1.0))).rgb;
+#else
+    return sky_radiance(l);
+#endif
+}
+
 void main() {
     vec3 n = bordered_direction(gl_FragCoord.xy, size);
     vec3 t = normalize(abs(n.y) < 0.99 ? cross(vec3(0.0, 1.0, 0.0), n) : cross(vec3(1.0, 0.0, 0.0), n));
     vec3 b = cross(n, t);
     float alpha = roughness * roughness;
+    float alpha2 = max(alpha * alpha, 1e-7);
+    float texel = 2.0 * kTwoPi / (size * size);  // solid angle
 
     vec3 sum = vec3(0.0);
     float weights = 0.0;
@@ -30,7 +45,10 @@ void main() {
         float n_h = sqrt(c2);
         vec3 l = 2.0 * n_h * h - n;
         float n_l = max(dot(n, l), 0.0);
-        sum += sky_radiance(l) * n_l;
+        // The density of h is D(h) n.h; that of l, which turns twice as fast, a quarter of D.
+        float lobe = (alpha2 - 1.0) * c2 + 1.0;
+        float density = alpha2 / (2.0 * kTwoPi * lobe * lobe);
+        sum += radiance_about(l, max(1.0 / (float(samples) * density), texel)) * n_l;
         weights += n_l;
     }
     radiance = vec4(sum / max(weights, 1e-6), 1.0);

@@ -82,6 +82,14 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
     CHECK(field.ends_with("(did you mean intensity?)"));
     CHECK(has(error_of(R"({"entities": [{"chidlren": []}]})"), "(did you mean children?)"));
     CHECK(has(error_of(R"({"resources": {"exposre": {}}})"), "(did you mean exposure?)"));
+    CHECK(
+        has(error_of(R"({"resources": {"environment": {"sky": "panorama"}}})"),
+            "found a sky that is a panorama without the image"));
+    CHECK(
+        has(error_of(
+                R"({"images": {"dusk": {"file": "dusk.exr"}},
+                    "resources": {"environment": {"sky": "panorama", "panorama": "dsk"}}})"),
+            "(did you mean dusk?)"));
     CHECK(has(error_of(R"({"meshes": {"a": {"make": "teapto"}}})"), "(did you mean teapot?)"));
     CHECK(has(error_of(R"({"images": {"a": {"make": "marbel"}}})"), "(did you mean marble?)"));
     CHECK(has(

@@ -1,8 +1,11 @@
+#include "content/load/exr_file.h"
+#include "content/load/image_load.h"
 #include "content/load/level_list.h"
 #include "content/load/level_load.h"
 #include "content/load/level_schema.h"
 #include "content/load/scene_load.h"
 #include "content/load/set_value.h"
+#include "ecs/base/log.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
@@ -18,7 +21,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -119,6 +124,53 @@ TEST_CASE("level: a pattern gives a material all its maps, tiled") {
     CHECK(m.occlusion_texture.scale == Vec2(4, 2));
     CHECK(m.normal_scale == 0.5f);
     CHECK(assets.materials[1].base_color_texture.image.index == 0);
+}
+
+TEST_CASE("level: a panorama is one of its images, and what is not finite in that is replaced") {
+    const test::TemporaryFolder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const bool half : {false, true}) {
+        ExrImage exr{.width = 4, .height = 2};
+        std::vector<float> values(24, 0.5f);
+        values[3] = nan;
+        values[4] = INFINITY;
+        values[5] = -INFINITY;
+        add_layer(exr, "", "RGB", values, half);
+        REQUIRE(write_exr(folder.file("sky.exr"), exr).ok());
+        static int warnings;
+        warnings = 0;
+        set_log_sink([](LogLevel level, std::string_view message) {
+            const bool expected = message.find("sky.exr: 3 values are not finite") != message.npos;
+            warnings += level == LogLevel::Warn && expected ? 1 : 0;
+        });
+        Level level = parse(R"({
+            "images": {"marble": {"make": "marble", "size": 4}, "sky": {"file": "sky.exr"}},
+            "resources": {"environment": {"sky": "panorama", "panorama": "sky", "rotation": 1}}})");
+        const Status loaded = load_level_assets(level, folder.path());
+        set_log_sink(nullptr);
+        REQUIRE(loaded.ok());
+        CHECK(warnings == 1);
+        World world;
+        world.insert_resource(Assets{});
+        world.resource<Assets>().images.emplace_back();
+        spawn_level(world, std::move(level));
+        const auto& environment = world.resource<Environment>();
+        CHECK(environment.sky == SkyKind::Panorama);
+        CHECK(environment.panorama.index == 4);  // behind the world's and the marble's
+        const ImageData& image = world.resource<Assets>().images[4];
+        CHECK(image.format == (half ? PixelFormat::Rgba16F : PixelFormat::Rgba32F));
+        ImageData again = image;
+        CHECK(replace_non_finite(again) == 0);
+        if (!half) {
+            std::vector<float> pixels(32);
+            std::memcpy(pixels.data(), image.pixels.data(), image.pixels.size());
+            CHECK(pixels[4] == 0);
+            CHECK(pixels[5] == 65504);
+            CHECK(pixels[6] == -65504);
+            CHECK(pixels[7] == 1);  // alpha
+            CHECK(pixels[8] == 0.5f);
+        }
+    }
 }
 
 TEST_CASE("level: a second one stands behind the assets of the first") {

@@ -7,16 +7,14 @@
 //   SHADOWS             some light has a shadow
 
 #include "lib/light.glsl"
-#include "lib/reflection_map.glsl"
 #include "lib/reflector.glsl"
-#include "lib/sky.glsl"
+#include "lib/surroundings.glsl"
 #include "lib/view.glsl"
 #include "light_gpu.h"
 #ifdef SHADOWS
 #include "lib/shadow.glsl"
 #endif
 
-layout(binding = 7) uniform sampler2D reflection_map;
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
 layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the grid's cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
@@ -86,15 +84,14 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
         add_light(sum, r, light);
     } while (++i < list.y);
 
-    vec3 mirrored = reflected_radiance(
-        reflection_map, environment.reflection.xy, reflect(-r.to_camera, r.normal), s.roughness);
-    vec3 ambient = environment_irradiance(r.normal) * s.occlusion;
+    Around around = light_from_around(r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+    vec3 ambient = around.irradiance * s.occlusion;
     float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
 
     Reflected result;
     result.diffuse = r.lit * r.diffuse * (sum.diffuse / kPi + ambient);
     result.specular = r.lit
                       * (r.given_back * (r.f0 * (sum.specular - sum.fresnel) + sum.fresnel)
-                         + r.mirror * mirrored * open);
+                         + r.mirror * around.mirrored * open);
     return result;
 }

@@ -1,6 +1,6 @@
-// The surroundings as rough surfaces mirror them: an octahedral map whose level l is blurred for roughness
-// (l / (levels - 1))^2, finer steps where the picture is sharper. Every level has a border of one texel that continues over the fold, so that bilinear
-// filtering sees no seam.
+// The surroundings as rough surfaces mirror them: octahedral maps, one a layer (environment_gpu.h), whose level l is
+// blurred for roughness (l / (levels - 1))^2, finer steps where the picture is sharper. Every level has a border of
+// one texel that continues over the fold, so that bilinear filtering sees no seam.
 
 #include "lib/octahedral.glsl"
 
@@ -22,12 +22,12 @@ vec3 bordered_direction(vec2 pixel, float size) {
     return octahedral_decode(p);
 }
 
-vec3 reflected_radiance(sampler2D map, vec2 levels_size, vec3 direction, float roughness) {
+vec3 reflected_radiance(sampler2DArray maps, float layer, vec2 levels_size, vec3 direction, float roughness) {
     float level = sqrt(clamp(roughness, 0.0, 1.0)) * (levels_size.x - 1.0);
     float low = min(floor(level), levels_size.x - 2.0);
     vec2 p = octahedral_encode(direction);
     float size = levels_size.y * exp2(-low);
-    vec3 sharp = textureLod(map, bordered_uv(p, size), low).rgb;
-    vec3 rough = textureLod(map, bordered_uv(p, 0.5 * size), low + 1.0).rgb;
+    vec3 sharp = textureLod(maps, vec3(bordered_uv(p, size), layer), low).rgb;
+    vec3 rough = textureLod(maps, vec3(bordered_uv(p, 0.5 * size), layer), low + 1.0).rgb;
     return mix(sharp, rough, level - low);
 }

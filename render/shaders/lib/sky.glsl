@@ -1,6 +1,6 @@
 // Radiance of the surroundings by direction. The same functions make the background, the reflections and the
-// ambient light; render/environment_light.cpp says them in C++. SKY_KIND, as numbered by SkyKind, is fixed when
-// the program is compiled.
+// ambient light; render/environment_light.cpp says them in C++, but for the panorama (3), which is a cube map.
+// SKY_KIND, as numbered by SkyKind, is fixed when the program is compiled.
 
 #include "environment_gpu.h"
 
@@ -9,6 +9,10 @@ layout(std140, binding = 1) uniform Environment {
 };
 
 #ifdef SKY_KIND
+#if SKY_KIND == 3
+layout(binding = 5) uniform samplerCube sky_cube;  // with all its mip levels
+#endif
+
 // Between horizon and zenith the color falls off as haze does, fast near the horizon; the ground takes on the
 // haze in the distance. Shape by eye.
 vec3 gradient_sky(vec3 d) {
@@ -42,6 +46,8 @@ vec3 sky_radiance(vec3 d) {
     return gradient_sky(d);
 #elif SKY_KIND == 1
     return studio_backdrop(d) + studio_lamps(d);
+#elif SKY_KIND == 3
+    return textureLod(sky_cube, d, 0.0).rgb;
 #else
     return environment.zenith.rgb;
 #endif
@@ -65,17 +71,7 @@ vec3 sky_background(vec3 d) {
 #elif SKY_KIND == 1
     return studio_backdrop(d);
 #else
-    return environment.zenith.rgb;
+    return sky_radiance(d);
 #endif
 }
 #endif
-
-// Irradiance / pi of the surroundings on a plane with this normal: nine spherical harmonics
-// (Ramamoorthi and Hanrahan 2001).
-vec3 environment_irradiance(vec3 n) {
-    vec3 e = environment.irradiance[0].rgb + environment.irradiance[1].rgb * n.y + environment.irradiance[2].rgb * n.z
-             + environment.irradiance[3].rgb * n.x + environment.irradiance[4].rgb * (n.x * n.y)
-             + environment.irradiance[5].rgb * (n.y * n.z) + environment.irradiance[6].rgb * (3.0 * n.z * n.z - 1.0)
-             + environment.irradiance[7].rgb * (n.x * n.z) + environment.irradiance[8].rgb * (n.x * n.x - n.y * n.y);
-    return max(e, vec3(0.0));
-}

@@ -1,0 +1,30 @@
+// One face of the cube map that a panorama becomes: the mean of four points of each texel.
+#version 450
+#include "lib/cube_map.glsl"
+#include "lib/panorama.glsl"
+
+layout(binding = 5) uniform sampler2D panorama;  // its first row is the upper one
+
+uniform int face;
+uniform float size;       // side of the face [px]
+uniform int mapping;      // PanoramaMapping
+uniform float half_angle;
+uniform vec2 turn;        // cosine and sine of its rotation about the vertical
+uniform float level;      // whose texels are about as large as the face's
+uniform float intensity;
+
+layout(location = 0) out vec4 radiance;
+
+const float kMaxRadiance = 65504.0;  // the largest half
+
+void main() {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec2 corner = 0.5 * vec2(i & 1, i >> 1) - 0.25;
+        vec3 d = cube_direction(face, (gl_FragCoord.xy + corner) / size);
+        d.xz = vec2(turn.x * d.x - turn.y * d.z, turn.y * d.x + turn.x * d.z);
+        vec2 uv = panorama_uv(mapping, d, half_angle);
+        sum += clamp(intensity * textureLod(panorama, vec2(uv.x, 1.0 - uv.y), level).rgb, 0.0, kMaxRadiance);
+    }
+    radiance = vec4(0.25 * sum, 1.0);
+}
