@@ -166,6 +166,8 @@ class World {
     /// Adds the resource or replaces it. Stays where it is until removed.
     template <typename T>
     T& insert_resource(T resource);
+    /// The resource, which must be there; resource<T> counts as a change, resource<const T> does
+    /// not.
     template <typename T>
     [[nodiscard]] T& resource();
     template <typename T>

@@ -384,25 +384,29 @@ T& World::insert_resource(T resource) {
 
 template <typename T>
 T* World::find_resource() {
-    return static_cast<T*>(find_resource(component_id<T>));
+    if constexpr (std::is_const_v<T>) {
+        return std::as_const(*this).template find_resource<T>();
+    } else {
+        return static_cast<T*>(find_resource(component_id<T>));
+    }
 }
 
 template <typename T>
 const T* World::find_resource() const {
-    return static_cast<const T*>(find_resource(component_id<T>));
+    return static_cast<const T*>(find_resource(component_id<std::remove_const_t<T>>));
 }
 
 template <typename T>
 T& World::resource() {
     T* value = find_resource<T>();
-    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    LIMN_CHECK_NOTE(value != nullptr, component_info<std::remove_const_t<T>>().name.c_str());
     return *value;
 }
 
 template <typename T>
 const T& World::resource() const {
     const T* value = find_resource<T>();
-    LIMN_CHECK_NOTE(value != nullptr, component_info<T>().name.c_str());
+    LIMN_CHECK_NOTE(value != nullptr, component_info<std::remove_const_t<T>>().name.c_str());
     return *value;
 }
 

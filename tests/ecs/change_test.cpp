@@ -239,6 +239,19 @@ TEST_CASE("change: resources know whether they were written") {
     CHECK(world.resource<Result>().changed == std::vector<bool>{true, false, false, true});
 }
 
+TEST_CASE("change: a resource that is asked for as const is not written") {
+    World world;
+    world.insert_resource(Mass{3});
+    const std::uint32_t before = world.resource_version(component_id<Mass>);
+    static_cast<void>(world.version());  // what is written now is later
+    CHECK(world.resource<const Mass>().value == 3);
+    CHECK(world.find_resource<const Mass>() != nullptr);
+    CHECK(world.find_resource<const Position>() == nullptr);
+    CHECK(world.resource_version(component_id<Mass>) == before);
+    world.resource<Mass>().value = 4;
+    CHECK(world.resource_version(component_id<Mass>) != before);
+}
+
 TEST_CASE("change: versions may wrap around") {
     for (const std::uint32_t start : {0x7ffffff0u, 0xfffffff0u}) {
         World world;

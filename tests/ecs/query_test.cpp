@@ -154,6 +154,38 @@ TEST_CASE("query: the order is that of archetypes and rows, and the same every t
     CHECK(std::equal(heated.begin(), heated.end(), set.begin(), set.end()));
 }
 
+TEST_CASE("query: archetypes that are none of the query's do not change its order") {
+    const auto visit = [](bool with_others) {
+        World world;
+        std::vector<double> order;
+        double next = 0;
+        const auto some = [&](auto... tags) {
+            for (int i = 0; i < 5; ++i) {
+                world.create(Mass{next++}, tags...);
+            }
+        };
+        const auto others = [&](auto... parts) {
+            if (with_others) {
+                world.destroy(world.create(Label{}));
+                world.create_many(1500, Velocity{}, parts...);
+            }
+        };
+        const auto query = world.query<const Mass>();
+        others();
+        some(Position{});
+        others(Marked{});
+        some(Marked{});
+        query.each([](const Mass&) {});  // knows the archetypes so far
+        others(Frozen{});
+        some(Frozen{}, Position{});
+        others(Marked{}, Frozen{});
+        query.each([&](const Mass& mass) { order.push_back(mass.value); });
+        return order;
+    };
+    CHECK(visit(false).size() == 15);
+    CHECK(visit(true) == visit(false));
+}
+
 TEST_CASE("query: chunks cut each archetype every 1024 rows") {
     for (const std::uint32_t count :
          {1u, 1023u, 1024u, 1025u, 2047u, 2048u, 2049u, 5119u, 5120u, 5121u}) {
