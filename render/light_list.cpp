@@ -162,6 +162,8 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     list.records.clear();
     list.reach.clear();
     list.shadowed.clear();
+    list.points = 0;
+    list.spots = 0;
     list.sun_color = Vec3(0);
     list.spot_angles = false;
     list.linear_fade = false;
@@ -184,35 +186,41 @@ void collect_lights(const World& world, float alpha, LightList& list) {
         });
     list.directional = static_cast<int>(list.records.size());
 
-    each_light<PointLight>(
-        world, time, alpha, [&](const PointLight& light, const LightEntity& its) {
-            const layout::LightRecord record =
-                make_record(light, position_of(its.pose), its.factor);
-            if (shines(record)) {
-                list.linear_fade = list.linear_fade || record.polynomial.y != 0;
-                list.records.push_back(record);
-                list.reach.push_back({position_of(its.pose), reach_radius(record)});
-                add_shadow(list, its, LightKind::Point, reach_radius(record));
-            }
-        });
-    list.points = static_cast<int>(list.reach.size());
-
-    each_light<SpotLight>(world, time, alpha, [&](const SpotLight& light, const LightEntity& its) {
-        const layout::LightRecord record =
-            make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
-        if (shines(record)) {
-            list.linear_fade = list.linear_fade || record.polynomial.y != 0;
-            list.spot_angles = list.spot_angles || light.profile == SpotProfile::LinearAngle;
-            list.records.push_back(record);
-            list.reach.push_back(
-                {position_of(its.pose),
-                 reach_radius(record),
-                 axis_of(its.pose),
-                 std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
-            add_shadow(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
-        }
-    });
-    list.spots = static_cast<int>(list.reach.size()) - list.points;
+    // Lights with a shadow come last: who lights with them looks at their maps, the others need
+    // not.
+    for (const bool shadowed : {false, true}) {
+        list.first_shadowed = static_cast<int>(list.records.size());
+        each_light<PointLight>(
+            world, time, alpha, [&](const PointLight& light, const LightEntity& its) {
+                const layout::LightRecord record =
+                    make_record(light, position_of(its.pose), its.factor);
+                if (shines(record) && shadowed == (its.shadow != nullptr)) {
+                    list.linear_fade = list.linear_fade || record.polynomial.y != 0;
+                    list.records.push_back(record);
+                    list.reach.push_back({position_of(its.pose), reach_radius(record)});
+                    add_shadow(list, its, LightKind::Point, reach_radius(record));
+                    ++list.points;
+                }
+            });
+        each_light<SpotLight>(
+            world, time, alpha, [&](const SpotLight& light, const LightEntity& its) {
+                const layout::LightRecord record =
+                    make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
+                if (shines(record) && shadowed == (its.shadow != nullptr)) {
+                    list.linear_fade = list.linear_fade || record.polynomial.y != 0;
+                    list.spot_angles =
+                        list.spot_angles || light.profile == SpotProfile::LinearAngle;
+                    list.records.push_back(record);
+                    list.reach.push_back(
+                        {position_of(its.pose),
+                         reach_radius(record),
+                         axis_of(its.pose),
+                         std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
+                    add_shadow(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
+                    ++list.spots;
+                }
+            });
+    }
 }
 
 }  // namespace limn

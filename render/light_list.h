@@ -13,7 +13,8 @@ namespace limn {
 class World;
 
 // The world's lights as one packed array, directional lights first, then point lights, then spots,
-// each in world order: what shaders loop over without asking for types. Disabled, black and broken
+// then point lights and spots that cast shadows, each in world order: what shaders loop over
+// without asking for types. Disabled, black and broken
 // (not finite) lights are left out, LightPulse is applied. Bench/oracles/light_oracle.h has the
 // formulas.
 
@@ -46,6 +47,7 @@ struct LightList {
     int directional = 0;
     int points = 0;
     int spots = 0;
+    int first_shadowed = 0;          ///< record from which on point lights and spots cast shadows
     bool linear_fade = false;        ///< some polynomial has a linear term
     bool shadows = false;            ///< some record has a shadow; set by who draws them
     bool spot_angles = false;        ///< some spot has SpotProfile::LinearAngle

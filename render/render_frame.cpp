@@ -46,7 +46,7 @@ bool same_light(const Environment& a, const Environment& b) {
 }
 
 layout::ViewBlock
-make_view_block(const RenderView& view, const LightGridShape& grid, int directional) {
+make_view_block(const RenderView& view, const LightGridShape& grid, const LightList& lights) {
     const auto& r = view.world_from_camera.row;
     const auto column = [&](int c) { return Vec3(r[0][c], r[1][c], r[2][c]); };
     const Vec2 size = {view.width, view.height};
@@ -60,7 +60,8 @@ make_view_block(const RenderView& view, const LightGridShape& grid, int directio
     block.ray_forward = Vec4(-column(2), 0);
     block.size = {size.x, size.y, 1 / size.x, 1 / size.y};
     block.grid_cells = {grid.columns, grid.rows, grid.slices, grid.tile};
-    block.grid_depth = {grid.depth_scale, grid.depth_bias, directional, 0};
+    block.grid_depth = {
+        grid.depth_scale, grid.depth_bias, lights.directional, lights.first_shadowed};
     return block;
 }
 
@@ -220,8 +221,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     light_indices_.set(push(scene.grid.indices));
     light_cells_.set(push(scene.grid.cells));
     shadow_views_.set(push(scene.shadows.records));
-    scene.view_block =
-        ring_.push_value(make_view_block(view, scene.grid.shape, scene.lights.directional));
+    scene.view_block = ring_.push_value(make_view_block(view, scene.grid.shape, scene.lights));
     scene.environment_block = ring_.push_value(scene.environment.block);
     const auto end = std::chrono::steady_clock::now();
 

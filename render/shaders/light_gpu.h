@@ -1,6 +1,6 @@
 // One light of any type, read from a texture buffer as kLightTexels RGBA32F texels: on a software OpenGL a
 // fetch of 16 bytes costs a fifth of four loads from a storage block. Directional lights come first, then
-// point lights, then spots (light.interface: sorted by type, no type tag).
+// point lights, then spots (light.interface: sorted by type, no type tag), then those of both that cast shadows.
 
 #ifdef __cplusplus
 #pragma once

@@ -29,7 +29,7 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     return Incoming(to_light, irradiance);
 }
 
-Incoming incoming_local(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
+Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
     vec4 place = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
@@ -40,10 +40,6 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
 #ifdef SPOT_LIGHTS
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
     fade *= spot_attenuation(to_light, axis.xyz, axis.w, polynomial.w);
-#endif
-#ifdef SHADOWS
-    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    fade *= light_visibility(shadow, position_ws, normal, to_light, pixel);
 #endif
     return Incoming(to_light, color.rgb * fade);
 }
@@ -60,13 +56,15 @@ float specular_occlusion(float n_v, float occlusion, float roughness) {
     return clamp(pow(n_v + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 
+const int kNoLight = 0x7fffffff / int(kLightTexels) - 1;  // reads zeros
+
 // Radiance toward the camera of a surface at `position_ws`, seen through `pixel`, without its emission.
 Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float distance) {
     Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
 
     // The loops ask after their body: a software OpenGL runs a body that is asked before once too often, masked.
-    // An empty list reads some light, or zeros, and counts it not at all.
+    // An empty list reads zeros, and counts them not at all. Lights with shadows come last, in a loop of their own.
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
     int n = 0;
@@ -75,14 +73,33 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
     } while (++n < directional);
 #endif
     uvec2 list = texelFetch(light_cells, light_cell(pixel, distance)).xy;
-    float counts = list.y > 0u ? 1.0 : 0.0;
-    uint i = 0u;
+    int i = int(list.x);
+    int end = int(list.x + list.y);
+    int index = int(texelFetch(light_indices, i).x);
+#ifdef SHADOWS
+    int first_shadowed = int(view.grid_depth.w);
+#else
+    int first_shadowed = kNoLight;
+#endif
+    index = list.y > 0u ? index : kNoLight;
     do {
-        int index = int(texelFetch(light_indices, int(list.x + i)).x);
-        Incoming light = incoming_local(index, position_ws, r.normal, pixel);
-        light.irradiance *= counts;
+        Incoming light = incoming_local(index, position_ws, r.normal);
+        light.irradiance *= index < first_shadowed ? 1.0 : 0.0;
         add_light(sum, r, light);
-    } while (++i < list.y);
+        i += index < first_shadowed ? 1 : 0;
+        index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
+    } while (index < first_shadowed);
+#ifdef SHADOWS
+    do {
+        Incoming light = incoming_local(index, position_ws, r.normal);
+        vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+        float lit = light_visibility(shadow, position_ws, r.normal, light.to_light, pixel);
+        light.irradiance *= i < end ? lit : 0.0;
+        add_light(sum, r, light);
+        ++i;
+        index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
+    } while (i < end);
+#endif
 
     Around around = light_from_around(r.normal, reflect(-r.to_camera, r.normal), s.roughness);
     vec3 ambient = around.irradiance * s.occlusion;
