@@ -1,7 +1,10 @@
 #include "render/render_frame.h"
 
 #include "ecs/components/environment.h"
+#include "ecs/components/post.h"
+#include "ecs/components/time.h"
 #include "ecs/world.h"
+#include "render/develop.h"
 #include "render/environment_light.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
@@ -12,7 +15,6 @@
 #include "render/passes/panorama_pass.h"
 #include "render/passes/reflection_pass.h"
 #include "render/passes/shadow_pass.h"
-#include "render/passes/tone_map_pass.h"
 #include "render/shaders/view_gpu.h"
 
 #include <algorithm>
@@ -69,13 +71,19 @@ struct Passes {
     GbufferPass gbuffer;
     LightPass lights;
     BlendPass blend;
-    ToneMapPass tone_map;
+    Developer developer;
     AovPass aovs;
     PanoramaPass panorama;
     ReflectionPass reflection;
     ShadowPass shadows;
     const gpu::Program* accumulate = nullptr;
 };
+
+/// The moment that `view` shows, in simulated time [s].
+double shown_time(const World& world, const RenderView& view) {
+    const auto* time = world.find_resource<FrameTime>();
+    return time != nullptr ? time->time - (1.0 - view.alpha) * time->step : 0.0;
+}
 
 /// What a frame's passes made.
 struct FrameTextures {
@@ -93,8 +101,10 @@ class Renderer {
     /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
     void prepare(const World& world, const RenderView& view, bool velocity);
     /// The image, as a list.
-    FrameTextures draw_image(const World& world, const FrameRequest& request, bool velocity);
+    FrameTextures draw_image(const FrameRequest& request, bool velocity);
     TextureId draw_radiance(const Gbuffer& gbuffer);
+    /// From its radiance to the display; once a picture, as the eye adapts.
+    void develop_image(const World& world, TextureId radiance, FrameTextures& made);
     void finish();
     FrameOutput output(const FrameTextures& textures) const;
     const gpu::Texture& accumulation(int width, int height);
@@ -123,6 +133,7 @@ class Renderer {
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
+    PictureClock clock_;
 };
 
 void RendererDeleter::operator()(Renderer* renderer) const {
@@ -250,11 +261,10 @@ TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
     return draw_blended(graph, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
 }
 
-FrameTextures Renderer::draw_image(const World& world, const FrameRequest& request, bool velocity) {
+FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
     FrameTextures made;
     const Gbuffer gbuffer = draw_gbuffer(graph, passes.gbuffer, scene, velocity);
     made.radiance = draw_radiance(gbuffer);
-    made.display = tone_map(graph, passes.tone_map, exposure_of(world), made.radiance);
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
             != request.aovs.end()) {
@@ -263,8 +273,14 @@ FrameTextures Renderer::draw_image(const World& world, const FrameRequest& reque
         }
     }
     graph.keep(made.radiance);
-    graph.keep(made.display);
     return made;
+}
+
+void Renderer::develop_image(const World& world, TextureId radiance, FrameTextures& made) {
+    const std::optional<float> seconds = seconds_since_last(
+        clock_, assets_, shown_time(world, scene.view), scene.view.world_from_camera);
+    made.display = develop(graph, passes.developer, exposure_of(world), seconds, radiance);
+    graph.keep(made.display);
 }
 
 void Renderer::finish() {
@@ -305,9 +321,9 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!blend) {
         return blend.error();
     }
-    Result<ToneMapPass> tone_map = create_tone_map_pass(device);
-    if (!tone_map) {
-        return tone_map.error();
+    Result<Developer> developer = create_developer(device);
+    if (!developer) {
+        return developer.error();
     }
     Result<AovPass> aovs = create_aov_pass(device);
     if (!aovs) {
@@ -334,7 +350,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(gbuffer),
         *std::move(lights),
         *std::move(blend),
-        *std::move(tone_map),
+        *std::move(developer),
         *std::move(aovs),
         *std::move(panorama),
         *std::move(reflection),
@@ -349,7 +365,8 @@ FrameOutput render_frame(
         std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
     renderer.graph.begin_frame();
     renderer.prepare(world, view, velocity);
-    const FrameTextures textures = renderer.draw_image(world, request, velocity);
+    FrameTextures textures = renderer.draw_image(request, velocity);
+    renderer.develop_image(world, textures.radiance, textures);
     renderer.finish();
     return renderer.output(textures);
 }
@@ -391,10 +408,8 @@ FrameOutput render_accumulated(
     const bool velocity =
         std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
     renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
-    FrameTextures textures = renderer.draw_image(world, request, velocity);
-    textures.display = tone_map(
-        graph, renderer.passes.tone_map, exposure_of(world), graph.import("accumulation", sum));
-    graph.keep(textures.display);
+    FrameTextures textures = renderer.draw_image(request, velocity);
+    renderer.develop_image(world, graph.import("accumulation", sum), textures);
     renderer.finish();
     out = renderer.output(textures);
     out.radiance = &sum;

@@ -6,6 +6,7 @@
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/post.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"

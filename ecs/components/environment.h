@@ -35,18 +35,6 @@ struct Environment {
     float half_angle = radians(45.0f);  ///< Cylindrical: horizon to upper edge [rad]
 };
 
-enum class ToneCurve : std::uint8_t {
-    Neutral,  ///< Khronos PBR neutral: base colors survive
-    Aces,     ///< ACES filmic fit (Hill 2017)
-    Linear,   ///< clamp: for comparisons
-};
-
-/// Resource: from scene radiance to the display.
-struct Exposure {
-    float ev = 0.0f;  ///< radiance is multiplied by 2^ev before the curve, -24 .. 24
-    ToneCurve curve = ToneCurve::Aces;
-};
-
 template <typename Visitor>
 void visit_fields(Environment& environment, Visitor&& visit) {
     visit(
@@ -85,15 +73,6 @@ void visit_fields(Environment& environment, Visitor&& visit) {
          .unit = "rad",
          .min = 0.01,
          .max = 1.55});
-}
-
-template <typename Visitor>
-void visit_fields(Exposure& exposure, Visitor&& visit) {
-    visit(
-        "ev",
-        exposure.ev,
-        {.doc = "radiance times 2^ev before the curve", .unit = "EV", .min = -24, .max = 24});
-    visit("curve", exposure.curve, {.doc = "tone curve", .values = "neutral aces linear"});
 }
 
 }  // namespace limn

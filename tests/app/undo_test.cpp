@@ -1,6 +1,7 @@
 #include "content/app/undo.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
+#include "ecs/components/post.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 

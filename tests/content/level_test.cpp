@@ -12,6 +12,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/post.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"

@@ -3,6 +3,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
+#include "ecs/components/post.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"

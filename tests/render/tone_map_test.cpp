@@ -1,3 +1,6 @@
+#include "bench/oracles/tone_oracle.h"
+#include "ecs/components/time.h"
+#include "render/graph/frame_graph.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/common.hpp>
@@ -53,6 +56,23 @@ struct ToneScene : Scene {
             }
         }
         return Vec3(sum / 4096.0);
+    }
+    /// Lets simulated time pass before the next picture.
+    void wait(double seconds) {
+        FrameTime time;
+        if (const FrameTime* found = world.find_resource<FrameTime>()) {
+            time = *found;
+        }
+        time.time += seconds;
+        world.insert_resource(time);
+    }
+    /// Radiance whose code this is, in a linear picture without dither.
+    float shown_light(const Vec3& radiance, Exposure exposure) {
+        exposure.curve = ToneCurve::Linear;
+        exposure.encoding = DisplayEncoding::Power;
+        exposure.gamma = 1;
+        exposure.dither = false;
+        return shown(radiance, exposure).x / 255;
     }
     gpu::ByteImage bytes;
 };
@@ -142,6 +162,175 @@ TEST_CASE_FIXTURE(ToneScene, "tone map: broken and endless radiance ends in the 
     CHECK(bytes.at(3, 3, 0) == 255);
     static_cast<void>(shown(Vec3(1), {.ev = -24}));
     CHECK(bytes.at(3, 3, 0) <= 1);
+    static_cast<void>(shown(Vec3(INFINITY), {}));
+    CHECK(bytes.at(3, 3, 0) == 255);
+}
+
+TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's to half a code") {
+    for (const Vec3& color : kColors) {
+        const double l = oracle::luminance(color);
+        for (const float white : {0.0f, 4.0f}) {
+            const Vec3 got = shown(color, {.curve = ToneCurve::Reinhard, .white = white});
+            const double mapped = white > 0 ? oracle::compress(l, white) : oracle::compress(l);
+            for (int c = 0; c < 3; ++c) {
+                CHECK(std::abs(got[c] - 255 * srgb(color[c] * mapped / l)) <= 0.6);
+            }
+        }
+        for (const float contrast : {0.0f, 0.001f, 0.1f, 1.0f}) {
+            for (const float ev : {0.0f, 2.0f}) {
+                const Vec3 got = shown(
+                    color,
+                    {.ev = ev, .curve = ToneCurve::Knee, .contrast = contrast, .dither = false});
+                for (int c = 0; c < 3; ++c) {
+                    const double want = oracle::knee_map(
+                        color[c],
+                        0,
+                        {.exposure = std::exp2(ev), .contrast = contrast, .exponent = 1 / 2.2});
+                    CHECK(std::abs(got[c] - 255 * std::min(want, 1.0)) <= 0.52);
+                }
+            }
+        }
+        for (const float gamma : {2.2f, 2.8f}) {
+            const Vec3 got = shown(
+                color,
+                {.curve = ToneCurve::Linear,
+                 .encoding = DisplayEncoding::Power,
+                 .gamma = gamma,
+                 .dither = false});
+            for (int c = 0; c < 3; ++c) {
+                const double want = oracle::gamma_encode(std::min(color[c], 1.0f), gamma);
+                CHECK(std::abs(got[c] - 255 * want) <= 0.52);
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(ToneScene, "hdr: every curve shows black as black and more light never as less") {
+    for (const ToneCurve curve : {ToneCurve::Reinhard, ToneCurve::Local, ToneCurve::Knee}) {
+        CHECK(shown(Vec3(0), {.curve = curve, .dither = false}) == Vec3(0));
+        float last = -1;
+        for (float radiance = 0.001f; radiance < 2e4f; radiance *= 1.7f) {
+            const float code =
+                shown(Vec3(radiance), {.curve = curve, .white = 0, .dither = false}).x;
+            CHECK(code >= last);
+            last = code;
+        }
+        CHECK(last >= 254);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: light above 1 survives in the picture, and is added before it is mapped") {
+    static_cast<void>(shown(Vec3(5), {}));
+    CHECK(radiance(look({0, 0, 1}, {0, 0, 0})).at(9, 9, 0) == 5.0f);
+
+    // Two lights shine on a white wall, each on its own and together.
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(0)});
+    world.insert_resource(Exposure{.curve = ToneCurve::Reinhard, .white = 0, .dither = false});
+    place(add(make_square()), add(Material{}), at({0, 0, 0}));
+    const auto code = [this](float one, float other) {
+        const Entity a = shine(DirectionalLight{.illuminance = one}, at({0, 0, 3}));
+        const Entity b = shine(DirectionalLight{.illuminance = other}, at({0, 0, 3}));
+        const gpu::ByteImage picture = gpu::read_bytes(*draw(look({0, 0, 1}, {0, 0, 0})).display);
+        world.destroy(a);
+        world.destroy(b);
+        return static_cast<int>(picture.at(32, 32, 0));
+    };
+    const auto linear = [](int c) {
+        const double v = c / 255.0;
+        return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    };
+    const int both = code(6, 6);
+    const int one = code(6, 0);
+    CHECK(both > one);
+    CHECK(linear(both) < 1.8 * linear(one));  // mapping each and adding would be twice
+    CHECK(both == code(12, 0));
+}
+
+TEST_CASE_FIXTURE(
+    ToneScene, "hdr: the tone map is the last pass, behind all that needs linear light") {
+    static_cast<void>(shown(Vec3(1), {.curve = ToneCurve::Local, .metering = Metering::Auto}));
+    FrameGraph& graph = frame_graph(shared_renderer());
+    CHECK(graph.timings().back().name == "tone map");
+    CHECK(graph.was_run("statistics"));
+    CHECK(graph.was_run("local.coarse"));
+    // And nothing is measured that nobody asked for.
+    static_cast<void>(shown(Vec3(1), {}));
+    CHECK_FALSE(graph.was_run("statistics"));
+    CHECK_FALSE(graph.was_run("local.coarse"));
+}
+
+TEST_CASE_FIXTURE(ToneScene, "hdr: defog takes a share of the mean off, in any curve") {
+    // Uniform: c becomes (1 - f) c.
+    for (const float share : {0.0f, 0.01f, 0.25f}) {
+        const float got = shown_light(Vec3(0.8f), {.defog = share});
+        CHECK(std::abs(got - (1 - share) * 0.8f) <= 0.51f / 255);
+        const Vec3 knee = shown(
+            Vec3(0.8f),
+            {.curve = ToneCurve::Knee, .contrast = 0.1f, .defog = share, .dither = false});
+        const double want =
+            oracle::knee_map(0.8, share * 0.8, {.contrast = 0.1, .exponent = 1 / 2.2});
+        CHECK(std::abs(knee.x - 255 * want) <= 0.52);
+    }
+    CHECK(shown_light(Vec3(0.8f), {.defog = 1}) == 0);
+}
+
+TEST_CASE_FIXTURE(ToneScene, "hdr: metering shows a scene alike in any unit of light") {
+    const Exposure metered = {.metering = Metering::Key};
+    const Vec3 dim = shown({0.02f, 0.03f, 0.01f}, metered);
+    const Vec3 bright = shown({20, 30, 10}, metered);
+    for (int c = 0; c < 3; ++c) {
+        CHECK(std::abs(dim[c] - bright[c]) <= 0.6f);  // delta counts in the dim one
+    }
+    CHECK(std::abs(shown_light(Vec3(7), metered) - 0.18f) <= 0.51f / 255);
+    CHECK(
+        std::abs(shown_light(Vec3(7), {.ev = 1, .metering = Metering::Key, .key = 0.09f}) - 0.18f)
+        <= 0.51f / 255);
+}
+
+TEST_CASE_FIXTURE(
+    ToneScene,
+    "hdr: the eye adapts with simulated time, at home in its first picture and after a cut") {
+    const Exposure eye = {.metering = Metering::Auto, .adaptation = 0.5f};
+    CHECK(std::abs(shown_light(Vec3(4), eye) - 0.18f) <= 0.51f / 255);
+    // The light falls to an eighth; the eye, used to 4, sees it dark, then gets used to it.
+    double adapted = 4;
+    for (const double seconds : {0.0, 0.1, 0.1, 0.3, 0.9}) {
+        wait(seconds);
+        adapted += (0.5 - adapted) * (1 - std::exp(-seconds / 0.5));
+        const float got = shown_light(Vec3(0.5f), eye);
+        CHECK(std::abs(got - 0.18 * 0.5 / adapted) <= 0.6 / 255);
+    }
+    // More pictures of the same moment change nothing.
+    const float before = shown_light(Vec3(0.5f), eye);
+    CHECK(shown_light(Vec3(0.5f), eye) == before);
+
+    wait(2);  // a cut
+    CHECK(std::abs(shown_light(Vec3(3), eye) - 0.18f) <= 0.51f / 255);
+    // Nobody adapts while exposure is manual: coming back is a cut, too.
+    static_cast<void>(shown(Vec3(1), {}));
+    CHECK(std::abs(shown_light(Vec3(0.1f), eye) - 0.18f) <= 0.51f / 255);
+}
+
+TEST_CASE_FIXTURE(ToneScene, "hdr: an accumulated picture is metered once, as what is shown") {
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(2)});
+    world.insert_resource(Exposure{
+        .curve = ToneCurve::Linear,
+        .metering = Metering::Auto,
+        .encoding = DisplayEncoding::Power,
+        .gamma = 1,
+        .dither = false});
+    wait(0.1);
+    const RenderView view = look({0, 0, 1}, {0, 0, 0});
+    const auto code = [&] {
+        return gpu::read_bytes(*render_accumulated(shared_renderer(), world, view, 4).display)
+            .at(5, 5, 0);
+    };
+    CHECK(code() == 46);  // 255 * 0.18
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(1)});
+    wait(0.1);
+    const double adapted = 2 - (1 - std::exp(-0.1 / 0.5));
+    CHECK(std::abs(code() - 255 * 0.18 / adapted) <= 0.6);
 }
 
 }  // namespace limn::test

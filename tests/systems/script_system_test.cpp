@@ -2,6 +2,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/post.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "systems/script_system.h"

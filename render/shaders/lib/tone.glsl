@@ -1,8 +1,22 @@
-// From scene radiance to the display: curves, the sRGB encoding and the dither before 8 bits.
+// From scene radiance to the display: luminance, curves, encodings and the dither before 8 bits.
 
-// Rec. 709 luminance; hdr.luminance lists other weights.
+// Of linear light (hdr.luminance). Rec. 709 would say 0.2126, 0.7152, 0.0722.
 float luminance(vec3 color) {
-    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+    return dot(color, vec3(0.27, 0.67, 0.06));
+}
+
+// False for what is infinite or not a number; by the bits, which no compiler assumes away.
+bool is_finite(float x) {
+    return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u;
+}
+bool is_finite(vec3 v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
+
+// Light that can be reckoned with, whatever a pixel holds: NaN is black, infinite is `most`, below 0 is 0.
+vec3 clean_light(vec3 color, float most) {
+    bvec3 number = lessThanEqual(floatBitsToUint(color) & 0x7fffffffu, uvec3(0x7f800000u));
+    return mix(vec3(0.0), clamp(color, 0.0, most), number);
 }
 
 // Khronos PBR neutral: the identity less a small toe until 0.76, then compresses toward white and
@@ -29,6 +43,33 @@ vec3 tone_aces(vec3 color) {
     vec3 a = v * (v + 0.0245786) - 0.000090537;
     vec3 b = v * (0.983729 * v + 0.4329510) + 0.238081;
     return kOutput * (a / b);
+}
+
+// Luminance compressed to 0 .. 1, nearly linear where it is dark (hdr.compress). `per_white` is 1 over the luminance
+// that becomes 1; 0 for none, and then nothing gets there. Reinhard et al. 2002.
+float compress(float scaled, float per_white) {
+    return scaled * (1.0 + scaled * per_white * per_white) / (1.0 + scaled);
+}
+
+// The color at another luminance; black stays black.
+vec3 with_luminance(vec3 color, float from, float to) {
+    return from > 0.0 ? color * (to / from) : vec3(0.0);
+}
+
+// ln(1 + x), x >= 0, also where 1 + x is rounded to little more than 1.
+vec3 log1p(vec3 x) {
+    return mix(log(1.0 + x), x * (1.0 - x * (0.5 - x / 3.0)), lessThan(x, vec3(0.01)));
+}
+
+// A knee for each channel: linear where it is dark, logarithmic where it is bright; contrast 0 is the identity
+// (hdr.tonemap-shader).
+vec3 knee(vec3 color, float contrast) {
+    return contrast < 1e-4 ? color : log1p(contrast * color) / contrast;
+}
+
+// Linear to what a display of this gamma shows as linear (hdr.gamma).
+vec3 power_encode(vec3 linear, float gamma) {
+    return pow(max(linear, vec3(0.0)), vec3(1.0 / gamma));
 }
 
 // Linear [0, 1] to sRGB [0, 1] (IEC 61966-2-1).

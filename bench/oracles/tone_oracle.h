@@ -1,0 +1,76 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace limn::oracle {
+
+// From radiance to display in double precision, one formula a function, with no thought of speed:
+// what the statistics, tone map and viewer are held against. Sources are the spec entries named.
+
+/// hdr.luminance: 0.27 R + 0.67 G + 0.06 B.
+[[nodiscard]] double luminance(const glm::dvec3& color);
+
+/// hdr.log-average: exp of the mean of ln(delta + L). 0 pixels give delta.
+[[nodiscard]] double log_average(std::span<const double> luminances, double delta = 1e-4);
+
+/// hdr.dynamic-range: largest over least luminance > 0, leaving out `share` of those at either end;
+/// 1 without any light.
+[[nodiscard]] double dynamic_range(std::span<const double> luminances, double share = 0);
+
+/// Of a picture. Pixels with NaN or infinity in them are only counted; others are clamped to
+/// 0 .. 65504.
+struct PictureStatistics {
+    std::size_t finite = 0;
+    std::size_t broken = 0;
+    glm::dvec3 mean = glm::dvec3(0);
+    double log_average = 0;
+    double least = 0;  ///< luminance of a pixel that has any; 0 if none has
+    double largest = 0;
+    double clipped_least = 0;  ///< the same without the outermost
+    double clipped_largest = 0;
+};
+[[nodiscard]] PictureStatistics
+measure_picture(std::span<const glm::dvec3> pixels, double clipped_share = 0.001);
+
+/// hdr.compress: L / (1 + L); with a white point, L (1 + L / white^2) / (1 + L).
+[[nodiscard]] double compress(double scaled);
+[[nodiscard]] double compress(double scaled, double white);
+
+/// hdr.gamma: what is stored for a display of this gamma, and what it then shows.
+[[nodiscard]] double gamma_encode(double linear, double gamma = 2.2);
+[[nodiscard]] double gamma_display(double stored, double gamma = 2.2);
+
+/// hdr.tonemap-shader: 0.3333 (ln(k e max(c - defog, 0) + 1) / k)^exponent, not clamped.
+struct KneeSettings {
+    double exposure = 1;
+    double contrast = 0;       ///< k; 0 leaves out the logarithm
+    double exponent = 0.4545;  ///< 1 / gamma
+    double scale = 0.3333;
+};
+[[nodiscard]] double knee_map(double c, double defog, const KneeSettings& settings);
+
+/// hdr.dodge-burn, of scaled luminances, rows one after the other. Beyond its edges the picture
+/// goes on as it is there. Gaussians are sampled at the pixels and made to sum to 1.
+struct DodgeBurnSettings {
+    double key = 0.18;   ///< alpha
+    double phi = 8;      ///< sharpness
+    double even = 0.05;  ///< epsilon
+    int scales = 9;
+};
+struct DodgeBurn {
+    std::vector<double> display;   ///< Ld
+    std::vector<double> surround;  ///< V1 of the scale chosen
+    std::vector<int> scale;        ///< index of it
+};
+[[nodiscard]] DodgeBurn dodge_burn(
+    std::span<const double> scaled, int width, int height, const DodgeBurnSettings& settings = {});
+
+/// Gaussian response to the kernel exp(-r^2 / (a1 s)^2) with s = 1.6^scale, a1 = 1 / (2 sqrt 2).
+[[nodiscard]] std::vector<double>
+gaussian_response(std::span<const double> luminances, int width, int height, int scale);
+
+}  // namespace limn::oracle

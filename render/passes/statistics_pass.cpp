@@ -1,0 +1,100 @@
+#include "render/passes/statistics_pass.h"
+
+#include "render/gpu/shader_library.h"
+#include "render/shaders/tone_gpu.h"
+
+#include <cmath>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kPartsBinding = 0;
+constexpr unsigned kHistogramBinding = 1;
+constexpr unsigned kMeasureBinding = 2;
+
+}  // namespace
+
+Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
+    StatisticsPass pass;
+    for (int histogram = 0; histogram < 2; ++histogram) {
+        const std::vector<gpu::ShaderDefine> defines =
+            histogram == 0 ? std::vector<gpu::ShaderDefine>{}
+                           : std::vector<gpu::ShaderDefine>{{"HISTOGRAM", "1"}};
+        const Result<const gpu::Program*> parts =
+            device.shaders().load({.compute = "picture_statistics.comp", .defines = defines});
+        if (!parts) {
+            return parts.error();
+        }
+        const Result<const gpu::Program*> join =
+            device.shaders().load({.compute = "picture_measure.comp", .defines = defines});
+        if (!join) {
+            return join.error();
+        }
+        pass.parts[histogram] = *parts;
+        pass.join[histogram] = *join;
+    }
+    const layout::PictureMeasure nothing{};
+    pass.measure =
+        gpu::Buffer("picture measure", sizeof(nothing), gpu::BufferUse::GpuOnly, &nothing);
+    const std::vector<std::uint32_t> empty(layout::kHistogramBins);
+    pass.histogram = gpu::Buffer(
+        "luminance histogram",
+        empty.size() * sizeof(std::uint32_t),
+        gpu::BufferUse::GpuOnly,
+        empty.data());
+    return pass;
+}
+
+float eye_follows(float adaptation, float seconds) {
+    return adaptation > 0.0f ? 1.0f - std::exp(-std::max(seconds, 0.0f) / adaptation) : 1.0f;
+}
+
+BufferId measure_picture(
+    FrameGraph& graph,
+    const StatisticsPass& pass,
+    TextureId radiance,
+    const MeasureRequest& request) {
+    const TextureSpec source = graph.spec(radiance);
+    const auto tiles = [](int size) {
+        return (size + layout::kStatisticsTile - 1) / layout::kStatisticsTile;
+    };
+    const IVec2 groups = {tiles(source.width), tiles(source.height)};
+    const int count = groups.x * groups.y * layout::kStatisticsGroup * layout::kStatisticsGroup;
+    const BufferId parts = graph.create_buffer(
+        {.name = "statistics", .bytes = sizeof(layout::StatisticsPart) * count});
+    const BufferId histogram = graph.import("luminance histogram", pass.histogram);
+    const BufferId measure = graph.import("picture measure", pass.measure);
+
+    graph.add_pass(
+        "statistics",
+        {radiance},
+        {parts, histogram},
+        [&pass, request, radiance, parts, histogram, groups](PassContext& context) {
+            context.device().use(*pass.parts[request.histogram ? 1 : 0]);
+            context.bind_texture(0, radiance);
+            context.bind_storage(kPartsBinding, parts);
+            context.bind_storage(kHistogramBinding, histogram);
+            context.device().dispatch(groups.x, groups.y);
+        });
+    graph.add_pass(
+        "statistics, joined",
+        {parts},
+        {histogram, measure},
+        [&pass, request, parts, histogram, measure, count](PassContext& context) {
+            const gpu::Program& program = *pass.join[request.histogram ? 1 : 0];
+            context.device().use(program);
+            program.set("part_count", count);
+            program.set("key", request.key);
+            program.set("follow", request.follow);
+            program.set("adaptable", request.adaptable);
+            program.set("clipped_share", request.clipped_share);
+            context.bind_storage(kPartsBinding, parts);
+            context.bind_storage(kHistogramBinding, histogram);
+            context.bind_storage(kMeasureBinding, measure);
+            context.device().dispatch(1);
+        });
+    return measure;
+}
+
+}  // namespace limn

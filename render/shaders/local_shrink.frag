@@ -1,0 +1,12 @@
+// The widest blur of a smaller picture: each texel is the mean of the four about its middle.
+#version 450
+
+layout(binding = 0) uniform sampler2D source;
+
+uniform vec2 texel;  // of the target, in texture coordinates
+
+layout(location = 0) out vec4 shrunk;
+
+void main() {
+    shrunk = texture(source, gl_FragCoord.xy * texel).wwww;
+}
