@@ -64,6 +64,26 @@ void draw_run(gpu::Device& device, const InstanceList& list, const DrawRun& run)
 
 }  // namespace
 
+layout::ViewBlock
+make_view_block(const RenderView& view, const ClusterShape& shape, const LightList& lights) {
+    const auto& r = view.world_from_camera.row;
+    const auto column = [&](int c) { return Vec3(r[0][c], r[1][c], r[2][c]); };
+    const Vec2 size = {view.width, view.height};
+    const Vec2 jitter = 2.0f * view.jitter / size;
+    layout::ViewBlock block{};
+    block.clip_from_world = view.clip_from_world;
+    block.previous_from_world = view.previous_from_world;
+    block.camera_ws = Vec4(column(3), view.near);
+    block.ray_right = Vec4(column(0) * view.tangent.x, jitter.x);
+    block.ray_up = Vec4(column(1) * view.tangent.y, jitter.y);
+    block.ray_forward = Vec4(-column(2), 0);
+    block.size = {size.x, size.y, 1 / size.x, 1 / size.y};
+    block.grid_cells = {shape.columns, shape.rows, shape.slices, shape.tile};
+    block.grid_depth = {
+        shape.depth_scale, shape.depth_bias, lights.directional, lights.first_shadowed};
+    return block;
+}
+
 void bind_view(gpu::Device& device, const FrameScene& scene) {
     device.bind_uniforms(
         kViewBinding, scene.view_block.buffer, scene.view_block.offset, scene.view_block.size);
@@ -77,8 +97,10 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
     device.bind_uniforms(kSurroundingsBinding, *scene.environment.irradiance);
     device.bind_texture(kSpecularAlbedoUnit, *scene.environment.specular_albedo);
     scene.light_records->bind(device, kLightsUnit);
-    scene.light_indices->bind(device, kLightIndicesUnit);
-    scene.light_cells->bind(device, kLightCellsUnit);
+    if (scene.lists.cells.valid()) {
+        scene.light_indices->bind(device, kLightIndicesUnit);
+        scene.light_cells->bind(device, kLightCellsUnit);
+    }
     if (scene.lights.shadows) {
         device.bind_texture(kShadowAtlasUnit, *scene.shadow_atlas);
         scene.shadow_views->bind(device, kShadowViewsUnit);
@@ -90,6 +112,9 @@ std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<U
     std::vector<Use> all = reads;
     if (scene.shadow_maps.valid()) {
         all.emplace_back(scene.shadow_maps);
+    }
+    if (scene.lists.cells.valid()) {
+        all.insert(all.end(), {scene.lists.cells, scene.lists.indices});
     }
     return all;
 }
@@ -106,7 +131,9 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SHADOWS",
         "SHADOW_CUBES",
         "SHADOW_CASCADES",
-        "SHADOW_SOFT"};
+        "SHADOW_SOFT",
+
+        "LOCAL_LIGHTS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -121,7 +148,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
     return (lights.directional > 0 ? 1u : 0u) | (lights.spots > 0 ? 2u : 0u)
            | (lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
            | (lights.linear_fade ? 16u : 0u) | (lights.shadows ? 32u : 0u) | (maps.cubes ? 64u : 0u)
-           | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u);
+           | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
+           | (scene.lists.cells.valid() ? 512u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

@@ -6,11 +6,13 @@
 #include "render/gpu/shader_source.h"
 #include "render/graph/frame_graph.h"
 #include "render/instance_list.h"
-#include "render/light_grid.h"
+#include "render/light_clusters.h"
 #include "render/mesh_pool.h"
 #include "render/shaders/environment_gpu.h"
+#include "render/shaders/view_gpu.h"
 #include "render/shadow/shadow_list.h"
 
+#include <initializer_list>
 #include <unordered_map>
 #include <vector>
 
@@ -53,12 +55,19 @@ struct SceneEnvironment {
     const gpu::Texture* specular_albedo = nullptr;
 };
 
+/// The lists of the light clusters; not valid() where no light is placed.
+struct ClusterLists {
+    BufferId cells;    ///< begin and length of each cell's list
+    BufferId indices;  ///< the lists, one after the other, of indices into the light records
+};
+
 struct FrameScene {
     MeshPool* meshes = nullptr;
     const MaterialPool* materials = nullptr;
     InstanceList instances;
     LightList lights;
-    LightGrid grid;
+    ClusterLights clusters;
+    ClusterLists lists;
     ShadowList shadows;
     SceneEnvironment environment;
     RenderView view;
@@ -74,11 +83,15 @@ struct FrameScene {
         shadow_maps;  ///< the atlas as this frame's graph knows it; not valid() without shadows
 };
 
+/// What lib/view.glsl knows of a frame.
+[[nodiscard]] layout::ViewBlock
+make_view_block(const RenderView& view, const ClusterShape& shape, const LightList& lights);
+
 /// The view's uniform block and, of lit passes, all that lib/lighting.glsl reads.
 void bind_view(gpu::Device& device, const FrameScene& scene);
 void bind_lighting(gpu::Device& device, const FrameScene& scene);
 
-/// What a pass that lights reads beside `reads`.
+/// `reads` and what a pass that includes lib/lighting.glsl reads beside them.
 [[nodiscard]] std::vector<Use>
 lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads);
 

@@ -1,5 +1,6 @@
 #include "render/render_frame.h"
 
+#include "ecs/base/log.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/post.h"
 #include "ecs/components/time.h"
@@ -10,6 +11,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/passes/aov_pass.h"
 #include "render/passes/blend_pass.h"
+#include "render/passes/cluster_pass.h"
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/panorama_pass.h"
@@ -47,29 +49,10 @@ bool same_light(const Environment& a, const Environment& b) {
            && a.rotation == b.rotation && a.half_angle == b.half_angle;
 }
 
-layout::ViewBlock
-make_view_block(const RenderView& view, const LightGridShape& grid, const LightList& lights) {
-    const auto& r = view.world_from_camera.row;
-    const auto column = [&](int c) { return Vec3(r[0][c], r[1][c], r[2][c]); };
-    const Vec2 size = {view.width, view.height};
-    const Vec2 jitter = 2.0f * view.jitter / size;
-    layout::ViewBlock block{};
-    block.clip_from_world = view.clip_from_world;
-    block.previous_from_world = view.previous_from_world;
-    block.camera_ws = Vec4(column(3), view.near);
-    block.ray_right = Vec4(column(0) * view.tangent.x, jitter.x);
-    block.ray_up = Vec4(column(1) * view.tangent.y, jitter.y);
-    block.ray_forward = Vec4(-column(2), 0);
-    block.size = {size.x, size.y, 1 / size.x, 1 / size.y};
-    block.grid_cells = {grid.columns, grid.rows, grid.slices, grid.tile};
-    block.grid_depth = {
-        grid.depth_scale, grid.depth_bias, lights.directional, lights.first_shadowed};
-    return block;
-}
-
 struct Passes {
     GbufferPass gbuffer;
     LightPass lights;
+    ClusterPass clusters;
     BlendPass blend;
     Developer developer;
     AovPass aovs;
@@ -125,14 +108,13 @@ class Renderer {
     InstanceCollector collector_;
     ShadowCollector shadow_collector_;
     BufferTexture light_records_;
-    BufferTexture light_indices_;
-    BufferTexture light_cells_;
     BufferTexture shadow_views_;
     gpu::Texture specular_albedo_;
     gpu::Texture accumulation_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
+    bool dropped_reported_ = false;
     PictureClock clock_;
 };
 
@@ -144,7 +126,6 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     : device(gpu_device), graph(gpu_device), passes(std::move(made)),
       ring_(gpu_device.caps(), "frame data", kRingBytes),
       materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
-      light_indices_("light indices", GL_R32UI), light_cells_("light cells", GL_RG32UI),
       shadow_views_("shadow views", GL_RGBA32F),
       specular_albedo_(
           "specular albedo",
@@ -158,13 +139,13 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.meshes = &meshes_;
     scene.materials = &materials_;
     scene.light_records = &light_records_;
-    scene.light_indices = &light_indices_;
-    scene.light_cells = &light_cells_;
     scene.shadow_views = &shadow_views_;
     scene.shadow_atlas = &passes.shadows.atlas;
     scene.environment.reflection = &passes.reflection.maps;
     scene.environment.irradiance = &passes.reflection.irradiance;
     scene.environment.cube = &passes.panorama.cube;
+    scene.light_indices = &passes.clusters.indices;
+    scene.light_cells = &passes.clusters.cells;
     scene.environment.specular_albedo = &specular_albedo_;
 }
 
@@ -212,7 +193,15 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     scene.view = view;
     collect_lights(world, view.alpha, scene.lights);
     update_environment(world);
-    build_light_grid(view, scene.lights, scene.grid);
+    place_lights(view, scene.lights, scene.clusters);
+    if (scene.clusters.dropped > 0 && !dropped_reported_) {
+        log_warn(
+            "lights: {} of {} reach over so much of the picture that the clusters have no room for "
+            "them (kMaxListEntries, light_clusters.h); they are not shown",
+            scene.clusters.dropped,
+            scene.lights.reach.size());
+        dropped_reported_ = true;
+    }
     collector_.collect(world, view, meshes_, materials_, velocity, ring_, scene.instances);
     shadow_collector_.collect(
         world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
@@ -229,10 +218,10 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         return slice;
     };
     light_records_.set(push(scene.lights.records));
-    light_indices_.set(push(scene.grid.indices));
-    light_cells_.set(push(scene.grid.cells));
     shadow_views_.set(push(scene.shadows.records));
-    scene.view_block = ring_.push_value(make_view_block(view, scene.grid.shape, scene.lights));
+    passes.clusters.lights.set(push(scene.clusters.lights));
+    passes.clusters.boxes.set(push(scene.clusters.boxes));
+    scene.view_block = ring_.push_value(make_view_block(view, scene.clusters.shape, scene.lights));
     scene.environment_block = ring_.push_value(scene.environment.block);
     const auto end = std::chrono::steady_clock::now();
 
@@ -247,6 +236,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
 }
 
 TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
+    scene.lists = build_clusters(graph, passes.clusters, scene);
     if (reflection_due_) {
         const Environment& environment = scene.environment.settings;
         if (environment.sky == SkyKind::Panorama) {
@@ -317,6 +307,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!lights) {
         return lights.error();
     }
+    Result<ClusterPass> clusters = create_cluster_pass(device);
+    if (!clusters) {
+        return clusters.error();
+    }
     Result<BlendPass> blend = create_blend_pass(device);
     if (!blend) {
         return blend.error();
@@ -349,6 +343,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     Passes passes = {
         *std::move(gbuffer),
         *std::move(lights),
+        *std::move(clusters),
         *std::move(blend),
         *std::move(developer),
         *std::move(aovs),

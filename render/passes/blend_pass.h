@@ -7,7 +7,7 @@ namespace limn {
 
 // Draws alpha-blended surfaces over the lit scene, from back to front, lit as the opaque ones are.
 //
-// Reads    InstanceList, depth, light grid, environment
+// Reads    InstanceList, depth, light clusters, environment
 // Writes   radiance
 // Order    after lights and sky
 // Shaders  mesh.vert, blend.frag, lib/lighting.glsl

@@ -7,7 +7,7 @@ namespace limn {
 
 // Lights the G-buffer and puts the sky behind it.
 //
-// Reads    G-buffer, light grid, environment
+// Reads    G-buffer, light clusters, environment
 // Writes   radiance: linear; alpha 1 where a surface or the sky is
 // Order    after the G-buffer
 // Shaders  light_pass.frag, sky.frag, lib/lighting.glsl

@@ -14,7 +14,7 @@ struct ViewBlock {
     vec4 ray_up;               // the same for y; w: jitter, NDC y
     vec4 ray_forward;          // unit
     vec4 size;                 // width, height [px], 1 / width, 1 / height
-    vec4 grid_cells;           // columns, rows, slices of the light grid; w: side of a tile [px]
+    vec4 grid_cells;           // columns, rows, slices of the light clusters; w: side of a tile [px]
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first light
                                // with a shadow that is not directional
 };

@@ -12,6 +12,7 @@ using mat4 = Mat4;
 using uint = std::uint32_t;
 struct uvec2 {
     uint x = 0, y = 0;
+    bool operator==(const uvec2&) const = default;
 };
 struct uvec4 {
     uint x = 0, y = 0, z = 0, w = 0;

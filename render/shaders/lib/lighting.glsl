@@ -5,6 +5,7 @@
 //   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
 //   LINEAR_FADE         some polynomial has a linear term
 //   SHADOWS             some light has a shadow
+//   LOCAL_LIGHTS        some point or spot light is in view
 
 #include "lib/light.glsl"
 #include "lib/reflector.glsl"
@@ -16,7 +17,7 @@
 #endif
 
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
-layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the grid's cells, one after the other
+layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 
 Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
@@ -44,7 +45,7 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
     return Incoming(to_light, color.rgb * fade);
 }
 
-// Cell of the light grid that a pixel at a distance along the view axis belongs to.
+// Cell of the light clusters that a pixel at a distance along the view axis belongs to.
 int light_cell(vec2 pixel, float distance) {
     vec2 tile = floor(pixel / view.grid_cells.w);
     float slice = clamp(floor(log2(distance) * view.grid_depth.x + view.grid_depth.y), 0.0, view.grid_cells.z - 1.0);
@@ -72,6 +73,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
         add_light(sum, r, incoming_directional(n, position_ws, r.normal, pixel));
     } while (++n < directional);
 #endif
+#ifdef LOCAL_LIGHTS
     uvec2 list = texelFetch(light_cells, light_cell(pixel, distance)).xy;
     int i = int(list.x);
     int end = int(list.x + list.y);

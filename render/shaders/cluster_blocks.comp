@@ -1,0 +1,31 @@
+// Which lights may touch which block of cells, as bits: word w of a block has a bit for each of lights 32 w ..
+// 32 w + 31. Compares boxes of cells alone; an invocation makes one word.
+#version 450
+#include "cluster_gpu.h"
+#include "lib/cluster.glsl"
+
+layout(local_size_x = 32) in;  // blocks
+layout(binding = 1) uniform usamplerBuffer boxes;
+layout(std430, binding = 0) writeonly buffer Masks {
+    uint masks[];  // words of block 0, of block 1 ...
+};
+
+uniform uint light_count;
+
+void main() {
+    uvec3 blocks = block_counts();
+    uint block = gl_GlobalInvocationID.x;
+    if (block >= blocks.x * blocks.y * blocks.z) {
+        return;
+    }
+    uvec3 first = block_position(block) * kBlockSize;
+    uvec3 last = first + kBlockSize - 1u;
+    uint word = gl_WorkGroupID.y;
+    uint begin = word * 32u;
+    uint count = min(32u, light_count - begin);
+    uint bits = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        bits |= boxes_meet(texelFetch(boxes, int(begin + i)).xy, first, last) ? 1u << i : 0u;
+    }
+    masks[block * word_count(light_count) + word] = bits;
+}

@@ -1,0 +1,36 @@
+// Where each cell's list begins: the sum of the lengths before it (exclusive prefix sum). One group; an
+// invocation sums a run of cells, the group sums the runs.
+#version 450
+
+layout(local_size_x = 256) in;
+layout(std430, binding = 1) buffer Cells {
+    uvec2 cells[];  // begin and length of each list
+};
+
+uniform uint cell_count;
+
+shared uint sums[gl_WorkGroupSize.x];
+
+void main() {
+    uint i = gl_LocalInvocationID.x;
+    uint run = (cell_count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    uint first = min(i * run, cell_count);
+    uint end = min(first + run, cell_count);
+    uint sum = 0u;
+    for (uint cell = first; cell < end; ++cell) {
+        sum += cells[cell].y;
+    }
+    sums[i] = sum;
+    // Hillis and Steele 1986: after step n, sums[i] covers the 2^n runs that end with i.
+    for (uint reach = 1u; reach < gl_WorkGroupSize.x; reach *= 2u) {
+        barrier();
+        uint before = i >= reach ? sums[i - reach] : 0u;
+        barrier();
+        sums[i] += before;
+    }
+    uint begin = sums[i] - sum;
+    for (uint cell = first; cell < end; ++cell) {
+        cells[cell].x = begin;
+        begin += cells[cell].y;
+    }
+}
