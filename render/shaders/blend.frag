@@ -12,7 +12,7 @@ void main() {
     SurfaceSample s = surface_sample(color.rgb);
     float distance = view_distance(gl_FragCoord.z);
     vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
-    Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, distance);
+    Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, distance));
 
     // The mirror hides what it reflects in place of: its share of what lies behind is gone.
     Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));

@@ -12,6 +12,6 @@ void main() {
     float depth = texelFetch(scene_depth, pixel, 0).r;
     SurfaceSample s = unpack_surface(texelFetch(gbuffer, pixel, 0));
     Reflected light = reflect_all(
-        s, world_position(gl_FragCoord.xy, depth), gl_FragCoord.xy, view_distance(depth));
+        s, world_position(gl_FragCoord.xy, depth), gl_FragCoord.xy, cell_list(gl_FragCoord.xy, view_distance(depth)));
     radiance = vec4(s.emission + light.diffuse + light.specular, 1.0);
 }

@@ -59,13 +59,9 @@ float specular_occlusion(float n_v, float occlusion, float roughness) {
 
 const int kNoLight = 0x7fffffff / int(kLightTexels) - 1;  // reads zeros
 
-// Radiance toward the camera of a surface at `position_ws`, seen through `pixel`, without its emission.
-Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float distance) {
-    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
-    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
-
+// Adds the directional lights.
+void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pixel) {
     // The loops ask after their body: a software OpenGL runs a body that is asked before once too often, masked.
-    // An empty list reads zeros, and counts them not at all. Lights with shadows come last, in a loop of their own.
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
     int n = 0;
@@ -73,8 +69,12 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
         add_light(sum, r, incoming_directional(n, position_ws, r.normal, pixel));
     } while (++n < directional);
 #endif
+}
+
+// Adds the point and spot lights of a list: begin and length in light_indices. An empty list reads zeros, and counts
+// them not at all. Lights with shadows come last, in a loop of their own.
+void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
-    uvec2 list = texelFetch(light_cells, light_cell(pixel, distance)).xy;
     int i = int(list.x);
     int end = int(list.x + list.y);
     int index = int(texelFetch(light_indices, i).x);
@@ -102,15 +102,43 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, float dista
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
     } while (i < end);
 #endif
+#endif
+}
 
-    Around around = light_from_around(r.normal, reflect(-r.to_camera, r.normal), s.roughness);
-    vec3 ambient = around.irradiance * s.occlusion;
-    float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
-
+// What a surface sends on of the light of all lights, and of the surroundings'. Neither has its emission.
+Reflected reflect_lights(Reflector r, LightSum sum) {
     Reflected result;
-    result.diffuse = r.lit * r.diffuse * (sum.diffuse / kPi + ambient);
-    result.specular = r.lit
-                      * (r.given_back * (r.f0 * (sum.specular - sum.fresnel) + sum.fresnel)
-                         + r.mirror * around.mirrored * open);
+    result.diffuse = r.lit * r.diffuse * (sum.diffuse / kPi);
+    result.specular = r.lit * r.given_back * (r.f0 * (sum.specular - sum.fresnel) + sum.fresnel);
     return result;
+}
+
+Reflected reflect_surroundings(Reflector r, SurfaceSample s) {
+    Around around = light_from_around(r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+    float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
+    Reflected result;
+    result.diffuse = r.lit * r.diffuse * (around.irradiance * s.occlusion);
+    result.specular = r.lit * r.mirror * around.mirrored * open;
+    return result;
+}
+
+// Radiance toward the camera of a surface at `position_ws`, seen through `pixel`, without its emission; `list` as in
+// add_listed.
+Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
+    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    add_directional(sum, r, position_ws, pixel);
+    add_listed(sum, r, list, position_ws, pixel);
+    Reflected lights = reflect_lights(r, sum);
+    Reflected around = reflect_surroundings(r, s);
+    return Reflected(lights.diffuse + around.diffuse, lights.specular + around.specular);
+}
+
+// The list of the cell that a pixel at a distance along the view axis belongs to.
+uvec2 cell_list(vec2 pixel, float distance) {
+#ifdef LOCAL_LIGHTS
+    return texelFetch(light_cells, light_cell(pixel, distance)).xy;
+#else
+    return uvec2(0u);
+#endif
 }
