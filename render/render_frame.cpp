@@ -232,6 +232,8 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         .draws = static_cast<int>(list.opaque.size() + list.blended.size()),
         .triangles = list.triangles,
         .lights = static_cast<int>(scene.lights.records.size()),
+        .shadow_views = static_cast<int>(scene.shadows.records.size()),
+        .shadow_views_drawn = static_cast<int>(scene.shadows.due.size()),
         .extract_ms = std::chrono::duration<double, std::milli>(end - begin).count()};
 }
 

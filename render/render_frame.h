@@ -57,6 +57,8 @@ struct FrameStatistics {
     int draws = 0;               ///< submitted for geometry; a multi-draw counts as one
     std::int64_t triangles = 0;  ///< submitted
     int lights = 0;              ///< that shine
+    int shadow_views = 0;        ///< in the shadow atlas
+    int shadow_views_drawn = 0;  ///< of them, in this frame
     double extract_ms = 0;       ///< CPU time of culling and filling instance and light buffers
 };
 

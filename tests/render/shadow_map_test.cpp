@@ -1,4 +1,5 @@
-#include "render/graph/frame_graph.h"
+#include "render/light_list.h"
+#include "render/shadow/shadow_list.h"
 #include "tests/render/shadow_fixture.h"
 
 #include <array>
@@ -236,6 +237,417 @@ TEST_CASE_FIXTURE(BallScene, "shadow map: a light sees no caster that was told t
         world.add(entity, NoShadow{});
     }
     CHECK(dark() == 0);
+}
+
+// ---- point lights
+// ------------------------------------------------------------------------------------
+
+TEST_CASE_FIXTURE(
+    ShadowTest,
+    "shadow map: a ring of casters around a point light has no gap at the seams of the faces") {
+    // A tube around the light: its shadow on the wall behind it must close.
+    put(make_cylinder({.radius = 0.5f, .height = 0.4f, .caps = false}), {0, 0, 0});
+    put(make_cylinder({.radius = 2, .height = 3, .segments = 128, .caps = false}), {0, 0, 0});
+    const Entity lamp = shine(PointLight{.radius = 0}, at({0, 0, 0}));
+    for (const ShadowFilter filter : {ShadowFilter::Bilinear, ShadowFilter::Soft}) {
+        world.add(lamp, Shadow{.filter = filter, .resolution = 128});
+        const double texel = 2 * 2.0 / 120;  // on the wall
+        int dark = 0;
+        for (const Vec3& toward :
+             {Vec3(1, 0, 1), Vec3(-1, 0, 1), Vec3(1, 0, -0.2f), Vec3(-1, 0, -1)}) {
+            const auto all = receivers(lamp, look({0, 1.0f, 0}, glm::normalize(toward), 96, 96));
+            for (const Receiver& r : all) {
+                const double radius = std::hypot(r.position.x, r.position.z);
+                if (!r.there || radius < 1.9) {
+                    continue;
+                }
+                const double edge = std::abs(r.position.y) - 0.2 * radius / 0.5;
+                if (std::abs(edge) > 4 * texel) {
+                    CHECK(r.seen == doctest::Approx(edge < 0 ? 0 : 1));
+                    dark += edge < 0 ? 1 : 0;
+                }
+            }
+        }
+        CHECK(dark > 500);
+    }
+}
+
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: six faces agree with rays on 98 % of the pixels") {
+    put(make_plane({.size = {6, 6}}), {0, 0, 0});
+    for (const Vec3& place : {Vec3(1, 0.4f, 0.3f), Vec3(-0.8f, 0.5f, 0.9f), Vec3(0.1f, 0.3f, -1)}) {
+        put(make_box({.size = {0.3f, 0.8f, 0.3f}}), place);
+    }
+    const oracle::ShadowScene rays(world);
+    const Entity lamp = shine(PointLight{.radius = 0}, at({0, 1, 0}));
+    world.add(lamp, Shadow{.resolution = 256});
+    const auto all = receivers(lamp, look({0.5f, 3, 2}, {0, 0, 0}, 128, 128));
+    CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1, 0}); }) >= 0.98);
+}
+
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: a wide spot is served by six faces, and lights what its cone holds") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    put(make_box({.size = {0.4f, 0.4f, 0.4f}}), {1.2f, 0.2f, 0});
+    const oracle::ShadowScene rays(world);
+    const Entity lamp = shine(even_spot(radians(85.0f)), look_at({0, 1, 0}, {0, 0, 0}));
+    world.add(lamp, Shadow{.resolution = 256});
+    const auto all = receivers(lamp, look({1, 3, 2}, {1, 0, 0}, 96, 96));
+    CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1, 0}); }) >= 0.98);
+}
+
+// ---- suns
+// ------------------------------------------------------------------------------------
+
+namespace {
+
+/// Columns on a floor, in the sun.
+struct ColumnScene : ShadowTest {
+    ColumnScene() {
+        put(make_plane({.size = {60, 60}}), {0, 0, 0});
+        const MeshId column = add(make_cylinder({.radius = 0.3f, .height = 3, .segments = 24}));
+        for (int i = 0; i < 12; ++i) {
+            place(
+                column,
+                white,
+                at({static_cast<float>(i % 4) * 3 - 4, 1.5f, -static_cast<float>(i / 4) * 5}));
+        }
+        sun = shine(DirectionalLight{}, look_at(to_sun, {0, 0, 0}));
+    }
+    [[nodiscard]] RenderView view(const Vec3& shift = {0, 0, 0}) const {
+        return look(Vec3(0.5f, 2.5f, 6) + shift, Vec3(0, 0.5f, -3) + shift, 128, 128);
+    }
+
+    Vec3 to_sun = glm::normalize(Vec3(0.7f, 0.9f, 0.4f));
+    Entity sun;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades agree with rays on 98 % of the pixels") {
+    const oracle::ShadowScene rays(world);
+    for (const int cascades : {1, 3, 4}) {
+        world.add(sun, Shadow{.resolution = 512, .cascades = cascades, .distance = 25});
+        const auto all = receivers(sun, view());
+        CAPTURE(cascades);
+        CHECK(
+            agreement(
+                all,
+                [&](const DVec3& p) {
+                    // Beyond the distance nothing is in shadow.
+                    const double along =
+                        glm::dot(p - DVec3(0.5, 2.5, 6), glm::normalize(DVec3(-0.5, -2, -9)));
+                    return along < 24 && rays.blocked_toward(p, DVec3(to_sun));
+                })
+            >= 0.98);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ColumnScene,
+    "shadow map: no shimmer, texels of the edges keep their value when the camera moves") {
+    world.add(
+        sun,
+        Shadow{.filter = ShadowFilter::Hard, .resolution = 256, .cascades = 2, .distance = 30});
+    // What the same points of the floor are told, as the camera moves by fractions of a texel.
+    const RenderView first = view();
+    const auto before = receivers(sun, first);
+    int edges = 0;
+    for (int step = 1; step <= 4; ++step) {
+        const Vec3 shift = {
+            0.011f * static_cast<float>(step), 0, 0.007f * static_cast<float>(step)};
+        const auto after = receivers(sun, view(shift));
+        // Look each point of the first picture up in the second one, where a pixel shows it.
+        const RenderView second = view(shift);
+        for (const Receiver& r : before) {
+            if (!r.there || r.position.y > 0.01) {
+                continue;
+            }
+            const Vec4 clip = second.clip_from_world * Vec4(Vec3(r.position), 1);
+            const float px = (clip.x / clip.w * 0.5f + 0.5f) * 128;
+            const float py = (0.5f - clip.y / clip.w * 0.5f) * 128;
+            if (px < 1 || py < 1 || px > 127 || py > 127) {
+                continue;
+            }
+            const Receiver& there =
+                after[static_cast<std::size_t>(static_cast<int>(py) * 128 + static_cast<int>(px))];
+            // Both pixels must look at the same texel: much nearer than one.
+            if (there.there && glm::distance(there.position, r.position) < 0.002) {
+                ++edges;
+                CHECK(there.seen == doctest::Approx(r.seen));
+            }
+        }
+    }
+    CHECK(edges > 20);
+}
+
+TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades go over into each other without a step") {
+    // A floor half covered by a roof far above it: its shadow's edge must cross the splits whole,
+    // and no pixel away from it may notice them.
+    world.add(
+        sun,
+        Shadow{.filter = ShadowFilter::Soft, .resolution = 512, .cascades = 4, .distance = 30});
+    const oracle::ShadowScene rays(world);
+    const auto all = receivers(sun, view());
+    const WrongPixels wrong = wrong_pixels(
+        all,
+        0.3,
+        [&](const DVec3&) { return DVec3(to_sun); },
+        [&](const DVec3& p) { return rays.blocked_toward(p, DVec3(to_sun)); });
+    CHECK(wrong.acne == 0);
+    CHECK(wrong.floating == 0);
+}
+
+// ---- alpha-tested and moving casters
+// ------------------------------------------------------------------------------------
+
+namespace {
+
+/// Squares of 8 x 8 pixels, opaque and not in turns.
+ImageData checkerboard(int cells) {
+    ImageData image;
+    image.width = image.height = 8 * cells;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const bool opaque = (x / 8 + y / 8) % 2 == 0;
+            image.pixels.insert(
+                image.pixels.end(), {255, 255, 255, opaque ? std::uint8_t{255} : std::uint8_t{0}});
+        }
+    }
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: a grid of holes shades half of its footprint, as rays say") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    const MaterialId grid = add(Material{
+        .shading = ShadingModel::Blinn,
+        .alpha_mode = AlphaMode::Mask,
+        .double_sided = true,
+        .base_color = {1, 1, 1, 1},
+        .specular = {0, 0, 0},
+        .base_color_texture = {.image = add(checkerboard(4))}});
+    place(add(make_plane({.size = {2, 2}})), grid, at({0, 1.5f, 0}));
+    const oracle::ShadowScene rays(world);
+    const Affine pose = look_at({0.3f, 5, 0.2f}, {0, 0, 0});
+    const Entity lamp = shine(even_spot(radians(25.0f)), pose);
+    world.add(lamp, Shadow{.resolution = 512});
+    const auto all = receivers(lamp, look({0, 1.2f, 2.6f}, {0, 0, 0}, 128, 128));
+    CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, place_of(pose)); }) >= 0.98);
+    // Inside its footprint on the floor half is dark.
+    double dark = 0;
+    int count = 0;
+    for (const Receiver& r : all) {
+        const DVec3 on_grid = r.position + (1.5 / 5) * (place_of(pose) - r.position);
+        if (r.there && r.position.y < 0.01 && std::abs(on_grid.x) < 1 && std::abs(on_grid.z) < 1) {
+            dark += 1 - r.seen;
+            ++count;
+        }
+    }
+    REQUIRE(count > 1000);
+    CHECK(dark / count == doctest::Approx(0.5).epsilon(0.1));
+}
+
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: a fan's shadow turns with it, and repeats with its blades") {
+    put(make_plane({.size = {4, 4}}), {0, 0, 0});
+    const MeshId blade = add(make_box({.size = {0.8f, 0.02f, 0.2f}}));
+    std::vector<Entity> blades;
+    const auto turn = [&](float angle) {
+        for (const Entity entity : blades) {
+            world.destroy(entity);
+        }
+        blades.clear();
+        for (int i = 0; i < 3; ++i) {
+            const float a = angle + 2 * kPi * static_cast<float>(i) / 3;
+            const Quat rotation = {std::cos(0.5f * a), 0, std::sin(0.5f * a), 0};
+            blades.push_back(place(
+                blade,
+                white,
+                affine_from({0.5f * std::cos(a), 1, -0.5f * std::sin(a)}, rotation, {1, 1, 1})));
+        }
+    };
+    const Affine pose = look_at({0, 3, 0}, {0, 0, 0});
+    const Entity lamp = shine(even_spot(radians(40.0f)), pose);
+    world.add(lamp, Shadow{.resolution = 512});
+    const RenderView view = look({0, 0.8f, 1.2f}, {0, 0, -0.2f}, 96, 96);
+    turn(0.3f);
+    const oracle::ShadowScene rays(world);
+    const auto first = receivers(lamp, view);
+    CHECK(
+        agreement(first, [&](const DVec3& p) { return rays.blocked(p, place_of(pose)); }) >= 0.98);
+    turn(0.3f + 2 * kPi / 3);
+    const auto same = receivers(lamp, view);
+    turn(0.3f + kPi / 3);
+    const auto other = receivers(lamp, view);
+    int changed = 0;
+    int moved = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        changed +=
+            first[i].there && same[i].there && std::abs(first[i].seen - same[i].seen) > 0.1 ? 1 : 0;
+        moved += first[i].there && other[i].there && std::abs(first[i].seen - other[i].seen) > 0.1
+                     ? 1
+                     : 0;
+    }
+    CHECK(changed < 20);
+    CHECK(moved > 300);
+}
+
+// ---- what is drawn again
+// ------------------------------------------------------------------------------------
+
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: only views in which something moved are drawn again") {
+    put(make_plane({.size = {20, 4}}), {0, 0, 0});
+    const MeshId box = add(make_box({.size = {0.4f, 0.4f, 0.4f}}));
+    std::vector<Entity> boxes;
+    std::vector<Entity> lamps;
+    for (int i = 0; i < 4; ++i) {
+        const float x = 4 * static_cast<float>(i) - 6;
+        boxes.push_back(place(box, white, at({x, 0.5f, 0})));
+        lamps.push_back(shine(even_spot(radians(25.0f)), look_at({x, 3, 0}, {x, 0, 0})));
+        world.add(lamps.back(), Shadow{.resolution = 64});
+    }
+    const Entity point = shine(PointLight{.radius = 1.5f}, at({-6, 1.5f, 0}));
+    world.add(point, Shadow{.resolution = 64});
+    const RenderView view = look({0, 5, 8}, {0, 0, 0}, 32, 32);
+    const auto drawn = [&](const RenderView& seen) {
+        return draw(seen).statistics.shadow_views_drawn;
+    };
+    draw(view);
+    CHECK(draw(view).statistics.shadow_views == 10);
+    CHECK(drawn(view) == 0);
+    CHECK(drawn(look({1, 4, 8}, {0, 1, 0}, 32, 32)) == 0);  // the camera does not count
+    const auto move = [&](Entity entity, const Vec3& to) {
+        world.get<WorldTransform>(entity).world = at(to);
+        world.get<PreviousWorldTransform>(entity).world = at(to);
+    };
+    move(boxes[2], {2, 0.6f, 0.1f});
+    CHECK(drawn(view) == 1);
+    CHECK(drawn(view) == 0);
+    move(boxes[0], {-6, 0.6f, 0.1f});  // under a spot and the point light: the face below it alone
+    CHECK(drawn(view) == 2);
+    world.get<WorldTransform>(lamps[3]).world = look_at({6, 3, 0.1f}, {6, 0, 0});
+    CHECK(drawn(view) == 1);
+    world.get<MeshInstance>(boxes[1]).material = MaterialId{};
+    CHECK(drawn(view) == 1);
+    world.destroy(boxes[1]);
+    CHECK(drawn(view) == 1);
+    world.get<SpotLight>(lamps[0]).intensity = 3;  // is no matter of the map
+    CHECK(drawn(view) == 0);
+    // What a view never saw does not count.
+    place(box, white, at({0, 0.5f, 30}));
+    CHECK(drawn(view) == 0);
+}
+
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: with casters culled by the light's range the picture is that of all of them") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> along(-3, 3);
+    const MeshId box = add(make_box({.size = {0.3f, 0.3f, 0.3f}}));
+    for (int i = 0; i < 60; ++i) {
+        place(box, white, at({along(random), 0.3f, along(random)}));
+    }
+    const RenderView view = look({0, 4, 3}, {0, 0, 0}, 96, 96);
+    const Entity lamp = shine(
+        PointLight{.radius = 2, .attenuation = {.falloff = Falloff::Smooth}}, at({0, 1.2f, 0}));
+    world.add(lamp, Shadow{.resolution = 128});
+    const oracle::ShadowScene rays(world);
+    const auto all = receivers(lamp, view);
+    CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1.2, 0}); }) >= 0.97);
+}
+
+// ---- bad input
+// ------------------------------------------------------------------------------------
+
+TEST_CASE("shadow map: numbers that make no sense are replaced by some that do") {
+    const Shadow sane = make_sane(
+        {.resolution = -5,
+         .source_size = std::nanf(""),
+         .cascades = 99,
+         .distance = -1,
+         .bias = INFINITY});
+    CHECK(sane.resolution == 16);
+    CHECK(sane.source_size == 0);
+    CHECK(sane.cascades == kMaxCascades);
+    CHECK(sane.distance == 40);
+    CHECK(sane.bias == 1);
+    CHECK(make_sane({.resolution = 300}).resolution == 512);
+    CHECK(make_sane({.resolution = 1 << 30}).resolution == 4096);
+    CHECK(make_sane({.cascades = 0}).cascades == 1);
+    CHECK(make_sane({.distance = std::nanf("")}).distance == 40);
+}
+
+TEST_CASE_FIXTURE(
+    BallScene, "shadow map: broken lights and a light inside a caster draw finite pictures") {
+    const auto finite = [&] {
+        const gpu::FloatImage image = radiance(view());
+        for (const float value : image.pixels) {
+            if (!std::isfinite(value)) {
+                return false;
+            }
+        }
+        return true;
+    };
+    const float nan = std::nanf("");
+    for (const Shadow& shadow :
+         {Shadow{.resolution = -1, .source_size = 0},
+          Shadow{.filter = ShadowFilter::ContactHardening, .source_size = nan},
+          Shadow{.filter = ShadowFilter::Soft, .distance = nan, .bias = nan},
+          Shadow{.source_size = 1e9f, .cascades = -3}}) {
+        const Entity point = shine(PointLight{}, at({0, 0.5f, 0}));  // in the ball
+        const Entity spot = shine(SpotLight{.outer_angle = nan}, look_at({0, 3, 0}, {0, 0, 0}));
+        const Entity sun = shine(DirectionalLight{}, look_at({0, 3, 0}, {0, 0, 0}));
+        for (const Entity light : {point, spot, sun}) {
+            world.add(light, shadow);
+        }
+        CHECK(finite());
+        for (const Entity light : {point, spot, sun}) {
+            world.destroy(light);
+        }
+    }
+    // From inside the ball no light comes out.
+    const Entity inside = shine(PointLight{}, at({0, 0.5f, 0}));
+    world.add(inside, Shadow{.source_size = 0.1f});
+    for (const Receiver& r : receivers(inside, view())) {
+        if (r.there && r.position.y < 0.001 && std::hypot(r.position.x, r.position.z) > 0.3) {
+            CHECK(r.seen < 0.5);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: lights that find no room in the atlas shine without a shadow") {
+    put(make_plane({.size = {4, 4}}), {0, 0, 0});
+    std::vector<Entity> lamps;
+    for (int i = 0; i < 2; ++i) {  // twelve faces of 4096 are three atlases
+        lamps.push_back(shine(PointLight{}, at({0, 1 + static_cast<float>(i), 0})));
+        world.add(lamps.back(), Shadow{.resolution = 4096});
+    }
+    ShadowCollector collector;
+    LightList lights;
+    ShadowList shadows;
+    collect_lights(world, 1, lights);
+    gpu::RingBuffer ring(device().caps(), "test", 1 << 16);
+    MeshPool meshes;
+    MaterialPool materials(device(), 1);
+    materials.update(world.resource<Assets>(), true);
+    ring.begin_frame();
+    collector.collect(
+        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, 1, ring, lights, shadows);
+    ring.end_frame();
+    CHECK(shadows.unserved == 2);  // six faces of 4096 have no room even alone
+    CHECK(shadows.records.empty());
+    CHECK_FALSE(lights.shadows);
+    // One that has room is served all the same.
+    world.get<Shadow>(lamps[1]).resolution = 512;
+    collect_lights(world, 1, lights);
+    ring.begin_frame();
+    collector.collect(
+        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, 1, ring, lights, shadows);
+    ring.end_frame();
+    CHECK(shadows.unserved == 1);
+    CHECK(shadows.records.size() == 6);
 }
 
 }  // namespace limn::test
