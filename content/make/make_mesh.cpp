@@ -1,5 +1,6 @@
 #include "content/make/make_mesh.h"
 
+#include "content/make/masonry.h"
 #include "content/make/shapes.h"
 #include "content/make/teapot.h"
 #include "content/make/terrain.h"
@@ -23,16 +24,20 @@ MeshKind mesh_kind(const char* name, const char* doc) {
 
 std::span<const MeshKind> mesh_kinds() {
     static const std::vector<MeshKind> kinds = {
+        mesh_kind<ArchShape, make_arch>("arch", "a pointed rib or frame on two legs, facing z"),
         mesh_kind<BoxShape, make_box>("box", "a box, its edges rounded if asked"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<LatheShape, make_lathe>("lathe", "a profile turned around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a ball with longitude and latitude"),
         mesh_kind<TeapotShape, make_teapot>(
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
         mesh_kind<TorusShape, make_torus>("torus", "a ring around +y"),
+        mesh_kind<VaultShape, make_vault>("vault", "a pointed cross vault over a rectangle"),
+        mesh_kind<WallShape, make_wall>("wall", "a wall with a pointed or round opening, facing z"),
     };
     return kinds;
 }

@@ -1,6 +1,8 @@
 #include "content/make/patterns.h"
 
+#include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
+#include "content/make/pattern_tools.h"
 #include "ecs/base/type_name.h"
 
 #include <algorithm>
@@ -10,31 +12,6 @@
 namespace limn {
 
 namespace {
-
-float fbm(
-    const Vec2& p, std::uint32_t seed, const IVec2& period, int octaves = 5, float gain = 0.5f) {
-    return fractal_noise(p, seed, {.count = octaves, .gain = gain}, period);
-}
-float fbm(const Vec2& uv, int cells, std::uint32_t seed, int octaves = 5, float gain = 0.5f) {
-    return fbm(uv * static_cast<float>(cells), seed, IVec2(cells), octaves, gain);
-}
-
-/// Seeds of neighbors are used by octaves, so patterns keep well apart.
-std::uint32_t seed_of(const PatternSize& image) {
-    return static_cast<std::uint32_t>(image.seed) * 1024u;
-}
-
-int even(int n) {
-    return n + n % 2;
-}
-
-/// Lighter or darker by up to `amount`, and a little warmer or colder.
-Vec3 tinted(const Vec3& color, float amount, std::uint32_t random) {
-    const float light = static_cast<float>(random & 0xffffu) / 65535.0f - 0.5f;
-    const float warm = static_cast<float>(random >> 16) / 65535.0f - 0.5f;
-    const Vec3 tint = 1.0f + amount * (1.2f * light + 0.25f * warm * Vec3(1, 0.1f, -1));
-    return color * tint;
-}
 
 /// A place in a grid of rectangles.
 struct CellPlace {
@@ -339,6 +316,7 @@ PatternKind pattern_kind(const char* name, const char* doc) {
 
 std::span<const PatternKind> pattern_kinds() {
     static const std::vector<PatternKind> kinds = {
+        pattern_kind<AshlarPattern, make_ashlar>("ashlar", "blocks of dressed stone in courses"),
         pattern_kind<BricksPattern, make_bricks>("bricks", "a wall of rough bricks"),
         pattern_kind<BrushedMetalPattern, make_brushed_metal>(
             "brushed_metal", "metal with fine streaks along u"),
@@ -346,7 +324,12 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
+        pattern_kind<RoseWindowPattern, make_rose_window>(
+            "rose_window", "a round window of stained glass; black where there is none"),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
+        pattern_kind<StainedGlassPattern, make_stained_glass>(
+            "stained_glass", "leaded diamonds between two borders; black where there is lead"),
+        pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
         pattern_kind<WoodPattern, make_wood>("wood", "planks with rings, fibers and pores"),

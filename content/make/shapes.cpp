@@ -44,8 +44,33 @@ struct LatheRing {
     float v;
 };
 
+/// What makes a round thing scalloped: its radius times 1 + depth cos(count azimuth).
+struct Lobes {
+    int count = 0;
+    float depth = 0;
+};
+
+/// The factor of the radius, and how it changes with the azimuth.
+struct LobeSample {
+    float factor = 1;
+    float slope = 0;
+};
+
+/// For the columns of turns(segments); the same at both ends to the bit.
+LobeSample lobe_at(const Lobes& lobes, int column, int segments) {
+    if (lobes.count == 0) {
+        return {};
+    }
+    const float angle =
+        2.0f * kPi * static_cast<float>(lobes.count) * part(column % segments, segments);
+    return {
+        1.0f + lobes.depth * std::cos(angle),
+        -lobes.depth * static_cast<float>(lobes.count) * std::sin(angle)};
+}
+
 /// Turns rings, listed from the top, around +y.
-void append_lathe(MeshData& mesh, int segments, const std::vector<LatheRing>& rings) {
+void append_lathe(
+    MeshData& mesh, int segments, const std::vector<LatheRing>& rings, const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(2 * segments);
     const int rows = static_cast<int>(rings.size()) - 1;
     const GridPoles poles = {rings.front().radius == 0.0f, rings.back().radius == 0.0f};
@@ -56,10 +81,24 @@ void append_lathe(MeshData& mesh, int segments, const std::vector<LatheRing>& ri
         const int column = std::clamp(2 * i + shift, 0, 2 * segments);
         const Turn& turn = around[static_cast<std::size_t>(column)];
         GridVertex vertex;
+        vertex.uv = {part(column, 2 * segments), ring.v};
         vertex.position = {ring.radius * turn.sin, ring.height, ring.radius * turn.cos};
         vertex.normal = {ring.normal.x * turn.sin, ring.normal.y, ring.normal.x * turn.cos};
         vertex.tangent = {turn.cos, 0, -turn.sin};
-        vertex.uv = {part(column, 2 * segments), ring.v};
+        if (lobes.count > 0) {
+            // With r = R(s) f(azimuth), the normal is the cross product of the two derivatives.
+            const LobeSample lobe = lobe_at(lobes, column, 2 * segments);
+            const Vec3 out = {turn.sin, 0, turn.cos};
+            const Vec3 along = vertex.tangent;
+            vertex.position = {
+                ring.radius * lobe.factor * turn.sin,
+                ring.height,
+                ring.radius * lobe.factor * turn.cos};
+            vertex.normal = glm::normalize(
+                ring.normal.x * (lobe.factor * out - lobe.slope * along)
+                + Vec3(0, ring.normal.y * square(lobe.factor), 0));
+            vertex.tangent = glm::normalize(lobe.slope * out + lobe.factor * along);
+        }
         return vertex;
     });
 }
@@ -72,13 +111,16 @@ void append_disc(
     float height,
     float facing,
     int segments,
-    int divisions) {
+    int divisions,
+    const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(segments);
     append_grid(mesh, segments, divisions, {false, hole == 0.0f}, [&](int i, int j) {
         // With columns to the right and rows toward the middle, the outline runs clockwise seen
         // from the front; seen from above, turns() runs counter-clockwise.
-        const Turn& turn = around[static_cast<std::size_t>(facing > 0 ? segments - i : i)];
-        const float r = glm::mix(radius, hole, part(j, divisions));
+        const int column = facing > 0 ? segments - i : i;
+        const Turn& turn = around[static_cast<std::size_t>(column)];
+        const float r =
+            glm::mix(radius, hole, part(j, divisions)) * lobe_at(lobes, column, segments).factor;
         GridVertex vertex;
         vertex.position = {r * turn.sin, height, r * turn.cos};
         vertex.normal = {0, facing, 0};
@@ -170,7 +212,9 @@ MeshData make_box(const BoxShape& shape) {
                 vertex.position = core + bevel * vertex.normal;
                 vertex.tangent =
                     glm::normalize(right - vertex.normal * glm::dot(vertex.normal, right));
-                vertex.uv = {0.5f + 0.5f * x / half_right, 0.5f - 0.5f * y / half_up};
+                vertex.uv = shape.metric
+                                ? Vec2(x, -y)
+                                : Vec2(0.5f + 0.5f * x / half_right, 0.5f - 0.5f * y / half_up);
                 return vertex;
             });
     }
@@ -200,7 +244,7 @@ MeshData make_plane(const PlaneShape& shape) {
     append_grid(mesh, shape.divisions, shape.divisions, {}, [&](int i, int j) {
         const Vec2 uv = {part(i, shape.divisions), part(j, shape.divisions)};
         const Vec2 place = (uv - 0.5f) * shape.size;
-        return GridVertex{{place.x, 0, place.y}, {0, 1, 0}, {1, 0, 0}, uv};
+        return GridVertex{{place.x, 0, place.y}, {0, 1, 0}, {1, 0, 0}, shape.metric ? place : uv};
     });
     return mesh;
 }
@@ -241,6 +285,54 @@ MeshData make_disc(const DiscShape& shape) {
     const float hole = std::clamp(shape.inner_radius, 0.0f, 0.999f * shape.radius);
     MeshData mesh;
     append_disc(mesh, shape.radius, hole, 0, 1, shape.segments, shape.divisions);
+    return mesh;
+}
+
+MeshData make_lathe(const LatheShape& shape) {
+    std::vector<Vec2> points;  // from the top; equal neighbors have no direction
+    for (auto p = shape.profile.rbegin(); p != shape.profile.rend(); ++p) {
+        const Vec2 point = {std::max(p->x, 0.0f), p->y};
+        if (points.empty() || point != points.back()) {
+            points.push_back(point);
+        }
+    }
+    if (points.size() < 2) {
+        points = {{0.0f, 1.0f}, {0.5f, 0.0f}};
+    }
+    const Lobes lobes = {shape.lobes, std::clamp(shape.lobe_depth, 0.0f, 0.5f)};
+    const std::size_t last = points.size() - 1;
+    const auto edge_normal = [&](std::size_t i) {  // of the part from point i to the next
+        const Vec2 down = glm::normalize(points[i + 1] - points[i]);
+        return Vec2(-down.y, down.x);
+    };
+    float length = 0;
+    for (std::size_t i = 0; i < last; ++i) {
+        length += glm::distance(points[i], points[i + 1]);
+    }
+
+    MeshData mesh;
+    std::vector<LatheRing> run;
+    float way = 0;
+    for (std::size_t i = 0; i <= last; ++i) {
+        way += i > 0 ? glm::distance(points[i - 1], points[i]) : 0.0f;
+        const float v = way / length;
+        const Vec2 before = edge_normal(i > 0 ? i - 1 : 0);
+        const Vec2 after = edge_normal(std::min(i, last - 1));
+        const bool is_edge = i > 0 && i < last && glm::dot(before, after) < std::cos(shape.crease);
+        const Vec2 smooth = is_edge ? before : glm::normalize(before + after);
+        run.push_back({points[i].x, points[i].y, smooth, v});
+        if (i == last || is_edge) {
+            append_lathe(mesh, shape.segments, run, lobes);
+            run = {{points[i].x, points[i].y, after, v}};
+        }
+    }
+    // The columns of a lathe are every other one of twice as many turns, so caps fit to the bit.
+    if (shape.caps && points.front().x > 0) {
+        append_disc(mesh, points.front().x, 0, points.front().y, 1, shape.segments, 1, lobes);
+    }
+    if (shape.caps && points.back().x > 0) {
+        append_disc(mesh, points.back().x, 0, points.back().y, -1, shape.segments, 1, lobes);
+    }
     return mesh;
 }
 

@@ -2,6 +2,8 @@
 
 #include "ecs/components/surface.h"
 
+#include <vector>
+
 namespace limn {
 
 // Meshes with a formula. Each shape is a struct of parameters that a level file may set, and a
@@ -23,6 +25,7 @@ struct BoxShape {
     float bevel = 0.0f;      ///< radius of the edges [m], 0 .. half the smallest size
     int bevel_segments = 4;  ///< steps of a rounded edge on each of its two sides, >= 1
     int divisions = 1;       ///< quads along the flat part of a side, >= 1
+    bool metric = false;     ///< texture coordinates are meters: the image repeats every meter
 };
 
 /// A ring around +y; u runs around the axis, v around the tube, the image's middle row outside.
@@ -35,8 +38,9 @@ struct TorusShape {
 
 /// A rectangle in the x-z plane that faces +y; the image's top is at -z.
 struct PlaneShape {
-    Vec2 size = {1, 1};  ///< along x and z [m], > 0
-    int divisions = 1;   ///< quads along each side, >= 1
+    Vec2 size = {1, 1};   ///< along x and z [m], > 0
+    int divisions = 1;    ///< quads along each side, >= 1
+    bool metric = false;  ///< texture coordinates are meters: the image repeats every meter
 };
 
 /// A tube around +y, closed by two discs.
@@ -66,6 +70,18 @@ struct DiscShape {
     int divisions = 1;          ///< from the middle outwards, >= 1
 };
 
+/// A profile turned around +y: balusters, columns, bowls, flames. Its lobes make bundles of shafts
+/// of a column: the radius is that of the profile times 1 + lobe_depth cos(lobes azimuth).
+struct LatheShape {
+    /// Points (radius, height), from below upwards; >= 2. Radii are >= 0.
+    std::vector<Vec2> profile = {{0.5f, 0.0f}, {0.35f, 0.2f}, {0.35f, 0.8f}, {0.5f, 1.0f}};
+    int segments = 32;        ///< around the axis, >= 3
+    float crease = 0.6f;      ///< where the profile turns by more, there is an edge [rad], 0 .. pi
+    int lobes = 0;            ///< around the axis, 0 = round
+    float lobe_depth = 0.1f;  ///< 0 .. 0.5
+    bool caps = true;         ///< closed where the profile does not end on the axis
+};
+
 [[nodiscard]] MeshData make_sphere(const SphereShape& shape);
 [[nodiscard]] MeshData make_box(const BoxShape& shape);
 [[nodiscard]] MeshData make_torus(const TorusShape& shape);
@@ -73,6 +89,7 @@ struct DiscShape {
 [[nodiscard]] MeshData make_cylinder(const CylinderShape& shape);
 [[nodiscard]] MeshData make_cone(const ConeShape& shape);
 [[nodiscard]] MeshData make_disc(const DiscShape& shape);
+[[nodiscard]] MeshData make_lathe(const LatheShape& shape);
 
 template <typename Visitor>
 void visit_fields(SphereShape& shape, Visitor&& visit) {
@@ -99,6 +116,7 @@ void visit_fields(BoxShape& shape, Visitor&& visit) {
         "divisions",
         shape.divisions,
         {.doc = "quads along the flat part of a side", .min = 1, .max = 1024});
+    visit("metric", shape.metric, {.doc = "the image repeats every meter"});
 }
 
 template <typename Visitor>
@@ -119,6 +137,7 @@ template <typename Visitor>
 void visit_fields(PlaneShape& shape, Visitor&& visit) {
     visit("size", shape.size, {.doc = "along x and z", .unit = "m", .min = 1e-4, .max = 1e5});
     visit("divisions", shape.divisions, {.doc = "quads along each side", .min = 1, .max = 2048});
+    visit("metric", shape.metric, {.doc = "the image repeats every meter"});
 }
 
 template <typename Visitor>
@@ -152,6 +171,31 @@ void visit_fields(DiscShape& shape, Visitor&& visit) {
         {.doc = "of the hole, less than radius", .unit = "m", .min = 0, .max = 1e5});
     visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
     visit("divisions", shape.divisions, {.doc = "from the middle outwards", .min = 1, .max = 1024});
+}
+
+template <typename Visitor>
+void visit_fields(LatheShape& shape, Visitor&& visit) {
+    visit(
+        "profile",
+        shape.profile,
+        {.doc = "points (radius, height), from below upwards",
+         .unit = "m",
+         .min = -1e5,
+         .max = 1e5});
+    visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
+    visit(
+        "crease",
+        shape.crease,
+        {.doc = "where the profile turns by more, there is an edge",
+         .unit = "rad",
+         .min = 0,
+         .max = 3.1416});
+    visit("lobes", shape.lobes, {.doc = "around the axis; 0 = round", .min = 0, .max = 256});
+    visit(
+        "lobe_depth",
+        shape.lobe_depth,
+        {.doc = "how far they stand out, of the radius", .min = 0, .max = 0.5});
+    visit("caps", shape.caps, {.doc = "closed where the profile does not end on the axis"});
 }
 
 }  // namespace limn

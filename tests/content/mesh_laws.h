@@ -137,6 +137,27 @@ inline int open_edges(const MeshData& mesh) {
     return open_edges(mesh, [](const Vec3&, const Vec3&) {});
 }
 
+/// Directed edges, by position, of more than one triangle: 0 of a two-manifold.
+inline int crowded_edges(const MeshData& mesh) {
+    std::map<std::array<float, 6>, int> edges;
+    for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+        const Vec3 p[3] = {
+            corner(mesh, 3 * t) + 0.0f,
+            corner(mesh, 3 * t + 1) + 0.0f,
+            corner(mesh, 3 * t + 2) + 0.0f};
+        if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
+            continue;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 a = p[k];
+            const Vec3 b = p[(k + 1) % 3];
+            ++edges[{a.x, a.y, a.z, b.x, b.y, b.z}];
+        }
+    }
+    return static_cast<int>(
+        std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second > 1; }));
+}
+
 /// By the divergence theorem; that of a closed mesh that faces outwards is positive [m^3].
 inline double signed_volume(const MeshData& mesh) {
     double volume = 0;

@@ -27,7 +27,7 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 9);
+    REQUIRE(mesh_kinds().size() == 13);
     for (const MeshKind& kind : mesh_kinds()) {
         INFO(std::string(kind.name));
         const MeshData mesh = make_default(kind);
@@ -83,6 +83,64 @@ TEST_CASE("shapes: closed shapes are watertight") {
     CHECK(open_edges(make_cone({.top_radius = 0.2f})) == 0);
     CHECK(open_edges(make_disc({.segments = 12})) == 12);
     CHECK(open_edges(make_plane({.divisions = 3})) == 12);
+}
+
+TEST_CASE("shapes: a lathe turns its profile, closes its ends and has edges where it bends") {
+    const MeshData tube = make_lathe({.profile = {{0.5f, 0}, {0.5f, 2}}, .segments = 256});
+    CHECK(open_edges(tube) == 0);
+    CHECK(signed_volume(tube) == doctest::Approx(kPiD * 0.5).epsilon(1e-3));
+    // Half a circle as a profile is a ball: smooth, so that its normals are its radii.
+    LatheShape half_circle{.segments = 96, .crease = 1.0f};
+    half_circle.profile.clear();
+    for (int i = 0; i <= 48; ++i) {
+        const float angle = kPi * (static_cast<float>(i) / 48 - 0.5f);
+        half_circle.profile.push_back({i % 48 == 0 ? 0.0f : std::cos(angle), std::sin(angle)});
+    }
+    const MeshData ball = make_lathe(half_circle);
+    CHECK(open_edges(ball) == 0);
+    CHECK(signed_volume(ball) == doctest::Approx(4.0 / 3.0 * kPiD).epsilon(3e-3));
+    for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+        if (std::abs(ball.positions[i].y) < 0.99f) {  // at the ends there is one neighbor only
+            REQUIRE(glm::dot(ball.positions[i], ball.normals[i]) > 0.9995f);
+        }
+    }
+    // Every bend of a box's profile is more than a right angle's crease: flat parts stay flat.
+    const MeshData drum =
+        make_lathe({.profile = {{0.3f, 0}, {0.5f, 0}, {0.5f, 1}, {0.3f, 1}}, .segments = 12});
+    CHECK(open_edges(drum) == 0);
+    for (const Vec3& n : drum.normals) {
+        CHECK((std::abs(n.y) < 1e-6f || std::abs(n.y) > 0.999999f));
+    }
+    CHECK(open_edges(make_lathe({.segments = 12, .caps = false})) == 24);
+    check_arrays(make_lathe({.profile = {}}));
+    check_arrays(make_lathe({.profile = {{1, 1}, {1, 1}}, .crease = 0}));
+}
+
+TEST_CASE("shapes: lobes keep a lathe closed, and its area is that of the curve") {
+    const LatheShape pier{
+        .profile = {{0.5f, 0}, {0.5f, 1}}, .segments = 240, .lobes = 4, .lobe_depth = 0.2f};
+    const MeshData mesh = make_lathe(pier);
+    check_arrays(mesh);
+    CHECK(open_edges(mesh) == 0);
+    CHECK(worst_facing(mesh) > 0.99f);
+    CHECK(worst_tangent(mesh) > 0.95f);
+    // The mean of (1 + d cos)^2 is 1 + d^2 / 2.
+    CHECK(signed_volume(mesh) == doctest::Approx(kPiD * 0.25 * 1.02).epsilon(1e-3));
+}
+
+TEST_CASE("shapes: metric texture coordinates are meters") {
+    for (const MeshData& mesh :
+         {make_box({.size = {3, 2, 5}, .metric = true}),
+          make_plane({.size = {4, 7}, .divisions = 3, .metric = true})}) {
+        for (std::size_t t = 0; t < mesh.indices.size(); ++t) {
+            const std::uint32_t a = mesh.indices[t];
+            const std::uint32_t b = mesh.indices[t % 3 == 2 ? t - 2 : t + 1];
+            CHECK(
+                glm::distance(mesh.uvs[a], mesh.uvs[b])
+                == doctest::Approx(glm::distance(mesh.positions[a], mesh.positions[b])));
+        }
+        CHECK(worst_tangent(mesh) > 0.99999f);
+    }
 }
 
 TEST_CASE("shapes: volume and area converge to the closed forms") {
