@@ -116,6 +116,9 @@ std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<U
     if (scene.lists.cells.valid()) {
         all.insert(all.end(), {scene.lists.cells, scene.lists.indices});
     }
+    if (scene.shadow_masks.valid()) {
+        all.emplace_back(scene.shadow_masks);
+    }
     return all;
 }
 
@@ -132,8 +135,9 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SHADOW_CUBES",
         "SHADOW_CASCADES",
         "SHADOW_SOFT",
-
-        "LOCAL_LIGHTS"};
+        "LOCAL_LIGHTS",
+        "SHADOW_MAPS",
+        "SHADOW_MASKS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -149,7 +153,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
            | (lights.linear_fade ? 16u : 0u) | (lights.shadows ? 32u : 0u) | (maps.cubes ? 64u : 0u)
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
-           | (scene.lists.cells.valid() ? 512u : 0u);
+           | (scene.lists.cells.valid() ? 512u : 0u) | (maps.records.empty() ? 0u : 1024u)
+           | (scene.volumes.lights.empty() ? 0u : 2048u);
 }
 
 const gpu::Program* SurfacePrograms::get(

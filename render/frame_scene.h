@@ -11,6 +11,7 @@
 #include "render/shaders/environment_gpu.h"
 #include "render/shaders/view_gpu.h"
 #include "render/shadow/shadow_list.h"
+#include "render/shadow/volume_list.h"
 
 #include <initializer_list>
 #include <unordered_map>
@@ -44,6 +45,7 @@ inline constexpr unsigned kSurfaceMaterialsUnit = 13;
 inline constexpr unsigned kVelocityUnit = 14;
 inline constexpr unsigned kShadowAtlasUnit = 15;
 inline constexpr unsigned kShadowViewsUnit = 16;
+inline constexpr unsigned kShadowMasksUnit = 17;
 
 /// The surroundings of this frame, and what was made of them.
 struct SceneEnvironment {
@@ -69,6 +71,7 @@ struct FrameScene {
     ClusterLights clusters;
     ClusterLists lists;
     ShadowList shadows;
+    VolumeList volumes;
     SceneEnvironment environment;
     RenderView view;
     GLenum radiance_format = GL_RGBA16F;
@@ -81,6 +84,7 @@ struct FrameScene {
     const gpu::Texture* shadow_atlas = nullptr;
     TextureId
         shadow_maps;  ///< the atlas as this frame's graph knows it; not valid() without shadows
+    TextureId shadow_masks;  ///< a layer for each of volumes.lights; not valid() without any
 };
 
 /// What lib/view.glsl knows of a frame.

@@ -17,6 +17,7 @@
 #include "render/passes/panorama_pass.h"
 #include "render/passes/reflection_pass.h"
 #include "render/passes/shadow_pass.h"
+#include "render/passes/shadow_volume_pass.h"
 #include "render/shaders/view_gpu.h"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ struct Passes {
     PanoramaPass panorama;
     ReflectionPass reflection;
     ShadowPass shadows;
+    ShadowVolumePass volumes;
     const gpu::Program* accumulate = nullptr;
 };
 
@@ -107,6 +109,7 @@ class Renderer {
     MaterialPool materials_;
     InstanceCollector collector_;
     ShadowCollector shadow_collector_;
+    VolumeCollector volume_collector_;
     BufferTexture light_records_;
     BufferTexture shadow_views_;
     gpu::Texture specular_albedo_;
@@ -158,6 +161,7 @@ void Renderer::update_assets(const World& world) {
                        || materials_.image_count() > assets.images.size();
     if (fresh) {
         meshes_.clear();
+        volume_collector_.forget();
         assets_ = assets.identity.value();
         environment_.reset();  // its panorama may be another
     }
@@ -203,9 +207,11 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         dropped_reported_ = true;
     }
     collector_.collect(world, view, meshes_, materials_, velocity, ring_, scene.instances);
+    volume_collector_.collect(world, view, ring_, scene.lights, scene.volumes);
     shadow_collector_.collect(
         world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
     resize_shadow_atlas(passes.shadows, scene.shadows);
+    VolumeCollector::take_over_hybrids(scene.lights, scene.volumes);
 
     const std::size_t alignment = BufferTexture::alignment();
     const auto push = [&](const auto& items) {
@@ -248,6 +254,7 @@ TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
         draw_sky_reflection(graph, passes.reflection, scene);
     }
     scene.shadow_maps = draw_shadows(graph, passes.shadows, scene);
+    scene.shadow_masks = draw_shadow_volumes(graph, passes.volumes, scene, gbuffer);
     TextureId radiance = draw_lights(graph, passes.lights, scene, gbuffer);
     radiance = draw_sky(graph, passes.lights, scene, radiance, gbuffer);
     return draw_blended(graph, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
@@ -337,6 +344,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!shadows) {
         return shadows.error();
     }
+    Result<ShadowVolumePass> volumes = create_shadow_volume_pass(device);
+    if (!volumes) {
+        return volumes.error();
+    }
     const Result<const gpu::Program*> accumulate =
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
     if (!accumulate) {
@@ -352,6 +363,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(panorama),
         *std::move(reflection),
         *std::move(shadows),
+        *std::move(volumes),
         *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }

@@ -8,6 +8,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/shadow.h"
+#include "ecs/components/shadow_volume.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -31,6 +32,7 @@ void register_all_components() {
     register_component<LightPulse>();
     register_component<Shadow>();
     register_component<NoShadow>();
+    register_component<ShadowVolume>();
     register_component<Camera>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();

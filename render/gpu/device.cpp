@@ -52,6 +52,8 @@ void Device::forget_state() {
     viewport_.fill(-1);
     scissor_.fill(-1);
     scissor_on_ = -1;
+    depth_bounds_.fill(-1);
+    depth_bounds_on_ = -1;
     textures_.fill(kUnknown);
     samplers_.fill(kUnknown);
     images_.fill({.texture = kUnknown});
@@ -68,11 +70,15 @@ void Device::forget_dead_objects() {
         const std::array<int, 4> viewport = viewport_;
         const std::array<int, 4> scissor = scissor_;
         const int scissor_on = scissor_on_;
+        const std::array<float, 2> depth_bounds = depth_bounds_;
+        const int depth_bounds_on = depth_bounds_on_;
         forget_state();
         state_known_ = state_known;
         viewport_ = viewport;
         scissor_ = scissor;
         scissor_on_ = scissor_on;
+        depth_bounds_ = depth_bounds;
+        depth_bounds_on_ = depth_bounds_on;
     }
 }
 
@@ -207,6 +213,24 @@ void Device::set_scissor(int x, int y, int width, int height) {
 void Device::disable_scissor() {
     if (change(scissor_on_, 0)) {
         glDisable(GL_SCISSOR_TEST);
+    }
+}
+
+void Device::set_depth_bounds(float low, float high) {
+    if (!caps_.depth_bounds) {
+        return;
+    }
+    if (change(depth_bounds_on_, 1)) {
+        glEnable(GL_DEPTH_BOUNDS_TEST_EXT);
+    }
+    if (change(depth_bounds_, {low, high})) {
+        glDepthBoundsEXT(static_cast<double>(low), static_cast<double>(high));
+    }
+}
+
+void Device::disable_depth_bounds() {
+    if (caps_.depth_bounds && change(depth_bounds_on_, 0)) {
+        glDisable(GL_DEPTH_BOUNDS_TEST_EXT);
     }
 }
 

@@ -60,6 +60,10 @@ class Device {
     void set_viewport(int x, int y, int width, int height);
     void set_scissor(int x, int y, int width, int height);
     void disable_scissor();
+    /// Only pixels whose depth, as it is in the buffer, lies within are drawn; nothing where the
+    /// device has no such test.
+    void set_depth_bounds(float low, float high);
+    void disable_depth_bounds();
     void bind_vertex_array(const VertexArray& vertices);
     /// Without a sampler the texture's own filter and wrap are used.
     void bind_texture(unsigned unit, const Texture& texture, const Sampler* sampler = nullptr);
@@ -153,6 +157,8 @@ class Device {
     std::array<int, 4> viewport_ = {-1, -1, -1, -1};
     std::array<int, 4> scissor_ = {-1, -1, -1, -1};
     int scissor_on_ = -1;
+    std::array<float, 2> depth_bounds_ = {-1, -1};
+    int depth_bounds_on_ = -1;
     std::array<GLuint, kUnits> textures_ = {};
     std::array<GLuint, kUnits> samplers_ = {};
     std::array<ImageBinding, 8> images_ = {};

@@ -57,6 +57,7 @@ DeviceCaps read_device_caps() {
     if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
         glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &caps.max_anisotropy);
     }
+    caps.depth_bounds = epoxy_has_gl_extension("GL_EXT_depth_bounds_test");
     return caps;
 }
 

@@ -42,6 +42,7 @@ struct DeviceCaps {
     int uniform_alignment = 256;  ///< of an offset in a buffer [bytes]
     int storage_alignment = 256;
     float max_anisotropy = 1;
+    bool depth_bounds = false;  ///< GL_EXT_depth_bounds_test
 };
 
 /// Of the context that is current.

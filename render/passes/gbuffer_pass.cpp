@@ -19,7 +19,8 @@ Gbuffer draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& sce
         {.name = "gbuffer.surface", .format = GL_RGBA32UI, .width = width, .height = height});
     g.depth = graph.create(
         {.name = "gbuffer.depth",
-         .format = GL_DEPTH_COMPONENT32F,
+         .format = static_cast<GLenum>(
+             scene.volumes.lights.empty() ? GL_DEPTH_COMPONENT32F : GL_DEPTH32F_STENCIL8),
          .width = width,
          .height = height});
     const auto draw = [&pass, &scene, velocity](PassContext& context) {

@@ -1,6 +1,7 @@
 // Alpha-blended surfaces, lit while they are drawn, from back to front. Opacity dims what the surface scatters
 // but not what it mirrors: glass that is nearly clear still shows the lamps. Premultiplied.
 #version 450
+#define UNMASKED  // the masks of shadow volumes are of the opaque surfaces behind
 #include "lib/lighting.glsl"
 #include "lib/material.glsl"
 

@@ -10,6 +10,8 @@
 //   SHADOW_CUBES     some light has six faces
 //   SHADOW_CASCADES  some light has cascades
 //   SHADOW_SOFT      some filter is wider than 2x2
+//   SHADOW_MAPS      some light has a map
+//   SHADOW_MASKS     some light has a layer of the mask: shadow volumes
 
 #include "shadow_gpu.h"
 
@@ -171,11 +173,27 @@ int cube_face(vec3 direction) {
     return 2 * axis + (along < 0.0 ? 1 : 0);
 }
 
+#ifdef SHADOW_MASKS
+#ifdef UNMASKED
+// A mask knows the opaque surfaces alone.
+float mask_visibility(float layer, vec2 pixel) {
+    return 1.0;
+}
+#else
+layout(binding = 17) uniform sampler2DArray shadow_masks;  // of lights with volumes, a layer each
+
+float mask_visibility(float layer, vec2 pixel) {
+    return texelFetch(shadow_masks, ivec3(pixel, layer), 0).r;
+}
+#endif
+#endif
+
 // Share of the light that reaches `position_ws`, 0 .. 1.
 //   shadow  LightRecord::shadow
 //   normal  of the surface, unit
 //   pixel   that shows it, gl_FragCoord.xy
 float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+#ifdef SHADOW_MAPS
     int index = max(int(shadow.x), 0);
 #ifdef SHADOW_CUBES
     index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
@@ -201,6 +219,12 @@ float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light
     } while (weight > 0.0);
 #else
     float lit = view_visibility(index, position_ws, normal, to_light, pixel);
+#endif
+#else
+    float lit = 1.0;
+#endif
+#ifdef SHADOW_MASKS
+    lit = shadow.y == kShadowMask ? mask_visibility(max(shadow.x, 0.0), pixel) : lit;
 #endif
     return shadow.y == kShadowNone ? 1.0 : lit;
 }

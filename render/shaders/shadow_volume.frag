@@ -1,0 +1,4 @@
+// Nothing: the stencil counts.
+#version 450
+
+void main() {}

@@ -1,0 +1,45 @@
+// A shadow volume: every corner of a caster's triangles stays where it is or goes away from the light
+// (shadow.vol-extrude).
+//   PRISMS  a volume a triangle: the corner says which cap it belongs to; else the side of its triangle that the
+//           light sees decides (shadow.vol-per-edge)
+#version 450
+#include "lib/view.glsl"
+#include "shadow_volume_gpu.h"
+
+layout(binding = 2, std140) uniform Volume {
+    VolumeBlock volume;
+};
+
+layout(location = 0) in vec4 corner;      // mesh space; w = 1: of the far cap
+layout(location = 1) in vec4 plane;       // of its triangle, mesh space
+layout(location = 2) in vec4 world_row0;  // world_from_mesh
+layout(location = 3) in vec4 world_row1;
+layout(location = 4) in vec4 world_row2;
+layout(location = 5) in vec4 light;       // mesh space, homogeneous
+
+// How far the light is from the corner's triangle [m]. Planes go by the cofactor matrix.
+float light_height(vec3 position_ws) {
+    vec3 normal_ws = vec3(
+        dot(cross(world_row1.xyz, world_row2.xyz), plane.xyz),
+        dot(cross(world_row2.xyz, world_row0.xyz), plane.xyz),
+        dot(cross(world_row0.xyz, world_row1.xyz), plane.xyz));
+    vec3 to_light = volume.light.xyz - position_ws;
+    return abs(dot(normal_ws, to_light)) * inversesqrt(max(dot(normal_ws, normal_ws), 1e-30));
+}
+
+void main() {
+    vec4 p = vec4(corner.xyz, 1.0);
+    vec3 position_ws = vec3(dot(world_row0, p), dot(world_row1, p), dot(world_row2, p));
+    bool lit = dot(plane, light) > 0.0;
+#ifdef PRISMS
+    bool far = corner.w > 0.5;
+#else
+    bool far = !lit;
+#endif
+    vec4 moved = far ? extrude_corner(position_ws, volume.light, volume.extrusion, light_height(position_ws))
+                     : vec4(shift_from_light(position_ws, volume.light, volume.extrusion.z), 1.0);
+    gl_Position = view.clip_from_world * moved;
+#ifdef PRISMS
+    gl_Position = lit ? gl_Position : vec4(0.0, 0.0, 0.0, 1.0);  // no area
+#endif
+}
