@@ -12,6 +12,7 @@
 #include "content/app/quality.h"
 #include "content/app/quality_command.h"
 #include "content/app/render_command.h"
+#include "content/app/view_command.h"
 #include "ecs/base/type_name.h"
 
 #include <CLI/CLI.hpp>
@@ -240,6 +241,54 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     return {app, [&options] { return run_bench(options); }};
 }
 
+Command add_view(CLI::App& program, ViewOptions& options) {
+    CLI::App* app = program.add_subcommand("view", "Show a picture of linear light, with sliders");
+    app->add_option("file", options.file, ".exr or .hdr")->type_name("FILE")->required();
+    add_parsed(*app, "-o,--out", "write the picture; no window", options.out, parse_png_path)
+        ->type_name("FILE.png");
+    add_size(*app, options.size)->description("of the window");
+    struct Field {
+        const char* name;
+        const char* doc;
+    };
+    // Fields of the resource exposure, with its ranges and defaults but for the curve.
+    constexpr Field kFields[] = {
+        {"curve", "neutral, aces, linear, reinhard, local or knee, the default"},
+        {"metering", "manual or key: by the log-average luminance"},
+        {"ev", "stops brighter"},
+        {"key", "log-average after metering; 0.18"},
+        {"defog", "share of the mean color taken off; 0 to 0.01"},
+        {"contrast", "of knee; 0 = none"},
+        {"white", "of reinhard: luminance shown as white; 0 = none"},
+        {"encoding", "srgb or power; knee has power always"},
+        {"gamma", "of power and knee; 2.2"},
+        {"dither", "true or false"}};
+    for (const Field& field : kFields) {
+        const std::string name = std::string("--") + field.name;
+        app->add_option_function<std::string>(
+               name,
+               [&options, field, name](const std::string& value) {
+                   const Status status = set_exposure(options.exposure, field.name, value);
+                   if (!status) {
+                       throw CLI::ValidationError(name, status.error().message);
+                   }
+               },
+               field.doc)
+            ->type_name("X");
+    }
+    app->footer(
+        "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
+        "are counted, left out of the numbers and shown black or white.\n"
+        "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "
+        "defog).\n"
+        "In the window: Up and Down change the exposure, C the curve, F9 saves what is shown.\n\n"
+        "Examples:\n"
+        "  limn view memorial.exr\n"
+        "  limn view memorial.exr -o shown.png --ev 3 --defog 0.005 --contrast 1\n"
+        "  limn view memorial.exr -o shown.png --curve local --metering key");
+    return {app, [&options] { return run_view(options); }};
+}
+
 Command add_hash(CLI::App& program, HashOptions& options) {
     CLI::App* app = program.add_subcommand("hash", "Print a hash of the state after every step");
     app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
@@ -319,6 +368,7 @@ Command add_components(CLI::App& program, bool& schema) {
 struct AllOptions {
     PlayOptions play;
     RenderOptions render;
+    ViewOptions view;
     BenchOptions bench;
     HashOptions hash;
     QualityOptions quality;
@@ -331,6 +381,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
     return {
         add_play(program, options.play),
         add_render(program, options.render),
+        add_view(program, options.view),
         add_bench(program, options.bench),
         add_hash(program, options.hash),
         add_quality(program, options.quality),

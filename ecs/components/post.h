@@ -50,6 +50,8 @@ struct Exposure {
     DisplayEncoding encoding = DisplayEncoding::Srgb;
     float gamma = 2.2f;  ///< of Power and Knee, 1 .. 4
     bool dither = true;  ///< before 8 bits; without it, dark ramps show bands
+
+    bool operator==(const Exposure&) const = default;
 };
 
 template <typename Visitor>

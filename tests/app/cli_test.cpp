@@ -104,6 +104,12 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     check_fails(folder, {"play", "--scale", "big"}, 2, "auto");
     check_fails(folder, {"play", "--headless-frames", "0"}, 2, "--headless-frames");
     check_fails(folder, {"info"}, 2, "file");
+    check_fails(folder, {"view"}, 2, "file");
+    check_fails(folder, {"view", "a.exr", "-o", "a.exr"}, 2, ".png");
+    check_fails(folder, {"view", "a.exr", "--ev", "300"}, 2, "300");
+    check_fails(folder, {"view", "a.exr", "--ev", "nan"}, 2, "nan");
+    check_fails(folder, {"view", "a.exr", "--curve", "filmic"}, 2, "neutral");
+    check_fails(folder, {"view", "a.exr", "--gamma", "0"}, 2, "--gamma");
 }
 
 TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one line") {

@@ -1,0 +1,72 @@
+#include "content/app/view_command.h"
+
+#include "content/app/hdr_picture.h"
+#include "content/app/headless.h"
+#include "content/app/picture_viewer.h"
+#include "content/app/window.h"
+#include "content/load/image_write.h"
+#include "content/load/set_value.h"
+#include "ecs/base/text.h"
+#include "ecs/components/all.h"
+#include "ecs/world.h"
+#include "render/gpu/readback.h"
+
+#include <fmt/format.h>
+
+namespace limn {
+namespace {
+
+Status view_headless(const ViewOptions& options) {
+    const Result<std::unique_ptr<gpu::Context>> context = gpu::create_headless_context();
+    if (!context) {
+        return context.error();
+    }
+    const Result<std::unique_ptr<gpu::Device>> device = gpu::Device::from_current_context();
+    if (!device) {
+        return device.error();
+    }
+    const Result<std::unique_ptr<HdrPicture>> picture = HdrPicture::load(**device, options.file);
+    if (!picture) {
+        return picture.error();
+    }
+    fmt::print("{}", describe(**picture));
+    const gpu::Texture& display = (*picture)->show(options.exposure);
+    fmt::print("clipped {:.2f} % of the pixels\n", 100.0 * clipped_share(display));
+    if (options.out.empty()) {
+        return Done{};
+    }
+    const gpu::ByteImage image = gpu::read_bytes(display);
+    return write_png(options.out, image.width, image.height, image.channels, image.pixels);
+}
+
+}  // namespace
+
+Status set_exposure(Exposure& exposure, std::string_view field, std::string_view value) {
+    register_all_components();
+    World world;
+    world.insert_resource(exposure);
+    const Status status = set_value(world, "exposure." + std::string(field), value);
+    if (!status) {
+        // Without the place in a level: "--set exposure.ev: found ..."
+        const std::string& message = status.error().message;
+        const std::size_t found = message.find(": ");
+        return Error{found == std::string::npos ? message : message.substr(found + 2)};
+    }
+    exposure = world.resource<Exposure>();
+    return Done{};
+}
+
+Status run_view(const ViewOptions& options) {
+    if (!options.out.empty()) {
+        return view_headless(options);
+    }
+    if (!Window::has_display()) {
+        fmt::print("There is no display: no window is opened. -o FILE.png writes the picture.\n");
+        return view_headless(options);
+    }
+    Result<std::unique_ptr<PictureViewer>> viewer =
+        PictureViewer::open(options.file, options.exposure, options.size);
+    return viewer ? (*viewer)->run() : Status(viewer.error());
+}
+
+}  // namespace limn

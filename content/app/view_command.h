@@ -1,0 +1,26 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/result.h"
+#include "ecs/components/post.h"
+
+#include <string>
+#include <string_view>
+
+namespace limn {
+
+/// `limn view`: a picture of linear light in a window with sliders, or as a PNG.
+struct ViewOptions {
+    std::string file;          ///< .exr or .hdr
+    std::string out;           ///< .png: no window
+    IVec2 size = {1280, 720};  ///< of the window
+    Exposure exposure = {.curve = ToneCurve::Knee};
+};
+
+/// Sets one field of an Exposure as a level would; fails with what was found and expected.
+[[nodiscard]] Status
+set_exposure(Exposure& exposure, std::string_view field, std::string_view value);
+
+[[nodiscard]] Status run_view(const ViewOptions& options);
+
+}  // namespace limn
