@@ -95,6 +95,10 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
     device.bind_uniforms(kEnvironmentBinding, block.buffer, block.offset, block.size);
     device.bind_texture(kReflectionUnit, *scene.environment.reflection);
     device.bind_uniforms(kSurroundingsBinding, *scene.environment.irradiance);
+    if (scene.probe_block.size > 0) {
+        const gpu::RingSlice& probes = scene.probe_block;
+        device.bind_uniforms(kProbesBinding, probes.buffer, probes.offset, probes.size);
+    }
     device.bind_texture(kSpecularAlbedoUnit, *scene.environment.specular_albedo);
     scene.light_records->bind(device, kLightsUnit);
     if (scene.lists.cells.valid()) {
@@ -137,7 +141,8 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SHADOW_SOFT",
         "LOCAL_LIGHTS",
         "SHADOW_MAPS",
-        "SHADOW_MASKS"};
+        "SHADOW_MASKS",
+        "PROBES"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -154,7 +159,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (lights.linear_fade ? 16u : 0u) | (lights.shadows ? 32u : 0u) | (maps.cubes ? 64u : 0u)
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
            | (scene.lists.cells.valid() ? 512u : 0u) | (maps.records.empty() ? 0u : 1024u)
-           | (scene.volumes.lights.empty() ? 0u : 2048u);
+           | (scene.volumes.lights.empty() ? 0u : 2048u)
+           | (scene.probe_block.size > 0 ? 4096u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

@@ -32,6 +32,7 @@ class Texture;
 inline constexpr unsigned kViewBinding = 0;
 inline constexpr unsigned kEnvironmentBinding = 1;
 inline constexpr unsigned kSurroundingsBinding = 5;
+inline constexpr unsigned kProbesBinding = 6;
 /// Texture units; 0 .. 4 are the material's own.
 inline constexpr unsigned kGbufferUnit = 5;
 inline constexpr unsigned kDepthUnit = 6;
@@ -77,6 +78,8 @@ struct FrameScene {
     GLenum radiance_format = GL_RGBA16F;
     gpu::RingSlice view_block;
     gpu::RingSlice environment_block;
+    gpu::RingSlice probe_block;  ///< of no size: no probes
+    bool for_probe = false;      ///< a probe looks: at what lights, without other probes
     const BufferTexture* light_records = nullptr;
     const BufferTexture* light_indices = nullptr;
     const BufferTexture* light_cells = nullptr;

@@ -2,6 +2,7 @@
 
 #include "ecs/components/shadow.h"
 #include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "render/instance_rows.h"
 #include "render/shaders/instance_gpu.h"
@@ -36,6 +37,21 @@ constexpr bool is_mirrored(std::uint64_t key) {
 }
 constexpr std::uint32_t mesh_of(std::uint64_t key) {
     return static_cast<std::uint32_t>(key);
+}
+
+/// Whether `entity` is `whole` or below it. Null has no parts.
+bool is_part_of(const World* world, Entity entity, Entity whole) {
+    if (whole.is_null()) {
+        return false;
+    }
+    while (entity != whole) {
+        const auto* parent = world->find<Parent>(entity);
+        if (parent == nullptr) {
+            return false;
+        }
+        entity = parent->entity;
+    }
+    return true;
 }
 
 }  // namespace
@@ -94,7 +110,9 @@ void InstanceCollector::collect(
         .forward = {-camera[0].z, -camera[1].z, -camera[2].z},
         .alpha = view.alpha,
         .alpha_before = view.alpha_before,
-        .velocity = velocity};
+        .velocity = velocity,
+        .world = &world,
+        .hidden = view.hidden};
     collect_from(query, seen, meshes, materials, ring, list);
 }
 
@@ -149,7 +167,8 @@ void InstanceCollector::collect_from(
         KeyTable table(work.keys);
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             work.local[i] = kHidden;
-            if (visible[i] == 0) {
+            if (visible[i] == 0
+                || is_part_of(selection.world, chunk.entities()[i], selection.hidden)) {
                 continue;
             }
             const std::uint32_t batch =

@@ -89,6 +89,8 @@ class InstanceCollector {
         float alpha_before = 0;
         bool velocity = false;
         bool casters = false;
+        const World* world = nullptr;  ///< only where something is hidden
+        Entity hidden = {};
     };
     /// A kind of draw that occurs in a chunk, and how often; later, where its next instance goes.
     struct KeyCount {

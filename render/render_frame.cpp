@@ -5,7 +5,9 @@
 #include "ecs/components/post.h"
 #include "ecs/components/time.h"
 #include "ecs/world.h"
+#include "render/cube_map.h"
 #include "render/develop.h"
+#include "render/env_probe_list.h"
 #include "render/environment_light.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
@@ -15,6 +17,7 @@
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/panorama_pass.h"
+#include "render/passes/probe_pass.h"
 #include "render/passes/reflection_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/shadow_volume_pass.h"
@@ -30,6 +33,7 @@ namespace {
 
 constexpr std::size_t kRingBytes = std::size_t{8} << 20;  ///< at start; grows with the scene
 constexpr int kSpecularAlbedoSize = 64;
+constexpr int kProbeSamples = 64;  ///< of a texel of a probe's reflection map
 
 /// Without the resource nothing surrounds the scene.
 Environment environment_of(const World& world) {
@@ -59,6 +63,7 @@ struct Passes {
     AovPass aovs;
     PanoramaPass panorama;
     ReflectionPass reflection;
+    ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
     const gpu::Program* accumulate = nullptr;
@@ -83,14 +88,16 @@ class Renderer {
   public:
     Renderer(gpu::Device& device, const RenderSettings& settings, Passes passes);
 
+    /// Draws what probes see, where that is due: before the image that shows it.
+    void draw_probes(const World& world, const RenderView& view);
     /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
-    void prepare(const World& world, const RenderView& view, bool velocity);
+    void prepare(const World& world, const RenderView& view, bool velocity, bool for_probe = false);
     /// The image, as a list.
     FrameTextures draw_image(const FrameRequest& request, bool velocity);
-    TextureId draw_radiance(const Gbuffer& gbuffer);
+    TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer);
     /// From its radiance to the display; once a picture, as the eye adapts.
     void develop_image(const World& world, TextureId radiance, FrameTextures& made);
-    void finish();
+    void finish(FrameGraph& drawn);
     FrameOutput output(const FrameTextures& textures) const;
     const gpu::Texture& accumulation(int width, int height);
 
@@ -102,8 +109,12 @@ class Renderer {
 
   private:
     void update_assets(const World& world);
+    Environment shown_environment(const World& world) const;
     void update_environment(const World& world);
+    void draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha);
 
+    FrameGraph probe_graph_;  ///< apart from the image's, whose times it would blur
+    EnvProbeList probes_;
     gpu::RingBuffer ring_;
     MeshPool meshes_;
     MaterialPool materials_;
@@ -115,6 +126,7 @@ class Renderer {
     gpu::Texture specular_albedo_;
     gpu::Texture accumulation_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
+    int probe_faces_ = 0;                     // drawn for this frame
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
     bool dropped_reported_ = false;
@@ -126,7 +138,7 @@ void RendererDeleter::operator()(Renderer* renderer) const {
 }
 
 Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Passes made)
-    : device(gpu_device), graph(gpu_device), passes(std::move(made)),
+    : device(gpu_device), graph(gpu_device), passes(std::move(made)), probe_graph_(gpu_device),
       ring_(gpu_device.caps(), "frame data", kRingBytes),
       materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
       shadow_views_("shadow views", GL_RGBA32F),
@@ -169,7 +181,7 @@ void Renderer::update_assets(const World& world) {
     materials_.update(assets, fresh);
 }
 
-void Renderer::update_environment(const World& world) {
+Environment Renderer::shown_environment(const World& world) const {
     Environment environment = environment_of(world);
     if (environment.sky == SkyKind::Panorama
         && materials_.find_image(environment.panorama) == nullptr) {
@@ -177,6 +189,11 @@ void Renderer::update_environment(const World& world) {
         environment.sky = SkyKind::Uniform;
         environment.zenith = {1, 0, 1};
     }
+    return environment;
+}
+
+void Renderer::update_environment(const World& world) {
+    const Environment environment = shown_environment(world);
     layout::EnvironmentBlock& block = scene.environment.block;
     reflection_due_ = !environment_ || !same_light(*environment_, environment);
     if (reflection_due_) {
@@ -189,7 +206,52 @@ void Renderer::update_environment(const World& world) {
     block.sun_color = Vec4(scene.lights.sun_color, 0);
 }
 
-void Renderer::prepare(const World& world, const RenderView& view, bool velocity) {
+void Renderer::draw_probes(const World& world, const RenderView& view) {
+    update_assets(world);
+    if (!environment_ || !same_light(*environment_, shown_environment(world))) {
+        probes_.forget();
+    }
+    probes_.collect(world, view.alpha);
+    probe_faces_ = 0;
+    for (std::size_t i = 0; i < probes_.slots().size(); ++i) {
+        ProbeSlot& slot = probes_.slots()[i];
+        while (slot.seen && slot.drawn < slot.due) {
+            draw_probe_face(world, slot, probe_layer(i), view.alpha);
+            ++probe_faces_;
+        }
+    }
+}
+
+void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha) {
+    if (!slot.cube || slot.cube.width() != slot.resolution) {
+        slot.cube = gpu::Texture(
+            "probe cube",
+            {.format = scene.radiance_format,
+             .width = slot.resolution,
+             .height = slot.resolution,
+             .levels = 0,
+             .target = GL_TEXTURE_CUBE_MAP});
+    }
+    const int face = static_cast<int>(slot.drawn % kCubeFaces);
+    probe_graph_.begin_frame();
+    prepare(world, make_probe_view(slot, face, alpha), false, true);
+    const Gbuffer gbuffer = draw_gbuffer(probe_graph_, passes.gbuffer, scene, false);
+    const TextureId radiance = draw_radiance(probe_graph_, gbuffer);
+    keep_probe_face(probe_graph_, passes.probes, radiance, slot.cube, face);
+    ++slot.drawn;
+    ++slot.fresh;
+    // A round is shown when it is whole.
+    const bool whole = slot.ready ? slot.drawn % kCubeFaces == 0 : slot.fresh >= kCubeFaces;
+    if (whole) {
+        draw_cube_levels(probe_graph_, slot.cube);
+        draw_cube_reflection(
+            probe_graph_, passes.reflection, scene, slot.cube, layer, kProbeSamples);
+        slot.ready = true;
+    }
+    finish(probe_graph_);
+}
+
+void Renderer::prepare(const World& world, const RenderView& view, bool velocity, bool for_probe) {
     update_assets(world);
     ring_.begin_frame();
 
@@ -229,6 +291,10 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     passes.clusters.boxes.set(push(scene.clusters.boxes));
     scene.view_block = ring_.push_value(make_view_block(view, scene.clusters.shape, scene.lights));
     scene.environment_block = ring_.push_value(scene.environment.block);
+    const layout::ProbeBlock probes = probes_.make_block();
+    const bool any_probes = !for_probe && probes.count.x > 0;
+    scene.probe_block = any_probes ? ring_.push_value(probes) : gpu::RingSlice{};
+    scene.for_probe = for_probe;
     const auto end = std::chrono::steady_clock::now();
 
     const InstanceList& list = scene.instances;
@@ -240,30 +306,31 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         .lights = static_cast<int>(scene.lights.records.size()),
         .shadow_views = static_cast<int>(scene.shadows.records.size()),
         .shadow_views_drawn = static_cast<int>(scene.shadows.due.size()),
+        .probe_faces = probe_faces_,
         .extract_ms = std::chrono::duration<double, std::milli>(end - begin).count()};
 }
 
-TextureId Renderer::draw_radiance(const Gbuffer& gbuffer) {
-    scene.lists = build_clusters(graph, passes.clusters, scene);
+TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
+    scene.lists = build_clusters(into, passes.clusters, scene);
     if (reflection_due_) {
         const Environment& environment = scene.environment.settings;
         if (environment.sky == SkyKind::Panorama) {
             draw_panorama(
-                graph, passes.panorama, *materials_.find_image(environment.panorama), environment);
+                into, passes.panorama, *materials_.find_image(environment.panorama), environment);
         }
-        draw_sky_reflection(graph, passes.reflection, scene);
+        draw_sky_reflection(into, passes.reflection, scene);
     }
-    scene.shadow_maps = draw_shadows(graph, passes.shadows, scene);
-    scene.shadow_masks = draw_shadow_volumes(graph, passes.volumes, scene, gbuffer);
-    TextureId radiance = draw_lights(graph, passes.lights, scene, gbuffer);
-    radiance = draw_sky(graph, passes.lights, scene, radiance, gbuffer);
-    return draw_blended(graph, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
+    scene.shadow_maps = draw_shadows(into, passes.shadows, scene);
+    scene.shadow_masks = draw_shadow_volumes(into, passes.volumes, scene, gbuffer);
+    TextureId radiance = draw_lights(into, passes.lights, scene, gbuffer);
+    radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
+    return draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
 }
 
 FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
     FrameTextures made;
     const Gbuffer gbuffer = draw_gbuffer(graph, passes.gbuffer, scene, velocity);
-    made.radiance = draw_radiance(gbuffer);
+    made.radiance = draw_radiance(graph, gbuffer);
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
             != request.aovs.end()) {
@@ -282,8 +349,8 @@ void Renderer::develop_image(const World& world, TextureId radiance, FrameTextur
     graph.keep(made.display);
 }
 
-void Renderer::finish() {
-    graph.execute();
+void Renderer::finish(FrameGraph& drawn) {
+    drawn.execute();
     ring_.end_frame();
 }
 
@@ -336,6 +403,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!panorama) {
         return panorama.error();
     }
+    Result<ProbePass> probes = create_probe_pass(device);
+    if (!probes) {
+        return probes.error();
+    }
     Result<ReflectionPass> reflection = create_reflection_pass(device, settings.environment_size);
     if (!reflection) {
         return reflection.error();
@@ -362,6 +433,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(aovs),
         *std::move(panorama),
         *std::move(reflection),
+        *std::move(probes),
         *std::move(shadows),
         *std::move(volumes),
         *accumulate};
@@ -372,11 +444,12 @@ FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
     const bool velocity =
         std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+    renderer.draw_probes(world, view);
     renderer.graph.begin_frame();
     renderer.prepare(world, view, velocity);
     FrameTextures textures = renderer.draw_image(request, velocity);
     renderer.develop_image(world, textures.radiance, textures);
-    renderer.finish();
+    renderer.finish(renderer.graph);
     return renderer.output(textures);
 }
 
@@ -389,11 +462,12 @@ FrameOutput render_accumulated(
     LIMN_CHECK(samples >= 1);
     const gpu::Texture& sum = renderer.accumulation(view.width, view.height);
     FrameGraph& graph = renderer.graph;
+    renderer.draw_probes(world, view);
     for (int i = 0; i < samples; ++i) {
         graph.begin_frame();
         renderer.prepare(world, with_jitter(view, sample_jitter(i, samples)), false);
         const TextureId radiance = renderer.draw_radiance(
-            draw_gbuffer(graph, renderer.passes.gbuffer, renderer.scene, false));
+            graph, draw_gbuffer(graph, renderer.passes.gbuffer, renderer.scene, false));
         const TextureId target = graph.import("accumulation", sum);
         graph.add_pass(
             "accumulate",
@@ -407,7 +481,7 @@ FrameOutput render_accumulated(
                 context.bind_texture(0, radiance);
                 context.device().draw_fullscreen();
             });
-        renderer.finish();
+        renderer.finish(graph);
     }
 
     // Once more from the middle of the pixels, for what is no mean; then the mean takes the image's
@@ -419,7 +493,7 @@ FrameOutput render_accumulated(
     renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
     FrameTextures textures = renderer.draw_image(request, velocity);
     renderer.develop_image(world, graph.import("accumulation", sum), textures);
-    renderer.finish();
+    renderer.finish(graph);
     out = renderer.output(textures);
     out.radiance = &sum;
     return out;

@@ -59,6 +59,7 @@ struct FrameStatistics {
     int lights = 0;              ///< that shine
     int shadow_views = 0;        ///< in the shadow atlas
     int shadow_views_drawn = 0;  ///< of them, in this frame
+    int probe_faces = 0;         ///< that probes looked at anew
     double extract_ms = 0;       ///< CPU time of culling and filling instance and light buffers
 };
 

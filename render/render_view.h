@@ -34,6 +34,7 @@ struct RenderView {
     Vec2 jitter = {0, 0};            ///< by which the picture is moved right and up [px]
     float alpha = 1.0f;              ///< moment shown, 0 .. 1
     float alpha_before = 0.0f;       ///< moment motion is measured from, <= alpha
+    Entity hidden;                   ///< not shown, nor what is below it; null: all is shown
 };
 
 /// What make_render_view needs beside the camera.

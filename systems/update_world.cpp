@@ -2,6 +2,7 @@
 
 #include "ecs/components/input.h"
 #include "ecs/components/time.h"
+#include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/script_system.h"
@@ -15,12 +16,14 @@ Schedule make_world_schedule() {
     Schedule schedule;
     schedule.add<run_events>();  // first: everything else sees what the level wants now
     schedule.add<add_world_transforms>();
+    schedule.add<add_env_probe_states>();
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
+    schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
     return schedule;
 }
@@ -43,6 +46,8 @@ void start_world(World& world) {
     world.run(update_camera_paths);
     world.run(add_world_transforms);
     world.run(update_transforms);
+    world.run(add_env_probe_states);
+    world.run(update_env_probes);
     world.run(update_orbit_cameras);
 }
 

@@ -2,6 +2,7 @@
 
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
@@ -33,6 +34,8 @@ void register_all_components() {
     register_component<Shadow>();
     register_component<NoShadow>();
     register_component<ShadowVolume>();
+    register_component<EnvProbe>();
+    register_component<EnvProbeState>();
     register_component<Camera>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();

@@ -69,7 +69,7 @@ TextureId draw_sky(
     const FrameScene& scene,
     TextureId radiance,
     const Gbuffer& gbuffer) {
-    if (scene.environment.settings.visible) {
+    if (scene.environment.settings.visible || scene.for_probe) {
         graph.add_pass(
             "sky",
             {depth_tested(gbuffer.depth)},
@@ -84,6 +84,7 @@ TextureId draw_sky(
                 if (scene.environment.settings.sky == SkyKind::Panorama) {
                     context.device().bind_texture(kGbufferUnit, *scene.environment.cube);
                 }
+                pass.sky[kind]->set("for_light", scene.for_probe ? 1 : 0);
                 context.device().draw_fullscreen();
             });
     }

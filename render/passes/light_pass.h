@@ -26,7 +26,7 @@ struct LightPass {
 [[nodiscard]] TextureId
 draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const Gbuffer& gbuffer);
 
-/// Radiance with the sky where no surface is, if the environment is visible.
+/// Radiance with the sky where no surface is, if the environment is visible or a probe looks.
 [[nodiscard]] TextureId draw_sky(
     FrameGraph& graph,
     const LightPass& pass,

@@ -10,9 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr int kSmallestLevel = 16;   ///< [px]; smaller ones show their texels, however blurred
-constexpr int kSamples = 256;        ///< of a blurred level; the first one is sharp and takes 1
-constexpr int kCubeSamples = 256;    ///< of a cube map, whose mip levels help
+constexpr int kSmallestLevel = 16;  ///< [px]; smaller ones show their texels, however blurred
+constexpr int kSamples = 256;  ///< of a blurred level at most; the first one is sharp and takes 1
 constexpr int kIrradianceFace = 32;  ///< [px] of the level that irradiance is summed from
 constexpr unsigned kCubeUnit = 5;
 constexpr unsigned kSumsBinding = 0;
@@ -24,14 +23,15 @@ void draw_levels(
     const FrameScene& scene,
     const gpu::Program& program,
     const gpu::Texture* cube,
-    int layer) {
+    int layer,
+    int samples) {
     const TextureId maps = graph.import("reflection map", pass.maps);
     for (int level = 0; level < pass.maps.desc().levels; ++level) {
         graph.add_pass(
             "reflection map",
             {},
             {target_level(discarded(maps), level, layer)},
-            [&pass, &scene, &program, cube, level](PassContext& context) {
+            [&pass, &scene, &program, cube, level, samples](PassContext& context) {
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
                 const gpu::RingSlice& block = scene.environment_block;
                 context.device().bind_uniforms(
@@ -44,7 +44,10 @@ void draw_levels(
                     "roughness",
                     square(static_cast<float>(level) / static_cast<float>(levels - 1)));
                 program.set("size", static_cast<float>(pass.maps.width(level)));
-                program.set("samples", level == 0 ? 1 : cube != nullptr ? kCubeSamples : kSamples);
+                // Levels get smaller faster than their lobes get wider: the few texels can have
+                // more.
+                const int wanted = samples << std::max(level - 1, 0);
+                program.set("samples", level == 0 ? 1 : std::min(wanted, kSamples));
                 context.device().draw_fullscreen();
             });
     }
@@ -77,7 +80,7 @@ Result<ReflectionPass> create_reflection_pass(gpu::Device& device, int size) {
         {.format = GL_RGBA32F,
          .width = size,
          .height = size,
-         .depth = 1,
+         .depth = static_cast<int>(layout::kReflectionLayers),
          .levels = levels,
          .target = GL_TEXTURE_2D_ARRAY});
     pass.maps.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
@@ -95,12 +98,12 @@ void describe_reflection(const ReflectionPass& pass, layout::EnvironmentBlock& b
 void draw_sky_reflection(FrameGraph& graph, ReflectionPass& pass, const FrameScene& scene) {
     const SkyKind sky = scene.environment.settings.sky;
     if (sky == SkyKind::Panorama) {
-        draw_cube_reflection(graph, pass, scene, *scene.environment.cube, 0);
+        draw_cube_reflection(graph, pass, scene, *scene.environment.cube, 0, kSamples);
         return;
     }
     const layout::Irradiance irradiance = project_irradiance(scene.environment.block);
     pass.irradiance.write(0, std::span(&irradiance, 1));
-    draw_levels(graph, pass, scene, *pass.programs[static_cast<int>(sky)], nullptr, 0);
+    draw_levels(graph, pass, scene, *pass.programs[static_cast<int>(sky)], nullptr, 0, kSamples);
 }
 
 void draw_cube_reflection(
@@ -108,9 +111,10 @@ void draw_cube_reflection(
     ReflectionPass& pass,
     const FrameScene& scene,
     const gpu::Texture& cube,
-    int layer) {
+    int layer,
+    int samples) {
     const gpu::Program& program = *pass.programs[static_cast<int>(SkyKind::Panorama)];
-    draw_levels(graph, pass, scene, program, &cube, layer);
+    draw_levels(graph, pass, scene, program, &cube, layer, samples);
     const BufferId sums = graph.import("irradiance", pass.irradiance);
     graph.add_pass("irradiance", {}, {sums}, [&pass, &cube, layer](PassContext& context) {
         const gpu::Program& sum = *pass.irradiance_program;

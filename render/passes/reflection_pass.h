@@ -34,12 +34,14 @@ void describe_reflection(const ReflectionPass& pass, layout::EnvironmentBlock& b
 /// Makes layer 0 of the scene's sky: its function or, of a Panorama, its cube map.
 void draw_sky_reflection(FrameGraph& graph, ReflectionPass& pass, const FrameScene& scene);
 
-/// Makes `layer` of a cube map whose levels are filled.
+/// Makes `layer` of a cube map whose mip levels are filled. `samples`: of a texel of the least
+/// blurred level; each further one has twice as many, at most 256.
 void draw_cube_reflection(
     FrameGraph& graph,
     ReflectionPass& pass,
     const FrameScene& scene,
     const gpu::Texture& cube,
-    int layer);
+    int layer,
+    int samples);
 
 }  // namespace limn

@@ -7,7 +7,8 @@ namespace limn::layout {
 #endif
 
 const uint kStudioLamps = 6u;
-const uint kReflectionLayers = 9u;  // what can be mirrored: layer 0 the sky, then one a probe
+const uint kMaxProbes = 8u;
+const uint kReflectionLayers = 1u + kMaxProbes;  // what can be mirrored: the sky, then one a probe
 
 // A soft box at infinity: the unit square of (dot(d, u), dot(d, v)) / dot(d, center).
 struct StudioLamp {
@@ -32,7 +33,20 @@ struct Irradiance {
     vec4 coefficients[9];
 };
 
+// A probe: where it counts, and what it saw.
+struct ProbeRecord {
+    vec4 place_from_world[3];  // rows; it counts fully within the unit ball or, of a room, the unit cube
+    vec4 seen_from;            // world. w: layer of the reflection maps
+    vec4 shape;                // x: 1 a room, 0 a ball with all it shows far away. y: 1 / width of the rim beyond
+};
+
+struct ProbeBlock {
+    vec4 count;  // x
+    ProbeRecord probes[kMaxProbes];
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(ProbeBlock) == 16 * (1 + 5 * kMaxProbes));
 static_assert(sizeof(EnvironmentBlock) == 16 * (6 + 4 * kStudioLamps));
 static_assert(sizeof(Irradiance) == 144);
 }  // namespace limn::layout

@@ -3,8 +3,11 @@
 #include "lib/sky.glsl"
 #include "lib/view.glsl"
 
+uniform bool for_light;  // what lights the scene, instead of what is to be seen: no sun, but the studio's lamps
+
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    radiance = vec4(sky_background(normalize(view_ray(gl_FragCoord.xy))), 1.0);
+    vec3 direction = normalize(view_ray(gl_FragCoord.xy));
+    radiance = vec4(for_light ? sky_radiance(direction) : sky_background(direction), 1.0);
 }

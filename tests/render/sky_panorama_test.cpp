@@ -116,7 +116,7 @@ struct MadeSurroundings {
         FrameGraph graph(device);
         graph.begin_frame();
         draw_panorama(graph, panorama, source, {});
-        draw_cube_reflection(graph, reflection, scene, panorama.cube, 0);
+        draw_cube_reflection(graph, reflection, scene, panorama.cube, 0, 256);
         graph.execute();
         maps.resize(reflection.maps.desc().levels);
         for (int level = 0; level < reflection.maps.desc().levels; ++level) {

@@ -113,8 +113,8 @@ Reflected reflect_lights(Reflector r, LightSum sum) {
     return result;
 }
 
-Reflected reflect_surroundings(Reflector r, SurfaceSample s) {
-    Around around = light_from_around(r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
+    Around around = light_from_around(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
     float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
     Reflected result;
     result.diffuse = r.lit * r.diffuse * (around.irradiance * s.occlusion);
@@ -130,7 +130,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list)
     add_directional(sum, r, position_ws, pixel);
     add_listed(sum, r, list, position_ws, pixel);
     Reflected lights = reflect_lights(r, sum);
-    Reflected around = reflect_surroundings(r, s);
+    Reflected around = reflect_surroundings(r, s, position_ws);
     return Reflected(lights.diffuse + around.diffuse, lights.specular + around.specular);
 }
 

@@ -1,4 +1,5 @@
-// What reaches a surface from all around, lights apart: the layer 0 of the reflection maps and its irradiance.
+// What reaches a surface from all around, lights apart: the sky's light or, where definition PROBES is there and some
+// probe reaches, what that saw instead.
 
 #include "lib/irradiance.glsl"
 #include "lib/reflection_map.glsl"
@@ -14,8 +15,65 @@ struct Around {
     vec3 mirrored;    // radiance
 };
 
-Around light_from_around(vec3 normal, vec3 mirror_direction, float roughness) {
-    return Around(
-        irradiance_toward(surroundings[0], normal),
-        reflected_radiance(reflection_maps, 0.0, environment.reflection.xy, mirror_direction, roughness));
+#ifdef PROBES
+layout(std140, binding = 6) uniform Probes {
+    ProbeBlock probe_block;
+};
+
+// World to where the probe's ball or cube is the unit one.
+vec3 into_place(ProbeRecord probe, vec3 v, float w) {
+    vec4 p = vec4(v, w);
+    return vec3(
+        dot(probe.place_from_world[0], p), dot(probe.place_from_world[1], p), dot(probe.place_from_world[2], p));
+}
+
+// 1 within, then smoothly down to 0 over the rim.
+float probe_weight(ProbeRecord probe, vec3 position) {
+    vec3 p = into_place(probe, position, 1.0);
+    vec3 size = abs(p);
+    float outward = probe.shape.x > 0.5 ? max(size.x, max(size.y, size.z)) : length(p);
+    return 1.0 - smoothstep(0.0, 1.0, (outward - 1.0) * probe.shape.y);
+}
+
+// Where the probe must look to see what is seen along `direction` from `position`: toward the point of the room's
+// wall that this ray meets (Lagarde and Zanuttini, "Local Image-based Lighting with Parallax-corrected Cubemaps",
+// 2012). From beyond the walls it is the far one.
+vec3 probe_direction(ProbeRecord probe, vec3 position, vec3 direction) {
+    if (probe.shape.x < 0.5) {
+        return direction;
+    }
+    vec3 p = into_place(probe, position, 1.0);
+    vec3 d = into_place(probe, direction, 0.0);
+    vec3 inverse = 1.0 / mix(d, vec3(1e-8), lessThan(abs(d), vec3(1e-8)));
+    vec3 ways = max((1.0 - p) * inverse, (-1.0 - p) * inverse);
+    return position + max(min(ways.x, min(ways.y, ways.z)), 0.0) * direction - probe.seen_from.xyz;
+}
+#endif
+
+Around light_from_around(vec3 position, vec3 normal, vec3 mirror_direction, float roughness) {
+    Around sum = Around(vec3(0.0), vec3(0.0));
+    float left = 1.0;
+#ifdef PROBES
+    int count = int(probe_block.count.x);
+    for (int i = 0; i < count; ++i) {
+        ProbeRecord probe = probe_block.probes[i];
+        float share = left * probe_weight(probe, position);
+        if (share > 0.0) {
+            vec3 direction = probe_direction(probe, position, mirror_direction);
+            float layer = probe.seen_from.w;
+            sum.irradiance += share * irradiance_toward(surroundings[int(layer)], normal);
+            sum.mirrored += share
+                            * reflected_radiance(
+                                reflection_maps, layer, environment.reflection.xy, direction, roughness);
+            left -= share;
+        }
+    }
+    if (left <= 0.0) {
+        return sum;
+    }
+#endif
+    sum.irradiance += left * irradiance_toward(surroundings[0], normal);
+    sum.mirrored +=
+        left * reflected_radiance(reflection_maps, 0.0, environment.reflection.xy, mirror_direction, roughness);
+    return sum;
 }
