@@ -334,7 +334,10 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
             != request.aovs.end()) {
-            made.aovs.emplace_back(i, draw_aov(graph, passes.aovs, scene, gbuffer, i));
+            const TextureId layer = i == kVolumeLayersAov
+                                        ? draw_volume_layers(graph, passes.volumes, scene)
+                                        : draw_aov(graph, passes.aovs, scene, gbuffer, i);
+            made.aovs.emplace_back(i, layer);
             graph.keep(made.aovs.back().second);
         }
     }

@@ -42,6 +42,7 @@ struct RenderSettings {
 ///   albedo    base color, linear (3)
 ///   velocity  motion since the moment before [px], right and down, as image rows run (2)
 ///   emission  radiance of the surface's own light (3)
+///   volume_layers  polygons of shadow volumes over each pixel, hidden or not (1)
 [[nodiscard]] const std::vector<std::string_view>& aov_names();
 [[nodiscard]] int aov_channels(std::string_view name);  ///< 0: no such AOV
 inline constexpr float kNoDepth = 1e10f;

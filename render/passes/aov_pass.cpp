@@ -14,6 +14,7 @@ const std::array<Aov, kAovCount> kAovs = {{
     {"albedo", 3, {0, 0, 0, 0}},
     {"velocity", 2, {0, 0, 0, 0}},
     {"emission", 3, {0, 0, 0, 0}},
+    {"volume_layers", 1, {0, 0, 0, 0}},
 }};
 
 namespace {
@@ -22,7 +23,7 @@ constexpr int kVelocityAov = 3;
 
 Result<AovPass> create_aov_pass(gpu::Device& device) {
     AovPass pass;
-    for (int i = 0; i < kAovCount; ++i) {
+    for (int i = 0; i < kVolumeLayersAov; ++i) {
         const Result<const gpu::Program*> program = device.shaders().load(
             {.vertex = "fullscreen.vert",
              .fragment = "aov.frag",

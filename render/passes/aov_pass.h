@@ -11,11 +11,12 @@ namespace limn {
 // Attributes of the G-buffer as plain numbers, for files and the buffer viewer.
 //
 // Reads    G-buffer
-// Writes   RGBA32F, named "aov.<name>"
+// Writes   RGBA32F, named "aov.<name>"; layers of shadow volumes come from their own pass
 // Order    after the G-buffer
 // Shaders  aov.frag
 
-inline constexpr int kAovCount = 5;
+inline constexpr int kAovCount = 6;
+inline constexpr int kVolumeLayersAov = 5;  ///< draw_volume_layers makes it
 
 struct Aov {
     std::string_view name;
@@ -26,7 +27,7 @@ struct Aov {
 extern const std::array<Aov, kAovCount> kAovs;
 
 struct AovPass {
-    std::array<const gpu::Program*, kAovCount> programs{};
+    std::array<const gpu::Program*, kVolumeLayersAov> programs{};
 };
 
 [[nodiscard]] Result<AovPass> create_aov_pass(gpu::Device& device);

@@ -11,7 +11,7 @@ namespace limn {
 // Reads    VolumeList, scene depth
 // Writes   shadow mask (R8 array); the stencil beside the scene's depth is 0 again after each light
 // Order    after the G-buffer and the shadow maps, before whatever is lit
-// Shaders  shadow_volume.vert, shadow_mask.frag, shadow_classify.frag
+// Shaders  shadow_volume.vert, shadow_mask.frag, shadow_classify.frag, shadow_edge.frag
 //
 // One draw counts both sides: depth is reversed, so that a volume's front faces that pass the test
 // GL_GREATER lie before the scene and add 1, back faces take 1 away (z-pass); or back faces that
@@ -31,6 +31,8 @@ namespace limn {
 // of the stencil is set and only there the volumes are counted, in the seven other bits.
 
 struct ShadowVolumePass {
+    SurfacePrograms classify;
+    const gpu::Program* edges = nullptr;
     const gpu::Program* volumes[2] = {};  ///< per edge, prisms
     const gpu::Program* layers[2] = {};
     const gpu::Program* mask = nullptr;
@@ -40,10 +42,7 @@ struct ShadowVolumePass {
 
 /// A layer for each of scene.volumes.lights; not valid if there is none.
 [[nodiscard]] TextureId draw_shadow_volumes(
-    FrameGraph& graph,
-    const ShadowVolumePass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer);
+    FrameGraph& graph, ShadowVolumePass& pass, const FrameScene& scene, const Gbuffer& gbuffer);
 
 /// How many polygons of volumes lie over each pixel, in x: RGBA32F, named "aov.volume_layers".
 /// Counts everything that is drawn, hidden or not (shadow.density-view).

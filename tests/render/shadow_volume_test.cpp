@@ -3,6 +3,8 @@
 #include "ecs/base/log.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
+#include "render/gpu/framebuffer.h"
+#include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
 #include "render/shadow/volume_list.h"
 #include "tests/render/scene_fixture.h"
@@ -554,6 +556,116 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: moved casters and swapped assets 
         const Visibility found = visibility(*this, light, view);
         CHECK(disagreement(*this, found, Vec4(place_of_light, 1), view) < 0.001);
     }
+}
+
+TEST_CASE_FIXTURE(
+    VolumeScene, "hybrid: the picture is that of volumes, which count at a few pixels alone") {
+    add_floor();
+    add_boxes();
+    const RenderView view = from({0.3f, 3.2f, 4.1f});
+    const Vec3 place = {1.5f, 4, 2};
+    Entity light;
+    SUBCASE("spot") {
+        light = shine(
+            SpotLight{.intensity = 50, .radius = 12, .outer_angle = radians(40.0f)},
+            look_at(place, {0, 0.5f, 0}));
+    }
+    SUBCASE("point light") {
+        light = shine(PointLight{.intensity = 50, .radius = 12}, at(place));
+    }
+    SUBCASE("sun") {
+        light = shine(DirectionalLight{}, look_at({5, 3, 4}, {0, 0, 0}));
+    }
+    world.add(light, kVolumes);
+    const Visibility exact = visibility(*this, light, view);
+    CHECK(exact.shadowed > 100);
+    world.add(light, Shadow{.method = ShadowMethod::Hybrid});
+    const Visibility hybrid = visibility(*this, light, view);
+    int differ = 0;
+    for (std::size_t i = 0; i < exact.lit.size(); ++i) {
+        differ += exact.lit[i] == hybrid.lit[i] ? 0 : 1;
+    }
+    CHECK(differ <= exact.counted / 1000);
+}
+
+TEST_CASE_FIXTURE(VolumeScene, "hybrid: away from the map's edges no volume is counted") {
+    add_floor();
+    add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0, 6, 0}));
+    const RenderView view = from({0.3f, 1.2f, 0.4f}, {2.5f, 0.3f, 2.5f});
+    // From within the volume z-pass counts every pixel wrongly that it counts.
+    world.add(light, Shadow{.method = ShadowMethod::Hybrid});
+    const Visibility right = visibility(*this, light, view);
+    world.add(light, ShadowVolume{.mode = StencilMode::ZPass});
+    const Visibility wrong = visibility(*this, light, view);
+    int differ = 0;
+    for (std::size_t i = 0; i < right.lit.size(); ++i) {
+        differ += right.lit[i] == wrong.lit[i] ? 0 : 1;
+    }
+    CHECK(right.shadowed > 500);
+    CHECK(differ > 20);
+    CHECK(differ < right.counted / 5);
+}
+
+TEST_CASE_FIXTURE(test::RenderTest, "hybrid: seven bits wrap beneath the mark of an edge") {
+    const gpu::Texture depth("depth", {.format = GL_DEPTH32F_STENCIL8, .width = 4, .height = 4});
+    const gpu::Framebuffer target("target", {}, {&depth});
+    const Result<const gpu::Program*> program =
+        device().shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_volume.frag"});
+    REQUIRE(program.ok());
+    device().bind_framebuffer(target);
+    glClearNamedFramebufferfi(target.id(), GL_DEPTH_STENCIL, 0, 0, 0x80);
+    const auto count = [&](GLenum operation) {
+        gpu::PipelineState state = gpu::kFullscreenState;
+        const gpu::StencilFace face = {.func = GL_EQUAL, .pass = operation};
+        state.stencil = {
+            .test = true,
+            .reference = 0x80,
+            .read_mask = 0x80,
+            .write_mask = 0x7f,
+            .front = face,
+            .back = face};
+        device().use(gpu::Pipeline{*program, state});
+        device().draw_fullscreen();
+        std::uint8_t value = 0;
+        glReadPixels(1, 1, 1, 1, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, &value);
+        return static_cast<int>(value);
+    };
+    CHECK(count(GL_DECR_WRAP) == 0xff);
+    CHECK(count(GL_INCR_WRAP) == 0x80);
+    CHECK(count(GL_INCR_WRAP) == 0x81);
+}
+
+TEST_CASE_FIXTURE(
+    VolumeScene, "volume_layers: a ball's volume is two layers, prisms are many more") {
+    add_floor();
+    add_caster(add(make_sphere({.radius = 0.5f, .segments = 24, .rings = 12})), at({0, 2, 0}));
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 20}, at({0.1f, 5, 0.2f}));
+    world.add(light, kVolumes);
+    const RenderView view = from({0.2f, 2.5f, 4});
+    const auto layers = [&](VolumeKind kind) {
+        world.add(light, ShadowVolume{.kind = kind, .mode = StencilMode::ZFail});
+        return aov(view, "volume_layers");
+    };
+    const auto sum = [](const gpu::FloatImage& image) {
+        double total = 0;
+        for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+            total += static_cast<double>(image.pixels[i]);
+        }
+        return total;
+    };
+    const gpu::FloatImage per_edge = layers(VolumeKind::PerEdge);
+    int two = 0;
+    int other = 0;
+    for (std::size_t i = 0; i < per_edge.pixels.size(); i += 4) {
+        two += per_edge.pixels[i] == 2 ? 1 : 0;
+        other += per_edge.pixels[i] != 0 && per_edge.pixels[i] != 2 ? 1 : 0;
+    }
+    CHECK(two > 500);
+    CHECK(other < two / 50);  // on its outline
+    CHECK(sum(layers(VolumeKind::PerTriangle)) > 3 * sum(per_edge));
+    world.remove<Shadow>(light);
+    CHECK(sum(aov(view, "volume_layers")) == 0);
 }
 
 TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is seen") {

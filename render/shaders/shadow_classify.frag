@@ -1,0 +1,30 @@
+// What the map of a light says of each pixel: 0 shadow, 1 light, and 0.5 where its texels near the point disagree
+// and volumes must decide (shadow.hybrid-edge). The filter spans more texels than the map's own bias can move an
+// edge.
+#version 450
+#include "lib/gbuffer.glsl"
+#include "lib/view.glsl"
+#include "light_gpu.h"
+#include "lib/shadow.glsl"
+#include "shadow_volume_gpu.h"
+
+layout(binding = 2, std140) uniform Volume {
+    VolumeBlock volume;
+};
+layout(binding = 5) uniform usampler2D gbuffer;
+layout(binding = 6) uniform sampler2D scene_depth;
+
+uniform vec4 map;  // LightRecord::shadow
+
+layout(location = 0) out float mask;
+
+const float kAgree = 1e-3;  // rounding of the filter's weights
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
+    vec3 normal = unpack_surface(texelFetch(gbuffer, pixel, 0)).normal_ws;
+    vec3 to_light = normalize(-away_from_light(position_ws, volume.light));
+    float lit = light_visibility(map, position_ws, normal, to_light, gl_FragCoord.xy);
+    mask = lit < kAgree ? 0.0 : lit > 1.0 - kAgree ? 1.0 : 0.5;
+}

@@ -1,0 +1,13 @@
+// Keeps the pixels that shadow_classify.frag left open, for the stencil.
+#version 450
+
+layout(binding = 17) uniform sampler2DArray shadow_masks;
+
+uniform int layer;
+
+void main() {
+    float mask = texelFetch(shadow_masks, ivec3(gl_FragCoord.xy, layer), 0).r;
+    if (abs(mask - 0.5) > 0.25) {
+        discard;
+    }
+}
