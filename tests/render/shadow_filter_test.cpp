@@ -36,10 +36,10 @@ class FilterTest : public RenderTest {
   private:
     static gpu::ShaderFiles files() {
         gpu::ShaderFiles files = gpu::ShaderFiles::standard();
-        files.put("probe.frag", R"(#version 450
-#include "light_gpu.h"
-#include "lib/shadow.glsl"
-uniform vec2 st;
+        files.put(
+            "probe.frag",
+            "#version 450\n#include \"light_gpu.h\"\n#include \"lib/shadow.glsl\"\n"
+            R"(uniform vec2 st;
 uniform float filter_kind;
 layout(location = 0) out vec4 lit;
 void main() {
