@@ -1,6 +1,7 @@
 // What the map of a light says of each pixel: 0 shadow, 1 light, and 0.5 where its texels near the point disagree
 // and volumes must decide (shadow.hybrid-edge). The filter spans more texels than the map's own bias can move an
-// edge.
+// edge. Volumes decide, too, where the light grazes: there the bias hides that a facet of a round thing is turned
+// away, though its smooth normal is not.
 #version 450
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"
@@ -18,7 +19,8 @@ uniform vec4 map;  // LightRecord::shadow
 
 layout(location = 0) out float mask;
 
-const float kAgree = 1e-3;  // rounding of the filter's weights
+const float kAgree = 1e-3;   // rounding of the filter's weights
+const float kGrazing = 0.2;  // cosine; the facets of 32 around a column are turned by 0.1
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -26,5 +28,6 @@ void main() {
     vec3 normal = unpack_surface(texelFetch(gbuffer, pixel, 0)).normal_ws;
     vec3 to_light = normalize(-away_from_light(position_ws, volume.light));
     float lit = light_visibility(map, position_ws, normal, to_light, gl_FragCoord.xy);
-    mask = lit < kAgree ? 0.0 : lit > 1.0 - kAgree ? 1.0 : 0.5;
+    bool grazes = dot(normal, to_light) < kGrazing;
+    mask = lit < kAgree ? 0.0 : lit > 1.0 - kAgree && !grazes ? 1.0 : 0.5;
 }

@@ -588,6 +588,25 @@ TEST_CASE_FIXTURE(
     CHECK(differ <= exact.counted / 1000);
 }
 
+TEST_CASE_FIXTURE(
+    VolumeScene, "hybrid: where light grazes round casters the picture is that of volumes") {
+    add_floor();
+    add_caster(
+        add(make_torus({.radius = 0.7f, .tube = 0.3f, .segments = 32, .sides = 16})),
+        at({0, 1, 0}));
+    const RenderView view = from({1.2f, 1.8f, 1.6f}, {0, 0.9f, 0});
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 12}, at({1.5f, 3, -1}));
+    world.add(light, kVolumes);
+    const Visibility exact = visibility(*this, light, view);
+    world.add(light, Shadow{.method = ShadowMethod::Hybrid});
+    const Visibility hybrid = visibility(*this, light, view);
+    int differ = 0;
+    for (std::size_t i = 0; i < exact.lit.size(); ++i) {
+        differ += exact.lit[i] == hybrid.lit[i] ? 0 : 1;
+    }
+    CHECK(differ <= exact.counted / 1000);
+}
+
 TEST_CASE_FIXTURE(VolumeScene, "hybrid: away from the map's edges no volume is counted") {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
