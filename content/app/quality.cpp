@@ -1,5 +1,6 @@
 #include "content/app/quality.h"
 
+#include "content/app/quality_shadows.h"
 #include "content/app/quality_surfaces.h"
 
 namespace limn {
@@ -9,6 +10,9 @@ std::span<const QualityEffect> quality_effects() {
         {"surfaces",
          "the reflection models in double precision, at the point that each pixel shows",
          measure_surfaces},
+        {"shadows",
+         "rays from the point that each pixel shows to the light, in double precision",
+         measure_shadows},
     };
     return kEffects;
 }

@@ -39,7 +39,7 @@ std::string limit_text(const QualityRow& row) {
 // ---- the page
 
 constexpr const char* kStyle = R"(
-body { background: #15171a; color: #d8dce2; font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; }
+body { background: #15171a; color: #d8dce2; font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 980px; }
 h1, h2 { font-weight: 600; }
 h2 { border-top: 1px solid #333a44; margin-top: 2.5rem; padding-top: 1rem; }
 p { color: #98a2b0; }

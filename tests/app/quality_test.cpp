@@ -101,4 +101,23 @@ TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none i
     CHECK(wrong.err.find("perhaps surfaces") != std::string::npos);
 }
 
+TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep their law") {
+    const TemporaryFolder folder;
+    const ProgramRun run =
+        run_limn(folder, {"quality", "shadows", "--json", "q.json", "--html", "q.html"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 3 * 8 + 3);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        CHECK(row["bound"] != "none");
+    }
+    // Of each method and each penumbra effect, oracle and difference.
+    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (3 * 8 + 3));
+}
+
 }  // namespace limn
