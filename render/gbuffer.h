@@ -7,9 +7,9 @@ namespace limn {
 /// The textures that hold a frame's surfaces (lib/gbuffer.glsl). Pixels without a surface keep
 /// depth 0; their attributes are undefined.
 struct Gbuffer {
-    TextureId surface;   ///< RGBA32UI
-    TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 where nothing is; with 8 bits of
-                       ///< stencil, all 0, in frames with shadow volumes
+    TextureId surface;  ///< RGBA32UI
+    TextureId depth;    ///< D32F, reversed: 1 at the near plane, 0 where nothing is; with 8 bits of
+                        ///< stencil, all 0, in frames with shadow volumes
     TextureId velocity;  ///< RG16F, uv now - uv before; not valid() unless asked for
 };
 

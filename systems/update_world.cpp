@@ -23,7 +23,7 @@ Schedule make_world_schedule() {
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
-    schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
+    schedule.add<update_env_probes>();  // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
     return schedule;
 }

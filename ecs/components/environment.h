@@ -29,7 +29,7 @@ struct Environment {
     Vec3 ground = {0.16f, 0.14f, 0.12f};   ///< radiance, linear
     float intensity = 1.0f;                ///< multiplies all of it, >= 0
     bool visible = true;                   ///< drawn as background; its light counts either way
-    ImageId panorama = {};                    ///< of Panorama; none is black
+    ImageId panorama = {};                 ///< of Panorama; none is black
     PanoramaMapping mapping = PanoramaMapping::Equirectangular;
     float rotation = 0.0f;              ///< of the panorama about the vertical [rad]
     float half_angle = radians(45.0f);  ///< Cylindrical: horizon to upper edge [rad]

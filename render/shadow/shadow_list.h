@@ -32,8 +32,8 @@ struct ShadowList {
     bool cubes = false;     ///< some light has six faces
     bool cascades = false;  ///< some light has cascades
     bool soft = false;      ///< some filter is wider than 2x2
-    int atlas_size = 0;  ///< side [texels]; 0: no shadow maps
-    int unserved = 0;    ///< lights that found no room in the atlas: they cast no shadow
+    int atlas_size = 0;     ///< side [texels]; 0: no shadow maps
+    int unserved = 0;       ///< lights that found no room in the atlas: they cast no shadow
 };
 
 /// A Shadow whose numbers can be used, whatever was asked for: resolution a power of two.
