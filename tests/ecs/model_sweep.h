@@ -1,0 +1,162 @@
+#pragma once
+
+#include "tests/ecs/model_run.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+// Operations on all that a query visits: writing, and what is done at once.
+
+namespace limn::test::model {
+
+class ModelSweep : public ModelRun {
+  public:
+    using ModelRun::ModelRun;
+
+  protected:
+    /// Writes a component of all that a query visits.
+    void sweep() {
+        count("sweep");
+        const std::uint32_t way = roll(5);
+        if (way == 3) {
+            sweep_poses();
+            return;
+        }
+        if (way == 4) {
+            sweep_lamps();
+            return;
+        }
+        const std::int64_t offset = roll(1000);
+        const auto query = world_.query<ModelSpeed, const ModelPlace>();
+        const auto write_row = [offset](ModelSpeed& speed, const ModelPlace& place) {
+            speed.value = static_cast<double>(place.x) + static_cast<double>(offset);
+        };
+        if (way == 0) {
+            query.each(write_row);
+        } else if (way == 1) {
+            query.par_each(write_row);
+        } else {
+            query.par_chunks(
+                [&](ChunkView, std::span<ModelSpeed> speeds, std::span<const ModelPlace> places) {
+                    for (std::size_t i = 0; i < speeds.size(); ++i) {
+                        write_row(speeds[i], places[i]);
+                    }
+                });
+        }
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.has(Kind::Place) && record.has(Kind::Speed)) {
+                reference_.set(id, Kind::Speed, {record.value(Kind::Place).number + offset, kNoId});
+            }
+        }
+    }
+
+    /// Lane by lane.
+    void sweep_poses() {
+        const std::int32_t offset = static_cast<std::int32_t>(roll(1000));
+        world_.query<ModelPose, Without<ModelAwake>>().chunks(
+            [&](ChunkView chunk, SplitSpan<ModelPose> poses) {
+                const RowMask enabled = chunk.enabled();
+                const auto at = poses.template field<&ModelPose::at>();
+                const auto numbers = poses.template field<&ModelPose::number>();
+                for (std::uint32_t row = 0; row < chunk.size(); ++row) {
+                    if (enabled.test(row)) {
+                        numbers[row] = (numbers[row] + offset) % 1'000'000;
+                        const float x = static_cast<float>(numbers[row]);
+                        at[0][row] = x;
+                        at[1][row] = 2 * x;
+                        at[2][row] = -x;
+                    }
+                }
+            });
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.matches(bit(Kind::Pose), bit(Kind::Awake))) {
+                const std::int64_t number = (record.value(Kind::Pose).number + offset) % 1'000'000;
+                reference_.set(id, Kind::Pose, {number, kNoId});
+            }
+        }
+    }
+
+    /// Enables and disables while iterating.
+    void sweep_lamps() {
+        const std::uint32_t modulus = 2 + roll(3);
+        const auto is_lit = [modulus](std::int64_t number) {
+            return static_cast<std::uint64_t>(number) % modulus != 0;
+        };
+        world_.query<const ModelPlace, Optional<ModelLamp>>().par_chunks(
+            [&](ChunkView chunk, std::span<const ModelPlace> places, std::span<ModelLamp>) {
+                for (std::uint32_t row = 0; chunk.has<ModelLamp>() && row < chunk.size(); ++row) {
+                    chunk.set_enabled<ModelLamp>(row, is_lit(read(places[row])));
+                }
+            });
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.has(Kind::Place) && record.has(Kind::Lamp)) {
+                reference_.set_enabled(id, Kind::Lamp, is_lit(record.value(Kind::Place).number));
+            }
+        }
+    }
+
+    /// All of a query at once.
+    void change_all() {
+        switch (roll(3)) {
+        case 0:
+            change_all_of<const ModelTitle, Without<ModelBadge>>();
+            break;
+        case 1:
+            change_all_of<With<ModelPlace>, Without<ModelLamp>>();
+            break;
+        default:
+            change_all_of<const ModelWarmth, With<ModelSpeed>>();
+        }
+    }
+
+    template <typename... Terms>
+    void change_all_of() {
+        constexpr Mask kRequired = (Mask{0} | ... | ShapeOf<Terms>::required);
+        constexpr Mask kExcluded = (Mask{0} | ... | ShapeOf<Terms>::excluded);
+        std::vector<Id> ids;
+        for (const auto& [id, record] : reference_.records()) {
+            if (record.matches(kRequired, kExcluded)) {
+                ids.push_back(id);
+            }
+        }
+        const auto query = world_.query<Terms...>();
+        const std::uint32_t way = roll(8);
+        if (way == 0) {
+            count("destroy_all");
+            world_.destroy_all(query);
+            for (const Id id : ids) {
+                reference_.destroy(id);
+            }
+            return;
+        }
+        constexpr Kind kOften[] = {Kind::Tally, Kind::Memo, Kind::Badge, Kind::Pose, Kind::Lamp};
+        const Kind kind = kOften[roll(std::size(kOften))];
+        const Value value = any_value(kind, kNoId);
+        with_kind(kind, [&]<typename T>() {
+            if constexpr (bulk_kind<T>) {
+                if (way < 4) {
+                    count("add_all");
+                    world_.add_all(query, make<T>(value.number, {}));
+                } else {
+                    count("remove_all");
+                    world_.remove_all<T>(query);
+                }
+            }
+        });
+        for (const Id id : ids) {
+            if (way < 4) {
+                reference_.add(id, kind, value);
+            } else {
+                reference_.remove(id, kind);
+            }
+        }
+    }
+    template <typename T>
+    static constexpr bool bulk_kind = (bit(kind_of<T>())
+                                       & (bit(Kind::Tally) | bit(Kind::Memo) | bit(Kind::Badge)
+                                          | bit(Kind::Pose) | bit(Kind::Lamp)))
+                                      != 0;
+};
+
+}  // namespace limn::test::model
