@@ -73,6 +73,7 @@ class Recorder {
                 make<ModelSerial>(number, {}),
                 make<ModelTitle>(number, {}),
                 ModelBadge{},
+                make<ModelTeam>(number, {}),
                 make<ModelLink>(number, link));
             break;
         case Planned::Op::Destroy:

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -88,26 +88,49 @@ class Comparison : public ComparedQueries {
 
     /// Everything written since the last comparison is reported.
     void compare_changed() {
-        compare_changed_kind<ModelPlace>();
-        compare_changed_kind<ModelTitle>();
-        compare_changed_kind<ModelPose>();
-        compare_changed_kind<ModelLamp>();
-        compare_changed_kind<ModelWarmth>();
-    }
-    template <typename T>
-    void compare_changed_kind() {
-        std::map<Id, int> visits;
-        std::as_const(world_)
-            .query<const T, Changed<T>>()
-            .since(changed_since_)
-            .each([&](Entity entity, const T&) { ++visits[reference_.id_of(entity)]; });
+        std::unordered_map<Id, Mask> reported;
+        const Mask watched =
+            collect_changed<ModelPlace, ModelTitle, ModelPose, ModelLamp, ModelWarmth, ModelTeam>(
+                reported);
         for (const auto& [id, record] : reference_.records()) {
-            const bool changed =
-                record.is_enabled(kind_of<T>()) && (record.changed & bit(kind_of<T>())) != 0;
-            if (changed && !visits.contains(id)) {
-                expect(false, ("a change is not reported of " + component_info<T>().name).c_str());
+            const Mask changed = record.changed_and_seen() & watched;
+            if (changed != 0) {
+                expect((changed & ~reported[id]) == 0, "a change is not reported");
             }
         }
+        compare_changed_in(1, reported);
+    }
+    template <typename... Ts>
+    Mask collect_changed(std::unordered_map<Id, Mask>& reported) const {
+        const auto collect = [&]<typename T>(std::type_identity<T>) {
+            std::as_const(world_)
+                .query<const T, Changed<T>>()
+                .since(changed_since_)
+                .each([&](Entity entity, const T&) {
+                    reported[reference_.id_of(entity)] |= bit(kind_of<T>());
+                });
+        };
+        (collect(std::type_identity<Ts>{}), ...);
+        return (bit(kind_of<Ts>()) | ...);
+    }
+    /// Of one team the same are reported.
+    void compare_changed_in(std::int64_t team, std::unordered_map<Id, Mask>& reported) const {
+        std::size_t expected = 0;
+        for (const auto& [id, mask] : reported) {
+            const bool is_place = (mask & bit(Kind::Place)) != 0;
+            expected += is_place && reference_.at(id).team() == team ? 1 : 0;
+        }
+        std::size_t found = 0;
+        std::as_const(world_)
+            .query<const ModelPlace, Changed<ModelPlace>>()
+            .where(make<ModelTeam>(team, {}))
+            .since(changed_since_)
+            .each([&](Entity entity, const ModelPlace&) {
+                const Id id = reference_.id_of(entity);
+                expect(reference_.at(id).team() == team, "a change is reported of another team");
+                found += (reported[id] & bit(Kind::Place)) != 0 ? 1 : 0;
+            });
+        expect(found == expected, "a change in a team is not reported");
     }
 
     /// Reading is no change.

@@ -2,13 +2,14 @@
 
 #include "ecs/world.h"
 #include "tests/ecs/model_compare_values.h"
+#include "tests/ecs/model_shape.h"
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -16,30 +17,6 @@
 // iterating.
 
 namespace limn::test::model {
-
-/// What a query says of the components it names.
-template <typename Term>
-struct ShapeOf {
-    static constexpr Mask required = bit(kind_of<std::remove_const_t<Term>>());
-    static constexpr Mask excluded = 0;
-};
-template <typename T>
-struct ShapeOf<Optional<T>> {
-    static constexpr Mask required = 0;
-    static constexpr Mask excluded = 0;
-};
-template <typename... Ts>
-struct ShapeOf<With<Ts...>> {
-    static constexpr Mask required = (Mask{0} | ... | bit(kind_of<Ts>()));
-    static constexpr Mask excluded = 0;
-};
-template <typename... Ts>
-struct ShapeOf<Without<Ts...>> {
-    static constexpr Mask required = 0;
-    static constexpr Mask excluded = (Mask{0} | ... | bit(kind_of<Ts>()));
-};
-template <typename... Ts>
-struct ShapeOf<Changed<Ts...>> : ShapeOf<With<Ts...>> {};
 
 /// Whether chunks() cannot tell which rows have it.
 template <typename Term>
@@ -54,7 +31,7 @@ class ComparedQueries : public ComparedValues {
   protected:
     /// One query; `round` says of which shape.
     void compare_shape(unsigned round) {
-        switch (round % 16) {
+        switch (round % 24) {
         case 0:
             compare_query<const ModelPlace, const ModelSpeed>();
             break;
@@ -106,32 +83,74 @@ class ComparedQueries : public ComparedValues {
         case 14:
             compare_query<const ModelTitle, Optional<const ModelLamp>, Without<ModelAwake>>();
             break;
-        default:
+        case 15:
             compare_query<>();
+            break;
+        default:
+            compare_team_shape(round % 24, round / 24 % (kTeams + 1));
         }
     }
 
   private:
+    /// With the shared component, of all teams or of one; kTeams is none that anybody has been in.
+    void compare_team_shape(unsigned shape, std::int64_t team) {
+        switch (shape) {
+        case 16:
+            compare_query<const ModelTeam, const ModelPlace>();
+            compare_batches();
+            break;
+        case 17:
+            compare_query<const ModelSpeed, Optional<const ModelTeam>, Without<ModelTitle>>();
+            break;
+        case 18:
+            compare_query_in<const ModelTeam, const ModelPlace>(team);
+            break;
+        case 19:
+            compare_query_in<const ModelTitle, Optional<const ModelSpeed>>(team);
+            break;
+        case 20:
+            compare_query_in<const ModelWarmth, const ModelTeam>(team);
+            break;
+        case 21:
+            compare_query_in<const ModelLamp, AnyOf<ModelPose, ModelSpeed>>(team);
+            break;
+        case 22:
+            compare_query<const ModelPlace, AnyOf<ModelTeam, ModelBadge>>();
+            break;
+        default:
+            compare_query<AnyOf<ModelMemo, ModelTeam>, AnyOf<ModelPose, ModelTitle>>();
+        }
+    }
+
     template <typename... Terms>
     void compare_query() {
-        constexpr Mask kRequired = (Mask{0} | ... | ShapeOf<Terms>::required);
-        constexpr Mask kExcluded = (Mask{0} | ... | ShapeOf<Terms>::excluded);
-        const auto query = std::as_const(world_).query<Terms...>();
+        compare_query(std::as_const(world_).query<Terms...>(), shape_of<Terms...>());
+    }
+    template <typename... Terms>
+    void compare_query_in(std::int64_t team) {
+        const ModelTeam key{static_cast<std::uint32_t>(team)};
+        compare_query(std::as_const(world_).query<Terms...>().where(key), shape_of<Terms...>(team));
+    }
 
-        std::map<Id, int> visits;
+    template <typename... Terms>
+    void compare_query(const Query<Terms...>& query, const Shape& shape) {
+        std::unordered_map<Id, int> visits;
         std::uint64_t sum = 0;
         std::uint64_t sequence = 0;
         query.each([&](Entity entity, const auto&... components) {
             const Id id = reference_.id_of(entity);
             expect(id != kNoId, "a query visits an entity that is not there");
             const Record& record = reference_.at(id);
-            expect(record.matches(kRequired, kExcluded), "a query visits what does not match");
+            expect(shape.matches(record), "a query visits what does not match");
             (expect_argument(components, record), ...);
             ++visits[id];
             sum += row_hash(entity, components...);
             sequence = mix(sequence, row_hash(entity, components...));
         });
-        expect(visits.size() == reference_.count(kRequired, kExcluded), "a query leaves some out");
+        expect(
+            visits.size()
+                == reference_.count([&](const Record& record) { return shape.matches(record); }),
+            "a query leaves some out");
         for (const auto& [id, count] : visits) {
             expect(count == 1, "a query visits an entity twice");
         }
@@ -151,9 +170,21 @@ class ComparedQueries : public ComparedValues {
         }
     }
 
+    /// Those of a team follow each other.
+    void compare_batches() {
+        std::vector<std::int64_t> teams;
+        std::as_const(world_).query<const ModelTeam>().chunks(
+            [&](ChunkView, const ModelTeam& team) {
+                if (teams.empty() || teams.back() != read(team)) {
+                    teams.push_back(read(team));
+                }
+            });
+        expect(teams.size() <= std::size_t{kTeams}, "a team is in several batches");
+    }
+
     /// A list in another order than the rows, with some twice and some that are gone.
     template <typename Query>
-    void compare_gather(const Query& query, const std::map<Id, int>& visits) {
+    void compare_gather(const Query& query, const std::unordered_map<Id, int>& visits) {
         std::vector<Entity> list;
         for (const Id id : reference_.living()) {
             list.push_back(reference_.handle(id));
@@ -167,7 +198,9 @@ class ComparedQueries : public ComparedValues {
         }
         std::size_t expected = 0;
         for (const Entity entity : list) {
-            expected += visits.contains(reference_.id_of(entity)) ? 1 : 0;
+            const bool is_visited = visits.contains(reference_.id_of(entity));
+            expect(query.contains(entity) == is_visited, "contains says something else than each");
+            expected += is_visited ? 1 : 0;
         }
         std::size_t calls = 0;
         std::size_t last = 0;
@@ -232,6 +265,16 @@ class ComparedQueries : public ComparedValues {
         } else {
             return span[index];
         }
+    }
+
+    /// Of a shared component all rows are given the same one.
+    template <typename Term>
+    static const ModelTeam& argument(const ModelTeam& team, std::size_t) {
+        return team;
+    }
+    template <typename Term>
+    static const ModelTeam* argument(const ModelTeam* team, std::size_t) {
+        return team;
     }
 
     template <typename T>

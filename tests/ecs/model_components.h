@@ -67,6 +67,10 @@ struct ModelLamp {
 };
 /// A tag that can be disabled.
 struct ModelAwake {};
+/// Kept once for all that are in it.
+struct ModelTeam {
+    std::uint32_t number = 0;
+};
 
 template <typename Visitor>
 void visit_fields(ModelSerial& serial, Visitor&& visit) {
@@ -121,6 +125,10 @@ template <>
 struct limn::ComponentTraits<limn::test::ModelAwake> : limn::DefaultTraits {
     static constexpr Storage storage = Storage::Toggle;
 };
+template <>
+struct limn::ComponentTraits<limn::test::ModelTeam> : limn::DefaultTraits {
+    static constexpr Storage storage = Storage::Shared;
+};
 
 namespace limn::test::model {
 
@@ -139,7 +147,8 @@ using Components = std::tuple<
     ModelChosen,
     ModelPose,
     ModelLamp,
-    ModelAwake>;
+    ModelAwake,
+    ModelTeam>;
 static_assert(std::tuple_size_v<Components> == kKinds);
 
 /// The kinds that make_prefab leaves out.
@@ -213,6 +222,8 @@ template <typename T>
         return {{x, 2 * x, -x}, static_cast<std::int32_t>(number)};
     } else if constexpr (std::is_same_v<T, ModelLamp>) {
         return {static_cast<std::int32_t>(number)};
+    } else if constexpr (std::is_same_v<T, ModelTeam>) {
+        return {static_cast<std::uint32_t>(number % kTeams)};
     } else if constexpr (std::is_same_v<T, ModelLink> || std::is_same_v<T, Parent>) {
         return {entity, static_cast<std::uint32_t>(number)};
     } else {
@@ -225,7 +236,10 @@ template <typename T>
 [[nodiscard]] std::int64_t read(const T& value) {
     if constexpr (std::is_empty_v<T>) {
         return 0;
-    } else if constexpr (std::is_same_v<T, ModelSerial> || std::is_same_v<T, ModelLink>) {
+    } else if constexpr (
+        std::is_same_v<
+            T,
+            ModelSerial> || std::is_same_v<T, ModelLink> || std::is_same_v<T, ModelTeam>) {
         return value.number;
     } else if constexpr (std::is_same_v<T, ModelPlace>) {
         return value.y == 2 * value.x && value.z == -value.x ? static_cast<std::int64_t>(value.x)
@@ -263,6 +277,9 @@ template <typename T>
 inline constexpr bool can_toggle = (bit(kind_of<T>()) & kToggles) != 0;
 template <typename T>
 inline constexpr bool has_address = !std::is_same_v<T, ModelPose>;
+/// Whether it can be written where it is: a team is that of others too.
+template <typename T>
+inline constexpr bool is_written_in_place = has_address<T> && !std::is_same_v<T, ModelTeam>;
 
 inline void register_components() {
     for_each_kind([]<typename T>() { register_component<T>(); });

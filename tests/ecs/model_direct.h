@@ -47,7 +47,7 @@ class ModelDirect : public ModelSweep {
             create_one<ModelChosen, ModelTally, ModelLink, ModelSerial>(value);
             break;
         case 4:
-            create_one<ModelPlace, ModelSpeed, ModelMemo>(value);
+            create_one<ModelPlace, ModelTeam, ModelSpeed, ModelMemo>(value);
             break;
         default:
             create_one<ModelSerial, Parent, ModelPlace, ModelPose, ModelLamp>(value);
@@ -65,7 +65,7 @@ class ModelDirect : public ModelSweep {
             create_alike<ModelTally, ModelMemo, ModelTitle>(size, value);
             break;
         default:
-            create_alike<ModelWarmth, ModelBadge, ModelLamp, ModelPose>(size, value);
+            create_alike<ModelWarmth, ModelBadge, ModelLamp, ModelTeam, ModelPose>(size, value);
         }
     }
 
@@ -106,7 +106,7 @@ class ModelDirect : public ModelSweep {
                 }
                 [[fallthrough]];
             default:
-                if constexpr (has_address<T>) {
+                if constexpr (is_written_in_place<T>) {
                     T& added = world_.add(entity, std::move(component));
                     expect(read(added) == value.number, "add returns something else");
                 } else {
@@ -149,7 +149,7 @@ class ModelDirect : public ModelSweep {
             if (way == 0) {
                 T copy = component;
                 is_there = world_.write(entity, component_id<T>, &copy);
-            } else if (way == 1 || !has_address<T>) {
+            } else if (way == 1 || !is_written_in_place<T>) {
                 if (is_there) {
                     world_.set<T>(entity, component);
                 }
@@ -164,7 +164,7 @@ class ModelDirect : public ModelSweep {
     /// Whether it was there; to a query it is there if it is enabled.
     template <typename T>
     bool write_in_place(Entity entity, Kind kind, const T& component, std::uint32_t way) {
-        if constexpr (has_address<T>) {
+        if constexpr (is_written_in_place<T>) {
             T* place = nullptr;
             if (way == 2) {
                 place = static_cast<T*>(world_.find(entity, component_id<T>));
@@ -218,7 +218,7 @@ class ModelDirect : public ModelSweep {
         with_kind(any_kind(), [&]<typename T>() {
             expect(!world_.has<T>(entity), "a stale handle has a component");
             if constexpr (has_address<T>) {
-                expect(world_.find<T>(entity) == nullptr, "a stale handle has a component");
+                expect(world_.find<const T>(entity) == nullptr, "a stale handle has a component");
                 expect(
                     world_.query<const T>().template find<const T>(entity) == nullptr,
                     "a query finds a stale handle");
@@ -226,7 +226,7 @@ class ModelDirect : public ModelSweep {
             expect(!world_.is_enabled<T>(entity), "a stale handle has a component");
             alignas(T) std::byte raw[sizeof(T)];
             expect(!world_.read(entity, component_id<T>, raw), "a stale handle has a component");
-            expect(!world_.query<T>().contains(entity), "a query contains a stale handle");
+            expect(!world_.query<const T>().contains(entity), "a query contains a stale handle");
         });
         expect(children_of(world_, entity).empty(), "a stale handle has children");
         if (!reference_.living().empty()) {

@@ -92,8 +92,14 @@ class ModelRecorded : public ModelDirect {
         return copies;
     }
 
+    /// Copies of copies would be more than can be looked at in time.
+    [[nodiscard]] bool may_spawn() const {
+        constexpr std::size_t kCrowd = 4000;
+        return !templates_.empty() && reference_.living().size() < kCrowd;
+    }
+
     void spawn_directly() {
-        if (templates_.empty()) {
+        if (!may_spawn()) {
             return;
         }
         count("spawn");
@@ -124,7 +130,7 @@ class ModelRecorded : public ModelDirect {
             plan_create(planned, own);
             return planned;
         }
-        if (choice == 6 && !templates_.empty()) {
+        if (choice == 6 && may_spawn()) {
             plan_spawn(planned, own);
             return planned;
         }
@@ -155,6 +161,7 @@ class ModelRecorded : public ModelDirect {
             reference_.add(planned.target, Kind::Warmth, {planned.value.number, kNoId});
             reference_.add(planned.target, Kind::Title, {planned.value.number, kNoId});
             reference_.add(planned.target, Kind::Badge, {});
+            reference_.add(planned.target, Kind::Team, {planned.value.number % kTeams, kNoId});
             reference_.add(planned.target, Kind::Link, planned.value);
         }
         own.push_back(planned.target);
@@ -276,6 +283,13 @@ class ModelRecorded : public ModelDirect {
                 });
             });
         schedule_.add(
+            "record in tasks of teams", [this](Query<const ModelTeam> teams, Commands commands) {
+                teams.par_each([this, commands](Entity entity, const ModelTeam&) {
+                    Recorder recorder{commands, reference_};
+                    record_row(recorder, plans_of_teams_, entity);
+                });
+            });
+        schedule_.add(
             "record one by one", [this](Query<const ModelTitle> titles, Commands commands) {
                 Recorder recorder{commands, reference_};
                 titles.each([&](Entity entity, const ModelTitle&) {
@@ -319,6 +333,7 @@ class ModelRecorded : public ModelDirect {
         reference_.begin_batch();
         plans_of_places_ = plan_rows<ModelPlace>(false);
         plans_of_warm_ = plan_rows<ModelWarmth>(false);
+        plans_of_teams_ = plan_rows<ModelTeam>(false);
         plans_of_titles_ = plan_rows<ModelTitle>(true);
         schedule_.run(world_);
         finish_batch();
@@ -400,6 +415,7 @@ class ModelRecorded : public ModelDirect {
     Schedule schedule_;
     Plans plans_of_places_;
     Plans plans_of_warm_;
+    Plans plans_of_teams_;
     Plans plans_of_titles_;
     Id last_target_ = kNoId;
     Id fresh_root_ = kNoId;  ///< of a copy, to be given a number

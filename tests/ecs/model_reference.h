@@ -34,8 +34,9 @@ enum class Kind : std::uint8_t {
     Pose,
     Lamp,
     Awake,
+    Team,
 };
-inline constexpr std::size_t kKinds = 14;
+inline constexpr std::size_t kKinds = 15;
 
 using Mask = std::uint32_t;  ///< a bit a kind
 [[nodiscard]] constexpr Mask bit(Kind kind) {
@@ -45,6 +46,10 @@ inline constexpr Mask kSparseKinds = bit(Kind::Warmth) | bit(Kind::Memo) | bit(K
 inline constexpr Mask kTags = bit(Kind::Badge) | bit(Kind::Chosen) | bit(Kind::Awake);
 inline constexpr Mask kToggles = bit(Kind::Lamp) | bit(Kind::Awake);
 inline constexpr Mask kLinks = bit(Kind::Link) | bit(Kind::Parent);
+
+/// Entities share their teams, so there are few, from 0 on.
+inline constexpr std::int64_t kTeams = 3;
+inline constexpr std::int64_t kNoTeam = -1;
 
 using Id = std::uint32_t;
 inline constexpr Id kNoId = 0xffffffffu;
@@ -58,7 +63,8 @@ struct Value {
 struct Record {
     Mask mask = 0;
     Mask disabled = 0;
-    Mask changed = 0;  ///< written or moved since forget_changes
+    Mask changed = 0;                 ///< written or moved since forget_changes; not for teams
+    std::int64_t old_team = kNoTeam;  ///< at forget_changes
     std::array<Value, kKinds> values = {};
     std::size_t position = 0;  ///< in the list of the living
 
@@ -72,6 +78,14 @@ struct Record {
     /// The same, disabled or not.
     [[nodiscard]] bool is_made_of(Mask required, Mask excluded) const {
         return (mask & required) == required && (mask & excluded) == 0;
+    }
+    [[nodiscard]] std::int64_t team() const {
+        return has(Kind::Team) ? value(Kind::Team).number : kNoTeam;
+    }
+    /// What queries must report. To be given the team one is in is no change.
+    [[nodiscard]] Mask changed_and_seen() const {
+        const Mask others = changed & ~bit(Kind::Team);
+        return seen() & (others | (team() != old_team ? bit(Kind::Team) : 0));
     }
     [[nodiscard]] Value& value(Kind kind) { return values[static_cast<std::size_t>(kind)]; }
     [[nodiscard]] const Value& value(Kind kind) const {
@@ -236,12 +250,14 @@ class Reference {
         for (auto& [id, record] : records_) {
             tell(added_, record.mask, handles_[id]);
             record.changed = record.mask;
+            record.old_team = kNoTeam;
         }
     }
 
     void forget_changes() {
         for (auto& [id, record] : records_) {
             record.changed = 0;
+            record.old_team = record.team();
         }
     }
 
@@ -298,7 +314,8 @@ class Reference {
     [[nodiscard]] std::map<Id, std::vector<Id>> children() const {
         std::map<Id, std::vector<Id>> children;
         for (const auto& [id, record] : records_) {
-            if (const Id parent = parent_of(id); parent != kNoId) {
+            const Id parent = record.has(Kind::Parent) ? parent_of(id) : kNoId;
+            if (parent != kNoId) {
                 children[parent].push_back(id);
             }
         }
@@ -326,16 +343,12 @@ class Reference {
         return subtree;
     }
 
-    [[nodiscard]] std::size_t count(Mask required, Mask excluded) const {
+    /// Those whose record is wanted.
+    template <typename IsWanted>
+    [[nodiscard]] std::size_t count(const IsWanted& is_wanted) const {
         return static_cast<std::size_t>(
             std::count_if(records_.begin(), records_.end(), [&](const auto& entry) {
-                return entry.second.matches(required, excluded);
-            }));
-    }
-    [[nodiscard]] std::size_t count_made_of(Mask required, Mask excluded) const {
-        return static_cast<std::size_t>(
-            std::count_if(records_.begin(), records_.end(), [&](const auto& entry) {
-                return entry.second.is_made_of(required, excluded);
+                return is_wanted(entry.second);
             }));
     }
 

@@ -90,6 +90,7 @@ class ModelRun {
         }
         value.number = kind == Kind::Serial   ? next_serial_++
                        : kind == Kind::Parent ? roll(4)
+                       : kind == Kind::Team   ? roll(kTeams)
                                               : roll(1'000'000);
         if ((bit(kind) & kLinks) != 0) {
             value.entity = any_link(own);
@@ -114,8 +115,8 @@ class ModelRun {
     template <typename T>
     static Value known(Value value) {
         constexpr Mask kBit = bit(kind_of<T>());
-        return {
-            (kBit & kTags) != 0 ? 0 : value.number, (kBit & kLinks) != 0 ? value.entity : kNoId};
+        const std::int64_t number = kBit == bit(Kind::Team) ? value.number % kTeams : value.number;
+        return {(kBit & kTags) != 0 ? 0 : number, (kBit & kLinks) != 0 ? value.entity : kNoId};
     }
 
     void bind(Id id, Entity entity) {
@@ -155,7 +156,7 @@ class ModelRun {
         expect(removed_ == reference_.told_removed(), "on_remove was told something else");
         expect(
             static_cast<std::size_t>(ModelTally::living - tallies_before_)
-                == reference_.count_made_of(bit(Kind::Tally), 0),
+                == reference_.count([](const Record& record) { return record.has(Kind::Tally); }),
             "values are lost or were never destroyed");
         comparison_.run(static_cast<unsigned>(comparisons_));
         ++comparisons_;

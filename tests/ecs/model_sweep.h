@@ -1,7 +1,9 @@
 #pragma once
 
 #include "tests/ecs/model_run.h"
+#include "tests/ecs/model_shape.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,13 +20,17 @@ class ModelSweep : public ModelRun {
     /// Writes a component of all that a query visits.
     void sweep() {
         count("sweep");
-        const std::uint32_t way = roll(5);
+        const std::uint32_t way = roll(7);
         if (way == 3) {
             sweep_poses();
             return;
         }
         if (way == 4) {
             sweep_lamps();
+            return;
+        }
+        if (way >= 5) {
+            sweep_places();
             return;
         }
         const std::int64_t offset = roll(1000);
@@ -47,6 +53,39 @@ class ModelSweep : public ModelRun {
         for (const auto& [id, record] : reference_.records()) {
             if (record.has(Kind::Place) && record.has(Kind::Speed)) {
                 reference_.set(id, Kind::Speed, {record.value(Kind::Place).number + offset, kNoId});
+            }
+        }
+    }
+
+    /// Of one team, or of all that are in a team or have a memo.
+    void sweep_places() {
+        const std::int64_t offset = roll(1000);
+        const auto moved = [offset](std::int64_t number) { return (number + offset) % 1'000'000; };
+        const auto write_row = [&](ModelPlace& place) {
+            place = make<ModelPlace>(moved(read(place)), {});
+        };
+        const std::int64_t team = roll(kTeams);
+        const auto members = world_.query<ModelPlace>().where(make<ModelTeam>(team, {}));
+        Shape shape = shape_of<ModelPlace>(team);
+        switch (roll(4)) {
+        case 0:
+            members.each(write_row);
+            break;
+        case 1:
+            members.par_each(write_row);
+            break;
+        case 2:
+            members.chunks([&](ChunkView, std::span<ModelPlace> places) {
+                std::for_each(places.begin(), places.end(), write_row);
+            });
+            break;
+        default:
+            world_.query<ModelPlace, AnyOf<ModelTeam, ModelMemo>>().each(write_row);
+            shape = shape_of<ModelPlace, AnyOf<ModelTeam, ModelMemo>>();
+        }
+        for (const auto& [id, record] : reference_.records()) {
+            if (shape.matches(record)) {
+                reference_.set(id, Kind::Place, {moved(record.value(Kind::Place).number), kNoId});
             }
         }
     }
@@ -98,29 +137,40 @@ class ModelSweep : public ModelRun {
 
     /// All of a query at once.
     void change_all() {
-        switch (roll(3)) {
+        const std::int64_t team = roll(kTeams);
+        switch (roll(5)) {
         case 0:
             change_all_of<const ModelTitle, Without<ModelBadge>>();
             break;
         case 1:
             change_all_of<With<ModelPlace>, Without<ModelLamp>>();
             break;
-        default:
+        case 2:
             change_all_of<const ModelWarmth, With<ModelSpeed>>();
+            break;
+        case 3:
+            change_all_of<With<ModelTitle>, AnyOf<ModelTeam, ModelSpeed>>();
+            break;
+        default:
+            change_all_of(
+                world_.query<With<ModelPlace>>().where(make<ModelTeam>(team, {})),
+                shape_of<With<ModelPlace>>(team));
         }
     }
 
     template <typename... Terms>
     void change_all_of() {
-        constexpr Mask kRequired = (Mask{0} | ... | ShapeOf<Terms>::required);
-        constexpr Mask kExcluded = (Mask{0} | ... | ShapeOf<Terms>::excluded);
+        change_all_of(world_.query<Terms...>(), shape_of<Terms...>());
+    }
+
+    template <typename... Terms>
+    void change_all_of(const Query<Terms...>& query, const Shape& shape) {
         std::vector<Id> ids;
         for (const auto& [id, record] : reference_.records()) {
-            if (record.matches(kRequired, kExcluded)) {
+            if (shape.matches(record)) {
                 ids.push_back(id);
             }
         }
-        const auto query = world_.query<Terms...>();
         const std::uint32_t way = roll(8);
         if (way == 0) {
             count("destroy_all");
@@ -130,7 +180,8 @@ class ModelSweep : public ModelRun {
             }
             return;
         }
-        constexpr Kind kOften[] = {Kind::Tally, Kind::Memo, Kind::Badge, Kind::Pose, Kind::Lamp};
+        constexpr Kind kOften[] = {
+            Kind::Tally, Kind::Memo, Kind::Badge, Kind::Pose, Kind::Lamp, Kind::Team};
         const Kind kind = kOften[roll(std::size(kOften))];
         const Value value = any_value(kind, kNoId);
         with_kind(kind, [&]<typename T>() {
@@ -155,7 +206,7 @@ class ModelSweep : public ModelRun {
     template <typename T>
     static constexpr bool bulk_kind = (bit(kind_of<T>())
                                        & (bit(Kind::Tally) | bit(Kind::Memo) | bit(Kind::Badge)
-                                          | bit(Kind::Pose) | bit(Kind::Lamp)))
+                                          | bit(Kind::Pose) | bit(Kind::Lamp) | bit(Kind::Team)))
                                       != 0;
 };
 

@@ -23,7 +23,7 @@ namespace {
 #if defined(LIMN_SANITIZED)
 constexpr std::uint64_t kCompareEvery = 4000;
 #else
-constexpr std::uint64_t kCompareEvery = 600;
+constexpr std::uint64_t kCompareEvery = 1500;
 #endif
 constexpr std::uint32_t kSeeds = 5;
 constexpr std::uint64_t kOperations = 200'000;

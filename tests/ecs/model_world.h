@@ -135,14 +135,16 @@ class ModelWorld : public ModelRecorded {
 
     // ---- around full chunks
 
-    /// Brings an archetype, or a sparse set, to 1024 k - 1, 1024 k and 1024 k + 1 rows, and looks.
+    /// Brings an archetype, perhaps a team's, or a sparse set to 1024 k - 1, 1024 k and 1024 k + 1
+    /// rows, and looks.
     void steer() {
-        constexpr Mask kWhole = bit(Kind::Place) | bit(Kind::Speed);
         const bool sparse = steered_ % 5 == 4;
         const std::uint32_t chunks = 1 + steered_ / 5 % 3;
+        steered_team_ = steered_ % 5 == 3 ? roll(kTeams) : kNoTeam;
         const auto size = [&] {
-            return sparse ? reference_.count_made_of(bit(Kind::Chosen), 0)
-                          : reference_.count_made_of(kWhole, ~kWhole & ~kSparseKinds);
+            return reference_.count([&](const Record& record) {
+                return sparse ? record.has(Kind::Chosen) : is_whole(record);
+            });
         };
         const std::size_t middle = std::size_t{chunks} * 1024;
         for (std::size_t target = middle - 1; target <= middle + 1; ++target) {
@@ -173,13 +175,24 @@ class ModelWorld : public ModelRecorded {
 
     void remove_chosen() {
         count("remove");
-        const Id id = first_with(bit(Kind::Chosen), 0);
+        const Id id = first_with([](const Record& record) { return record.has(Kind::Chosen); });
         expect(world_.remove<ModelChosen>(reference_.handle(id)), "remove says something else");
         reference_.remove(id, Kind::Chosen);
     }
 
+    /// Whether it is in the archetype that is brought to a size.
+    [[nodiscard]] bool is_whole(const Record& record) const {
+        constexpr Mask kWhole = bit(Kind::Place) | bit(Kind::Speed);
+        const Mask rest = ~kWhole & ~kSparseKinds & ~bit(Kind::Team);
+        return record.is_made_of(kWhole, rest) && record.team() == steered_team_;
+    }
+
     void grow_whole(std::size_t missing) {
         const Value value{roll(1000), kNoId};
+        if (steered_team_ != kNoTeam) {
+            grow_team(missing, value);
+            return;
+        }
         const std::uint32_t way = roll(3);
         if (missing > 40) {
             count("create_many");
@@ -204,10 +217,44 @@ class ModelWorld : public ModelRecorded {
         }
     }
 
-    void shrink_whole() {
-        constexpr Mask kWhole = bit(Kind::Place) | bit(Kind::Speed);
-        const Id id = first_with(kWhole, ~kWhole & ~kSparseKinds);
+    /// Of one team, of which the others become members.
+    void grow_team(std::size_t missing, Value value) {
+        value.number = value.number * kTeams + steered_team_;
+        const ModelTeam team = make<ModelTeam>(steered_team_, {});
+        if (missing > 40) {
+            count("create_many");
+            create_alike<ModelSpeed, ModelTeam, ModelPlace>(missing - roll(30), value);
+            return;
+        }
+        count("create");
+        const std::uint32_t way = roll(3);
+        if (way == 0) {
+            create_one<ModelPlace, ModelSpeed>(value);
+        } else {
+            create_one<ModelPlace, ModelTeam, ModelSpeed>({value.number + way, kNoId});
+        }
+        const Id id = reference_.living().back();
         const Entity entity = reference_.handle(id);
+        if (way == 1) {
+            count("command");
+            command([&](Commands commands) { commands.set(entity, team); });
+        } else {
+            count("add");
+            world_.add(entity, team);
+        }
+        reference_.add(id, Kind::Team, {steered_team_, kNoId});
+    }
+
+    void shrink_whole() {
+        const Id id = first_with([this](const Record& record) { return is_whole(record); });
+        const Entity entity = reference_.handle(id);
+        if (steered_team_ != kNoTeam && chance(50)) {
+            const Value other{(steered_team_ + 1) % kTeams, kNoId};
+            count("write");
+            world_.set(entity, make<ModelTeam>(other.number, {}));
+            reference_.set(id, Kind::Team, other);
+            return;
+        }
         switch (roll(3)) {
         case 0:
             count("destroy");
@@ -226,12 +273,13 @@ class ModelWorld : public ModelRecorded {
         }
     }
 
-    [[nodiscard]] Id first_with(Mask required, Mask excluded) {
+    template <typename IsWanted>
+    [[nodiscard]] Id first_with(const IsWanted& is_wanted) {
         const std::vector<Id>& living = reference_.living();
         const std::size_t start = roll(living.size());
         for (std::size_t i = 0; i < living.size(); ++i) {
             const Id id = living[(start + i) % living.size()];
-            if (reference_.at(id).is_made_of(required, excluded)) {
+            if (is_wanted(reference_.at(id))) {
                 return id;
             }
         }
@@ -247,6 +295,7 @@ class ModelWorld : public ModelRecorded {
 
     std::uint64_t steer_at_ = 5000;
     std::uint32_t steered_ = 0;
+    std::int64_t steered_team_ = kNoTeam;
     std::unique_ptr<Saved> saved_;
 };
 
