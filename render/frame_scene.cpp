@@ -109,6 +109,10 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
         device.bind_texture(kShadowAtlasUnit, *scene.shadow_atlas);
         scene.shadow_views->bind(device, kShadowViewsUnit);
     }
+    if (!scene.projectors->records().empty()) {
+        device.bind_texture(kProjectorImagesUnit, scene.projectors->images());
+        scene.projector_records->bind(device, kProjectorsUnit);
+    }
     scene.materials->records().bind(device, kSurfaceMaterialsUnit);
 }
 
@@ -142,7 +146,8 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "LOCAL_LIGHTS",
         "SHADOW_MAPS",
         "SHADOW_MASKS",
-        "PROBES"};
+        "PROBES",
+        "PROJECTORS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -160,7 +165,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
            | (scene.lists.cells.valid() ? 512u : 0u) | (maps.records.empty() ? 0u : 1024u)
            | (scene.volumes.lights.empty() ? 0u : 2048u)
-           | (scene.probe_block.size > 0 ? 4096u : 0u);
+           | (scene.probe_block.size > 0 ? 4096u : 0u)
+           | (scene.projectors->records().empty() ? 0u : 8192u);
 }
 
 const gpu::Program* SurfacePrograms::get(

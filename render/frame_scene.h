@@ -8,6 +8,7 @@
 #include "render/instance_list.h"
 #include "render/light_clusters.h"
 #include "render/mesh_pool.h"
+#include "render/projector_list.h"
 #include "render/shaders/environment_gpu.h"
 #include "render/shaders/view_gpu.h"
 #include "render/shadow/shadow_list.h"
@@ -47,6 +48,8 @@ inline constexpr unsigned kVelocityUnit = 14;
 inline constexpr unsigned kShadowAtlasUnit = 15;
 inline constexpr unsigned kShadowViewsUnit = 16;
 inline constexpr unsigned kShadowMasksUnit = 17;
+inline constexpr unsigned kProjectorImagesUnit = 18;
+inline constexpr unsigned kProjectorsUnit = 19;
 
 /// The surroundings of this frame, and what was made of them.
 struct SceneEnvironment {
@@ -84,6 +87,8 @@ struct FrameScene {
     const BufferTexture* light_indices = nullptr;
     const BufferTexture* light_cells = nullptr;
     const BufferTexture* shadow_views = nullptr;
+    const BufferTexture* projector_records = nullptr;
+    const ProjectorPool* projectors = nullptr;
     const gpu::Texture* shadow_atlas = nullptr;
     TextureId
         shadow_maps;  ///< the atlas as this frame's graph knows it; not valid() without shadows

@@ -67,6 +67,7 @@ struct LightEntity {
     const Affine& pose;
     float factor;  ///< of its intensity
     const Shadow* shadow;
+    const Projector* projector;
 };
 
 /// Calls use(light, what goes with it) for every enabled light of a type.
@@ -78,25 +79,27 @@ void each_light(const World& world, double time, float alpha, Use&& use) {
             const WorldTransform,
             Optional<const PreviousWorldTransform>,
             Optional<const LightPulse>,
-            Optional<const Shadow>>()
+            Optional<const Shadow>,
+            Optional<const Projector>>()
         .each([&](Entity entity,
                   const Light& light,
                   const WorldTransform& now,
                   const PreviousWorldTransform* before,
                   const LightPulse* pulse,
-                  const Shadow* shadow) {
+                  const Shadow* shadow,
+                  const Projector* projector) {
             if (light.enabled) {
                 const Affine world_from_light = alpha == 1.0f || before == nullptr
                                                     ? now.world
                                                     : mix_affine(before->world, now.world, alpha);
                 const float factor = pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f;
-                use(light, LightEntity{entity, world_from_light, factor, shadow});
+                use(light, LightEntity{entity, world_from_light, factor, shadow, projector});
             }
         });
 }
 
-/// Notes that the record added last casts shadows, if it does.
-void add_shadow(
+/// Notes that the record added last casts shadows or throws an image, if it does.
+void add_extras(
     LightList& list,
     const LightEntity& light,
     LightKind kind,
@@ -112,6 +115,13 @@ void add_shadow(
              axis_of(light.pose),
              radius,
              outer_angle});
+    }
+    if (light.projector != nullptr && kind != LightKind::Point) {
+        list.projecting.push_back(
+            {static_cast<std::uint32_t>(list.records.size() - 1),
+             kind,
+             *light.projector,
+             light.pose});
     }
 }
 
@@ -162,6 +172,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     list.records.clear();
     list.reach.clear();
     list.shadowed.clear();
+    list.projecting.clear();
     list.points = 0;
     list.spots = 0;
     list.sun_color = Vec3(0);
@@ -171,6 +182,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     const auto* frame = world.find_resource<FrameTime>();
     const double time =
         frame == nullptr ? 0.0 : frame->time - (1.0 - alpha) * static_cast<double>(frame->step);
+    list.time = time;
 
     each_light<DirectionalLight>(
         world, time, alpha, [&](const DirectionalLight& light, const LightEntity& its) {
@@ -181,24 +193,23 @@ void collect_lights(const World& world, float alpha, LightList& list) {
                     list.sun_color = Vec3(record.color);
                 }
                 list.records.push_back(record);
-                add_shadow(list, its, LightKind::Directional);
+                add_extras(list, its, LightKind::Directional);
             }
         });
     list.directional = static_cast<int>(list.records.size());
 
-    // Lights with a shadow come last: who lights with them looks at their maps, the others need
-    // not.
-    for (const bool shadowed : {false, true}) {
+    // Lights with a shadow or an image come last: only who lights with them looks these up.
+    for (const bool last : {false, true}) {
         list.first_shadowed = static_cast<int>(list.records.size());
         each_light<PointLight>(
             world, time, alpha, [&](const PointLight& light, const LightEntity& its) {
                 const layout::LightRecord record =
                     make_record(light, position_of(its.pose), its.factor);
-                if (shines(record) && shadowed == (its.shadow != nullptr)) {
+                if (shines(record) && last == (its.shadow != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.records.push_back(record);
                     list.reach.push_back({position_of(its.pose), reach_radius(record)});
-                    add_shadow(list, its, LightKind::Point, reach_radius(record));
+                    add_extras(list, its, LightKind::Point, reach_radius(record));
                     ++list.points;
                 }
             });
@@ -206,7 +217,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
             world, time, alpha, [&](const SpotLight& light, const LightEntity& its) {
                 const layout::LightRecord record =
                     make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
-                if (shines(record) && shadowed == (its.shadow != nullptr)) {
+                if (shines(record) && last == (its.shadow != nullptr || its.projector != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.spot_angles =
                         list.spot_angles || light.profile == SpotProfile::LinearAngle;
@@ -216,7 +227,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
                          reach_radius(record),
                          axis_of(its.pose),
                          std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
-                    add_shadow(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
+                    add_extras(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
                     ++list.spots;
                 }
             });

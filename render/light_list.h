@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/light.h"
+#include "ecs/components/projector.h"
 #include "ecs/components/shadow.h"
 #include "ecs/entity.h"
 #include "render/shaders/light_gpu.h"
@@ -13,10 +14,9 @@ namespace limn {
 class World;
 
 // The world's lights as one packed array, directional lights first, then point lights, then spots,
-// then point lights and spots that cast shadows, each in world order: what shaders loop over
-// without asking for types. Disabled, black and broken
-// (not finite) lights are left out, LightPulse is applied. Bench/oracles/light_oracle.h has the
-// formulas.
+// then point lights and spots that cast shadows or throw images, each in world order: what shaders
+// loop over without asking for types. Disabled, black and broken (not finite) lights are left out,
+// LightPulse is applied. Bench/oracles/light_oracle.h has the formulas.
 
 /// Where a point or spot light reaches: a sphere, for spots cut to a cone.
 struct LightReach {
@@ -40,14 +40,25 @@ struct ShadowedLight {
     float outer_angle = 0;      ///< of a spot [rad]
 };
 
+/// A spot or directional light that throws an image.
+struct ProjectingLight {
+    std::uint32_t record = 0;  ///< index into LightList::records
+    LightKind kind = LightKind::Spot;
+    Projector projector;
+    Affine pose;
+};
+
 struct LightList {
     std::vector<layout::LightRecord> records;
-    std::vector<LightReach> reach;        ///< of the point and spot lights alone
-    std::vector<ShadowedLight> shadowed;  ///< in the order of the records
+    std::vector<LightReach> reach;            ///< of the point and spot lights alone
+    std::vector<ShadowedLight> shadowed;      ///< in the order of the records
+    std::vector<ProjectingLight> projecting;  ///< in the order of the records
+    double time = 0;                          ///< of the moment shown [s]
     int directional = 0;
     int points = 0;
     int spots = 0;
-    int first_shadowed = 0;          ///< record from which on point lights and spots cast shadows
+    int first_shadowed = 0;          ///< record from which on point lights and spots cast
+                                     ///< shadows or throw images
     bool linear_fade = false;        ///< some polynomial has a linear term
     bool shadows = false;            ///< some record has a shadow; set by who draws them
     bool spot_angles = false;        ///< some spot has SpotProfile::LinearAngle

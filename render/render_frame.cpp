@@ -123,6 +123,8 @@ class Renderer {
     VolumeCollector volume_collector_;
     BufferTexture light_records_;
     BufferTexture shadow_views_;
+    BufferTexture projector_records_;
+    ProjectorPool projectors_;
     gpu::Texture specular_albedo_;
     gpu::Texture accumulation_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
@@ -141,7 +143,7 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     : device(gpu_device), graph(gpu_device), passes(std::move(made)), probe_graph_(gpu_device),
       ring_(gpu_device.caps(), "frame data", kRingBytes),
       materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
-      shadow_views_("shadow views", GL_RGBA32F),
+      shadow_views_("shadow views", GL_RGBA32F), projector_records_("projectors", GL_RGBA32F),
       specular_albedo_(
           "specular albedo",
           {.format = GL_RG32F, .width = kSpecularAlbedoSize, .height = kSpecularAlbedoSize}) {
@@ -155,6 +157,8 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.materials = &materials_;
     scene.light_records = &light_records_;
     scene.shadow_views = &shadow_views_;
+    scene.projector_records = &projector_records_;
+    scene.projectors = &projectors_;
     scene.shadow_atlas = &passes.shadows.atlas;
     scene.environment.reflection = &passes.reflection.maps;
     scene.environment.irradiance = &passes.reflection.irradiance;
@@ -274,6 +278,9 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
     resize_shadow_atlas(passes.shadows, scene.shadows);
     VolumeCollector::take_over_hybrids(scene.lights, scene.volumes);
+    if (const auto* assets = world.find_resource<Assets>()) {
+        projectors_.update(*assets, scene.lights);
+    }
 
     const std::size_t alignment = BufferTexture::alignment();
     const auto push = [&](const auto& items) {
@@ -287,6 +294,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     };
     light_records_.set(push(scene.lights.records));
     shadow_views_.set(push(scene.shadows.records));
+    projector_records_.set(push(projectors_.records()));
     passes.clusters.lights.set(push(scene.clusters.lights));
     passes.clusters.boxes.set(push(scene.clusters.boxes));
     scene.view_block = ring_.push_value(make_view_block(view, scene.clusters.shape, scene.lights));

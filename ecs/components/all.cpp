@@ -7,6 +7,7 @@
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/projector.h"
 #include "ecs/components/post.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
@@ -33,6 +34,7 @@ void register_all_components() {
     register_component<LightPulse>();
     register_component<Shadow>();
     register_component<NoShadow>();
+    register_component<Projector>();
     register_component<ShadowVolume>();
     register_component<EnvProbe>();
     register_component<EnvProbeState>();

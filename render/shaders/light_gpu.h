@@ -1,6 +1,7 @@
 // One light of any type, read from a texture buffer as kLightTexels RGBA32F texels: on a software OpenGL a
 // fetch of 16 bytes costs a fifth of four loads from a storage block. Directional lights come first, then
-// point lights, then spots (light.interface: sorted by type, no type tag), then those of both that cast shadows.
+// point lights, then spots (light.interface: sorted by type, no type tag), then those of both that cast shadows
+// or throw images.
 
 #ifdef __cplusplus
 #pragma once
@@ -13,7 +14,7 @@ struct LightRecord {
     vec4 color;       // [cd]; of a directional light [lx]. w: multiplier of Falloff::Smooth, 0 = Karis window
     vec4 polynomial;  // c, l, q of 1 / (c + l d + q d^2). w: SpotProfile
     vec4 axis;        // where a spot shines, times the scale of its profile. w: offset of its profile
-    vec4 shadow;      // first shadow view (or mask layer), kShadow*, number of views, size of the source
+    vec4 shadow;      // first shadow view (or mask layer), kShadow*, number of views, number of its projector from 1 or 0
 };
 
 const uint kLightTexels = 5u;

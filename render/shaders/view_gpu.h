@@ -16,7 +16,7 @@ struct ViewBlock {
     vec4 size;                 // width, height [px], 1 / width, 1 / height
     vec4 grid_cells;           // columns, rows, slices of the light clusters; w: side of a tile [px]
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first light
-                               // with a shadow that is not directional
+                               // with a shadow or an image that is not directional
 };
 
 #ifdef __cplusplus

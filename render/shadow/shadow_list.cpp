@@ -201,7 +201,7 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
             static_cast<float>(list.records.size()),
             wanted.kind,
             static_cast<float>(wanted.count),
-            wanted.settings.source_size};
+            0};
         for (std::size_t i = 0; i < wanted.count; ++i) {
             list.records.push_back(make_shadow_record(
                 views_[wanted.first_view + i],

@@ -5,6 +5,7 @@
 //   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
 //   LINEAR_FADE         some polynomial has a linear term
 //   SHADOWS             some light has a shadow
+//   PROJECTORS          some light throws an image
 //   LOCAL_LIGHTS        some point or spot light is in view
 
 #include "lib/light.glsl"
@@ -15,18 +16,36 @@
 #ifdef SHADOWS
 #include "lib/shadow.glsl"
 #endif
+#ifdef PROJECTORS
+#include "lib/projector.glsl"
+#endif
+#if defined(SHADOWS) || defined(PROJECTORS)
+#define LIGHT_PASSING
+#endif
 
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
 layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 
+// What casters and images let pass of a light, on its way to `position_ws`.
+vec3 light_passing(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+    vec3 passing = vec3(1.0);
+#ifdef LIGHT_PASSING
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+#ifdef SHADOWS
+    passing *= light_visibility(shadow, position_ws, normal, to_light, pixel);
+#endif
+#ifdef PROJECTORS
+    passing *= projected_color(shadow.w, position_ws);
+#endif
+#endif
+    return passing;
+}
+
 Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
     vec3 to_light = texelFetch(lights, index * int(kLightTexels)).xyz;
     vec3 irradiance = texelFetch(lights, index * int(kLightTexels) + 1).rgb;
-#ifdef SHADOWS
-    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    irradiance *= light_visibility(shadow, position_ws, normal, to_light, pixel);
-#endif
+    irradiance *= light_passing(index, position_ws, normal, to_light, pixel);
     return Incoming(to_light, irradiance);
 }
 
@@ -72,13 +91,13 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 }
 
 // Adds the point and spot lights of a list: begin and length in light_indices. An empty list reads zeros, and counts
-// them not at all. Lights with shadows come last, in a loop of their own.
+// them not at all. Lights with shadows or images come last, in a loop of their own.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
     int i = int(list.x);
     int end = int(list.x + list.y);
     int index = int(texelFetch(light_indices, i).x);
-#ifdef SHADOWS
+#ifdef LIGHT_PASSING
     int first_shadowed = int(view.grid_depth.w);
 #else
     int first_shadowed = kNoLight;
@@ -91,12 +110,11 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
         i += index < first_shadowed ? 1 : 0;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
     } while (index < first_shadowed);
-#ifdef SHADOWS
+#ifdef LIGHT_PASSING
     do {
         Incoming light = incoming_local(index, position_ws, r.normal);
-        vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-        float lit = light_visibility(shadow, position_ws, r.normal, light.to_light, pixel);
-        light.irradiance *= i < end ? lit : 0.0;
+        vec3 passing = light_passing(index, position_ws, r.normal, light.to_light, pixel);
+        light.irradiance *= i < end ? passing : vec3(0.0);
         add_light(sum, r, light);
         ++i;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
