@@ -1,5 +1,9 @@
 #include "bench/oracles/tone_oracle.h"
 
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -85,6 +89,34 @@ double gamma_encode(double linear, double gamma) {
 
 double gamma_display(double stored, double gamma) {
     return std::pow(std::max(stored, 0.0), gamma);
+}
+
+double srgb_encode(double linear) {
+    const double x = std::clamp(linear, 0.0, 1.0);
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+glm::dvec3 pbr_neutral(glm::dvec3 color) {
+    const double x = std::min({color.x, color.y, color.z});
+    color -= x < 0.08 ? x - 6.25 * x * x : 0.04;
+    const double p = std::max({color.x, color.y, color.z});
+    if (p < 0.76) {
+        return color;
+    }
+    const double q = 1 - 0.24 * 0.24 / (p + 0.24 - 0.76);
+    const double g = 1 / (0.15 * (p - q) + 1);
+    return glm::mix(glm::dvec3(q), color * (q / p), g);
+}
+
+glm::dvec3 aces_fit(const glm::dvec3& color) {
+    const glm::dmat3 input = glm::transpose(glm::dmat3(
+        0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777));
+    const glm::dmat3 output = glm::transpose(glm::dmat3(
+        1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602));
+    const glm::dvec3 v = input * color;
+    const glm::dvec3 a = v * (v + 0.0245786) - 0.000090537;
+    const glm::dvec3 b = v * (0.983729 * v + 0.4329510) + 0.238081;
+    return output * (a / b);
 }
 
 double knee_map(double c, double defog, const KneeSettings& settings) {

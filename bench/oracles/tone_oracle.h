@@ -44,6 +44,14 @@ measure_picture(std::span<const glm::dvec3> pixels, double clipped_share = 0.001
 [[nodiscard]] double gamma_encode(double linear, double gamma = 2.2);
 [[nodiscard]] double gamma_display(double stored, double gamma = 2.2);
 
+/// Linear 0 .. 1 to sRGB (IEC 61966-2-1); clamps.
+[[nodiscard]] double srgb_encode(double linear);
+
+/// Khronos Group, "PBR Neutral Tone Mapper", 2024.
+[[nodiscard]] glm::dvec3 pbr_neutral(glm::dvec3 color);
+/// Stephen Hill's fit of the ACES reference and output transforms, 2017; not clamped.
+[[nodiscard]] glm::dvec3 aces_fit(const glm::dvec3& color);
+
 /// hdr.tonemap-shader: 0.3333 (ln(k e max(c - defog, 0) + 1) / k)^exponent, not clamped.
 struct KneeSettings {
     double exposure = 1;
