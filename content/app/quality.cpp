@@ -2,6 +2,7 @@
 
 #include "content/app/quality_shadows.h"
 #include "content/app/quality_surfaces.h"
+#include "content/app/quality_tone.h"
 
 namespace limn {
 
@@ -13,6 +14,9 @@ std::span<const QualityEffect> quality_effects() {
         {"shadows",
          "rays from the point that each pixel shows to the light, in double precision",
          measure_shadows},
+        {"tone",
+         "statistics and tone operators in double precision, with true Gaussians",
+         measure_tone},
     };
     return kEffects;
 }

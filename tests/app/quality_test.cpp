@@ -120,4 +120,22 @@ TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep the
     CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (3 * 8 + 3));
 }
 
+TEST_CASE("quality: statistics and tone operators of the GPU are those of the oracle") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "tone", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 14);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        if (row["bound"] == "none") {  // the picture is worth it: five decades of light
+            CHECK(row["found"] > 1e5);
+        }
+    }
+}
+
 }  // namespace limn
