@@ -27,6 +27,7 @@ constexpr FeatureName kFeatureNames[] = {
     {kDoubleSided, "DOUBLE_SIDED"},
     {kVertexColor, "VERTEX_COLOR"},
     {kVelocity, "VELOCITY"},
+    {kInflate, "INFLATE"},
 };
 
 /// The instance streams point into this frame's part of the ring.
@@ -238,7 +239,8 @@ void draw_casters(
     bind_instances(device, scene, casters);
     for (const DrawRun& run : casters.opaque) {
         const bool holes = (run.features & kAlphaMask) != 0;
-        const gpu::Program* program = programs.get(holes ? run.features & kHoles : 0, 0, {});
+        const gpu::Program* program =
+            programs.get(run.features & (holes ? kHoles | kInflate : kInflate), 0, {});
         if (program == nullptr) {
             continue;
         }

@@ -20,17 +20,21 @@ namespace {
 constexpr std::uint16_t kHidden = 0xffff;
 static_assert(kChunkRows <= kCullBlock);
 
-// A key: blended last, then batch, mirrored, mesh. Sorting keys sorts draws.
+// A key: blended last, then inflated, batch, mirrored, mesh. Sorting keys sorts draws.
 constexpr std::uint64_t
-make_key(bool blend, std::uint32_t batch, bool mirrored, std::uint32_t mesh) {
-    return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(batch) << 33
-           | static_cast<std::uint64_t>(mirrored) << 32 | mesh;
+make_key(bool blend, bool inflated, std::uint32_t batch, bool mirrored, std::uint32_t mesh) {
+    return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(inflated) << 62
+           | static_cast<std::uint64_t>(batch) << 33 | static_cast<std::uint64_t>(mirrored) << 32
+           | mesh;
 }
 constexpr bool is_blended(std::uint64_t key) {
     return key >> 63 != 0;
 }
+constexpr bool is_inflated(std::uint64_t key) {
+    return (key >> 62 & 1) != 0;
+}
 constexpr std::uint32_t batch_of(std::uint64_t key) {
-    return static_cast<std::uint32_t>(key >> 33) & 0x3fffffffu;
+    return static_cast<std::uint32_t>(key >> 33) & 0x1fffffffu;
 }
 constexpr bool is_mirrored(std::uint64_t key) {
     return (key >> 32 & 1) != 0;
@@ -102,7 +106,8 @@ void InstanceCollector::collect(
     const auto query = world.query<
         const MeshInstance,
         const WorldTransform,
-        Optional<const PreviousWorldTransform>>();
+        Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>>();
     const auto& camera = view.world_from_camera.row;
     const Selection seen = {
         .frustum = make_frustum(view.clip_from_world),
@@ -128,6 +133,7 @@ void InstanceCollector::collect_casters(
         const MeshInstance,
         const WorldTransform,
         Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>,
         Without<NoShadow>>();
     const Selection casters = {
         .frustum = volume.frustum,
@@ -153,13 +159,15 @@ void InstanceCollector::collect_from(
     query.par_chunks([&](ChunkView chunk,
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before) {
+                         std::span<const PreviousWorldTransform> before,
+                         std::span<const Inflate> inflate) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         const auto count = static_cast<int>(chunk.size());
         ChunkWork& work = chunks_[chunk.index()];
-        fill_boxes({surfaces, now, before}, selection.alpha, meshes.meshes(), boxes, mirrored);
+        const InstanceRows rows = {surfaces, now, before, inflate};
+        fill_boxes(rows, selection.alpha, meshes.meshes(), boxes, mirrored);
         cull_boxes(selection.frustum, boxes, count, visible);
         if (selection.casters) {
             cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
@@ -183,7 +191,7 @@ void InstanceCollector::collect_from(
             const float far_side = glm::dot(selection.forward, c - selection.eye)
                                    + glm::dot(glm::abs(selection.forward), h);
             const std::uint64_t key =
-                make_key(blend, batch, mirrored[i] != 0, surfaces[i].mesh.index);
+                make_key(blend, !inflate.empty(), batch, mirrored[i] != 0, surfaces[i].mesh.index);
             work.local[i] = table.count(key, far_side);
         }
     });
@@ -201,9 +209,10 @@ void InstanceCollector::collect_from(
     query.par_chunks([&](ChunkView chunk,
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before) {
+                         std::span<const PreviousWorldTransform> before,
+                         std::span<const Inflate> inflate) {
         ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {surfaces, now, before};
+        const InstanceRows rows = {surfaces, now, before, inflate};
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             if (work.local[i] == kHidden) {
                 continue;
@@ -217,7 +226,7 @@ void InstanceCollector::collect_from(
                 record,
                 (is_mirrored(kind.key) ? 1u : 0u) | materials.model_of(record) << 8,
                 chunk.entities()[i].index,
-                0};
+                inflate.empty() ? 0.0f : inflate[i].distance};
             if (velocity) {
                 moments_before[place] = rows.at(i, selection.alpha_before);
             }
@@ -316,7 +325,8 @@ void InstanceCollector::add_command(
     const MeshRange& mesh = meshes.meshes()[mesh_of(key)];
     const SurfaceBatch& batch = materials.batch(batch_of(key));
     DrawRun run;
-    run.features = batch.features | (mesh.colored ? kVertexColor : 0u);
+    run.features =
+        batch.features | (mesh.colored ? kVertexColor : 0u) | (is_inflated(key) ? kInflate : 0u);
     run.textures = batch.textures;
     run.mirrored = is_mirrored(key);
     run.first_command = static_cast<std::uint32_t>(commands_.size());

@@ -24,7 +24,9 @@ void fill_boxes(
         float det = 1;
         if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
             const Affine a = rows.at(i, alpha);
-            box = transform_bounds(a, meshes[mesh].bounds);
+            const Bounds& around = meshes[mesh].bounds;
+            box = transform_bounds(
+                a, rows.inflate.empty() ? around : inflated(around, rows.inflate[i]));
             det = determinant(a);
         }
         const Vec3 c = center(box);

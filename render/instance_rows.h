@@ -19,6 +19,7 @@ struct InstanceRows {
     std::span<const MeshInstance> surfaces;
     std::span<const WorldTransform> now;
     std::span<const PreviousWorldTransform> before;  ///< empty: never moved
+    std::span<const Inflate> inflate;                ///< empty: as they are
 
     [[nodiscard]] Affine at(std::size_t i, float alpha) const {
         return before.empty() || alpha == 1.0f ? now[i].world

@@ -28,7 +28,7 @@ class Device;
 inline constexpr int kMaterialTextures =
     5;  ///< base color, metal-rough, normal, occlusion, emission
 
-/// What the program of a surface must do: one bit a definition of lib/material.glsl and
+/// What the program of a surface must do: one bit a definition of lib/material.glsl, mesh.vert and
 /// gbuffer.frag.
 enum SurfaceFeature : std::uint32_t {
     kBaseColorMap = 1u << 0,  // the five maps in the order of the texture units
@@ -45,6 +45,7 @@ enum SurfaceFeature : std::uint32_t {
     kSrgbEmission = 1u << 10,
     kVertexColor = 1u << 11,  // added by the mesh
     kVelocity = 1u << 12,     // added by the frame
+    kInflate = 1u << 14,      // added by the instance
 };
 
 /// Materials that are drawn alike.

@@ -1,9 +1,13 @@
 #pragma once
 
+#include "ecs/base/log.h"
+
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace limn::test {
 
@@ -17,6 +21,17 @@ inline std::optional<std::string> shared_asset(const std::string& relative) {
         return std::nullopt;
     }
     return path.lexically_normal().string();
+}
+
+/// Log messages that `action` leaves.
+template <typename Action>
+std::vector<std::string> messages_of(Action&& action) {
+    static std::vector<std::string> messages;
+    messages.clear();
+    set_log_sink([](LogLevel, std::string_view message) { messages.emplace_back(message); });
+    action();
+    set_log_sink(nullptr);
+    return messages;
 }
 
 /// A folder for a test's files, empty at the start and gone at the end.

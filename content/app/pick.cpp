@@ -57,6 +57,7 @@ std::optional<float> meet_triangle(
 struct Candidate {
     Entity entity;
     const MeshData* mesh = nullptr;
+    float inflate = 0.0f;
     Vec3 origin;
     Vec3 direction;  // scaled so that distances stay those of the world
     float enter = 0.0f;
@@ -64,14 +65,16 @@ struct Candidate {
 
 std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
     const MeshData& mesh = *candidate.mesh;
+    const auto corner = [&](std::size_t i) {
+        const std::uint32_t vertex = mesh.indices[i];
+        const bool moves = candidate.inflate != 0.0f && vertex < mesh.normals.size();
+        const Vec3 outward = moves ? normalize_or(mesh.normals[vertex], {0, 0, 0}) : Vec3(0);
+        return mesh.positions[vertex] + candidate.inflate * outward;
+    };
     std::optional<float> hit;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const std::optional<float> distance = meet_triangle(
-            candidate.origin,
-            candidate.direction,
-            mesh.positions[mesh.indices[i]],
-            mesh.positions[mesh.indices[i + 1]],
-            mesh.positions[mesh.indices[i + 2]]);
+            candidate.origin, candidate.direction, corner(i), corner(i + 1), corner(i + 2));
         if (distance && *distance < nearest) {
             nearest = *distance;
             hit = distance;
@@ -97,8 +100,11 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
         return std::nullopt;
     }
     std::vector<Candidate> candidates;
-    world.query<const WorldTransform, const MeshInstance>().each(
-        [&](Entity entity, const WorldTransform& transform, const MeshInstance& instance) {
+    world.query<const WorldTransform, const MeshInstance, Optional<const Inflate>>().each(
+        [&](Entity entity,
+            const WorldTransform& transform,
+            const MeshInstance& instance,
+            const Inflate* inflate) {
             if (instance.mesh.index >= assets->meshes.size()) {
                 return;
             }
@@ -111,9 +117,13 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
             Candidate candidate{
                 .entity = entity,
                 .mesh = &mesh,
+                .inflate = inflate != nullptr ? inflate->distance : 0.0f,
                 .origin = transform_point(mesh_from_world, ray.origin),
                 .direction = transform_vector(mesh_from_world, ray.direction)};
-            if (const auto enter = meet_box(candidate.origin, candidate.direction, mesh.bounds)) {
+            if (const auto enter = meet_box(
+                    candidate.origin,
+                    candidate.direction,
+                    inflated(mesh.bounds, {candidate.inflate}))) {
                 candidate.enter = *enter;
                 candidates.push_back(candidate);
             }
@@ -142,7 +152,10 @@ Bounds entity_bounds(const World& world, Entity entity) {
         || instance->mesh.index >= assets->meshes.size()) {
         return {};
     }
-    const Bounds& box = assets->meshes[instance->mesh.index].bounds;
+    const Inflate* inflate = world.find<Inflate>(entity);
+    const Bounds box = inflated(
+        assets->meshes[instance->mesh.index].bounds,
+        inflate != nullptr ? *inflate : Inflate{.distance = 0});
     return is_empty(box) ? Bounds{} : transform_bounds(transform->world, box);
 }
 

@@ -28,6 +28,7 @@ void register_all_components() {
     register_component<Spin>();
     register_component<Sway>();
     register_component<MeshInstance>();
+    register_component<Inflate>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

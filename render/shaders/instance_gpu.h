@@ -12,7 +12,7 @@ struct InstanceRecord {
     uint material;
     uint flags;    // bit 0: mirrored, the determinant is negative; from bit 8: kModel* of lib/gbuffer.glsl
     uint entity;   // its index, for picking
-    uint unused;
+    float inflate; // by which vertices move along their normals, in the mesh's own space [m]
 };
 
 #ifdef __cplusplus

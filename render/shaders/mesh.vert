@@ -1,6 +1,8 @@
 // Every mesh instance, for the G-buffer and for the passes that shade while drawing.
 //   VELOCITY  also where each point was the moment before
+//   INFLATE   vertices move along their normals
 #version 450
+#include "lib/inflate.glsl"
 #include "lib/view.glsl"
 
 layout(location = 0) in vec3 position_ms;
@@ -11,7 +13,7 @@ layout(location = 4) in vec4 color;
 layout(location = 5) in vec4 world_row0;  // world_from_mesh
 layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
-layout(location = 8) in uvec4 instance;   // material, flags, entity
+layout(location = 8) in uvec4 instance;   // material, flags, entity; w: bits of the distance to inflate by
 layout(location = 9) in vec4 before_row0;
 layout(location = 10) in vec4 before_row1;
 layout(location = 11) in vec4 before_row2;
@@ -27,6 +29,9 @@ layout(location = 5) out vec3 before;  // clip x, y, w
 
 void main() {
     vec4 p = vec4(position_ms, 1.0);
+#ifdef INFLATE
+    p.xyz = inflate(position_ms, normal_ms, uintBitsToFloat(instance.w));
+#endif
     vec3 position_ws = vec3(dot(world_row0, p), dot(world_row1, p), dot(world_row2, p));
     gl_Position = view.clip_from_world * vec4(position_ws, 1.0);
 

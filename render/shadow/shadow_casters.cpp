@@ -34,6 +34,7 @@ void sign_casters(
         const MeshInstance,
         const WorldTransform,
         Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>,
         Without<NoShadow>>();
     const std::size_t count = volumes.size();
     std::vector<std::uint64_t> sums(query.chunk_count() * count);
@@ -41,12 +42,13 @@ void sign_casters(
     query.par_chunks([&](ChunkView chunk,
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before) {
+                         std::span<const PreviousWorldTransform> before,
+                         std::span<const Inflate> inflate) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         std::uint64_t hashes[kCullBlock];
-        const InstanceRows rows = {surfaces, now, before};
+        const InstanceRows rows = {surfaces, now, before, inflate};
         const auto rows_here = static_cast<int>(chunk.size());
         fill_boxes(rows, alpha, meshes.meshes(), boxes, mirrored);
         for (std::size_t i = 0; i < chunk.size(); ++i) {
@@ -54,8 +56,11 @@ void sign_casters(
             const std::uint32_t material = materials.record_of(surfaces[i].material);
             const std::uint64_t drawn =
                 static_cast<std::uint64_t>(surfaces[i].mesh.index) << 32 | material;
+            const float swollen = inflate.empty() ? 0.0f : inflate[i].distance;
             const bool casts = !materials.batch(materials.batch_of(material)).blend;
-            hashes[i] = casts ? hash_bytes(&a, sizeof a, drawn) | 1 : 0;  // of a caster never 0
+            hashes[i] =
+                casts ? hash_bytes(&a, sizeof a, hash_bytes(&swollen, sizeof swollen, drawn)) | 1
+                      : 0;  // of a caster never 0
         }
         for (std::size_t v = 0; v < count; ++v) {
             cull_boxes(volumes[v].frustum, boxes, rows_here, visible);

@@ -16,8 +16,8 @@ class World;
 
 [[nodiscard]] CasterVolume make_caster_volume(const ShadowView& view);
 
-/// A number for each volume that changes when a caster comes, goes, moves or changes its mesh or
-/// material: equal numbers, equal map. The order of the casters does not count.
+/// A number for each volume that changes when a caster comes, goes, moves or changes its mesh,
+/// material or Inflate: equal numbers, equal map. The order of the casters does not count.
 void sign_casters(
     const World& world,
     float alpha,

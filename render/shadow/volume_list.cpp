@@ -224,10 +224,12 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
             const MeshInstance,
             const WorldTransform,
             Optional<const PreviousWorldTransform>,
+            Optional<const Inflate>,
             Without<NoShadow>>()
         .each([&](const MeshInstance& surface,
                   const WorldTransform& now,
-                  const PreviousWorldTransform* before) {
+                  const PreviousWorldTransform* before,
+                  const Inflate* inflate) {
             if (surface.mesh.index >= assets.meshes.size()
                 || assets.meshes[surface.mesh.index].indices.size() < 3) {
                 return;
@@ -241,9 +243,19 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
             const Affine a = view.alpha == 1.0f || before == nullptr
                                  ? now.world
                                  : mix_affine(before->world, now.world, view.alpha);
-            const Bounds box = transform_bounds(a, assets.meshes[surface.mesh.index].bounds);
+            const MeshData& mesh = assets.meshes[surface.mesh.index];
+            const Bounds box =
+                transform_bounds(a, inflate ? inflated(mesh.bounds, *inflate) : mesh.bounds);
             for (Candidate& candidate : candidates_) {
-                if (candidate.served && reaches_box(candidate.reach, box)) {
+                if (!candidate.served || !reaches_box(candidate.reach, box)) {
+                    continue;
+                }
+                if (inflate != nullptr) {
+                    refuse(
+                        candidate,
+                        "shadow volumes: mesh " + mesh.name
+                            + " is inflated; lights that reach it get maps");
+                } else {
                     add_caster(candidate, view, frustum, assets, surface, a, box);
                 }
             }

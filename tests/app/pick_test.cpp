@@ -48,6 +48,20 @@ TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
     CHECK(shifted->distance == doctest::Approx(2.0f));
 }
 
+TEST_CASE("pick: an inflated mesh is met where it is drawn") {
+    World world;
+    MeshData mesh = half_square();
+    mesh.normals.assign(3, {0, 0, 2});  // of any length
+    world.insert_resource(Assets{}).meshes.push_back(mesh);
+    const Entity entity = place(world, {0, 0, -3}, Vec3(2));
+    world.add(entity, Inflate{.distance = 0.5f});
+    const auto hit = pick_entity(world, {{-0.4f, 0.4f, 0}, {0, 0, -1}});
+    REQUIRE(hit);
+    CHECK(hit->distance == doctest::Approx(2.0f));
+    CHECK(entity_bounds(world, entity).max.z == doctest::Approx(-2.0f));
+    CHECK(entity_bounds(world, entity).max.x == doctest::Approx(2.0f));
+}
+
 TEST_CASE("pick: nothing behind the eye, nothing without meshes") {
     World world;
     CHECK_FALSE(pick_entity(world, {}));

@@ -1,6 +1,5 @@
 #include "bench/oracles/shadow_volume_oracle.h"
 #include "content/make/shapes.h"
-#include "ecs/base/log.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "render/gpu/framebuffer.h"
@@ -8,11 +7,10 @@
 #include "render/graph/frame_graph.h"
 #include "render/shadow/volume_list.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/support.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
-
-#include <functional>
 
 // Stencil volumes on the GPU against rays on the CPU (shadow.stencil-pass, -stencil-frame,
 // -vol-per-edge, -vol-per-triangle, -extrusion-distance, -closed-mesh, -density-view).
@@ -159,16 +157,6 @@ int count_wrong(
 double disagreement(
     VolumeScene& scene, const Visibility& found, const Vec4& light, const RenderView& view) {
     return static_cast<double>(count_wrong(scene, found, light, view)) / std::max(found.counted, 1);
-}
-
-/// Log messages that `action` leaves.
-std::vector<std::string> messages_of(const std::function<void()>& action) {
-    static std::vector<std::string> messages;
-    messages.clear();
-    set_log_sink([](LogLevel, std::string_view message) { messages.emplace_back(message); });
-    action();
-    set_log_sink(nullptr);
-    return messages;
 }
 
 }  // namespace
@@ -457,7 +445,7 @@ TEST_CASE_FIXTURE(
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({0.2f, 4, 0.3f}));
     world.add(light, kVolumes);
     const RenderView view = from({0.3f, 3.2f, 4.1f});
-    const std::vector<std::string> messages = messages_of([&] {
+    const std::vector<std::string> messages = test::messages_of([&] {
         radiance(view);
         radiance(view);
     });
@@ -488,7 +476,7 @@ TEST_CASE_FIXTURE(
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({0.2f, 4, 0.3f}));
     world.add(light, kVolumes);
     const RenderView view = from({0.3f, 3.2f, 4.1f});
-    const std::vector<std::string> messages = messages_of([&] { radiance(view); });
+    const std::vector<std::string> messages = test::messages_of([&] { radiance(view); });
     REQUIRE(messages.size() == 1);
     CHECK(messages[0].find("lattice") != std::string::npos);
     world.add(light, ShadowVolume{.kind = VolumeKind::Mixed});
@@ -505,7 +493,7 @@ TEST_CASE_FIXTURE(
             shine(PointLight{.intensity = 5, .radius = 15}, at({std::sin(a), 4, std::cos(a)}));
         world.add(light, kVolumes);
     }
-    const std::vector<std::string> messages = messages_of([&] {
+    const std::vector<std::string> messages = test::messages_of([&] {
         radiance(from({0.3f, 3.2f, 4.1f}));
         radiance(from({0.3f, 3.2f, 4.1f}));
     });

@@ -1,0 +1,4 @@
+// A vertex moved along its normal (shade.inflate). The normal need not be unit; one of no length moves nothing.
+vec3 inflate(vec3 position, vec3 normal, float distance) {
+    return position + distance * inversesqrt(max(dot(normal, normal), 1e-30)) * normal;
+}
