@@ -7,7 +7,7 @@ namespace limn {
 
 /// How the shadows of a light are found (shadow.selection).
 enum class ShadowMethod : std::uint8_t {
-    Auto,         ///< what suits the light: see choose_shadow_method
+    Auto,         ///< volumes for a light with a ShadowVolume beside it, else maps
     Map,          ///< shadow maps: one view of a spot, six of a point light, cascades of a sun
     Perspective,  ///< one map of the scene as the camera's perspective distorts it
     Volume,       ///< stencil volumes: exact to the pixel, hard, closed meshes only

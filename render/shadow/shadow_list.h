@@ -15,8 +15,6 @@ namespace limn {
 // a caster in it changes; a light that is gone gives its places back.
 //
 //     collector.collect(world, view, scene.lights, meshes, materials, ring, scene.shadows);
-//
-// Method of a light (shadow.selection): see choose_shadow_method.
 
 /// A view to be drawn in this frame.
 struct ShadowDraw {

@@ -74,6 +74,13 @@ Interval project(const Bounds& box, const Vec3& n) {
 
 }  // namespace
 
+ShadowMethod choose_shadow_method(ShadowMethod wanted, bool has_volume) {
+    if (wanted != ShadowMethod::Auto) {
+        return wanted;
+    }
+    return has_volume ? ShadowMethod::Volume : ShadowMethod::Map;
+}
+
 bool shade_may_hold(const Bounds& box, const Vec4& light, const Vec3& middle, float radius) {
     // What is shaded by the box lies behind it, seen from the light: does the way from the ball to
     // the light pass the box, made larger by the ball?
@@ -202,13 +209,15 @@ void VolumeCollector::find_candidates(const World& world, const LightList& light
     candidates_.clear();
     for (std::size_t i = 0; i < lights.shadowed.size(); ++i) {
         const ShadowedLight& light = lights.shadowed[i];
-        const ShadowMethod method = light.settings.method;
+        const auto* settings = world.find<ShadowVolume>(light.entity);
+        const ShadowMethod method =
+            choose_shadow_method(light.settings.method, settings != nullptr);
         if (method != ShadowMethod::Volume && method != ShadowMethod::Hybrid) {
             continue;
         }
         Candidate& candidate = candidates_.emplace_back();
         candidate.shadowed = i;
-        if (const auto* settings = world.find<ShadowVolume>(light.entity)) {
+        if (settings != nullptr) {
             candidate.settings = *settings;
         }
         candidate.light = homogeneous(light);

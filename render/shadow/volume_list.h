@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/instance_list.h"
@@ -55,6 +56,11 @@ struct VolumeList {
     int unserved = 0;            ///< lights that have maps instead
     ShadowMeshPool* meshes = nullptr;
 };
+
+/// What ShadowMethod::Auto means for a light with, or without, a ShadowVolume beside it
+/// (shadow.selection): who says what its volumes are like wants volumes, all others the maps that
+/// every caster suits.
+[[nodiscard]] ShadowMethod choose_shadow_method(ShadowMethod wanted, bool has_volume);
 
 /// Whether what a caster in `box` shades can hold a point of the ball. Never false if it does.
 [[nodiscard]] bool

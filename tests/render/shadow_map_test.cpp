@@ -284,6 +284,43 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: six faces agree with rays on 98 % of 
     CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1, 0}); }) >= 0.98);
 }
 
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: turned by 90 degrees six faces give the same picture") {
+    const MeshId floor = add(make_box({.size = {6, 0.2f, 6}}));
+    const MeshId post = add(make_box({.size = {0.3f, 0.8f, 0.5f}}));
+    const auto picture = [&](const Quat& turn) {
+        const auto turned = [&](const Vec3& p) { return affine_from(turn * p, turn, {1, 1, 1}); };
+        const std::vector<Entity> made = {
+            place(floor, white, turned({0, -1, 0})),
+            place(post, white, turned({1, -0.5f, 0.3f})),
+            place(post, white, turned({-0.8f, -0.5f, 0.9f})),
+            shine(PointLight{.radius = 0}, at({0, 0, 0}))};
+        world.add(made.back(), Shadow{.filter = ShadowFilter::Hard, .resolution = 128});
+        RenderView view = look({0.5f, 2, 2}, {0, -1, 0}, 64, 64);
+        const Affine pose = affine_from({0, 0, 0}, turn, {1, 1, 1}) * view.world_from_camera;
+        view = make_render_view(
+            {.fov_y = radians(90.0f), .near = 0.05f}, pose, pose, {.width = 64, .height = 64});
+        const auto all = receivers(made.back(), view);
+        for (const Entity entity : made) {
+            world.destroy(entity);
+        }
+        return all;
+    };
+    const auto straight = picture({1, 0, 0, 0});
+    for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+        const auto turned = picture(glm::angleAxis(0.5f * kPi, axis));
+        int different = 0;
+        int dark = 0;
+        for (std::size_t i = 0; i < straight.size(); ++i) {
+            different += std::abs(straight[i].seen - turned[i].seen) > 0.01 ? 1 : 0;
+            dark += straight[i].seen < 0.5 ? 1 : 0;
+        }
+        CAPTURE(axis.x);
+        CAPTURE(axis.y);
+        CHECK(dark > 100);
+        CHECK(different <= 8);  // of 4096: rounding where texels end
+    }
+}
+
 TEST_CASE_FIXTURE(
     ShadowTest, "shadow map: a wide spot is served by six faces, and lights what its cone holds") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
@@ -533,6 +570,42 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: only views in which something moved a
     // What a view never saw does not count.
     place(box, white, at({0, 0.5f, 30}));
     CHECK(drawn(view) == 0);
+}
+
+TEST_CASE_FIXTURE(
+    ColumnScene, "shadow map: a cascade is drawn again when a caster in it moves, not the others") {
+    world.add(sun, Shadow{.resolution = 128, .cascades = 3, .distance = 25});
+    const MeshId box = add(make_box({.size = {0.3f, 0.3f, 0.3f}}));
+    const Entity near = place(box, white, at({0.5f, 1.5f, 5}));
+    const Entity middle = place(box, white, at({0, 0.5f, -8}));
+    const Entity far = place(box, white, at({0, 0.5f, -26}));
+    const auto drawn = [&](const RenderView& seen) {
+        return draw(seen).statistics.shadow_views_drawn;
+    };
+    draw(view());
+    CHECK(draw(view()).statistics.shadow_views == 3);
+    CHECK(drawn(view()) == 0);
+    const auto move = [&](Entity entity, const Vec3& to) {
+        world.get<WorldTransform>(entity).world = at(to);
+        world.get<PreviousWorldTransform>(entity).world = at(to);
+    };
+    move(far, {0.1f, 0.5f, -26});
+    CHECK(drawn(view()) == 1);
+    move(middle, {0.1f, 0.5f, -8});
+    CHECK(drawn(view()) == 2);
+    move(near, {0.6f, 1.5f, 5});  // the balls about the slices are one in the other
+    CHECK(drawn(view()) == 3);
+    CHECK(drawn(view()) == 0);
+
+    // Texels stay where they are on the ground: twenty steps of a tenth of the finest texel cross
+    // at most two of them along each axis.
+    int again = 0;
+    for (int i = 1; i <= 20; ++i) {
+        again += drawn(view({0.004f * static_cast<float>(i), 0, 0}));
+    }
+    CHECK(again > 0);
+    CHECK(again <= 3 * 3 * 2);  // of 60
+    CHECK(drawn(view({1, 0, 1})) == 3);
 }
 
 TEST_CASE_FIXTURE(

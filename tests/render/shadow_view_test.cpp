@@ -141,6 +141,22 @@ TEST_CASE("shadow view: six faces see every direction, with a border each") {
     }
 }
 
+TEST_CASE("shadow view: a face's depth tells the book's, with a far plane, along the major axis") {
+    // z_w = f / (f - n) (1 - n / m), of which ours is n / m: no far plane, and finest where far.
+    const double near = 0.1;
+    const double far = 100;
+    const auto record = record_of(make_cube_view({0, 0, 0}, 0, 0.1f, 128, 4));
+    const auto book = [&](double m) {
+        const double ours =
+            project(record, {static_cast<float>(m), 0.3f * static_cast<float>(m), 0}).z;
+        return far / (far - near) * (1 - ours);
+    };
+    CHECK(book(0.1) == doctest::Approx(0).epsilon(1e-5));
+    CHECK(book(1) == doctest::Approx(0.900901).epsilon(1e-5));
+    CHECK(book(10) == doctest::Approx(0.990991).epsilon(1e-5));
+    CHECK(book(100) == doctest::Approx(1).epsilon(1e-5));
+}
+
 TEST_CASE("shadow view: cascades cover the distance without a gap, the near ones shorter") {
     for (int count = 1; count <= kMaxCascades; ++count) {
         const auto ends = split_cascades(0.5f, 60, count);

@@ -700,4 +700,30 @@ TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is
     CHECK(shade_is_outside(behind, {0, 0, -1, 0}, frustum));
 }
 
+TEST_CASE("shadow selection: only auto is decided, by whether the light has a ShadowVolume") {
+    using enum ShadowMethod;
+    CHECK(choose_shadow_method(Auto, false) == Map);
+    CHECK(choose_shadow_method(Auto, true) == Volume);
+    for (const ShadowMethod wanted : {Map, Perspective, Volume, Hybrid}) {
+        CHECK(choose_shadow_method(wanted, false) == wanted);
+        CHECK(choose_shadow_method(wanted, true) == wanted);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    VolumeScene, "shadow selection: a light left to choose has a map, with ShadowVolume volumes") {
+    add_floor();
+    add_caster(cube, at({0, 1, 0}));
+    const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({0.2f, 4, 0.3f}));
+    const RenderView view = from({0.3f, 3.2f, 4.1f});
+    const auto dark = [&] { return visibility(*this, light, view).shadowed; };
+    world.add(light, Shadow{.filter = ShadowFilter::Hard});
+    CHECK(dark() > 50);
+    CHECK_FALSE(frame_graph(test::shared_renderer()).was_run("shadow volumes"));
+    world.add(light, ShadowVolume{});
+    CHECK(dark() > 50);
+    radiance(view);
+    CHECK(frame_graph(test::shared_renderer()).was_run("shadow volumes"));
+}
+
 }  // namespace limn
