@@ -2,6 +2,7 @@
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/panorama.glsl"
+#include "lib/tone.glsl"
 
 layout(binding = 5) uniform sampler2D panorama;  // its first row is the upper one
 
@@ -24,7 +25,7 @@ void main() {
         vec3 d = cube_direction(face, (gl_FragCoord.xy + corner) / size);
         d.xz = vec2(turn.x * d.x - turn.y * d.z, turn.y * d.x + turn.x * d.z);
         vec2 uv = panorama_uv(mapping, d, half_angle);
-        sum += clamp(intensity * textureLod(panorama, vec2(uv.x, 1.0 - uv.y), level).rgb, 0.0, kMaxRadiance);
+        sum += clean_light(intensity * textureLod(panorama, vec2(uv.x, 1.0 - uv.y), level).rgb, kMaxRadiance);
     }
     radiance = vec4(0.25 * sum, 1.0);
 }

@@ -72,6 +72,13 @@ Interval project(const Bounds& box, const Vec3& n) {
     return {middle - half, middle + half};
 }
 
+/// What has no finite place or size is not drawn (fill_boxes) and casts nothing.
+bool is_somewhere(const Bounds& box, const Affine& world_from_mesh) {
+    const Vec3 sum = box.min + box.max;
+    const glm::mat3 linear = glm::mat3(to_mat4(world_from_mesh));
+    return std::isfinite(sum.x + sum.y + sum.z + glm::determinant(linear));
+}
+
 }  // namespace
 
 ShadowMethod choose_shadow_method(ShadowMethod wanted, bool has_volume) {
@@ -255,6 +262,9 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
             const MeshData& mesh = assets.meshes[surface.mesh.index];
             const Bounds box =
                 transform_bounds(a, inflate ? inflated(mesh.bounds, *inflate) : mesh.bounds);
+            if (!is_somewhere(box, a)) {
+                return;
+            }
             for (Candidate& candidate : candidates_) {
                 if (!candidate.served || !reaches_box(candidate.reach, box)) {
                     continue;
@@ -304,8 +314,7 @@ void VolumeCollector::add_caster(
     }
     const glm::dmat4 world_matrix = to_mat4(world_from_mesh);
     const double determinant = glm::determinant(world_matrix);
-    if (!std::isfinite(determinant) || determinant == 0
-        || shade_is_outside(box, candidate.light, frustum)) {
+    if (determinant == 0 || shade_is_outside(box, candidate.light, frustum)) {
         return;
     }
     const auto& camera = view.world_from_camera.row;

@@ -643,7 +643,8 @@ TEST_CASE("shadow map: numbers that make no sense are replaced by some that do")
     CHECK(sane.distance == 40);
     CHECK(sane.bias == 1);
     CHECK(make_sane({.resolution = 300}).resolution == 512);
-    CHECK(make_sane({.resolution = 1 << 30}).resolution == 4096);
+    CHECK(make_sane({.resolution = 0}).resolution == 16);
+    CHECK(make_sane({.resolution = 1'000'000'000}).resolution == 4096);
     CHECK(make_sane({.cascades = 0}).cascades == 1);
     CHECK(make_sane({.distance = std::nanf("")}).distance == 40);
 }

@@ -307,4 +307,40 @@ TEST_CASE_FIXTURE(
     CHECK(std::isfinite(color.z));
 }
 
+TEST_CASE_FIXTURE(
+    PanoramaScene,
+    "sky_panorama: texels that are no numbers leave pictures finite, the sky elsewhere as it is") {
+    ImageData image = picture_of(
+        [](const glm::dvec3& d) { return glm::dvec3(0.5, 0.6, 0.7) + 0.2 * d; },
+        PanoramaMapping::Equirectangular,
+        64,
+        32);
+    const auto pictures = [&](const ImageData& of) {
+        surround(of);
+        const Entity ball = place(
+            add(make_ball(16)),
+            add(Material{.base_color = {1, 1, 1, 1}, .metalness = 1, .roughness = 0.4f}),
+            at({0, 0, 0}));
+        gpu::FloatImage drawn = radiance(look({0, 0, 2.5f}, {0, 0, 0}));
+        world.destroy(ball);
+        return drawn;
+    };
+    const gpu::FloatImage whole = pictures(image);
+    const float broken[] = {NAN, INFINITY, -INFINITY, NAN};
+    // Three texels right before the camera's eyes.
+    for (const int at : {16 * 64 + 32, 10 * 64 + 36, 20 * 64 + 28}) {
+        std::memcpy(
+            image.pixels.data() + static_cast<std::size_t>(at) * sizeof broken,
+            broken,
+            sizeof broken);
+    }
+    const gpu::FloatImage found = pictures(image);
+    int not_finite = 0;
+    for (const float value : found.pixels) {
+        not_finite += std::isfinite(value) ? 0 : 1;
+    }
+    CHECK(not_finite == 0);
+    CHECK(rgb_at(found, 2, 2) == rgb_at(whole, 2, 2));  // far from them
+}
+
 }  // namespace limn::test
