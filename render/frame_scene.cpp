@@ -63,6 +63,35 @@ void draw_run(gpu::Device& device, const InstanceList& list, const DrawRun& run)
         static_cast<int>(run.command_count));
 }
 
+/// The state that draws the sides of a run's surfaces that are meant to be seen.
+gpu::PipelineState seen_sides(gpu::PipelineState state, const DrawRun& run) {
+    const bool both_sides = (run.features & kDoubleSided) != 0;
+    state.cull = static_cast<GLenum>(both_sides ? GL_NONE : run.mirrored ? GL_FRONT : GL_BACK);
+    return state;
+}
+
+/// Draws a run for its depth: `programs` get no more features than decide where there are holes.
+void draw_depth(
+    gpu::Device& device,
+    const FrameScene& scene,
+    const InstanceList& list,
+    const DrawRun& run,
+    SurfacePrograms& programs,
+    const gpu::PipelineState& state) {
+    constexpr std::uint32_t kHoles = kAlphaMask | kBaseColorMap | kUvMap | kUvMaps | kVertexColor;
+    const bool holes = (run.features & kAlphaMask) != 0;
+    const gpu::Program* program =
+        programs.get(run.features & (holes ? kHoles | kInflate : kInflate), 0, {});
+    if (program == nullptr) {
+        return;
+    }
+    device.use(gpu::Pipeline{program, state});
+    if (holes) {
+        scene.materials->bind_textures(run.textures);
+    }
+    draw_run(device, list, run);
+}
+
 }  // namespace
 
 layout::ViewBlock
@@ -117,6 +146,18 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
     scene.materials->records().bind(device, kSurfaceMaterialsUnit);
 }
 
+void bind_shadow_masks(PassContext& context, const FrameScene& scene) {
+    if (scene.shadow_masks.valid()) {
+        context.bind_texture(kShadowMasksUnit, scene.shadow_masks);
+    }
+}
+
+bool needs_stencil(const FrameScene& scene) {
+    const bool by_screen =
+        scene.method == LightMethod::Clustered || scene.method == LightMethod::FullScreen;
+    return !by_screen || !scene.volumes.lights.empty();
+}
+
 std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads) {
     std::vector<Use> all = reads;
     if (scene.shadow_maps.valid()) {
@@ -164,9 +205,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (lights.spot_angles ? 4u : 0u) | (scene.materials->has_classic() ? 8u : 0u)
            | (lights.linear_fade ? 16u : 0u) | (lights.shadows ? 32u : 0u) | (maps.cubes ? 64u : 0u)
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
-           | (scene.lists.cells.valid() ? 512u : 0u) | (maps.records.empty() ? 0u : 1024u)
-           | (scene.volumes.lights.empty() ? 0u : 2048u)
-           | (scene.probe_block.size > 0 ? 4096u : 0u)
+           | (scene.clusters.lights.empty() ? 0u : 512u) | (maps.records.empty() ? 0u : 1024u)
+           | (scene.volumes.lights.empty() ? 0u : 2048u) | (scene.probe_block.size > 0 ? 4096u : 0u)
            | (scene.projectors->records().empty() ? 0u : 8192u);
 }
 
@@ -207,7 +247,8 @@ void draw_runs(
     std::uint32_t more_features,
     std::uint32_t more_key,
     const std::vector<gpu::ShaderDefine>& more,
-    const gpu::PipelineState& state) {
+    const gpu::PipelineState& state,
+    int light) {
     if (runs.empty()) {
         return;
     }
@@ -217,15 +258,46 @@ void draw_runs(
         if (program == nullptr) {
             continue;
         }
-        gpu::PipelineState run_state = state;
-        const bool both_sides = (run.features & kDoubleSided) != 0;
-        run_state.cull = static_cast<GLenum>(
-            both_sides     ? GL_NONE
-            : run.mirrored ? GL_FRONT
-                           : GL_BACK);
-        device.use(gpu::Pipeline{program, run_state});
+        device.use(gpu::Pipeline{program, seen_sides(state, run)});
+        if (light >= 0) {
+            program->set("light_index", light);
+        }
         scene.materials->bind_textures(run.textures);
         draw_run(device, scene.instances, run);
+    }
+}
+
+void draw_light_runs(
+    gpu::Device& device,
+    const FrameScene& scene,
+    std::span<const LightRun> runs,
+    SurfacePrograms& programs,
+    std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more,
+    const gpu::PipelineState& state) {
+    bind_instances(device, scene, scene.instances);
+    device.bind_indirect(scene.light_commands.buffer);
+    for (const LightRun& lit : runs) {
+        const DrawRun& run = scene.instances.opaque[lit.run];
+        const gpu::Program* program = programs.get(run.features, more_key, more);
+        if (program == nullptr) {
+            continue;
+        }
+        device.use(gpu::Pipeline{program, seen_sides(state, run)});
+        program->set("light_index", static_cast<int>(lit.light));
+        scene.materials->bind_textures(run.textures);
+        device.draw_indexed_indirect(
+            GL_TRIANGLES,
+            GL_UNSIGNED_INT,
+            scene.light_commands.offset + lit.first_command * sizeof(DrawCommand),
+            static_cast<int>(lit.command_count));
+    }
+}
+
+void draw_depths(gpu::Device& device, const FrameScene& scene, SurfacePrograms& programs) {
+    bind_instances(device, scene, scene.instances);
+    for (const DrawRun& run : scene.instances.opaque) {
+        draw_depth(device, scene, scene.instances, run, programs, seen_sides({}, run));
     }
 }
 
@@ -235,20 +307,9 @@ void draw_casters(
     const InstanceList& casters,
     SurfacePrograms& programs,
     const gpu::PipelineState& state) {
-    constexpr std::uint32_t kHoles = kAlphaMask | kBaseColorMap | kUvMap | kUvMaps | kVertexColor;
     bind_instances(device, scene, casters);
     for (const DrawRun& run : casters.opaque) {
-        const bool holes = (run.features & kAlphaMask) != 0;
-        const gpu::Program* program =
-            programs.get(run.features & (holes ? kHoles | kInflate : kInflate), 0, {});
-        if (program == nullptr) {
-            continue;
-        }
-        device.use(gpu::Pipeline{program, state});
-        if (holes) {
-            scene.materials->bind_textures(run.textures);
-        }
-        draw_run(device, casters, run);
+        draw_depth(device, scene, casters, run, programs, state);
     }
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "ecs/components/environment.h"
+#include "ecs/components/rendering.h"
 #include "render/buffer_texture.h"
 #include "render/gpu/program.h"
 #include "render/gpu/shader_source.h"
 #include "render/graph/frame_graph.h"
 #include "render/instance_list.h"
 #include "render/light_clusters.h"
+#include "render/light_objects.h"
 #include "render/mesh_pool.h"
 #include "render/projector_list.h"
 #include "render/shaders/environment_gpu.h"
@@ -15,6 +17,7 @@
 #include "render/shadow/volume_list.h"
 
 #include <initializer_list>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -74,6 +77,8 @@ struct FrameScene {
     LightList lights;
     ClusterLights clusters;
     ClusterLists lists;
+    LightMethod method = LightMethod::Clustered;
+    LightDraws light_draws;  ///< of LightMethod::LightMajor
     ShadowList shadows;
     VolumeList volumes;
     SceneEnvironment environment;
@@ -86,6 +91,9 @@ struct FrameScene {
     const BufferTexture* light_records = nullptr;
     const BufferTexture* light_indices = nullptr;
     const BufferTexture* light_cells = nullptr;
+    const BufferTexture* object_lists = nullptr;   ///< of LightMethod::ObjectMajor: one an instance
+    const BufferTexture* object_lights = nullptr;  ///< the lights in those lists
+    gpu::RingSlice light_commands;                 ///< those of light_draws
     const BufferTexture* shadow_views = nullptr;
     const BufferTexture* projector_records = nullptr;
     const ProjectorPool* projectors = nullptr;
@@ -103,7 +111,14 @@ make_view_block(const RenderView& view, const ClusterShape& shape, const LightLi
 void bind_view(gpu::Device& device, const FrameScene& scene);
 void bind_lighting(gpu::Device& device, const FrameScene& scene);
 
-/// `reads` and what a pass that includes lib/lighting.glsl reads beside them.
+/// The answers of shadow volumes, where there are any: they are about the opaque surfaces alone.
+void bind_shadow_masks(PassContext& context, const FrameScene& scene);
+
+/// Whether the depth of surfaces needs a stencil beside it: for volumes of shadow or of light, or
+/// to light each pixel once.
+[[nodiscard]] bool needs_stencil(const FrameScene& scene);
+
+/// `reads` and what a pass that lights reads beside them.
 [[nodiscard]] std::vector<Use>
 lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads);
 
@@ -133,7 +148,8 @@ class SurfacePrograms {
     std::unordered_map<std::uint64_t, const gpu::Program*> programs_;
 };
 
-/// Draws the runs; `state` gets the winding and sides of each.
+/// Draws the runs; `state` gets the winding and sides of each. Programs that light with one light
+/// get its index.
 void draw_runs(
     gpu::Device& device,
     const FrameScene& scene,
@@ -142,7 +158,21 @@ void draw_runs(
     std::uint32_t more_features,
     std::uint32_t more_key,
     const std::vector<gpu::ShaderDefine>& more,
+    const gpu::PipelineState& state,
+    int light = -1);
+
+/// Draws the objects of lights: `runs` of `scene.light_draws`.
+void draw_light_runs(
+    gpu::Device& device,
+    const FrameScene& scene,
+    std::span<const LightRun> runs,
+    SurfacePrograms& programs,
+    std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more,
     const gpu::PipelineState& state);
+
+/// Draws the opaque instances for their depth alone, as draw_casters() does, seen sides only.
+void draw_depths(gpu::Device& device, const FrameScene& scene, SurfacePrograms& programs);
 
 /// Draws casters for their depth alone, both sides: `programs` get no more features than decide
 /// where a surface has holes.

@@ -58,6 +58,17 @@ bool is_part_of(const World* world, Entity entity, Entity whole) {
     return true;
 }
 
+void set_box(BoxBlock& block, std::uint32_t i, const Bounds& box) {
+    const Vec3 c = center(box);
+    const Vec3 h = half_extent(box);
+    block.center_x[i] = c.x;
+    block.center_y[i] = c.y;
+    block.center_z[i] = c.z;
+    block.half_x[i] = h.x;
+    block.half_y[i] = h.y;
+    block.half_z[i] = h.z;
+}
+
 }  // namespace
 
 /// The distinct keys of a chunk: a small hash table beside the list.
@@ -102,7 +113,8 @@ void InstanceCollector::collect(
     const MaterialPool& materials,
     bool velocity,
     gpu::RingBuffer& ring,
-    InstanceList& list) {
+    InstanceList& list,
+    bool boxes) {
     const auto query = world.query<
         const MeshInstance,
         const WorldTransform,
@@ -117,7 +129,8 @@ void InstanceCollector::collect(
         .alpha_before = view.alpha_before,
         .velocity = velocity,
         .world = &world,
-        .hidden = view.hidden};
+        .hidden = view.hidden,
+        .boxes = boxes};
     collect_from(query, seen, meshes, materials, ring, list);
 }
 
@@ -200,6 +213,10 @@ void InstanceCollector::collect_from(
     place_keys(meshes, materials, list);
     const bool velocity = selection.velocity;
     list.visible = static_cast<int>(visible_count_);
+    list.opaque_instances = static_cast<int>(opaque_count_);
+    if (selection.boxes) {
+        list.boxes.resize((visible_count_ + kCullBlock - 1) / kCullBlock);
+    }
     list.instances = ring.allocate(visible_count_ * sizeof(layout::InstanceRecord));
     list.before = ring.allocate(velocity ? visible_count_ * sizeof(Affine) : 0);
     blended_.resize(visible_count_ - opaque_count_);
@@ -225,8 +242,15 @@ void InstanceCollector::collect_from(
                 {a.row[0], a.row[1], a.row[2]},
                 record,
                 (is_mirrored(kind.key) ? 1u : 0u) | materials.model_of(record) << 8,
-                chunk.entities()[i].index,
+                place,
                 inflate.empty() ? 0.0f : inflate[i].distance};
+            if (selection.boxes) {
+                const Bounds& box = meshes.meshes()[mesh_of(kind.key)].bounds;
+                set_box(
+                    list.boxes[place / kCullBlock],
+                    place % kCullBlock,
+                    transform_bounds(a, inflate.empty() ? box : inflated(box, inflate[i])));
+            }
             if (velocity) {
                 moments_before[place] = rows.at(i, selection.alpha_before);
             }
@@ -240,7 +264,8 @@ void InstanceCollector::collect_from(
     });
 
     order_blended(meshes, materials, list);
-    list.commands = ring.push(std::span<const DrawCommand>(commands_));
+    list.command_values = commands_;
+    list.commands = ring.push(list.command_values);
     for (const DrawCommand& command : commands_) {
         list.triangles += static_cast<std::int64_t>(command.count / 3) * command.instance_count;
     }

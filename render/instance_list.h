@@ -42,10 +42,13 @@ struct InstanceList {
     std::vector<DrawRun> opaque;
     std::vector<DrawRun> blended;  ///< from back to front
     gpu::RingSlice commands;
-    gpu::RingSlice instances;  ///< layout::InstanceRecord
-    gpu::RingSlice before;     ///< Affine; of no size unless asked for
+    gpu::RingSlice instances;                     ///< layout::InstanceRecord
+    gpu::RingSlice before;                        ///< Affine; of no size unless asked for
+    std::span<const DrawCommand> command_values;  ///< those of `commands`, until the next collect()
+    std::vector<BoxBlock> boxes;  ///< world boxes by place of the instance; none unless asked for
     int total = 0;
     int visible = 0;
+    int opaque_instances = 0;  ///< they come first in `instances`
     std::int64_t triangles = 0;
 };
 
@@ -59,7 +62,7 @@ struct CasterVolume {
 /// Keeps its memory from frame to frame.
 class InstanceCollector {
   public:
-    /// Culls, sorts and writes into `ring`. `velocity`: fills `before`, too.
+    /// Culls, sorts and writes into `ring`. `velocity`: fills `before`, too; `boxes`: the boxes.
     void collect(
         const World& world,
         const RenderView& view,
@@ -67,7 +70,8 @@ class InstanceCollector {
         const MaterialPool& materials,
         bool velocity,
         gpu::RingBuffer& ring,
-        InstanceList& list);
+        InstanceList& list,
+        bool boxes = false);
     /// The same of what casts shadows from where `volume` is: no blended surfaces, no NoShadow.
     void collect_casters(
         const World& world,
@@ -91,6 +95,7 @@ class InstanceCollector {
         bool casters = false;
         const World* world = nullptr;  ///< only where something is hidden
         Entity hidden = {};
+        bool boxes = false;
     };
     /// A kind of draw that occurs in a chunk, and how often; later, where its next instance goes.
     struct KeyCount {

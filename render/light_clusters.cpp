@@ -1,5 +1,7 @@
 #include "render/light_clusters.h"
 
+#include "render/shadow/light_bounds.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -29,23 +31,6 @@ Vec3 camera_position(const RenderView& view) {
 
 bool is_endless(const LightReach& light) {
     return !(light.radius < kFarthest);
-}
-
-struct Sphere {
-    Vec3 center;
-    float radius;
-};
-
-/// The least sphere around all that a light reaches: around its cone, if it has one.
-Sphere sphere_around(const LightReach& light) {
-    if (light.cosine <= 0 || is_endless(light)) {
-        return {light.center, light.radius};
-    }
-    // Narrow cones: through the apex and the rim. Wide ones: about the rim.
-    const float sine = std::sqrt(std::max(1.0f - square(light.cosine), 0.0f));
-    const bool narrow = light.cosine > sine;
-    const float along = light.radius * (narrow ? 0.5f / light.cosine : light.cosine);
-    return {light.center + along * light.axis, narrow ? along : light.radius * sine};
 }
 
 /// Least and largest x / z of a circle about (x, z), seen from the origin.
@@ -130,7 +115,7 @@ bool find_cells(
     if (is_endless(light)) {
         return true;
     }
-    const Sphere around = sphere_around(light);
+    const ReachSphere around = reach_sphere(light);
     const float radius = around.radius * (1 + kSlack);
     const Vec3 c = to_view(view.world_from_camera, around.center - camera_position(view));
     const float end = (c.z + radius) * (1 + kSlack);
@@ -177,7 +162,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
             ++clusters.dropped;
             continue;
         }
-        const Sphere around = sphere_around(light);
+        const ReachSphere around = reach_sphere(light);
         const float radius2 = is_endless(light) ? -1.0f : square(around.radius * (1 + kSlack));
         const auto index = static_cast<float>(i + static_cast<std::size_t>(lights.directional));
         clusters.lights.push_back(

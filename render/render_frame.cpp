@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/post.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "ecs/world.h"
 #include "render/cube_map.h"
@@ -14,7 +15,9 @@
 #include "render/passes/aov_pass.h"
 #include "render/passes/blend_pass.h"
 #include "render/passes/cluster_pass.h"
+#include "render/passes/forward_pass.h"
 #include "render/passes/gbuffer_pass.h"
+#include "render/passes/light_each_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/panorama_pass.h"
 #include "render/passes/probe_pass.h"
@@ -48,6 +51,16 @@ Exposure exposure_of(const World& world) {
     return exposure != nullptr ? *exposure : Exposure{};
 }
 
+LightMethod method_of(const World& world) {
+    const auto* rendering = world.find_resource<Rendering>();
+    return rendering != nullptr ? rendering->lights : LightMethod::Clustered;
+}
+
+/// Whether surfaces are lit while they are drawn.
+bool is_forward(LightMethod method) {
+    return method == LightMethod::ObjectMajor || method == LightMethod::LightMajor;
+}
+
 bool same_light(const Environment& a, const Environment& b) {
     return a.sky == b.sky && a.zenith == b.zenith && a.horizon == b.horizon && a.ground == b.ground
            && a.intensity == b.intensity && a.panorama == b.panorama && a.mapping == b.mapping
@@ -58,6 +71,8 @@ struct Passes {
     GbufferPass gbuffer;
     LightPass lights;
     ClusterPass clusters;
+    LightEachPass light_each;
+    ForwardPass forward;
     BlendPass blend;
     Developer developer;
     AovPass aovs;
@@ -94,6 +109,8 @@ class Renderer {
     void prepare(const World& world, const RenderView& view, bool velocity, bool for_probe = false);
     /// The image, as a list.
     FrameTextures draw_image(const FrameRequest& request, bool velocity);
+    /// What lies where; `attributes`: also of what kind, which forward lighting has no need of.
+    Gbuffer draw_surfaces(bool attributes, bool velocity);
     TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer);
     /// From its radiance to the display; once a picture, as the eye adapts.
     void develop_image(const World& world, TextureId radiance, FrameTextures& made);
@@ -121,7 +138,11 @@ class Renderer {
     InstanceCollector collector_;
     ShadowCollector shadow_collector_;
     VolumeCollector volume_collector_;
+    LightObjects light_objects_;
+    ObjectLights lights_of_objects_;
     BufferTexture light_records_;
+    BufferTexture object_lists_ = BufferTexture("object lists", GL_RG32UI);
+    BufferTexture object_lights_ = BufferTexture("object lights", GL_R32UI);
     BufferTexture shadow_views_;
     BufferTexture projector_records_;
     ProjectorPool projectors_;
@@ -163,6 +184,8 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.environment.reflection = &passes.reflection.maps;
     scene.environment.irradiance = &passes.reflection.irradiance;
     scene.environment.cube = &passes.panorama.cube;
+    scene.object_lists = &object_lists_;
+    scene.object_lights = &object_lights_;
     scene.light_indices = &passes.clusters.indices;
     scene.light_cells = &passes.clusters.cells;
     scene.environment.specular_albedo = &specular_albedo_;
@@ -272,7 +295,16 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
             scene.lights.reach.size());
         dropped_reported_ = true;
     }
-    collector_.collect(world, view, meshes_, materials_, velocity, ring_, scene.instances);
+    scene.method = for_probe ? LightMethod::Clustered : method_of(world);
+    collector_.collect(
+        world,
+        view,
+        meshes_,
+        materials_,
+        velocity,
+        ring_,
+        scene.instances,
+        is_forward(scene.method));
     volume_collector_.collect(world, view, ring_, scene.lights, scene.volumes);
     shadow_collector_.collect(
         world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
@@ -297,6 +329,19 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     projector_records_.set(push(projectors_.records()));
     passes.clusters.lights.set(push(scene.clusters.lights));
     passes.clusters.boxes.set(push(scene.clusters.boxes));
+    if (is_forward(scene.method)) {
+        collect_light_objects(scene.lights, scene.clusters, scene.instances, light_objects_);
+    }
+    if (scene.method == LightMethod::ObjectMajor) {
+        list_lights_of_objects(
+            light_objects_, scene.instances.opaque_instances, lights_of_objects_);
+        object_lists_.set(push(lights_of_objects_.lists));
+        object_lights_.set(push(lights_of_objects_.lights));
+    }
+    if (scene.method == LightMethod::LightMajor) {
+        list_draws_of_lights(light_objects_, scene.instances, scene.light_draws);
+        scene.light_commands = push(scene.light_draws.commands);
+    }
     scene.view_block = ring_.push_value(make_view_block(view, scene.clusters.shape, scene.lights));
     scene.environment_block = ring_.push_value(scene.environment.block);
     const layout::ProbeBlock probes = probes_.make_block();
@@ -315,11 +360,29 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         .shadow_views = static_cast<int>(scene.shadows.records.size()),
         .shadow_views_drawn = static_cast<int>(scene.shadows.due.size()),
         .probe_faces = probe_faces_,
+        .lit_objects = scene.method == LightMethod::LightMajor
+                           ? static_cast<int>(light_objects_.objects.size())
+                           : 0,
         .extract_ms = std::chrono::duration<double, std::milli>(end - begin).count()};
 }
 
+Gbuffer Renderer::draw_surfaces(bool attributes, bool velocity) {
+    const bool hybrids = std::any_of(
+        scene.volumes.lights.begin(), scene.volumes.lights.end(), [](const VolumeLight& light) {
+            return light.hybrid;  // asks for normals
+        });
+    if (is_forward(scene.method) && !attributes && !hybrids) {
+        Gbuffer depth_alone;
+        depth_alone.depth = draw_depth_first(graph, passes.forward, scene);
+        return depth_alone;
+    }
+    return draw_gbuffer(graph, passes.gbuffer, scene, velocity);
+}
+
 TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
-    scene.lists = build_clusters(into, passes.clusters, scene);
+    const bool by_clusters =
+        scene.method == LightMethod::Clustered || !scene.instances.blended.empty();
+    scene.lists = by_clusters ? build_clusters(into, passes.clusters, scene) : ClusterLists{};
     if (reflection_due_) {
         const Environment& environment = scene.environment.settings;
         if (environment.sky == SkyKind::Panorama) {
@@ -330,14 +393,17 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
     }
     scene.shadow_maps = draw_shadows(into, passes.shadows, scene);
     scene.shadow_masks = draw_shadow_volumes(into, passes.volumes, scene, gbuffer);
-    TextureId radiance = draw_lights(into, passes.lights, scene, gbuffer);
+    TextureId radiance =
+        scene.method == LightMethod::Clustered ? draw_lights(into, passes.lights, scene, gbuffer)
+        : is_forward(scene.method) ? draw_forward(into, passes.forward, scene, gbuffer.depth)
+                                   : draw_each_light(into, passes.light_each, scene, gbuffer);
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
     return draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
 }
 
 FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
     FrameTextures made;
-    const Gbuffer gbuffer = draw_gbuffer(graph, passes.gbuffer, scene, velocity);
+    const Gbuffer gbuffer = draw_surfaces(!request.aovs.empty(), velocity);
     made.radiance = draw_radiance(graph, gbuffer);
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
@@ -398,6 +464,14 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!clusters) {
         return clusters.error();
     }
+    Result<LightEachPass> light_each = create_light_each_pass(device);
+    if (!light_each) {
+        return light_each.error();
+    }
+    Result<ForwardPass> forward = create_forward_pass(device);
+    if (!forward) {
+        return forward.error();
+    }
     Result<BlendPass> blend = create_blend_pass(device);
     if (!blend) {
         return blend.error();
@@ -439,6 +513,8 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(gbuffer),
         *std::move(lights),
         *std::move(clusters),
+        *std::move(light_each),
+        *std::move(forward),
         *std::move(blend),
         *std::move(developer),
         *std::move(aovs),
@@ -477,8 +553,8 @@ FrameOutput render_accumulated(
     for (int i = 0; i < samples; ++i) {
         graph.begin_frame();
         renderer.prepare(world, with_jitter(view, sample_jitter(i, samples)), false);
-        const TextureId radiance = renderer.draw_radiance(
-            graph, draw_gbuffer(graph, renderer.passes.gbuffer, renderer.scene, false));
+        const TextureId radiance =
+            renderer.draw_radiance(graph, renderer.draw_surfaces(false, false));
         const TextureId target = graph.import("accumulation", sum);
         graph.add_pass(
             "accumulate",

@@ -24,10 +24,10 @@ class World;
 //     const FrameOutput frame = render_frame(**renderer, world, make_render_view(world, camera));
 //     gpu::ByteImage png = gpu::read_bytes(*frame.display);
 //
-// Of the world it reads the resources Assets, Environment, Exposure and FrameTime and the entities
-// with WorldTransform and MeshInstance or a light. No Environment means none: black, and only
-// lights light. What was loaded into Assets is uploaded the first time it is seen; another World,
-// or another Assets, is noticed.
+// Of the world it reads the resources Assets, Environment, Exposure, Rendering and FrameTime and
+// the entities with WorldTransform and MeshInstance or a light. No Environment means none: black,
+// and only lights light. What was loaded into Assets is uploaded the first time it is seen; another
+// World, or another Assets, is noticed.
 
 /// Chosen once.
 struct RenderSettings {
@@ -61,6 +61,7 @@ struct FrameStatistics {
     int shadow_views = 0;        ///< in the shadow atlas
     int shadow_views_drawn = 0;  ///< of them, in this frame
     int probe_faces = 0;         ///< that probes looked at anew
+    int lit_objects = 0;         ///< drawn for a light, each once a light (LightMethod::LightMajor)
     double extract_ms = 0;       ///< CPU time of culling and filling instance and light buffers
 };
 

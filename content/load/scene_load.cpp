@@ -12,6 +12,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
@@ -127,6 +128,7 @@ Bounds find_bounds(World& world) {
 void complete_scene(World& world, const SceneOptions& options, LoadedScene& scene) {
     insert_missing<Assets>(world);
     insert_missing<Environment>(world);
+    insert_missing<Rendering>(world);
     insert_missing<Exposure>(world);
     insert_missing<FrameTime>(world);
     insert_missing<RandomSeed>(world);

@@ -9,6 +9,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/projector.h"
 #include "ecs/components/post.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/surface.h"
@@ -49,6 +50,7 @@ void register_all_components() {
     register_resource<RandomSeed>();
     register_resource<Input>();
     register_resource<Environment>();
+    register_resource<Rendering>();
     register_resource<Exposure>();
 }
 

@@ -355,9 +355,13 @@ void Device::draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset,
     glMultiDrawElementsIndirect(mode, type, reinterpret_cast<const void*>(offset), count, 0);
 }
 
-void Device::draw_fullscreen() {
+void Device::draw_ids(int count) {
     bind_vertex_array(no_vertices_);
-    draw(GL_TRIANGLES, 0, 3);
+    draw(GL_TRIANGLES, 0, count);
+}
+
+void Device::draw_fullscreen() {
+    draw_ids(3);
 }
 
 void Device::dispatch(unsigned x, unsigned y, unsigned z) {

@@ -91,7 +91,9 @@ class Device {
         unsigned base_instance = 0);
     /// `count` DrawElementsIndirectCommand, tight, from byte `offset` of the bound indirect buffer.
     void draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset, int count);
-    /// One triangle over the whole viewport: vertex ids 0, 1, 2 and no attributes.
+    /// Triangles of vertex ids 0 .. count - 1 and no attributes.
+    void draw_ids(int count);
+    /// One triangle over the whole viewport, by its ids.
     void draw_fullscreen();
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
     /// Groups that cover `width` x `height` items with groups of `group` x `group`.

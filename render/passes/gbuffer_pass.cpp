@@ -20,7 +20,7 @@ Gbuffer draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& sce
     g.depth = graph.create(
         {.name = "gbuffer.depth",
          .format = static_cast<GLenum>(
-             scene.volumes.lights.empty() ? GL_DEPTH_COMPONENT32F : GL_DEPTH32F_STENCIL8),
+             needs_stencil(scene) ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F),
          .width = width,
          .height = height});
     const auto draw = [&pass, &scene, velocity](PassContext& context) {

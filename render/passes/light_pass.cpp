@@ -55,9 +55,7 @@ draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const G
             bind_lighting(context.device(), scene);
             context.bind_texture(kGbufferUnit, gbuffer.surface);
             context.bind_texture(kDepthUnit, gbuffer.depth);
-            if (scene.shadow_masks.valid()) {
-                context.bind_texture(kShadowMasksUnit, scene.shadow_masks);
-            }
+            bind_shadow_masks(context, scene);
             context.device().draw_fullscreen();
         });
     return radiance;

@@ -11,7 +11,7 @@ struct InstanceRecord {
     vec4 row[3];   // world_from_mesh at the moment shown
     uint material;
     uint flags;    // bit 0: mirrored, the determinant is negative; from bit 8: kModel* of lib/gbuffer.glsl
-    uint entity;   // its index, for picking
+    uint place;    // of this record among the frame's
     float inflate; // by which vertices move along their normals, in the mesh's own space [m]
 };
 

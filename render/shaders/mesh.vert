@@ -1,6 +1,7 @@
 // Every mesh instance, for the G-buffer and for the passes that shade while drawing.
 //   VELOCITY  also where each point was the moment before
-//   INFLATE   vertices move along their normals
+//   INFLATE  vertices move along their normals
+//   OBJECT_LIGHTS  also the instance's place
 #version 450
 #include "lib/inflate.glsl"
 #include "lib/view.glsl"
@@ -13,7 +14,7 @@ layout(location = 4) in vec4 color;
 layout(location = 5) in vec4 world_row0;  // world_from_mesh
 layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
-layout(location = 8) in uvec4 instance;   // material, flags, entity; w: bits of the distance to inflate by
+layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 layout(location = 9) in vec4 before_row0;
 layout(location = 10) in vec4 before_row1;
 layout(location = 11) in vec4 before_row2;
@@ -26,6 +27,10 @@ layout(location = 4) flat out uvec2 material_and_flags;
 #ifdef VELOCITY
 layout(location = 5) out vec3 before;  // clip x, y, w
 #endif
+#ifdef OBJECT_LIGHTS
+layout(location = 6) flat out uint object;
+#endif
+invariant gl_Position;  // passes that draw again what is nearest ask for the same depth
 
 void main() {
     vec4 p = vec4(position_ms, 1.0);
@@ -49,6 +54,9 @@ void main() {
     uv = uvs;
     vertex_color = color;
     material_and_flags = instance.xy;
+#ifdef OBJECT_LIGHTS
+    object = instance.z;
+#endif
 
 #ifdef VELOCITY
     vec4 q = vec4(dot(before_row0, p), dot(before_row1, p), dot(before_row2, p), 1.0);

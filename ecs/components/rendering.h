@@ -1,0 +1,33 @@
+#pragma once
+
+#include "ecs/reflect.h"
+
+#include <cstdint>
+
+namespace limn {
+
+/// In what order surfaces and lights meet. The picture is the same; what it costs is not
+/// (`limn bench lights`). Blended surfaces are lit by clusters whatever the method.
+enum class LightMethod : std::uint8_t {
+    Clustered,    ///< one pass over the G-buffer, each pixel with the lights of its cell
+    FullScreen,   ///< a pass over the whole G-buffer for every light
+    Volumes,      ///< the same for the pixels alone whose surface lies in the light's volume
+    ObjectMajor,  ///< each object once, with the lights that reach it
+    LightMajor,   ///< for each light the objects that it reaches
+};
+
+/// Resource: how pictures are made. Absent: the defaults.
+struct Rendering {
+    LightMethod lights = LightMethod::Clustered;
+};
+
+template <typename Visitor>
+void visit_fields(Rendering& rendering, Visitor&& visit) {
+    visit(
+        "lights",
+        rendering.lights,
+        {.doc = "in what order surfaces and lights meet; the picture is the same",
+         .values = "clustered full_screen volumes object_major light_major"});
+}
+
+}  // namespace limn

@@ -1,0 +1,14 @@
+// Depth alone, before surfaces are lit while they are drawn. Definitions of lib/material.glsl, and
+//   ALPHA_MASK  holes where the opacity is below the cutoff
+#version 450
+#ifdef ALPHA_MASK
+#include "lib/material.glsl"
+#endif
+
+void main() {
+#ifdef ALPHA_MASK
+    if (surface_color().a < material_texel(2).w) {
+        discard;
+    }
+#endif
+}

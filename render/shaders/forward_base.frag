@@ -1,0 +1,15 @@
+// Surfaces without lights, drawn after their depth: the first of the passes that add a light each
+// (light.structure-light-major).
+#version 450
+#include "lib/lighting.glsl"
+#include "lib/forward.glsl"
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    SurfaceSample s = forward_surface();
+    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    Reflected around = reflect_surroundings(r, s, position_ws);
+    radiance = vec4(s.emission + around.diffuse + around.specular, 1.0);
+}

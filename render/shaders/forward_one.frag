@@ -1,0 +1,12 @@
+// What surfaces send on of one light, drawn again to be added (light.structure-light-major).
+#version 450
+#include "lib/lighting.glsl"
+#include "lib/forward.glsl"
+#include "lib/one_light.glsl"
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
+    radiance = vec4(reflect_one(forward_surface(), position_ws, gl_FragCoord.xy), 0.0);
+}

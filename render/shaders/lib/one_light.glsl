@@ -1,0 +1,19 @@
+// One light, for passes that add light by light. After lib/lighting.glsl. Definition:
+//   DIRECTIONAL_LIGHT  it is a directional one
+
+uniform int light_index;
+
+// Radiance toward the camera that the light adds.
+vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
+    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+#ifdef DIRECTIONAL_LIGHT
+    Incoming light = incoming_directional(light_index, position_ws, r.normal, pixel);
+#else
+    Incoming light = incoming_local(light_index, position_ws, r.normal);
+    light.irradiance *= light_passing(light_index, position_ws, r.normal, light.to_light, pixel);
+#endif
+    LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
+    add_light(sum, r, light);
+    Reflected reflected = reflect_lights(r, sum);
+    return reflected.diffuse + reflected.specular;
+}
