@@ -9,7 +9,8 @@ namespace limn {
 enum class ShadowMethod : std::uint8_t {
     Auto,         ///< volumes for a light with a ShadowVolume beside it, else maps
     Map,          ///< shadow maps: one view of a spot, six of a point light, cascades of a sun
-    Perspective,  ///< one map of the scene as the camera's perspective distorts it
+    Perspective,  ///< one map of the scene as the camera's perspective distorts it; Map where the
+                  ///< light is among what the camera sees
     Volume,       ///< stencil volumes: exact to the pixel, hard, closed meshes only
     Hybrid,       ///< a map, and volumes at its edges alone
 };
@@ -19,7 +20,8 @@ enum class ShadowFilter : std::uint8_t {
     Hard,              ///< one comparison: texels show
     Bilinear,          ///< 2x2 comparisons, weighted (shadow.pcf)
     Soft,              ///< sixteen of those (shadow.soft-pcf): as wide everywhere
-    ContactHardening,  ///< as wide as the light's size makes it (shadow.penumbra)
+    ContactHardening,  ///< as wide as the light's size makes it (shadow.penumbra); of Perspective:
+                       ///< Soft
 };
 
 /// The light beside it casts shadows.

@@ -4,6 +4,8 @@
 #include "ecs/base/log.h"
 #include "ecs/world.h"
 #include "render/shaders/view_gpu.h"
+#include "render/shadow/light_bounds.h"
+#include "render/shadow/perspective_view.h"
 
 #include <algorithm>
 #include <bit>
@@ -40,6 +42,35 @@ float near_of(const Shadow& shadow) {
     return std::max(0.5f * shadow.source_size, kLeastNear);
 }
 
+/// What the light can reach of what the camera sees; none if that is nothing.
+std::optional<ViewSlice>
+slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
+    ViewSlice slice = {view.near, distance, -view.tangent, view.tangent};
+    if (light.kind == LightKind::Directional) {
+        return slice;
+    }
+    LightReach reach = {light.position, light.radius};
+    if (light.kind == LightKind::Spot) {
+        reach.axis = light.axis;
+        reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi));
+    }
+    const ReachSphere ball = reach_sphere(reach);
+    const LightBounds bounds = light_bounds(view, ball.center, ball.radius);
+    if (is_empty(bounds)) {
+        return std::nullopt;
+    }
+    const auto slope = [](int pixel, int size, float tangent) {
+        return (2 * static_cast<float>(pixel) / static_cast<float>(size) - 1) * tangent;
+    };
+    slice.low.x = slope(bounds.x - 1, view.width, view.tangent.x);
+    slice.low.y = slope(bounds.y - 1, view.height, view.tangent.y);
+    slice.high.x = slope(bounds.x + bounds.width + 1, view.width, view.tangent.x);
+    slice.high.y = slope(bounds.y + bounds.height + 1, view.height, view.tangent.y);
+    slice.near = view.near / std::min(bounds.depth_max, 1.0f);
+    slice.far = bounds.depth_min > 0 ? double(view.near) / bounds.depth_min : double(distance);
+    return slice;
+}
+
 std::uint64_t key_of(Entity entity) {
     return static_cast<std::uint64_t>(entity.generation) << 32 | entity.index;
 }
@@ -55,6 +86,9 @@ Shadow make_sane(const Shadow& shadow) {
     sane.distance = finite_or(shadow.distance, 40.0f);
     sane.distance = sane.distance > 0 ? sane.distance : 40.0f;
     sane.bias = std::clamp(finite_or(shadow.bias, 1.0f), 0.0f, 8.0f);
+    if (sane.method == ShadowMethod::Perspective && sane.filter > ShadowFilter::Soft) {
+        sane.filter = ShadowFilter::Soft;  // a meter has no one depth in such a map
+    }
     return sane;
 }
 
@@ -74,6 +108,30 @@ void ShadowCollector::want_cascades(const RenderView& view, LightViews& wanted) 
     wanted.splits = {ends[0], ends[1], ends[2], ends[3]};
 }
 
+/// False if the light stands where no such view is.
+bool ShadowCollector::want_perspective(const RenderView& view, LightViews& wanted) {
+    const ShadowedLight& light = *wanted.light;
+    const float distance = wanted.settings.distance;
+    const std::optional<ViewSlice> slice = slice_of(view, light, distance);
+    if (!slice) {
+        return false;
+    }
+    const bool sun = light.kind == LightKind::Directional;
+    const Vec4 place = sun ? Vec4(-light.axis, 0) : Vec4(light.position, 1);
+    const int guard = guard_of(wanted.settings);
+    const auto found =
+        make_perspective_view(view, place, *slice, wanted.settings.resolution, guard);
+    if (!found) {
+        return false;
+    }
+    views_.push_back(*found);
+    wanted.kind = layout::kShadowCascades;  // a single one
+    if (sun || !std::isfinite(light.radius)) {
+        wanted.splits.x = distance;
+    }
+    return true;
+}
+
 /// Every light's views, in the order of the lights.
 void ShadowCollector::want_views(const RenderView& view, const LightList& lights) {
     views_.clear();
@@ -82,9 +140,13 @@ void ShadowCollector::want_views(const RenderView& view, const LightList& lights
         LightViews wanted = {.light = &light, .settings = make_sane(light.settings)};
         wanted.first_view = views_.size();
         const Shadow& settings = wanted.settings;
+        const bool perspective =
+            settings.method == ShadowMethod::Perspective && want_perspective(view, wanted);
         const int resolution = settings.resolution;
         const int guard = guard_of(settings);
-        if (light.kind == LightKind::Directional) {
+        if (perspective) {
+            // has its one view
+        } else if (light.kind == LightKind::Directional) {
             want_cascades(view, wanted);
         } else if (light.kind == LightKind::Spot && light.outer_angle <= kWidestSpotView) {
             wanted.kind = layout::kShadowView;

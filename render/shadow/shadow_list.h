@@ -74,6 +74,7 @@ class ShadowCollector {
 
     void want_views(const RenderView& view, const LightList& lights);
     void want_cascades(const RenderView& view, LightViews& wanted);
+    [[nodiscard]] bool want_perspective(const RenderView& view, LightViews& wanted);
     void place_views();
     [[nodiscard]] bool place_light(LightViews& wanted);
     void release_light(const LightViews& wanted);

@@ -134,6 +134,34 @@ ShadowView make_cascade_view(
     return view;
 }
 
+double texels_per_pixel(
+    const ShadowView& view, const RenderView& camera, const Vec3& point, const Vec3& normal) {
+    const auto& pose = camera.world_from_camera.row;
+    const auto axis = [&](int i) { return glm::dvec3(pose[0][i], pose[1][i], pose[2][i]); };
+    const glm::dvec3 ray = glm::dvec3(point) - glm::dvec3(pose[0].w, pose[1].w, pose[2].w);
+    const glm::dvec3 n = normal;
+    const double distance = -glm::dot(ray, axis(2));
+    const glm::dmat4 rows = glm::transpose(glm::dmat4(view.clip_from_world));
+    const glm::dvec4 place(glm::dvec3(point), 1);
+    const double q = glm::dot(rows[3], place);
+
+    // How the texel moves when the ray through the pixel's middle goes on to the next pixel.
+    const auto texels = [&](const glm::dvec3& step) {
+        const glm::dvec3 along = step - ray * (glm::dot(n, step) / glm::dot(n, ray));
+        glm::dvec2 moved(0);
+        for (int i = 0; i < 2; ++i) {
+            const double here = glm::dot(rows[i], place) / q;
+            moved[i] = glm::dot(glm::dvec3(rows[i]) - here * glm::dvec3(rows[3]), along) / q;
+        }
+        return moved * (0.5 * view.resolution);
+    };
+    const glm::dvec2 right =
+        texels(axis(0) * (2.0 * double(camera.tangent.x) * distance / camera.width));
+    const glm::dvec2 up =
+        texels(axis(1) * (2.0 * double(camera.tangent.y) * distance / camera.height));
+    return std::abs(right.x * up.y - right.y * up.x);
+}
+
 layout::ShadowViewRecord make_shadow_record(
     const ShadowView& view, const AtlasRect& place, float filter, float source_size, float bias) {
     // From clip space to texels of the atlas: the bias matrix, for depths that are 0 .. 1 already.

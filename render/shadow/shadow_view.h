@@ -56,6 +56,12 @@ inline constexpr int kMaxCascades = 4;
     int resolution,
     int guard);
 
+/// Area [texels] of the map under a pixel of the camera's picture that shows a surface with
+/// `normal` at `point` (shadow.map-aliasing). Below 1 the map's texels show, above it some are
+/// passed over.
+[[nodiscard]] double texels_per_pixel(
+    const ShadowView& view, const RenderView& camera, const Vec3& point, const Vec3& normal);
+
 /// What lib/shadow.glsl reads of a view that lies at `place` of the atlas.
 ///   filter       ShadowFilter as a number
 ///   source_size  [m] or [rad]

@@ -222,6 +222,46 @@ TEST_CASE("shadow view: texels of a cascade stay where they are when the camera 
     }
 }
 
+TEST_CASE("shadow view: twice the resolution is four times the texels a pixel") {
+    // Lamp and camera at one place, with one field of view: a texel a pixel, and what the ratio of
+    // the sizes makes of it.
+    const Affine pose = look_at({1, 2, 3}, {1, 2, 0});
+    const RenderView camera =
+        make_render_view({.fov_y = radians(60.0f)}, pose, pose, {.width = 256, .height = 256});
+    std::mt19937 random(8);
+    for (const int resolution : {128, 256, 1024}) {
+        const ShadowView lamp =
+            make_spot_view({1, 2, 3}, {0, 0, -1}, radians(30.0f), 0.1f, resolution, 0);
+        const double ratio = resolution / 256.0;
+        CHECK(
+            texels_per_pixel(lamp, camera, {1, 2, -4}, {0, 0, 1})
+            == doctest::Approx(ratio * ratio).epsilon(1e-5));
+        // From one place they see the same, however the surface is inclined.
+        for (int i = 0; i < 20; ++i) {
+            const Vec3 point = Vec3(1, 2, -3) + random_point(random, 1.5f);
+            const Vec3 normal = glm::normalize(Vec3(0, 0, 3) + random_point(random, 1.5f));
+            CHECK(
+                texels_per_pixel(lamp, camera, point, normal)
+                == doctest::Approx(ratio * ratio).epsilon(1e-4));
+        }
+    }
+    // From elsewhere, against the texels of the pixel's corners on the surface.
+    const ShadowView lamp = make_spot_view(
+        {4, 5, -1}, glm::normalize(Vec3(-1, -1, -0.5f)), radians(50.0f), 0.1f, 512, 4);
+    const layout::ShadowViewRecord record = make_shadow_record(lamp, {0, 0, 512}, 0, 0, 1);
+    const float step = 2 * std::tan(radians(30.0f)) / 256;
+    const auto texel = [&](float x, float y) {  // of the floor y = 0, right of and above the middle
+        const Vec3 ray = {0.2f + x * step, -0.7f + y * step, -1};
+        return Vec2(project(record, Vec3(1, 2, 3) + ray * (2 / -ray.y)));
+    };
+    const Vec2 right = texel(0.5f, 0) - texel(-0.5f, 0);
+    const Vec2 up = texel(0, 0.5f) - texel(0, -0.5f);
+    const Vec3 middle = Vec3(1, 2, 3) + Vec3(0.2f, -0.7f, -1) * (2 / 0.7f);
+    CHECK(
+        texels_per_pixel(lamp, camera, middle, {0, 1, 0})
+        == doctest::Approx(std::abs(right.x * up.y - right.y * up.x)).epsilon(0.01));
+}
+
 TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-cull)") {
     const Bounds box = {{2, 2, 2}, {3, 3, 3}};
     CHECK_FALSE(ball_touches({0, 0, 0}, 3.4f, box));  // 11.56 < 12
