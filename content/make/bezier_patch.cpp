@@ -10,11 +10,6 @@
 
 namespace limn {
 
-Vec4 bernstein(float u) {
-    const float s = 1.0f - u;
-    return {s * s * s, 3.0f * u * (s * s), 3.0f * s * (u * u), u * u * u};
-}
-
 namespace {
 
 using Curve = std::array<Vec3, 4>;

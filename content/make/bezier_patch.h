@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/bezier.h"
 #include "ecs/base/math.h"
 #include "ecs/components/surface.h"
 
@@ -22,30 +23,6 @@ namespace limn {
 // that share a boundary have no cracks.
 // After A. Watt, F. Policarpo, "Advanced Game Development with Programmable Graphics Hardware"
 // (2005), appendix 7.1 (its printed end tangent, expansion and partition of unity are mended here).
-
-/// The four cubic Bernstein polynomials at `u`; they sum to 1.
-[[nodiscard]] Vec4 bernstein(float u);
-
-/// The cubic with control points `p` at `u` in 0 .. 1. Exact at both ends and where all points are
-/// one; the sum is about the middle of the ends, so that neither direction is preferred.
-template <typename T>
-[[nodiscard]] T bezier_point(const std::array<T, 4>& p, float u) {
-    if (u <= 0.0f || u >= 1.0f) {
-        return u <= 0.0f ? p[0] : p[3];
-    }
-    const Vec4 b = bernstein(u);
-    const T middle = 0.5f * (p[0] + p[3]);
-    return middle
-           + ((b.x * (p[0] - middle) + b.w * (p[3] - middle))
-              + (b.y * (p[1] - middle) + b.z * (p[2] - middle)));
-}
-
-/// dQ/du of the same cubic; exactly 0 where all points are one.
-template <typename T>
-[[nodiscard]] T bezier_derivative(const std::array<T, 4>& p, float u) {
-    const float s = 1.0f - u;
-    return 3.0f * ((s * s * (p[1] - p[0]) + u * u * (p[3] - p[2])) + 2.0f * s * u * (p[2] - p[1]));
-}
 
 /// 16 control points: p[i][j], i along u, j along v. The corners lie on the surface.
 struct BezierPatch {

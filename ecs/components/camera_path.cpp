@@ -1,5 +1,7 @@
 #include "ecs/components/camera_path.h"
 
+#include "ecs/base/rotation.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -228,7 +230,7 @@ CameraPose camera_pose(const CameraPath& path, double time, const Vec3& target) 
         position = position_at(keys);
         look_at = smooth_at(keys, &CameraKey::look_at);
         roll = smooth_at(keys, &CameraKey::roll);
-        rotation = glm::normalize(glm::slerp(keys.from().rotation, keys.to().rotation, keys.u()));
+        rotation = slerp(keys.from().rotation, keys.to().rotation, keys.u());
     }
     switch (path.aim) {
     case CameraAim::LookAt:

@@ -1,4 +1,5 @@
 #include "content/load/component_json.h"
+#include "ecs/base/rotation.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
@@ -7,8 +8,11 @@
 #include "ecs/field_access.h"
 
 #include <doctest/doctest.h>
+#include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -202,6 +206,40 @@ TEST_CASE("component json: angles turn about y, then x, then z") {
     CHECK(rolled.y == doctest::Approx(1.0f));
     const auto transform = read<Transform>(R"({"rotation": [90, 30, 0]})");
     CHECK(glm::length(transform.rotation * Vec3(0, 0, -1) - both) < 1e-6f);
+}
+
+TEST_CASE("json: angles in between depend on the names of the poses, and lock a quarter turn up") {
+    const auto apart = [](const Quat& a, const Quat& b) {
+        return std::min(glm::length(a - b), glm::length(a + b));
+    };
+    // One pose by two names, with two ways there; as quaternions there is one.
+    const Quat pitched = rotation_from_degrees({0, 180, 0});
+    const Quat twisted = rotation_from_degrees({180, 0, 180});
+    CHECK(apart(pitched, twisted) < 1e-6f);
+    const Quat half_pitched = rotation_from_degrees({0, 90, 0});
+    const Quat half_twisted = rotation_from_degrees({90, 0, 90});
+    CHECK(apart(half_pitched, half_twisted) > 0.5f);
+    CHECK(half_pitched.w == doctest::Approx(0.70710678));
+    CHECK(half_pitched.x == doctest::Approx(0.70710678));
+    for (int i = 0; i < 4; ++i) {
+        CHECK(std::abs(half_twisted[i]) == doctest::Approx(0.5));
+    }
+    CHECK(apart(slerp(Quat(1, 0, 0, 0), pitched, 0.5f), half_pitched) < 1e-6f);
+    // Looking up, yaw and roll are one axis: of three angles two are left.
+    const auto turn_of = [](Vec3 angles, int angle) {
+        const Quat before = rotation_from_degrees(angles);
+        angles[angle] += 1;
+        return log_rotation(rotation_from_degrees(angles) * glm::conjugate(before));
+    };
+    const auto volume = [&](const Vec3& angles) {
+        Mat3 turns;
+        for (int angle = 0; angle < 3; ++angle) {
+            turns[angle] = glm::normalize(turn_of(angles, angle));
+        }
+        return std::abs(glm::determinant(turns));
+    };
+    CHECK(volume({30, 0, 10}) > 0.9f);
+    CHECK(volume({30, 90, 10}) < 0.02f);
 }
 
 TEST_CASE("component json: what is wrong is named with its place, expectation and nearest name") {
