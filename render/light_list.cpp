@@ -114,7 +114,8 @@ void add_extras(
              position_of(light.pose),
              axis_of(light.pose),
              radius,
-             outer_angle});
+             outer_angle,
+             false});
     }
     if (light.projector != nullptr && kind != LightKind::Point) {
         list.projecting.push_back(

@@ -38,6 +38,7 @@ struct ShadowedLight {
     Vec3 axis = {0, 0, -1};     ///< where it shines, unit; of a point light: nothing
     float radius = INFINITY;    ///< [m]
     float outer_angle = 0;      ///< of a spot [rad]
+    bool for_volumes = false;   ///< its map is looked up to find where volumes count, not to light
 };
 
 /// A spot or directional light that throws an image.

@@ -258,7 +258,8 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
         lights.shadows = true;
         list.cubes = list.cubes || wanted.kind == layout::kShadowCube;
         list.cascades = list.cascades || wanted.kind == layout::kShadowCascades;
-        list.soft = list.soft || wanted.settings.filter >= ShadowFilter::Soft;
+        const bool soft = wanted.settings.filter >= ShadowFilter::Soft;
+        list.soft = list.soft || (soft && !wanted.light->for_volumes);
         lights.records[wanted.light->record].shadow = {
             static_cast<float>(list.records.size()),
             wanted.kind,

@@ -29,7 +29,7 @@ struct ShadowList {
     std::vector<ShadowDraw> due;
     bool cubes = false;     ///< some light has six faces
     bool cascades = false;  ///< some light has cascades
-    bool soft = false;      ///< some filter is wider than 2x2
+    bool soft = false;      ///< some filter that lights is wider than 2x2
     int atlas_size = 0;     ///< side [texels]; 0: no shadow maps
     int unserved = 0;       ///< lights that found no room in the atlas: they cast no shadow
 };

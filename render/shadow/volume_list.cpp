@@ -179,6 +179,7 @@ void VolumeCollector::collect(
         if (hybrid && needed) {
             light.settings.method = ShadowMethod::Map;
             light.settings.filter = ShadowFilter::Soft;  // so wide is an edge: shadow_classify.frag
+            light.for_volumes = true;
         } else {
             if (needed) {
                 lights.records[light.record].shadow = {
