@@ -10,6 +10,7 @@
 #include "content/load/image_write.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
+#include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/snapshot.h"
 #include "render/gpu/readback.h"
@@ -114,6 +115,33 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
             leave_mismatch(level.name, drawn, errors);
         }
     }
+}
+
+TEST_CASE("level: the cloister has shadows of every method, and no light is refused its own") {
+    Result<std::unique_ptr<Stage>> stage = open_stage("cloister");
+    REQUIRE(stage.ok());
+    step_stage(**stage);
+    int lights[5] = {};
+    std::as_const((*stage)->world).query<const Shadow>().each([&](const Shadow& shadow) {
+        ++lights[static_cast<std::size_t>(shadow.method)];
+    });
+    CHECK(lights[static_cast<std::size_t>(ShadowMethod::Map)] >= 2);
+    CHECK(lights[static_cast<std::size_t>(ShadowMethod::Volume)] >= 2);
+    CHECK(lights[static_cast<std::size_t>(ShadowMethod::Hybrid)] >= 2);
+    // Casters that are not closed, or an atlas that is full, would be told.
+    static int warnings;
+    warnings = 0;
+    set_log_sink([](LogLevel, std::string_view) { ++warnings; });
+    const RenderView view =
+        make_render_view((*stage)->world, (*stage)->scene.camera, {.width = 64, .height = 36});
+    render_frame(*shared_renderer().renderer, (*stage)->world, view);
+    // What stays where it is has been drawn once and for all; the cages turn, but no map sees them.
+    step_stage(**stage);
+    const FrameOutput next = render_frame(*shared_renderer().renderer, (*stage)->world, view);
+    set_log_sink(nullptr);
+    CHECK(warnings == 0);
+    CHECK(next.statistics.shadow_views >= 14 * 6);
+    CHECK(next.statistics.shadow_views_drawn == 0);
 }
 
 TEST_CASE("level: the same level runs to the same state twice") {
