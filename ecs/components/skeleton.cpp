@@ -1,0 +1,178 @@
+#include "ecs/components/skeleton.h"
+
+#include "ecs/base/text.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+bool is_finite(float x) {
+    return std::isfinite(x);
+}
+bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x + v.y + v.z);
+}
+bool is_finite(const Quat& q) {
+    return std::isfinite(q.x + q.y + q.z + q.w);
+}
+template <typename T>
+bool are_finite(const std::vector<T>& values) {
+    return std::all_of(
+        values.begin(), values.end(), [](const T& value) { return is_finite(value); });
+}
+
+bool has_length(const Quat& q) {
+    return glm::dot(q, q) > 1e-12f;
+}
+
+/// What is blended on an arc must be somewhere on it; cubic rows hold slopes as well.
+bool are_rotations(const ClipSheet& sheet) {
+    return sheet.interpolation == Interpolation::Cubic
+           || std::all_of(sheet.rotations.begin(), sheet.rotations.end(), has_length);
+}
+
+/// Checks the values of `subjects` - joints or weights of which there are `count`.
+template <typename T>
+Status check_rows(
+    const std::string& place,
+    const char* what,
+    const ClipSheet& sheet,
+    const std::vector<std::uint16_t>& subjects,
+    const std::vector<T>& values,
+    std::size_t count) {
+    const std::size_t row = subjects.size() * (sheet.interpolation == Interpolation::Cubic ? 3 : 1);
+    if (values.size() != sheet.times.size() * row) {
+        return fail(
+            "{}: {} {}, expected {} for {} keys",
+            place,
+            values.size(),
+            what,
+            sheet.times.size() * row,
+            sheet.times.size());
+    }
+    std::vector<bool> is_named(count, false);
+    for (const std::uint16_t subject : subjects) {
+        if (subject >= count) {
+            return fail("{}: {} of number {}, expected less than {}", place, what, subject, count);
+        }
+        if (is_named[subject]) {
+            return fail("{}: {} of number {} twice", place, what, subject);
+        }
+        is_named[subject] = true;
+    }
+    if (!are_finite(values)) {
+        return fail("{}: {} that are no numbers", place, what);
+    }
+    return Done{};
+}
+
+Status check_times(const std::string& place, const std::vector<float>& times) {
+    if (times.empty()) {
+        return fail("{}: no keys", place);
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (!std::isfinite(times[i])) {
+            return fail("{}: the time of key {} is no number", place, i);
+        }
+        if (i > 0 && times[i] <= times[i - 1]) {
+            return fail(
+                "{}: key {} at {} s, expected later than {} s", place, i, times[i], times[i - 1]);
+        }
+    }
+    return Done{};
+}
+
+}  // namespace
+
+Status check_skeleton(const SkeletonData& skeleton) {
+    const std::size_t count = skeleton.joints.size();
+    const std::string& name = skeleton.name;
+    if (count == 0) {
+        return fail("skeleton {}: no joints", name);
+    }
+    if (skeleton.parents.size() != count || skeleton.rest.translations.size() != count
+        || skeleton.rest.rotations.size() != count || skeleton.rest.scales.size() != count) {
+        return fail("skeleton {}: lists of different lengths for {} joints", name, count);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t parent = skeleton.parents[i];
+        if (i == 0 ? parent != -1 : parent < 0 || static_cast<std::size_t>(parent) >= i) {
+            return fail(
+                "skeleton {}: joint {} ({}) has the parent {}, expected {}",
+                name,
+                i,
+                skeleton.joints[i],
+                parent,
+                i == 0 ? "-1, it is the root" : "an earlier joint");
+        }
+        if (!is_finite(skeleton.rest.translations[i]) || !is_finite(skeleton.rest.rotations[i])
+            || !is_finite(skeleton.rest.scales[i]) || !has_length(skeleton.rest.rotations[i])) {
+            return fail("skeleton {}: joint {} ({}) rests nowhere", name, i, skeleton.joints[i]);
+        }
+    }
+    return Done{};
+}
+
+Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs) {
+    for (std::size_t i = 0; i < clip.sheets.size(); ++i) {
+        const ClipSheet& sheet = clip.sheets[i];
+        const std::string place = format_text("clip {}, sheet {}", clip.name, i);
+        if (Status status = check_times(place, sheet.times); !status) {
+            return status;
+        }
+        for (Status status :
+             {check_rows(place, "rotations", sheet, sheet.rotating, sheet.rotations, joints),
+              check_rows(
+                  place, "translations", sheet, sheet.translating, sheet.translations, joints),
+              check_rows(place, "scales", sheet, sheet.scaling, sheet.scales, joints),
+              check_rows(place, "weights", sheet, sheet.morphing, sheet.weights, morphs)}) {
+            if (!status) {
+                return status;
+            }
+        }
+        if (!are_rotations(sheet)) {
+            return fail("{}: a rotation of length 0", place);
+        }
+    }
+    return Done{};
+}
+
+Status check_skin(const SkinData& skin, std::size_t joints) {
+    if (skin.joints.empty() || skin.joints.size() != skin.joint_from_mesh.size()) {
+        return fail(
+            "skin {}: {} matrices for {} joints, expected one each",
+            skin.name,
+            skin.joint_from_mesh.size(),
+            skin.joints.size());
+    }
+    for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+        if (skin.joints[i] >= joints) {
+            return fail(
+                "skin {}: joint {}, expected less than {}", skin.name, skin.joints[i], joints);
+        }
+        const float volume = glm::determinant(Mat3(to_mat4(skin.joint_from_mesh[i])));
+        const Vec4* row = skin.joint_from_mesh[i].row;
+        const bool is_somewhere = std::isfinite(row[0].w + row[1].w + row[2].w);
+        if (!std::isfinite(volume) || !is_somewhere || std::abs(volume) < 1e-24f) {
+            return fail("skin {}: the matrix of joint {} has no inverse", skin.name, i);
+        }
+    }
+    return Done{};
+}
+
+std::size_t clip_size(const ClipData& clip) {
+    std::size_t size = 0;
+    for (const ClipSheet& sheet : clip.sheets) {
+        size += sheet.times.size() + 4 * sheet.rotations.size() + 3 * sheet.translations.size()
+                + 3 * sheet.scales.size() + sheet.weights.size();
+    }
+    return size;
+}
+
+}  // namespace limn

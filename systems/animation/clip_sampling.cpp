@@ -1,0 +1,161 @@
+#include "systems/animation/clip_sampling.h"
+
+#include "ecs/base/check.h"
+#include "ecs/base/rotation.h"
+#include "systems/animation/pose_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+/// What a Hermite curve takes of the keys on both sides and of their slopes.
+struct Hermite {
+    float from;
+    float slope_from;
+    float to;
+    float slope_to;
+
+    Hermite(float u, float seconds) {
+        const float u2 = u * u;
+        const float u3 = u2 * u;
+        from = 2.0f * u3 - 3.0f * u2 + 1.0f;
+        slope_from = (u3 - 2.0f * u2 + u) * seconds;
+        to = 3.0f * u2 - 2.0f * u3;
+        slope_to = (u3 - u2) * seconds;
+    }
+    template <typename T>
+    [[nodiscard]] T blend(const T* first, const T* second, std::size_t joints) const {
+        return from * first[joints] + slope_from * first[2 * joints] + to * second[joints]
+               + slope_to * second[0];
+    }
+};
+
+/// The two rows of a sheet around a time.
+class SheetRows {
+  public:
+    SheetRows(const ClipSheet& sheet, float time)
+        : sheet_(sheet), place_(find_keys(sheet.times, time)),
+          second_(std::min(place_.first + 1, sheet.times.size() - 1)) {
+        if (sheet.interpolation == Interpolation::Step) {
+            place_.first = place_.u < 1.0f ? place_.first : second_;
+            second_ = place_.first;
+            place_.u = 0.0f;
+        }
+    }
+
+    /// put(i, value) for each of the row's `count` values.
+    template <typename T, typename Put>
+    void each_value(const std::vector<T>& values, std::size_t count, Put&& put) const {
+        const bool is_cubic = sheet_.interpolation == Interpolation::Cubic;
+        const std::size_t width = is_cubic ? 3 * count : count;
+        const T* first = values.data() + place_.first * width;
+        const T* second = values.data() + second_ * width;
+        if (is_cubic) {
+            const Hermite hermite(place_.u, sheet_.times[second_] - sheet_.times[place_.first]);
+            for (std::size_t i = 0; i < count; ++i) {
+                put(i, hermite.blend(first + i, second + i, count));
+            }
+            return;
+        }
+        const float u = place_.u;
+        for (std::size_t i = 0; i < count; ++i) {
+            put(i, first[i] * (1.0f - u) + second[i] * u);
+        }
+    }
+
+    [[nodiscard]] float u() const { return place_.u; }
+    [[nodiscard]] std::span<const Quat> first(std::size_t count) const {
+        return {sheet_.rotations.data() + place_.first * count, count};
+    }
+    [[nodiscard]] std::span<const Quat> second(std::size_t count) const {
+        return {sheet_.rotations.data() + second_ * count, count};
+    }
+
+  private:
+    const ClipSheet& sheet_;
+    KeyPlace place_;
+    std::size_t second_;
+};
+
+void sample_rotations(const ClipSheet& sheet, const SheetRows& rows, std::span<Quat> rotations) {
+    const std::size_t count = sheet.rotating.size();
+    if (sheet.interpolation == Interpolation::Cubic) {
+        rows.each_value(sheet.rotations, count, [&](std::size_t i, const Quat& q) {
+            rotations[sheet.rotating[i]] = unit_or_none(q);
+        });
+        return;
+    }
+    // Some at a time on the stack, then to their joints.
+    constexpr std::size_t kBatch = 64;
+    Quat blended[kBatch];
+    for (std::size_t begin = 0; begin < count; begin += kBatch) {
+        const std::size_t size = std::min(kBatch, count - begin);
+        slerp_rotations(
+            rows.first(count).subspan(begin, size),
+            rows.second(count).subspan(begin, size),
+            rows.u(),
+            {blended, size});
+        for (std::size_t i = 0; i < size; ++i) {
+            rotations[sheet.rotating[begin + i]] = blended[i];
+        }
+    }
+}
+
+}  // namespace
+
+KeyPlace find_keys(std::span<const float> times, float t) {
+    if (times.size() < 2 || !(t > times.front())) {
+        return {};
+    }
+    if (t >= times.back()) {
+        return {times.size() - 2, 1.0f};
+    }
+    const auto after = std::upper_bound(times.begin(), times.end(), t);
+    const auto first = after - 1;
+    return {
+        static_cast<std::size_t>(first - times.begin()),
+        std::min((t - *first) / (*after - *first), 1.0f)};
+}
+
+float clip_time(float duration, float time, bool loops) {
+    if (!std::isfinite(time) || !(duration > 0.0f)) {
+        return 0.0f;
+    }
+    if (!loops) {
+        return std::clamp(time, 0.0f, duration);
+    }
+    const float rest = std::fmod(time, duration);
+    return rest < 0.0f ? rest + duration : rest;
+}
+
+void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<float> weights) {
+    for (const ClipSheet& sheet : clip.sheets) {
+        const SheetRows rows(sheet, time);
+        sample_rotations(sheet, rows, pose.rotations);
+        rows.each_value(
+            sheet.translations, sheet.translating.size(), [&](std::size_t i, const Vec3& value) {
+                pose.translations[sheet.translating[i]] = value;
+            });
+        rows.each_value(sheet.scales, sheet.scaling.size(), [&](std::size_t i, const Vec3& value) {
+            pose.scales[sheet.scaling[i]] = value;
+        });
+        rows.each_value(sheet.weights, sheet.morphing.size(), [&](std::size_t i, float value) {
+            weights[sheet.morphing[i]] = value;
+        });
+    }
+}
+
+void find_joint_matrices(
+    const SkeletonData& skeleton, const LocalPose& pose, std::span<Affine> matrices) {
+    LIMN_CHECK(pose.size() == skeleton.parents.size() && matrices.size() == pose.size());
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+        const Affine local = affine_from(pose.translations[i], pose.rotations[i], pose.scales[i]);
+        const std::int32_t parent = skeleton.parents[i];
+        matrices[i] = parent < 0 ? local : matrices[static_cast<std::size_t>(parent)] * local;
+    }
+}
+
+}  // namespace limn
