@@ -110,14 +110,14 @@ TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep the
     CHECK(run.exit_code == 0);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     const auto& rows = json["effects"][0]["rows"];
-    CHECK(rows.size() == 3 * 8 + 3);
+    CHECK(rows.size() == 9 + 8 + 9 + 3);
     for (const auto& row : rows) {
         CAPTURE(row.dump());
         CHECK(row["holds"] == true);
         CHECK(row["bound"] != "none");
     }
     // Of each method and each penumbra effect, oracle and difference.
-    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (3 * 8 + 3));
+    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (9 + 8 + 9 + 3));
 }
 
 TEST_CASE("quality: statistics and tone operators of the GPU are those of the oracle") {
