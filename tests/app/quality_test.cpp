@@ -83,6 +83,19 @@ TEST_CASE("quality: the page has effect, oracle and difference of each picture w
     CHECK(page->find("<x>") == std::string::npos);
 }
 
+TEST_CASE("quality: lights keep their bounds by every method, and no list misses one") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "lights", "--json", "q.json"});
+    CHECK(run.exit_code == 0);
+    const nlohmann::json json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const nlohmann::json& rows = json["effects"][0]["rows"];
+    REQUIRE(rows.size() == 7);
+    for (const nlohmann::json& row : rows) {
+        CHECK(row["holds"] == true);
+    }
+    CHECK(rows[0]["found"] <= 1.0);
+}
+
 TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {
     const TemporaryFolder folder;
     const ProgramRun run =
