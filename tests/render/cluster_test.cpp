@@ -243,4 +243,41 @@ TEST_CASE_FIXTURE(Scene, "clusters: the picture equals the sum of all lights at 
     CHECK(worst < 4e-3);
 }
 
+TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it reaches") {
+    const Material matte = {
+        .shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}, .specular = {0, 0, 0}};
+    place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {60, 60, 1}));
+    RandomLights random(33);
+    const PointLight light = {.intensity = 0.02f, .radius = 0.5f};
+    std::vector<Vec3> places;
+    for (int i = 0; i < 1000000; ++i) {
+        Vec3 p = random.in_cube(50);
+        p.z = 0.25f;
+        places.push_back(p);
+        shine(light, at(p));
+    }
+    // Straight down at 20 x 20 m of it.
+    const RenderView view = look({0, 0, 10}, {0, 0, 0}, 64, 64);
+    const FrameOutput frame = draw(view);
+    CHECK(frame.statistics.lights == 1000000);
+    const gpu::FloatImage image = gpu::read_floats(*frame.radiance);
+    for (const float value : image.pixels) {
+        REQUIRE(std::isfinite(value));
+    }
+    for (int i = 0; i < 16; ++i) {
+        const int x = 4 * i + 1;
+        const int y = 61 - 3 * i;
+        const glm::dvec3 p = {(x + 0.5) / 3.2 - 10, 10 - (y + 0.5) / 3.2, 0};
+        double sum = 0;
+        for (const Vec3& place : places) {
+            if (glm::distance(glm::dvec3(place), p) < 0.5) {
+                const oracle::Arriving one = oracle::arrive(light, place, p, {0, 0, 1});
+                sum += one.color.x * one.to_light.z;
+            }
+        }
+        CHECK(sum > 0);
+        CHECK(image.at(x, y, 0) == doctest::Approx(sum).epsilon(4e-3));
+    }
+}
+
 }  // namespace limn::test
