@@ -60,8 +60,6 @@ std::vector<Method> methods(Kind kind) {
             .source_size = kind == Kind::Sun ? kSunSize : kLampSize,
             .distance = 16};
     };
-    Shadow perspective = map(ShadowFilter::Bilinear);
-    perspective.method = ShadowMethod::Perspective;
     const Shadow volume = {.method = ShadowMethod::Volume};
     Shadow hybrid = map(ShadowFilter::Bilinear);
     hybrid.method = ShadowMethod::Hybrid;
@@ -74,7 +72,6 @@ std::vector<Method> methods(Kind kind) {
         {"map, 2x2", map(ShadowFilter::Bilinear), {}, kMaps},
         {"map, soft", map(ShadowFilter::Soft), {}, kMaps},
         {"map, contact hardening", map(ShadowFilter::ContactHardening), {}, kMaps},
-        {"map, perspective", perspective, {}, kMaps},
         {"volumes, z-pass", volume, {.mode = StencilMode::ZPass}, kVolumes},
         {"volumes, z-fail", volume, {.mode = StencilMode::ZFail}, kVolumes},
         {"volumes per triangle", volume, {.kind = VolumeKind::PerTriangle}, kVolumes},
