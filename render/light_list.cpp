@@ -1,5 +1,6 @@
 #include "render/light_list.h"
 
+#include "ecs/base/gradient_noise.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -8,6 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <numbers>
 
 namespace limn {
 namespace {
@@ -38,7 +41,7 @@ bool shines(const layout::LightRecord& r) {
 }
 
 void set_attenuation(layout::LightRecord& record, const Attenuation& attenuation, float radius) {
-    record.position.w = std::isnan(radius) ? radius : radius > 0 ? 1 / square(radius) : 0;
+    record.position.w = radius > 0 ? 1 / square(radius) : 0;
     switch (attenuation.falloff) {
     case Falloff::InverseSquare:
         record.polynomial = {0, 0, 1, 0};
@@ -113,7 +116,6 @@ void add_extras(
              *light.shadow,
              position_of(light.pose),
              axis_of(light.pose),
-             {light.pose.row[0].x, light.pose.row[1].x, light.pose.row[2].x},
              radius,
              outer_angle,
              false});
@@ -130,8 +132,16 @@ void add_extras(
 }  // namespace
 
 float pulse_factor(const LightPulse& pulse, double time) {
-    const double wave = std::sin(static_cast<double>(pulse.frequency) * time + pulse.phase);
-    return std::max(0.0f, 1.0f + pulse.amplitude * static_cast<float>(wave));
+    const double angle = static_cast<double>(pulse.frequency) * time;
+    const float wave = pulse.shape == PulseShape::Sine
+                           ? static_cast<float>(std::sin(angle + pulse.phase))
+                           : 2.0f
+                                     * noise(
+                                         static_cast<float>(angle / (2.0 * std::numbers::pi)),
+                                         std::bit_cast<std::uint32_t>(pulse.phase),
+                                         3)
+                                 - 1.0f;
+    return std::max(0.0f, 1.0f + pulse.amplitude * wave);
 }
 
 layout::LightRecord make_record(const PointLight& light, const Vec3& position, float factor) {

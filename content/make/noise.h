@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/gradient_noise.h"
 #include "ecs/base/math.h"
 
 #include <cstdint>
@@ -11,23 +12,6 @@ namespace limn {
 // cells, so that an image tiles; 0 = never repeats. After K. Perlin, "Improving Noise" (2002), S.
 // Worley, "A Cellular Texture Basis Function" (1996) and, for the fractals, F. K. Musgrave in
 // "Texturing and Modeling" (2003).
-
-/// 32 well-mixed bits for a point of the integer lattice.
-[[nodiscard]] std::uint32_t lattice_hash(int x, int y, std::uint32_t seed);
-
-/// The same as a number in 0 .. 1, 1 exclusive.
-[[nodiscard]] float lattice_random(int x, int y, std::uint32_t seed);
-
-/// Value and gradient of a noise.
-struct NoiseSample {
-    float value;
-    Vec2 slope;
-};
-
-/// Gradient noise: about -1 .. 1, mean 0, 0 at lattice points, twice differentiable.
-[[nodiscard]] NoiseSample
-gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0});
-[[nodiscard]] float gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0});
 
 /// How octaves add up: octave i has frequency 2^i and amplitude gain^i; the sum is divided by the
 /// sum of the amplitudes.

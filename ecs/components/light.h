@@ -56,9 +56,16 @@ struct DirectionalLight {
     bool enabled = true;
 };
 
+/// What a pulse follows.
+enum class PulseShape : std::uint8_t {
+    Sine,   ///< sin(frequency t + phase)
+    Noise,  ///< flickers like a flame, about as fast; other phases flicker otherwise
+};
+
 /// Modulates the intensity of the light beside it (the `function` of engine.light-object):
-/// intensity x (1 + amplitude sin(frequency t + phase)), never below 0.
+/// intensity x (1 + amplitude shape(t)), never below 0.
 struct LightPulse {
+    PulseShape shape = PulseShape::Sine;
     float amplitude = 0.5f;  ///< 0 .. 1
     float frequency = 4.0f;  ///< [rad/s]
     float phase = 0.0f;      ///< [rad]
@@ -135,6 +142,7 @@ void visit_fields(DirectionalLight& light, Visitor&& visit) {
 
 template <typename Visitor>
 void visit_fields(LightPulse& pulse, Visitor&& visit) {
+    visit("shape", pulse.shape, {.doc = "what it follows", .values = "sine noise"});
     visit(
         "amplitude",
         pulse.amplitude,

@@ -1,0 +1,181 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+namespace limn {
+
+// Gradient noise on the integer lattice: a function of place and seed alone, the same on every
+// machine (no libm beyond sqrt and floor) and, but for rounding, in render/shaders/lib/noise.glsl.
+// Every lattice point has a unit vector, chosen by an integer hash; its ramps are blended with
+// 6t^5 - 15t^4 + 10t^3, so that the noise is twice differentiable. It is 0 at lattice points and
+// has mean 0; divided by half the root of the number of dimensions, the most it can be, it stays
+// within -1 .. 1. After K. Perlin, "Improving Noise" (2002).
+
+/// 32 well-mixed bits for a point of the integer lattice.
+[[nodiscard]] inline std::uint32_t lattice_hash(int x, int y, std::uint32_t seed) {
+    // Three rounds of multiply and xor-shift (the constants are those of MurmurHash3's finalizer).
+    std::uint32_t h = seed * 0x9e3779b9u ^ static_cast<std::uint32_t>(x) * 0x85ebca6bu;
+    h = (h ^ (h >> 15)) * 0xc2b2ae35u ^ static_cast<std::uint32_t>(y) * 0x27d4eb2fu;
+    h = (h ^ (h >> 13)) * 0x85ebca6bu;
+    h = (h ^ (h >> 16)) * 0xc2b2ae35u;
+    return h ^ (h >> 16);
+}
+
+/// The same as a number in 0 .. 1, 1 exclusive.
+[[nodiscard]] inline float lattice_random(int x, int y, std::uint32_t seed) {
+    return static_cast<float>(lattice_hash(x, y, seed) >> 8) * 0x1p-24f;
+}
+
+/// 0 .. 1 for 0 .. 1, flat at both ends; its derivative is 30 t^2 (t - 1)^2.
+template <typename T>
+[[nodiscard]] T quintic_fade(const T& t) {
+    return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
+}
+
+[[nodiscard]] inline float gradient_noise(float x, std::uint32_t seed) {
+    const float cell = std::floor(x);
+    const float t = x - cell;
+    const auto slope = [&](int i) {
+        return 2.0f * lattice_random(static_cast<int>(cell) + i, 0, seed) - 1.0f;
+    };
+    const float low = slope(0) * t;
+    return 2.0f * (low + quintic_fade(t) * (slope(1) * (t - 1.0f) - low));
+}
+
+/// Value and gradient of a noise.
+struct NoiseSample {
+    float value;
+    Vec2 slope;
+};
+
+/// `period` > 0 makes it repeat after so many lattice cells, so that an image tiles; 0 = never.
+[[nodiscard]] inline NoiseSample
+gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
+    constexpr float kLong = 0.92387953f;
+    constexpr float kShort = 0.38268343f;
+    constexpr float kDiagonal = 0.70710678f;
+    static constexpr Vec2 kDirections[16] = {
+        {1, 0},
+        {-1, 0},
+        {0, 1},
+        {0, -1},
+        {kLong, kShort},
+        {-kLong, kShort},
+        {kLong, -kShort},
+        {-kLong, -kShort},
+        {kShort, kLong},
+        {-kShort, kLong},
+        {kShort, -kLong},
+        {-kShort, -kLong},
+        {kDiagonal, kDiagonal},
+        {-kDiagonal, kDiagonal},
+        {kDiagonal, -kDiagonal},
+        {-kDiagonal, -kDiagonal}};
+    const auto wrap = [](int x, int cells) {
+        const int rest = cells > 0 ? x % cells : x;
+        return cells > 0 && rest < 0 ? rest + cells : rest;
+    };
+    const float cell_x = std::floor(p.x);
+    const float cell_y = std::floor(p.y);
+    const int x0 = static_cast<int>(cell_x);
+    const int y0 = static_cast<int>(cell_y);
+    const float fx = p.x - cell_x;
+    const float fy = p.y - cell_y;
+
+    // The gradient and its linear ramp at the four corners.
+    Vec2 gradient[4];
+    float ramp[4];
+    for (int corner = 0; corner < 4; ++corner) {
+        const int dx = corner % 2;
+        const int dy = corner / 2;
+        const std::uint32_t h =
+            lattice_hash(wrap(x0 + dx, period.x), wrap(y0 + dy, period.y), seed);
+        gradient[corner] = kDirections[h >> 28];
+        ramp[corner] = gradient[corner].x * (fx - static_cast<float>(dx))
+                       + gradient[corner].y * (fy - static_cast<float>(dy));
+    }
+
+    const Vec2 t = {fx, fy};
+    const Vec2 w = quintic_fade(t);
+    const Vec2 dw = 30.0f * t * t * (t - 1.0f) * (t - 1.0f);
+    const float low = ramp[0] + w.x * (ramp[1] - ramp[0]);
+    const float high = ramp[2] + w.x * (ramp[3] - ramp[2]);
+    const Vec2 slope_low =
+        gradient[0] + w.x * (gradient[1] - gradient[0]) + Vec2(dw.x * (ramp[1] - ramp[0]), 0);
+    const Vec2 slope_high =
+        gradient[2] + w.x * (gradient[3] - gradient[2]) + Vec2(dw.x * (ramp[3] - ramp[2]), 0);
+    const float value = low + w.y * (high - low);
+    const Vec2 slope = slope_low + w.y * (slope_high - slope_low) + Vec2(0, dw.y * (high - low));
+    constexpr float kScale = 1.41421356f;
+    return {kScale * value, kScale * slope};
+}
+
+[[nodiscard]] inline float
+gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
+    return gradient_noise_slope(p, seed, period).value;
+}
+
+[[nodiscard]] inline float gradient_noise(const Vec3& p, std::uint32_t seed) {
+    const Vec3 cell = {std::floor(p.x), std::floor(p.y), std::floor(p.z)};
+    const Vec3 t = p - cell;
+    const Vec3 w = quintic_fade(t);
+    // Toward the middles of a cube's twelve edges, four of them twice.
+    const auto ramp = [&](int dx, int dy, std::uint32_t plane, float z) {
+        const float x = t.x - static_cast<float>(dx);
+        const float y = t.y - static_cast<float>(dy);
+        const std::uint32_t h =
+            lattice_hash(static_cast<int>(cell.x) + dx, static_cast<int>(cell.y) + dy, plane) >> 28;
+        const float u = h < 8 ? x : y;
+        const float v = h < 4 ? y : h == 12 || h == 14 ? x : z;
+        return ((h & 1) != 0 ? -u : u) + ((h & 2) != 0 ? -v : v);
+    };
+    const auto plane = [&](int dz) {
+        const std::uint32_t h = lattice_hash(static_cast<int>(cell.z) + dz, 1, seed);
+        const float z = t.z - static_cast<float>(dz);
+        const float a = ramp(0, 0, h, z);
+        const float b = ramp(0, 1, h, z);
+        const float low = a + w.x * (ramp(1, 0, h, z) - a);
+        const float high = b + w.x * (ramp(1, 1, h, z) - b);
+        return low + w.y * (high - low);
+    };
+    const float front = plane(0);
+    constexpr float kScale = 0.81649658f;  // sqrt(1/2) for the vectors, 2 / sqrt(3) for the range
+    return kScale * (front + w.z * (plane(1) - front));
+}
+
+/// Noise in 0 .. 1 (shade.noise) of one, two or three coordinates; octave i has frequency 2^i and
+/// amplitude 2^-i. 0.5 where a float has no fraction any more, and for NaN.
+template <typename Place>
+[[nodiscard]] float noise(const Place& place, std::uint32_t seed = 0, int octaves = 1) {
+    const auto has_fraction = [](const Place& p) {
+        if constexpr (std::is_same_v<Place, float>) {
+            return std::abs(p) < 0x1p23f;
+        } else {
+            for (int i = 0; i < Place::length(); ++i) {
+                if (!(std::abs(p[i]) < 0x1p23f)) {
+                    return false;
+                }
+            }
+            return true;
+        }
+    };
+    float sum = 0;
+    float total = 0;
+    float amplitude = 1;
+    float frequency = 1;
+    for (int i = 0; i < octaves; ++i) {
+        const Place p = place * frequency;
+        sum += has_fraction(p) ? amplitude * gradient_noise(p, seed + static_cast<std::uint32_t>(i))
+                               : 0.0f;
+        total += amplitude;
+        amplitude *= 0.5f;
+        frequency *= 2.0f;
+    }
+    return 0.5f + 0.5f * sum / total;
+}
+
+}  // namespace limn
