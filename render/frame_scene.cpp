@@ -225,10 +225,11 @@ const gpu::Program* SurfacePrograms::get(
     }
     const Result<const gpu::Program*> program = device_->shaders().load(
         {.vertex = vertex_, .fragment = fragment_, .defines = std::move(defines)});
-    if (!program) {
-        log_error("{}", program.error().message);
+    const Status fits = program ? (*program)->expect_inputs(mesh_attributes()) : program.error();
+    if (!fits) {
+        log_error("{}", fits.error().message);
     }
-    return programs_[key] = program ? *program : nullptr;
+    return programs_[key] = fits ? *program : nullptr;
 }
 
 Status SurfacePrograms::load(

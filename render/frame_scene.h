@@ -30,7 +30,7 @@ class Texture;
 }  // namespace gpu
 
 // What every pass of a frame finds prepared: the world as the GPU sees it. The bindings are the
-// same in all shaders; bind_scene() makes them.
+// same in all shaders; bind_view() and bind_lighting() make them.
 
 /// Uniform blocks.
 inline constexpr unsigned kViewBinding = 0;

@@ -323,7 +323,7 @@ void InstanceCollector::place_keys(
             place += kind.count;
         }
         if (!is_blended(group.key)) {
-            add_command(group.key, first, place - first, meshes, materials, list.opaque);
+            add_command(group.key, first, place - first, meshes, materials, list);
             opaque_count_ = place;
         }
     }
@@ -336,7 +336,7 @@ void InstanceCollector::order_blended(
         return a.distance != b.distance ? a.distance > b.distance : a.instance < b.instance;
     });
     for (const Blended& one : blended_) {
-        add_command(one.key, one.instance, 1, meshes, materials, list.blended);
+        add_command(one.key, one.instance, 1, meshes, materials, list);
     }
 }
 
@@ -346,12 +346,17 @@ void InstanceCollector::add_command(
     std::uint32_t count,
     const MeshPool& meshes,
     const MaterialPool& materials,
-    std::vector<DrawRun>& runs) {
+    InstanceList& list) {
+    std::vector<DrawRun>& runs = is_blended(key) ? list.blended : list.opaque;
     const MeshRange& mesh = meshes.meshes()[mesh_of(key)];
     const SurfaceBatch& batch = materials.batch(batch_of(key));
     DrawRun run;
     run.features =
         batch.features | (mesh.colored ? kVertexColor : 0u) | (is_inflated(key) ? kInflate : 0u);
+    if ((run.features & kNormalMap) != 0 && !mesh.tangents) {
+        run.features &= ~static_cast<std::uint32_t>(kNormalMap);
+        list.without_tangents.push_back(mesh_of(key));
+    }
     run.textures = batch.textures;
     run.mirrored = is_mirrored(key);
     run.first_command = static_cast<std::uint32_t>(commands_.size());

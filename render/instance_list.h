@@ -16,7 +16,7 @@ class World;
 // what they are drawn with; the keys are counted and summed, and every visible row writes its
 // record to its place: equal keys lie together, in world order, whatever thread did it. A key is
 // one command of a multi-draw, all commands of a batch are one draw: ten thousand equal meshes are
-// one. Only what is seen is written.
+// one. Only what is seen is written. A mesh without tangents is drawn without its normal map.
 //
 // 100,000 moving boxes, all in the picture, take 1.6 ms of one core (instance_bench).
 
@@ -46,6 +46,7 @@ struct InstanceList {
     gpu::RingSlice before;                        ///< Affine; of no size unless asked for
     std::span<const DrawCommand> command_values;  ///< those of `commands`, until the next collect()
     std::vector<BoxBlock> boxes;  ///< world boxes by place of the instance; none unless asked for
+    std::vector<std::uint32_t> without_tangents;  ///< meshes that would need them for a normal map
     int total = 0;
     int visible = 0;
     int opaque_instances = 0;  ///< they come first in `instances`
@@ -145,7 +146,7 @@ class InstanceCollector {
         std::uint32_t count,
         const MeshPool& meshes,
         const MaterialPool& materials,
-        std::vector<DrawRun>& runs);
+        InstanceList& list);
 
     std::vector<ChunkWork> chunks_;
     std::vector<Entry> entries_;

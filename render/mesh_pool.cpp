@@ -3,7 +3,10 @@
 #include "ecs/base/log.h"
 #include "render/shaders/instance_gpu.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace limn {
@@ -33,9 +36,8 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 4,
      .stream = kAttributeStream,
      .components = 4,
-     .type = GL_UNSIGNED_SHORT,
-     .offset = offsetof(PackedVertex, color),
-     .normalized = true},
+     .type = GL_HALF_FLOAT,
+     .offset = offsetof(PackedVertex, color)},
     {.location = 5, .stream = kInstanceStream, .components = 4, .offset = 0},
     {.location = 6, .stream = kInstanceStream, .components = 4, .offset = 16},
     {.location = 7, .stream = kInstanceStream, .components = 4, .offset = 32},
@@ -53,8 +55,9 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
 std::int16_t to_snorm(float x) {
     return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f));
 }
-std::uint16_t to_unorm(float x) {
-    return static_cast<std::uint16_t>(std::lround(std::clamp(x, 0.0f, 1.0f) * 65535.0f));
+std::uint16_t to_half(float x) {
+    constexpr float kMost = 65504;
+    return glm::packHalf1x16(std::isnan(x) ? 0.0f : std::clamp(x, -kMost, kMost));
 }
 
 PackedVertex pack_vertex(const MeshData& mesh, std::size_t i) {
@@ -71,7 +74,7 @@ PackedVertex pack_vertex(const MeshData& mesh, std::size_t i) {
         {to_snorm(t3.x), to_snorm(t3.y), to_snorm(t3.z), to_snorm(t.w < 0 ? -1.0f : 1.0f)},
         uv,
         at(mesh.uvs1, uv),
-        {to_unorm(c.x), to_unorm(c.y), to_unorm(c.z), to_unorm(c.w)}};
+        {to_half(c.x), to_half(c.y), to_half(c.z), to_half(c.w)}};
 }
 
 bool drawable(const MeshData& mesh) {
@@ -99,6 +102,10 @@ gpu::Buffer grown(const char* label, const gpu::Buffer& old, std::size_t kept, s
 }
 
 }  // namespace
+
+std::span<const gpu::VertexAttribute> mesh_attributes() {
+    return kMeshAttributes;
+}
 
 MeshPool::MeshPool() : vertices_("meshes", kMeshAttributes) {
     reserve(kFirstVertices, kFirstIndices);
@@ -150,6 +157,7 @@ void MeshPool::append(std::span<const MeshData> meshes) {
             range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
             range.base_vertex = static_cast<std::int32_t>(vertex_count_);
             range.colored = !mesh.colors.empty();
+            range.tangents = !mesh.tangents.empty();
             vertex_count_ += mesh.positions.size();
             index_count_ += mesh.indices.size();
         }

@@ -21,17 +21,18 @@ struct MeshRange {
     std::uint32_t index_count = 0;  ///< 0: nothing to draw
     std::int32_t base_vertex = 0;
     Bounds bounds;
-    bool colored = false;  ///< has a color a vertex
+    bool colored = false;   ///< has a color a vertex
+    bool tangents = false;  ///< has a tangent a vertex: can have a normal map
 };
 
 /// A vertex beside its position; normals and tangents as 16-bit integers, -32767 .. 32767 for -1
-/// .. 1.
+/// .. 1, colors as half floats.
 struct PackedVertex {
     std::int16_t normal[4];
     std::int16_t tangent[4];  ///< w: sign of the bitangent
     Vec2 uv;
     Vec2 uv1;
-    std::uint16_t color[4];  ///< 65535 = 1
+    std::uint16_t color[4];
 };
 static_assert(sizeof(PackedVertex) == 40);
 
@@ -62,6 +63,9 @@ class MeshPool {
     std::size_t index_count_ = 0;
     std::size_t index_capacity_ = 0;
 };
+
+/// What mesh.vert may read.
+[[nodiscard]] std::span<const gpu::VertexAttribute> mesh_attributes();
 
 /// Streams of mesh.vert.
 inline constexpr unsigned kPositionStream = 0;

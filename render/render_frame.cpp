@@ -30,6 +30,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <set>
 
 namespace limn {
 namespace {
@@ -128,6 +129,7 @@ class Renderer {
     void update_assets(const World& world);
     Environment shown_environment(const World& world) const;
     void update_environment(const World& world);
+    void report_missing_tangents(const Assets& assets);
     void draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha);
 
     FrameGraph probe_graph_;  ///< apart from the image's, whose times it would blur
@@ -153,6 +155,7 @@ class Renderer {
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
     bool dropped_reported_ = false;
+    std::set<std::uint32_t> untangented_reported_;  // meshes
     PictureClock clock_;
 };
 
@@ -203,6 +206,7 @@ void Renderer::update_assets(const World& world) {
         volume_collector_.forget();
         assets_ = assets.identity.value();
         environment_.reset();  // its panorama may be another
+        untangented_reported_.clear();
     }
     meshes_.append(std::span(assets.meshes).subspan(meshes_.meshes().size()));
     materials_.update(assets, fresh);
@@ -278,6 +282,17 @@ void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, f
     finish(probe_graph_);
 }
 
+void Renderer::report_missing_tangents(const Assets& assets) {
+    for (const std::uint32_t mesh : scene.instances.without_tangents) {
+        if (untangented_reported_.insert(mesh).second) {
+            log_warn(
+                "mesh {}: no tangents found, expected one a vertex; it is drawn without its normal "
+                "map",
+                assets.meshes[mesh].name);
+        }
+    }
+}
+
 void Renderer::prepare(const World& world, const RenderView& view, bool velocity, bool for_probe) {
     update_assets(world);
     ring_.begin_frame();
@@ -311,6 +326,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     resize_shadow_atlas(passes.shadows, scene.shadows);
     VolumeCollector::take_over_hybrids(scene.lights, scene.volumes);
     if (const auto* assets = world.find_resource<Assets>()) {
+        report_missing_tangents(*assets);
         projectors_.update(*assets, scene.lights);
     }
 

@@ -94,9 +94,38 @@ void read_blocks(
     }
 }
 
+/// Attributes that come from vertices: gl_VertexID and its like have no location.
+std::vector<ProgramInput> read_inputs(GLuint program) {
+    constexpr std::array<GLenum, 3> kAsked = {GL_LOCATION, GL_TYPE, GL_REFERENCED_BY_VERTEX_SHADER};
+    std::vector<ProgramInput> inputs;
+    const int count = resource_count(program, GL_PROGRAM_INPUT);
+    for (int i = 0; i < count; ++i) {
+        const auto index = static_cast<GLuint>(i);
+        std::array<GLint, 3> values = {};
+        glGetProgramResourceiv(
+            program, GL_PROGRAM_INPUT, index, 3, kAsked.data(), 3, nullptr, values.data());
+        if (values[0] >= 0 && values[2] != 0) {
+            inputs.push_back(
+                {resource_name(program, GL_PROGRAM_INPUT, index),
+                 values[0],
+                 static_cast<GLenum>(values[1])});
+        }
+    }
+    std::sort(inputs.begin(), inputs.end(), [](const ProgramInput& a, const ProgramInput& b) {
+        return a.location < b.location;
+    });
+    return inputs;
+}
+
+bool is_integer(GLenum type) {
+    return (type >= GL_INT_VEC2 && type <= GL_INT_VEC4) || type == GL_INT || type == GL_UNSIGNED_INT
+           || (type >= GL_UNSIGNED_INT_VEC2 && type <= GL_UNSIGNED_INT_VEC4);
+}
+
 }  // namespace
 
-Program::Program(GLuint id, std::string_view label) : object_(id, label), label_(label) {
+Program::Program(GLuint id, std::string_view label)
+    : object_(id, label), label_(label), inputs_(read_inputs(id)) {
     read_blocks(id, GL_UNIFORM_BLOCK, BindingKind::UniformBlock, bindings_);
     read_blocks(id, GL_SHADER_STORAGE_BLOCK, BindingKind::StorageBlock, bindings_);
 
@@ -122,6 +151,32 @@ Program::Program(GLuint id, std::string_view label) : object_(id, label), label_
     std::sort(uniforms_.begin(), uniforms_.end(), [](const Uniform& a, const Uniform& b) {
         return a.name < b.name;
     });
+}
+
+Status Program::expect_inputs(std::span<const VertexAttribute> format) const {
+    for (const ProgramInput& input : inputs_) {
+        const auto found =
+            std::find_if(format.begin(), format.end(), [&](const VertexAttribute& attribute) {
+                return static_cast<int>(attribute.location) == input.location;
+            });
+        if (found == format.end()) {
+            return fail(
+                "{}: context: attribute {} at location {} found, expected one that the vertices "
+                "have",
+                label_,
+                input.name,
+                input.location);
+        }
+        if (found->integer != is_integer(input.type)) {
+            return fail(
+                "{}: context: attribute {} found as {}, expected {}",
+                label_,
+                input.name,
+                found->integer ? "a float" : "an integer",
+                found->integer ? "an integer" : "a float");
+        }
+    }
+    return Done{};
 }
 
 Status Program::expect(BindingKind kind, std::string_view name, int binding, int size) const {

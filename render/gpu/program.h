@@ -4,6 +4,7 @@
 #include "ecs/base/result.h"
 #include "render/gpu/gl_object.h"
 #include "render/gpu/pipeline_state.h"
+#include "render/gpu/vertex_array.h"
 
 #include <span>
 #include <string>
@@ -25,6 +26,13 @@ struct ProgramBinding {
     GLenum type = GL_NONE;  ///< samplers and images, e.g. GL_SAMPLER_2D
 };
 
+/// A vertex attribute that a program reads.
+struct ProgramInput {
+    std::string name;
+    int location = 0;
+    GLenum type = GL_NONE;  ///< e.g. GL_FLOAT_VEC3
+};
+
 class Program {
   public:
     Program() = default;
@@ -33,6 +41,11 @@ class Program {
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
     [[nodiscard]] const std::vector<ProgramBinding>& bindings() const { return bindings_; }
+    /// By location.
+    [[nodiscard]] const std::vector<ProgramInput>& inputs() const { return inputs_; }
+    /// Fails if it reads an attribute that vertices of this format have not, or as another kind of
+    /// number.
+    [[nodiscard]] Status expect_inputs(std::span<const VertexAttribute> format) const;
     /// Fails unless the program has this binding (and a block at least fits in `size` bytes): call
     /// it once after loading for layouts that C++ shares with the shader.
     [[nodiscard]] Status
@@ -67,6 +80,7 @@ class Program {
 
     GlObject<ObjectKind::Program> object_;
     std::string label_;
+    std::vector<ProgramInput> inputs_;
     std::vector<ProgramBinding> bindings_;
     std::vector<Uniform> uniforms_;  // sorted by name
 };

@@ -229,7 +229,10 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
             log.pop_back();
         }
         glDeleteProgram(id);
-        return fail("{}: {}", describe(desc), log.empty() ? "does not link, no reason given" : log);
+        return fail(
+            "{}: context: {}",
+            describe(desc),
+            log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));
     const Status fits = check_textures(caps_, desc, program);

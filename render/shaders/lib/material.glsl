@@ -59,7 +59,7 @@ vec4 surface_color() {
     color *= texel;
 #endif
 #ifdef VERTEX_COLOR
-    color *= vertex_color;
+    color *= max(vertex_color, 0.0);
 #endif
     return color;
 }
