@@ -75,19 +75,21 @@ glm::dvec3 reflect_pbr(
     if (n_l <= 0) {
         return glm::dvec3(0);
     }
+    // Metalness is the share of the surface that is metal; the rest is dielectric (glTF 2.0).
     const glm::dvec3 h = glm::normalize(to_light + to_camera);
-    const glm::dvec3 f0 = glm::mix(glm::dvec3(0.04), material.albedo, material.metalness);
     const double p = schlick(glm::dot(to_camera, h));
-    const double albedo = lobe.scale + lobe.bias;
-    const glm::dvec3 single = f0 * lobe.scale + lobe.bias;
-    const glm::dvec3 given_back = 1.0 + f0 * (1 / albedo - 1);
-    const glm::dvec3 specular =
-        (f0 * (1 - p) + p) * given_back
-        * ggx_lobe(
-            n_l, glm::dot(normal, to_camera), glm::dot(normal, h), square(material.roughness));
-    const glm::dvec3 left = 1.0 - single * given_back;
-    const glm::dvec3 diffuse = (1 - material.metalness) * left * material.albedo * (n_l / kPiD);
-    return specular + diffuse;
+    const double spread =
+        ggx_lobe(n_l, glm::dot(normal, to_camera), glm::dot(normal, h), square(material.roughness));
+    const auto given_back = [&](const glm::dvec3& f0) {
+        return 1.0 + f0 * (1 / (lobe.scale + lobe.bias) - 1);
+    };
+    const auto specular = [&](const glm::dvec3& f0) {
+        return (f0 * (1 - p) + p) * given_back(f0) * spread;
+    };
+    const glm::dvec3 f0(0.04);
+    const glm::dvec3 left = 1.0 - (f0 * lobe.scale + lobe.bias) * given_back(f0);
+    const glm::dvec3 dielectric = specular(f0) + left * material.albedo * (n_l / kPiD);
+    return glm::mix(dielectric, specular(material.albedo), material.metalness);
 }
 
 glm::dvec3 furnace(const PbrMaterial& material, double n_v, int steps) {

@@ -74,9 +74,12 @@ class MaterialBuilder {
         read_emission(source, material);
         if (source.extensions.contains("KHR_materials_unlit")) {
             material.shading = ShadingModel::Unlit;
+            material.metalness = 0;  // it mirrors nothing, whatever the fallback is
         }
         material.base_color_texture = slot(pbr.baseColorTexture, true);
-        material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
+        if (material.shading != ShadingModel::Unlit) {
+            material.metal_rough_texture = slot(pbr.metallicRoughnessTexture, false);
+        }
         material.normal_texture = slot(source.normalTexture, false);
         material.occlusion_texture = slot(source.occlusionTexture, false);
         material.emission_texture = slot(source.emissiveTexture, true);

@@ -80,7 +80,8 @@ enum class ShadingModel : std::uint8_t {
     Pbr,    ///< metal-rough of glTF: GGX with multi-scatter compensation, Lambert diffuse
     Blinn,  ///< ka, kd, ks, n with the half vector (light.halfway-vector)
     Phong,  ///< the same with the mirrored vector (light.phong-model)
-    Unlit,  ///< base color as it is
+    Unlit,  ///< base color as it is, or what it mirrors: (1 - m) color + m surroundings, m =
+            ///< metalness
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -92,7 +93,7 @@ struct Material {
     bool double_sided = false;
     float alpha_cutoff = 0.5f;                ///< Mask only
     Vec4 base_color = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGB, opacity; kd of Blinn and Phong
-    float metalness = 0.0f;                   ///< 0 .. 1
+    float metalness = 0.0f;                   ///< share that is metal, or mirrors, 0 .. 1
     float roughness = 0.5f;                   ///< perceptual, 0 .. 1
     Vec3 emission = {0, 0, 0};                ///< radiance, linear [W/(sr m^2)], >= 0
     Vec3 specular = {0.04f, 0.04f, 0.04f};    ///< ks of Blinn and Phong
@@ -214,7 +215,10 @@ void visit_fields(Material& material, Visitor&& visit) {
         "base_color",
         material.base_color,
         {.doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true});
-    visit("metalness", material.metalness, {.doc = "0 dielectric, 1 metal", .min = 0, .max = 1});
+    visit(
+        "metalness",
+        material.metalness,
+        {.doc = "0 dielectric, 1 metal; of unlit the share that mirrors", .min = 0, .max = 1});
     visit("roughness", material.roughness, {.doc = "perceptual roughness", .min = 0, .max = 1});
     visit(
         "emission",

@@ -17,7 +17,7 @@ void main() {
 
     // The mirror hides what it reflects in place of: its share of what lies behind is gone.
     Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
-    float mirror = dot(r.mirror, vec3(1.0 / 3.0)) * r.lit;
+    float mirror = dot(r.mirror, vec3(1.0 / 3.0));
     radiance = vec4(
         opacity * (light.diffuse + s.emission) + light.specular, opacity + (1.0 - opacity) * mirror);
 }

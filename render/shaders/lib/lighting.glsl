@@ -126,8 +126,8 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
 // What a surface sends on of the light of all lights, and of the surroundings'. Neither has its emission.
 Reflected reflect_lights(Reflector r, LightSum sum) {
     Reflected result;
-    result.diffuse = r.lit * r.diffuse * (sum.diffuse / kPi);
-    result.specular = r.lit * r.given_back * (r.f0 * (sum.specular - sum.fresnel) + sum.fresnel);
+    result.diffuse = r.diffuse * (sum.diffuse / kPi);
+    result.specular = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
     return result;
 }
 
@@ -135,8 +135,8 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
     Around around = light_from_around(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
     float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
     Reflected result;
-    result.diffuse = r.lit * r.diffuse * (around.irradiance * s.occlusion);
-    result.specular = r.lit * r.mirror * around.mirrored * open;
+    result.diffuse = r.diffuse * (around.irradiance * s.occlusion);
+    result.specular = r.mirror * around.mirrored * open;
     return result;
 }
 

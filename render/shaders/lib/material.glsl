@@ -127,8 +127,8 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
     if (s.model == kModelUnlit) {
-        s.emission += s.albedo;
-        s.albedo = vec3(0.0);
+        s.emission += (1.0 - s.metalness) * s.albedo;
+        s.albedo = vec3(s.metalness);
     }
     return s;
 }

@@ -11,6 +11,8 @@ layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 b
 layout(binding = 13) uniform samplerBuffer surface_materials;  // MaterialRecord
 #endif
 
+const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
+
 struct Incoming {
     vec3 to_light;    // unit
     vec3 irradiance;  // on a plane that faces the light
@@ -23,10 +25,9 @@ struct Reflector {
     float n_v;
     float alpha2;      // roughness^4
     vec3 diffuse;      // albedo of the diffuse part, losses to the specular part taken off
-    vec3 f0;           // reflectance head on; ks of the classic models
-    vec3 given_back;   // factor that returns what single scattering lost
+    vec3 specular_0;   // reflectance head on, with what single scattering lost; ks of the classic models
+    vec3 specular_90;  // the same at grazing angles
     vec3 mirror;       // share of uniform surroundings that the specular part returns
-    float lit;         // 0: Unlit
     float classic;     // 0: Pbr, 1: Blinn, 2: Phong
     float shininess;
 };
@@ -39,24 +40,34 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
     float roughness = max(s.roughness, kMinRoughness);
     r.alpha2 = roughness * roughness * roughness * roughness;
-    r.f0 = mix(vec3(0.04), s.albedo, s.metalness);
 
+    // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Either gives
+    // back what single scattering lost: Turquin, "Practical Multiple Scattering Compensation for Microfacet
+    // Models", 2019.
     vec2 size = vec2(textureSize(specular_albedo, 0));
     vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
-    // Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
-    r.given_back = 1.0 + r.f0 * (1.0 / (fit.x + fit.y) - 1.0);
-    r.mirror = (r.f0 * fit.x + fit.y) * r.given_back;
-    r.diffuse = s.albedo * (1.0 - s.metalness) * (1.0 - r.mirror);
-    r.lit = s.model == kModelUnlit ? 0.0 : 1.0;
+    float lost = 1.0 / (fit.x + fit.y) - 1.0;
+    float dielectric_90 = 1.0 + kDielectric * lost;
+    float dielectric_mirror = dielectric_90 * (kDielectric * fit.x + fit.y);
+    vec3 metal_90 = 1.0 + s.albedo * lost;
+    r.specular_0 = mix(vec3(kDielectric * dielectric_90), s.albedo * metal_90, s.metalness);
+    r.specular_90 = mix(vec3(dielectric_90), metal_90, s.metalness);
+    r.mirror = r.specular_0 * fit.x + r.specular_90 * fit.y;
+    r.diffuse = s.albedo * ((1.0 - s.metalness) * (1.0 - dielectric_mirror));
+    if (s.model == kModelUnlit) {
+        r.specular_0 = vec3(0.0);
+        r.specular_90 = vec3(0.0);
+        r.mirror = s.albedo;  // the share that is no color of its own
+        r.diffuse = vec3(0.0);
+    }
     r.classic = 0.0;
     r.shininess = 1.0;
 #ifdef CLASSIC_MODELS
     if (s.model == kModelBlinn || s.model == kModelPhong) {
         vec4 specular = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 3);
         r.classic = s.model == kModelBlinn ? 1.0 : 2.0;
-        r.f0 = specular.rgb;
+        r.specular_0 = specular.rgb;
         r.shininess = specular.a;
-        r.given_back = vec3(1.0);
         r.mirror = vec3(0.0);
         r.diffuse = s.albedo;
     }
@@ -67,8 +78,8 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 // Sums over lights, before the material's factors (light.multi).
 struct LightSum {
     vec3 diffuse;   // E n.l
-    vec3 specular;  // E lobe, to be multiplied by f0
-    vec3 fresnel;   // E lobe (1 - v.h)^5, to be multiplied by 1 - f0
+    vec3 specular;  // E lobe
+    vec3 fresnel;   // E lobe (1 - v.h)^5, the part of it that is as at grazing angles
 };
 
 void add_light(inout LightSum sum, Reflector r, Incoming light) {
