@@ -156,8 +156,7 @@ void ShadowCollector::want_views(const RenderView& view, const LightList& lights
                 light.outer_angle,
                 near_of(settings),
                 resolution,
-                guard,
-                light.right));
+                guard));
         } else {
             wanted.kind = layout::kShadowCube;
             for (int face = 0; face < 6; ++face) {
