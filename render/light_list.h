@@ -36,6 +36,7 @@ struct ShadowedLight {
     Shadow settings;
     Vec3 position = {0, 0, 0};  ///< of a directional light: nothing
     Vec3 axis = {0, 0, -1};     ///< where it shines, unit; of a point light: nothing
+    Vec3 right = {1, 0, 0};     ///< of the light's entity
     float radius = INFINITY;    ///< [m]
     float outer_angle = 0;      ///< of a spot [rad]
     bool for_volumes = false;   ///< its map is looked up to find where volumes count, not to light

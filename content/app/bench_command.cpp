@@ -1,5 +1,6 @@
 #include "content/app/bench_command.h"
 
+#include "content/app/bench_lights.h"
 #include "content/app/bench_report.h"
 #include "content/app/headless.h"
 #include "content/app/profiler_panel.h"
@@ -19,12 +20,39 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kLightsScene = "lights";  ///< measured by numbers of lights and methods
+
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
-/// One step and one picture, whose GPU work is waited for: every frame pays for itself.
-void run_frame(Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
+/// To the file, or to stdout for "-".
+Status write_report(const std::string& path, const std::string& text) {
+    if (path == "-") {
+        fmt::print("{}", text);
+        return Done{};
+    }
+    return path.empty() ? Status(Done{}) : write_file(path, text);
+}
+
+/// Writes what was asked for: `json` and `csv` as text, the table unless one of them goes to
+/// stdout.
+Status write_results(
+    const BenchOptions& options,
+    const std::string& table,
+    const std::string& json,
+    const std::string& csv) {
+    if (options.json != "-" && options.csv != "-") {
+        fmt::print("{}", table);
+    }
+    const Status written = write_report(options.json, json);
+    return written ? write_report(options.csv, csv) : written;
+}
+
+}  // namespace
+
+void run_bench_frame(
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report) {
     FrameGraph& graph = frame_graph(*headless.renderer);
     const Clock::time_point begin = Clock::now();
     step_stage(stage);
@@ -59,16 +87,15 @@ void run_frame(Stage& stage, HeadlessRenderer& headless, const IVec2& size, Benc
     report->triangles = frame.statistics.triangles;
 }
 
-/// To the file, or to stdout for "-".
-Status write_report(const std::string& path, const std::string& text) {
-    if (path == "-") {
-        fmt::print("{}", text);
-        return Done{};
-    }
-    return path.empty() ? Status(Done{}) : write_file(path, text);
+BenchReport
+machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options) {
+    return {
+        .scene = stage.scene.name,
+        .size = options.size,
+        .threads = thread_count(),
+        .gl_renderer = headless.device->caps().renderer,
+        .gl_version = headless.device->caps().version};
 }
-
-}  // namespace
 
 Status run_bench(const BenchOptions& options) {
     Result<std::unique_ptr<Stage>> opened = open_stage(options.scene);
@@ -83,18 +110,24 @@ Status run_bench(const BenchOptions& options) {
     if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
         return fits.error();
     }
-    BenchReport report{
-        .scene = stage.scene.name,
-        .size = options.size,
-        .frames = options.frames,
-        .warmup = options.warmup,
-        .threads = thread_count(),
-        .gl_renderer = headless->device->caps().renderer,
-        .gl_version = headless->device->caps().version};
+    if (stage.scene.name == kLightsScene) {
+        const Result<LightsBench> bench = measure_lights(stage, *headless, options);
+        if (!bench) {
+            return bench.error();
+        }
+        return write_results(
+            options,
+            lights_bench_table(*bench),
+            lights_bench_json(*bench),
+            lights_bench_csv(*bench));
+    }
+    BenchReport report = machine_report(stage, *headless, options);
+    report.frames = options.frames;
+    report.warmup = options.warmup;
     {
         Progress progress("frame", options.warmup + options.frames);
         for (int i = 0; i < options.warmup + options.frames; ++i) {
-            run_frame(stage, *headless, options.size, i < options.warmup ? nullptr : &report);
+            run_bench_frame(stage, *headless, options.size, i < options.warmup ? nullptr : &report);
             progress.update(i + 1);
         }
     }
@@ -102,11 +135,7 @@ Status run_bench(const BenchOptions& options) {
     report.resident_mib = resident_memory_mib();
     report.gpu_mib =
         static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
-    if (options.json != "-" && options.csv != "-") {
-        fmt::print("{}", bench_table(report));
-    }
-    const Status json = write_report(options.json, bench_json(report));
-    return json ? write_report(options.csv, bench_csv(report)) : json;
+    return write_results(options, bench_table(report), bench_json(report), bench_csv(report));
 }
 
 }  // namespace limn

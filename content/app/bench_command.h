@@ -7,6 +7,10 @@
 
 namespace limn {
 
+struct BenchReport;
+struct HeadlessRenderer;
+struct Stage;
+
 /// `limn bench`: how long everything takes.
 struct BenchOptions {
     std::string scene;
@@ -16,6 +20,15 @@ struct BenchOptions {
     std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;   ///< the same
 };
+
+/// One step and one picture, whose GPU work is waited for: every frame pays for itself. Adds its
+/// times to `report`, if there is one.
+void run_bench_frame(
+    Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report);
+
+/// Scene, size and machine.
+[[nodiscard]] BenchReport
+machine_report(const Stage& stage, const HeadlessRenderer& headless, const BenchOptions& options);
 
 [[nodiscard]] Status run_bench(const BenchOptions& options);
 

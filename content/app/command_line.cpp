@@ -236,7 +236,18 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         "\"cpu\" or\n"
         "\"gpu\", \"median_ms\", \"p95_ms\", \"max_ms\"}}\n"
         "CSV: kind,name,clock,median_ms,p95_ms,max_ms\n\n"
+        "The scene `lights` is measured with 16, 64 ... 4096 lights by every method of "
+        "rendering.lights,\n"
+        "each for at most --frames frames or some seconds; methods end where a frame would take "
+        "longer\n"
+        "than 12 s. JSON: {\"scene\", \"size\", \"threads\", \"gl\", \"methods\": [{\"name\", "
+        "\"points\":\n"
+        "[{\"lights\", \"frames\", \"median_ms\", \"p95_ms\", \"max_ms\", \"passes\"} or "
+        "{\"lights\",\n"
+        "\"left_out\"}]}], \"full_screen_over_clustered\": [{\"lights\", \"ratio\"}]}\n"
+        "CSV: method,lights,frames,median_ms,p95_ms,max_ms\n\n"
         "Examples:\n"
+        "  limn bench lights --size 640x360\n"
         "  limn bench gallery --size 640x360\n"
         "  limn bench stress-instances --frames 600 --json numbers.json");
     return {app, [&options] { return run_bench(options); }};

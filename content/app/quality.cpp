@@ -1,5 +1,6 @@
 #include "content/app/quality.h"
 
+#include "content/app/quality_lights.h"
 #include "content/app/quality_shadows.h"
 #include "content/app/quality_surfaces.h"
 #include "content/app/quality_tone.h"
@@ -11,6 +12,9 @@ std::span<const QualityEffect> quality_effects() {
         {"surfaces",
          "the reflection models in double precision, at the point that each pixel shows",
          measure_surfaces},
+        {"lights",
+         "all lights at the point that each pixel shows, in double precision",
+         measure_lights_quality},
         {"shadows",
          "rays from the point that each pixel shows to the light, in double precision",
          measure_shadows},

@@ -63,9 +63,11 @@ std::vector<Method> methods(Kind kind) {
     const Shadow volume = {.method = ShadowMethod::Volume};
     Shadow hybrid = map(ShadowFilter::Bilinear);
     hybrid.method = ShadowMethod::Hybrid;
+    Shadow perspective = map(ShadowFilter::Bilinear);
+    perspective.method = ShadowMethod::Perspective;
     constexpr double kMaps = 98;
     constexpr double kVolumes = 99.9;
-    return {
+    std::vector<Method> all = {
         {"map, hard", map(ShadowFilter::Hard), {}, kMaps},
         {"map, 2x2", map(ShadowFilter::Bilinear), {}, kMaps},
         {"map, soft", map(ShadowFilter::Soft), {}, kMaps},
@@ -75,6 +77,10 @@ std::vector<Method> methods(Kind kind) {
         {"volumes per triangle", volume, {.kind = VolumeKind::PerTriangle}, kVolumes},
         {"hybrid", hybrid, {}, kVolumes},
     };
+    if (kind != Kind::Point) {  // which has six views, none of them the camera's
+        all.push_back({"map, perspective", perspective, {}, kMaps});
+    }
+    return all;
 }
 
 /// `candela` of lamps; a sun is a sun.

@@ -16,6 +16,8 @@ enum class LightMethod : std::uint8_t {
     LightMajor,   ///< for each light the objects that it reaches
 };
 
+inline constexpr int kLightMethods = 5;
+
 /// Resource: how pictures are made. Absent: the defaults.
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;

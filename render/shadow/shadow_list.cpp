@@ -156,7 +156,8 @@ void ShadowCollector::want_views(const RenderView& view, const LightList& lights
                 light.outer_angle,
                 near_of(settings),
                 resolution,
-                guard));
+                guard,
+                light.right));
         } else {
             wanted.kind = layout::kShadowCube;
             for (int face = 0; face < 6; ++face) {

@@ -16,8 +16,10 @@ struct Axes {
     Vec3 forward;
 };
 
-Axes axes_along(const Vec3& forward) {
-    const Vec3 right = any_perpendicular(forward);
+Axes axes_along(const Vec3& forward, const Vec3& wanted = {0, 0, 0}) {
+    const Vec3 across = wanted - forward * glm::dot(forward, wanted);
+    const float size = glm::length(across);
+    const Vec3 right = size > 1e-3f ? across / size : any_perpendicular(forward);
     return {right, glm::cross(right, forward), forward};
 }
 
@@ -50,11 +52,17 @@ ShadowView perspective_view(
 }  // namespace
 
 ShadowView make_spot_view(
-    const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard) {
+    const Vec3& eye,
+    const Vec3& axis,
+    float half_angle,
+    float near,
+    int resolution,
+    int guard,
+    const Vec3& right) {
     const float tangent = std::tan(std::min(half_angle, kWidestSpotView));
     return perspective_view(
         eye,
-        axes_along(axis),
+        axes_along(axis, right),
         std::max(tangent, 1e-3f) * widening(resolution, guard),
         near,
         resolution,

@@ -31,9 +31,17 @@ struct ShadowView {
 /// Half angle of a spot above which one view would waste its texels: six faces serve it better.
 inline constexpr float kWidestSpotView = radians(75.0f);
 
-/// Of a spot that shines from `eye` along `axis` (unit) within `half_angle` [rad].
+/// Of a spot that shines from `eye` along `axis` (unit) within `half_angle` [rad]. The map's rows
+/// run along `right` if that is across the axis: where light grazes a wall, edges beside it have no
+/// steps.
 [[nodiscard]] ShadowView make_spot_view(
-    const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard);
+    const Vec3& eye,
+    const Vec3& axis,
+    float half_angle,
+    float near,
+    int resolution,
+    int guard,
+    const Vec3& right = {0, 0, 0});
 
 /// Face 0 .. 5 looks along +x, -x, +y, -y, +z, -z.
 [[nodiscard]] ShadowView

@@ -58,7 +58,7 @@ layout::VolumeBlock make_block(const ShadowVolume& settings, const Vec4& light, 
         distance = radius;
         break;
     }
-    return {light, {extrusion, distance, std::max(settings.cap_bias, 0.0f), 0}};
+    return {light, {extrusion, distance, std::max(settings.cap_bias, 0.0f), radius}};
 }
 
 /// Smallest and largest of dot(n, p) over the box.

@@ -83,6 +83,19 @@ TEST_CASE("quality: the page has effect, oracle and difference of each picture w
     CHECK(page->find("<x>") == std::string::npos);
 }
 
+TEST_CASE("quality: lights keep their bounds by every method, and no list misses one") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "lights", "--json", "q.json"});
+    CHECK(run.exit_code == 0);
+    const nlohmann::json json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const nlohmann::json& rows = json["effects"][0]["rows"];
+    REQUIRE(rows.size() == 7);
+    for (const nlohmann::json& row : rows) {
+        CHECK(row["holds"] == true);
+    }
+    CHECK(rows[0]["found"] <= 1.0);
+}
+
 TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {
     const TemporaryFolder folder;
     const ProgramRun run =
@@ -110,14 +123,14 @@ TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep the
     CHECK(run.exit_code == 0);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     const auto& rows = json["effects"][0]["rows"];
-    CHECK(rows.size() == 3 * 8 + 3);
+    CHECK(rows.size() == 9 + 8 + 9 + 3);
     for (const auto& row : rows) {
         CAPTURE(row.dump());
         CHECK(row["holds"] == true);
         CHECK(row["bound"] != "none");
     }
     // Of each method and each penumbra effect, oracle and difference.
-    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (3 * 8 + 3));
+    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (9 + 8 + 9 + 3));
 }
 
 TEST_CASE("quality: statistics and tone operators of the GPU are those of the oracle") {

@@ -1,7 +1,6 @@
 #include "bench/oracles/cluster_oracle.h"
+#include "bench/oracles/cluster_readback.h"
 #include "bench/oracles/light_oracle.h"
-#include "render/gpu/shader_library.h"
-#include "render/passes/cluster_pass.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -50,72 +49,14 @@ LightList list_of(std::vector<LightReach> reach, int directional = 0) {
     return list;
 }
 
-/// Lists as the GPU made them; cell as cell_of() numbers them.
-struct Lists {
-    ClusterShape shape;
-    std::vector<layout::uvec2> cells;
-    std::vector<layout::uint> indices;
-    std::size_t capacity = 0;
-
-    [[nodiscard]] std::span<const layout::uint> of(int cell) const {
-        return std::span(indices).subspan(cells[cell].x, cells[cell].y);
-    }
-    [[nodiscard]] std::size_t total() const {
-        std::size_t sum = 0;
-        for (const layout::uvec2& cell : cells) {
-            sum += cell.y;
-        }
-        return sum;
-    }
-};
-
-/// Runs the cluster passes alone.
 class ClusterTest : public RenderTest {
   public:
-    Lists build(const RenderView& view, const LightList& lights) {
-        static Machine& m = *new Machine(device());  // one for all tests, like the shared renderer
-        m.graph.begin_frame();
-        m.ring.begin_frame();
-        place_lights(view, lights, m.scene.clusters);
-        const ClusterLights& placed = m.scene.clusters;
-        Lists lists = {
-            placed.shape, std::vector<layout::uvec2>(placed.shape.cells()), {}, placed.capacity};
-        m.scene.view_block = m.ring.push_value(make_view_block(view, placed.shape, lights));
-        m.pass.lights.set(m.push(std::as_bytes(std::span(placed.lights))));
-        m.pass.boxes.set(m.push(std::as_bytes(std::span(placed.boxes))));
-        const ClusterLists made = build_clusters(m.graph, m.pass, m.scene);
-        if (made.cells.valid()) {
-            lists.indices.resize(placed.capacity);
-            m.graph.add_pass(
-                "read", {made.cells, made.indices}, {}, [&lists, made](PassContext& context) {
-                    context.buffer(made.cells)
-                        .read(0, std::as_writable_bytes(std::span(lists.cells)));
-                    context.buffer(made.indices)
-                        .read(0, std::as_writable_bytes(std::span(lists.indices)));
-                });
-            m.graph.always_run();
-        }
-        m.graph.execute();
-        m.ring.end_frame();
-        return lists;
+    oracle::ReadClusters build(const RenderView& view, const LightList& lights) {
+        // One for all tests, like the shared renderer.
+        static auto& readback =
+            *new oracle::ClusterReadback(*oracle::ClusterReadback::create(device()));
+        return readback.run(view, lights);
     }
-
-  private:
-    struct Machine {
-        explicit Machine(gpu::Device& gpu)
-            : graph(gpu), ring(gpu.caps(), "cluster test", std::size_t{1} << 20),
-              pass(*create_cluster_pass(gpu)) {}
-        gpu::RingSlice push(std::span<const std::byte> bytes) {
-            const gpu::RingSlice slice =
-                ring.allocate(std::max<std::size_t>(bytes.size(), 16), BufferTexture::alignment());
-            std::memcpy(slice.data, bytes.data(), bytes.size());
-            return slice;
-        }
-        FrameGraph graph;
-        gpu::RingBuffer ring;
-        ClusterPass pass;
-        FrameScene scene;
-    };
 };
 
 }  // namespace
@@ -132,7 +73,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 60; ++i) {
             reach.push_back(random.reach());
         }
-        const Lists lists = build(view, list_of(reach, 2));
+        const oracle::ReadClusters lists = build(view, list_of(reach, 2));
         for (int k = 0; k < 400; ++k) {
             // A point that some light reaches, so that the test is not wasted on the dark.
             const LightReach& chosen = reach[k % reach.size()];
@@ -166,7 +107,7 @@ TEST_CASE_FIXTURE(
             reach.push_back(random.reach());
             reach.back().cosine = -1;  // the sphere around a narrow cone ends beyond the radius
         }
-        const Lists lists = build(view, list_of(reach));
+        const oracle::ReadClusters lists = build(view, list_of(reach));
         const auto allowed = oracle::brute_force_lists(view, lists.shape, reach, 4e-3);
         int listed = 0;
         int within = 0;
@@ -192,7 +133,7 @@ TEST_CASE_FIXTURE(
     for (int i = 0; i < 4096; ++i) {
         reach.push_back({random.in_cube(40), 1.5f});
     }
-    const Lists lists = build(view, list_of(reach));
+    const oracle::ReadClusters lists = build(view, list_of(reach));
     for (int cell = 0; cell < lists.shape.cells(); ++cell) {
         const auto listed = lists.of(cell);
         REQUIRE(std::is_sorted(listed.begin(), listed.end()));
@@ -200,7 +141,7 @@ TEST_CASE_FIXTURE(
     CHECK(lists.total() > 4096);
     CHECK(lists.total() < 20 * lists.cells.size());
     CHECK(lists.total() <= lists.capacity);
-    const Lists again = build(view, list_of(reach));
+    const oracle::ReadClusters again = build(view, list_of(reach));
     CHECK(lists.cells == again.cells);
     CHECK(std::equal(
         lists.indices.begin(),
@@ -220,7 +161,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 70; ++i) {
             reach.push_back(random.reach());
         }
-        const Lists lists = build(view, list_of(reach));
+        const oracle::ReadClusters lists = build(view, list_of(reach));
         layout::uint end = 0;
         for (const layout::uvec2& cell : lists.cells) {
             REQUIRE(cell.x == end);
@@ -235,7 +176,7 @@ TEST_CASE_FIXTURE(
     ClusterTest, "clusters: a light without an end is in every cell, no light is in none") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 100, .height = 70});
-    const Lists endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
+    const oracle::ReadClusters endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
     CHECK(endless.total() == endless.cells.size());
     CHECK(endless.total() == endless.capacity);
     CHECK(build(view, list_of({})).total() == 0);
@@ -300,6 +241,43 @@ TEST_CASE_FIXTURE(Scene, "clusters: the picture equals the sum of all lights at 
     }
     CHECK(lit > 1000);
     CHECK(worst < 4e-3);
+}
+
+TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it reaches") {
+    const Material matte = {
+        .shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}, .specular = {0, 0, 0}};
+    place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {60, 60, 1}));
+    RandomLights random(33);
+    const PointLight light = {.intensity = 0.02f, .radius = 0.5f};
+    std::vector<Vec3> places;
+    for (int i = 0; i < 1000000; ++i) {
+        Vec3 p = random.in_cube(50);
+        p.z = 0.25f;
+        places.push_back(p);
+        shine(light, at(p));
+    }
+    // Straight down at 20 x 20 m of it.
+    const RenderView view = look({0, 0, 10}, {0, 0, 0}, 64, 64);
+    const FrameOutput frame = draw(view);
+    CHECK(frame.statistics.lights == 1000000);
+    const gpu::FloatImage image = gpu::read_floats(*frame.radiance);
+    for (const float value : image.pixels) {
+        REQUIRE(std::isfinite(value));
+    }
+    for (int i = 0; i < 16; ++i) {
+        const int x = 4 * i + 1;
+        const int y = 61 - 3 * i;
+        const glm::dvec3 p = {(x + 0.5) / 3.2 - 10, 10 - (y + 0.5) / 3.2, 0};
+        double sum = 0;
+        for (const Vec3& place : places) {
+            if (glm::distance(glm::dvec3(place), p) < 0.5) {
+                const oracle::Arriving one = oracle::arrive(light, place, p, {0, 0, 1});
+                sum += one.color.x * one.to_light.z;
+            }
+        }
+        CHECK(sum > 0);
+        CHECK(image.at(x, y, 0) == doctest::Approx(sum).epsilon(4e-3));
+    }
 }
 
 }  // namespace limn::test

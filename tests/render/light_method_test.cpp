@@ -242,6 +242,42 @@ TEST_CASE_FIXTURE(Methods, "light methods: surfaces in one place are lit once") 
     }
 }
 
+TEST_CASE_FIXTURE(
+    Methods, "light methods: broken lights are left out, odd ones draw the same in all") {
+    furnish();
+    light(6);
+    const RenderView view = from_aside();
+    const gpu::FloatImage good = picture(LightMethod::Clustered, view);
+    const Vec3 up = {0, 0, 2};
+    shine(PointLight{.color = {NAN, 1, 1}}, at(up));
+    shine(PointLight{.radius = NAN}, at(up));
+    shine(PointLight{.radius = 1e-30f}, at(up));
+    shine(PointLight{}, at({NAN, 0, 0}));
+    shine(SpotLight{.inner_angle = NAN}, look_at(up, {0, 0, 0}));
+    for (const LightMethod method : kMethods) {
+        CAPTURE(static_cast<int>(method));
+        CHECK(largest_difference(good, picture(method, view)) < 2e-3f);
+    }
+    // Endless, everywhere at once, in a ball, with its cones the wrong way round or none.
+    shine(PointLight{.intensity = 0.1f, .radius = -3}, at(up));
+    shine(PointLight{.intensity = 0.1f, .radius = 1e30f}, at(up));
+    shine(PointLight{.intensity = 0.1f, .radius = 2}, at({-5, 0, 1}));
+    shine(
+        SpotLight{.intensity = 0.1f, .inner_angle = 1, .outer_angle = 0.3f},
+        look_at(up, {0, 0, 0}));
+    shine(SpotLight{.intensity = 0.1f, .outer_angle = 0}, look_at(up, {0, 0, 0}));
+    shine(SpotLight{.intensity = 0.1f, .outer_angle = 9}, look_at(up, {0, 0, 0}));
+    shine(SpotLight{.intensity = 0.1f, .radius = 0}, look_at(up, {0, 0, 0}));
+    const gpu::FloatImage odd = picture(LightMethod::Clustered, view);
+    for (const float value : odd.pixels) {
+        REQUIRE(std::isfinite(value));
+    }
+    for (const LightMethod method : kMethods) {
+        CAPTURE(static_cast<int>(method));
+        CHECK(largest_difference(odd, picture(method, view)) < 2e-3f);
+    }
+}
+
 TEST_CASE_FIXTURE(Methods, "light methods: where a light is shadowed the others alone light") {
     floor();
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 1}, {1, 0, 0, 0}, Vec3(0.5f)));

@@ -583,6 +583,8 @@ TEST_CASE("light: broken lights are left out") {
     scene.shine(PointLight{.intensity = INFINITY}, at({0, 0, 1}));
     scene.shine(PointLight{.color = {0, 0, 0}}, at({0, 0, 1}));
     scene.shine(SpotLight{}, at({NAN, 0, 1}));
+    scene.shine(PointLight{.radius = NAN}, at({0, 0, 1}));
+    scene.shine(SpotLight{.outer_angle = NAN}, at({0, 0, 1}));
     CHECK(scene.draw(scene.view()).statistics.lights == 0);
     CHECK(largest_difference(scene.picture(), dark) == 0);
     // The cones the wrong way round make a hard edge; a negative radius never ends.

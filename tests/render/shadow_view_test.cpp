@@ -69,6 +69,24 @@ TEST_CASE("shadow view: what a spot lights lies within its square, and a border 
     }
 }
 
+TEST_CASE("shadow view: a spot's rows run as it is turned, across its axis") {
+    const Vec3 axis = glm::normalize(Vec3(0.3f, -0.8f, 0.2f));
+    const auto moved = [&](const Vec3& right, const Vec3& by) {
+        const auto record =
+            record_of(make_spot_view({1, 2, 3}, axis, radians(30.0f), 0.1f, 128, 2, right));
+        return Vec2(project(record, Vec3(1, 2, 3) + 2.0f * axis + by)) - Vec2(320, 576);
+    };
+    for (const Vec3& right : {Vec3(1, 0, 0), Vec3(0, 3, 1), Vec3(-1, 0.1f, 1)}) {
+        const Vec3 across = right - axis * glm::dot(axis, right);
+        CHECK(moved(right, across).x > 1);
+        CHECK(moved(right, across).y == doctest::Approx(0).epsilon(1e-3));
+    }
+    // Without a way across, any will do.
+    for (const Vec3& right : {Vec3(0, 0, 0), axis}) {
+        CHECK(glm::length(moved(right, {0.1f, 0, 0.1f})) > 1);
+    }
+}
+
 TEST_CASE("shadow view: the map is linear before the division") {
     std::mt19937 random(1);
     const auto record =
