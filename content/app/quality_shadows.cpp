@@ -224,6 +224,33 @@ double agreement(
     return 100.0 * same / std::max(counted, 1);
 }
 
+/// Nine details of pictures, twice as large, in three rows.
+class Details {
+  public:
+    Details() { sheet_.pixels.resize(static_cast<std::size_t>(sheet_.width) * sheet_.height); }
+    /// The corner where the block stands in its own shadow.
+    void add(const ColorImage& picture) {
+        constexpr IVec2 kCorner = {72, 96};
+        const int left = count_ % 3 * (2 * kCropWidth + 1);
+        const int top = count_ / 3 * (2 * kCropHeight + 1);
+        for (int y = 0; y < 2 * kCropHeight; ++y) {
+            for (int x = 0; x < 2 * kCropWidth; ++x) {
+                sheet_.pixels[static_cast<std::size_t>((top + y) * sheet_.width + left + x)] =
+                    picture.pixels[static_cast<std::size_t>(
+                        (kCorner.y + y / 2) * picture.width + kCorner.x + x / 2)];
+            }
+        }
+        ++count_;
+    }
+    [[nodiscard]] const ColorImage& sheet() const { return sheet_; }
+
+  private:
+    static constexpr int kCropWidth = 53;
+    static constexpr int kCropHeight = 30;
+    ColorImage sheet_ = {6 * kCropWidth + 2, 6 * kCropHeight + 2, {}};
+    int count_ = 0;
+};
+
 void measure_methods(HeadlessRenderer& headless, QualityReport& report) {
     QualityScene scene;
     furnish_court(scene);
@@ -242,6 +269,9 @@ void measure_methods(HeadlessRenderer& headless, QualityReport& report) {
         const std::vector<double> of_point = cast_rays(rays, source, seen, pictures);
         source.size = sun ? kSunSize : kLampSize;
         const std::vector<double> of_disc = cast_rays(rays, source, seen, pictures);
+        Details found_details;
+        Details expected_details;
+        std::string names;
         for (const Method& method : methods(kind)) {
             scene.world.add(light, method.shadow);
             scene.world.add(light, method.volume);
@@ -256,7 +286,14 @@ void measure_methods(HeadlessRenderer& headless, QualityReport& report) {
                  method.agree,
                  "%"});
             report.pictures.push_back({title, displayed(shaded), picture_of(pictures, expected)});
+            found_details.add(report.pictures.back().effect);
+            expected_details.add(report.pictures.back().oracle);
+            names += fmt::format("{}{}", names.empty() ? "" : "; ", method.name);
         }
+        report.pictures.push_back(
+            {fmt::format("{}, a corner by each method: {}", name_of(kind), names),
+             found_details.sheet(),
+             expected_details.sheet()});
         scene.world.destroy(light);
     }
 }

@@ -129,8 +129,8 @@ TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep the
         CHECK(row["holds"] == true);
         CHECK(row["bound"] != "none");
     }
-    // Of each method and each penumbra effect, oracle and difference.
-    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (9 + 8 + 9 + 3));
+    // Of each method, of all in one corner, and of each penumbra: effect, oracle and difference.
+    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (10 + 9 + 10 + 3));
 }
 
 TEST_CASE("quality: statistics and tone operators of the GPU are those of the oracle") {
