@@ -107,10 +107,11 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: a radius of 0, below it or no number is endless and has its shadow") {
+    BoxScene,
+    "shadow input: a radius of 0, below it or endless has its shadow, one of no number no light") {
     const gpu::FloatImage dark = radiance(view());
     for (const ShadowMethod method : kMethods) {
-        for (const float radius : {0.0f, -3.0f, kNan, kInfinity}) {
+        for (const float radius : {0.0f, -3.0f, kInfinity}) {
             CAPTURE(name_of(method));
             CAPTURE(radius);
             const Entity light = shine(PointLight{.radius = radius}, at(kLamp));
@@ -119,8 +120,8 @@ TEST_CASE_FIXTURE(
             CHECK(agreement_of(light) >= (method == ShadowMethod::Map ? 0.98 : 0.995));
             world.destroy(light);
         }
-        // So small that it reaches nothing.
-        for (const float radius : {1e-30f, 1e-3f}) {
+        // No number, or so small that it reaches nothing.
+        for (const float radius : {kNan, 1e-30f, 1e-3f}) {
             const Entity light = shine(PointLight{.radius = radius}, at(kLamp));
             world.add(light, Shadow{.method = method, .resolution = 256});
             CHECK(largest_difference(radiance(view()), dark) == 0);

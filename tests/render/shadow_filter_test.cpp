@@ -220,6 +220,33 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
+    ShadowTest, "shadow filter: beneath a thin bar contact hardening is dark at every pixel") {
+    put(make_plane({.size = {4, 4}}), {0, 0, 0});
+    put(make_box({.size = {0.06f, 0.01f, 3}}), {0, 0.1f, 0});
+    put(make_box({.size = {0.3f, 0.3f, 0.3f}}), {1.5f, 4, 0});  // for a deep map: a wide search
+    const Entity sun = shine(DirectionalLight{}, look_at({0, 1, 0}, {0, 0, 0}));
+    world.add(
+        sun,
+        Shadow{
+            .filter = ShadowFilter::ContactHardening,
+            .resolution = 1024,
+            .source_size = 0.25f,
+            .cascades = 1,
+            .distance = 5});
+    int count = 0;
+    int lit = 0;
+    for (const Receiver& r : receivers(sun, look({0.5f, 0.25f, 0}, {0, 0, 0}, 128, 128))) {
+        // The penumbra is 2.5 cm wide on either side.
+        if (r.there && r.position.y < 0.001 && std::abs(r.position.x) < 0.01) {
+            ++count;
+            lit += r.seen > 0.5 ? 1 : 0;
+        }
+    }
+    CHECK(count > 100);
+    CHECK(lit == 0);
+}
+
+TEST_CASE_FIXTURE(
     ShadowTest,
     "shadow filter: a source without a size has a hard edge, and no blocker is all lit") {
     put(make_plane({.size = {4, 4}}), {0, 0, 0});

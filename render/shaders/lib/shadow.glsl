@@ -79,7 +79,7 @@ float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
     float count = 0.0;
     int n = 0;
     do {
-        vec2 at = p.st + turn * (radius * sqrt((float(n) + 0.5) / float(kSearchTaps)));
+        vec2 at = p.st + turn * (radius * sqrt(float(n) / float(kSearchTaps)));  // its own texel first
         at = clamp(at, p.rect.xy + 0.5, p.rect.zw - 0.5);
         float nearest = texelFetch(shadow_atlas, ivec2(at), 0).r;
         vec2 to = floor(at) + 0.5 - p.st;
