@@ -42,6 +42,8 @@ struct RenderSettings {
 ///   albedo    base color, linear (3)
 ///   velocity  motion since the moment before [px], right and down, as image rows run (2)
 ///   emission  radiance of the surface's own light (3)
+///   shadow_texels  of the finest shadow map that holds the point, under the pixel: if less than 1,
+///                  they show (1)
 ///   volume_layers  polygons of shadow volumes over each pixel, hidden or not (1)
 [[nodiscard]] const std::vector<std::string_view>& aov_names();
 [[nodiscard]] int aov_channels(std::string_view name);  ///< 0: no such AOV

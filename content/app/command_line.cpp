@@ -194,7 +194,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
         ->type_name("NAME");
     app->footer(
         "Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
-        "volume_layers (of shadow volumes).\n"
+        "shadow_texels (of a map, under a pixel), volume_layers (of shadow volumes).\n"
         "An EXR holds linear radiance, a PNG what a display shows.\n"
         "A path of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
         "a value is JSON or a word.\n"

@@ -55,7 +55,7 @@ std::string_view layer_letters(std::string_view aov) {
     if (aov == "normal") {
         return "XYZ";
     }
-    if (aov == "volume_layers") {
+    if (aov == "shadow_texels" || aov == "volume_layers") {
         return "Y";
     }
     return aov == "velocity" ? "XY" : "RGB";

@@ -14,12 +14,14 @@ const std::array<Aov, kAovCount> kAovs = {{
     {"albedo", 3, {0, 0, 0, 0}},
     {"velocity", 2, {0, 0, 0, 0}},
     {"emission", 3, {0, 0, 0, 0}},
+    {"shadow_texels", 1, {0, 0, 0, 0}},
     {"volume_layers", 1, {0, 0, 0, 0}},
 }};
 
 namespace {
 constexpr int kVelocityAov = 3;
-}
+constexpr int kShadowTexelsAov = 5;
+}  // namespace
 
 Result<AovPass> create_aov_pass(gpu::Device& device) {
     AovPass pass;
@@ -58,6 +60,10 @@ TextureId draw_aov(
         std::span<const Use>(reads),
         std::span<const Use>(writes),
         [&pass, &scene, gbuffer, aov](PassContext& context) {
+            const auto shadow_views = static_cast<int>(scene.shadows.records.size());
+            if (aov == kShadowTexelsAov && shadow_views == 0) {
+                return;
+            }
             gpu::PipelineState surfaces_only = gpu::kFullscreenState;
             surfaces_only.depth = {.test = true, .write = false, .func = GL_LESS};
             context.device().use(gpu::Pipeline{pass.programs[aov], surfaces_only});
@@ -66,6 +72,10 @@ TextureId draw_aov(
             context.bind_texture(kDepthUnit, gbuffer.depth);
             if (aov == kVelocityAov) {
                 context.bind_texture(kVelocityUnit, gbuffer.velocity);
+            }
+            if (aov == kShadowTexelsAov) {
+                scene.shadow_views->bind(context.device(), kShadowViewsUnit);
+                pass.programs[aov]->set("shadow_view_count", shadow_views);
             }
             context.device().draw_fullscreen();
         });

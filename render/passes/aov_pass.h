@@ -8,15 +8,16 @@
 
 namespace limn {
 
-// Attributes of the G-buffer as plain numbers, for files and the buffer viewer.
+// Attributes of the G-buffer as plain numbers, for files and the buffer viewer; and how well shadow
+// maps resolve what a pixel shows (shadow.map-aliasing).
 //
-// Reads    G-buffer
+// Reads    G-buffer, records of the shadow views
 // Writes   RGBA32F, named "aov.<name>"; layers of shadow volumes come from their own pass
 // Order    after the G-buffer
 // Shaders  aov.frag
 
-inline constexpr int kAovCount = 6;
-inline constexpr int kVolumeLayersAov = 5;  ///< draw_volume_layers makes it
+inline constexpr int kAovCount = 7;
+inline constexpr int kVolumeLayersAov = 6;  ///< draw_volume_layers makes it
 
 struct Aov {
     std::string_view name;

@@ -1,4 +1,5 @@
 #include "ecs/components/projector.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "render/projector_list.h"
 #include "tests/render/shadow_fixture.h"
@@ -157,6 +158,19 @@ TEST_CASE_FIXTURE(
                 rgb_at(grey, x, y).x
                 == doctest::Approx(0.5f * rgb_at(plain, x, y).x).epsilon(0.02));
         }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    WallScene, "projector: its picture is the same in whatever order surfaces and lights meet") {
+    world.add(lamp, Projector{.image = add(four_colors()), .width = radians(40.0f)});
+    const gpu::FloatImage clustered = wall();
+    CHECK(at_wall(clustered, {-0.3f, 0.3f}).x > 0.5f);
+    using enum LightMethod;
+    for (const LightMethod method : {FullScreen, Volumes, ObjectMajor, LightMajor}) {
+        world.insert_resource(Rendering{method});
+        CAPTURE(static_cast<int>(method));
+        CHECK(largest_difference(clustered, wall()) < 1.0f / 255);
     }
 }
 

@@ -239,6 +239,38 @@ TEST_CASE_FIXTURE(BallScene, "shadow map: a light sees no caster that was told t
     CHECK(dark() == 0);
 }
 
+TEST_CASE_FIXTURE(
+    ShadowTest, "shadow map: the layer of its texels is what the geometry says they are") {
+    put(make_plane({.size = {8, 8}}), {0, 0, 0});
+    const RenderView view = look({0.3f, 2.5f, 1.5f}, {0, 0, 0}, 64, 64);
+    const auto texels = [&] { return aov(view, "shadow_texels"); };
+    for (const float value : texels().pixels) {
+        REQUIRE((value == 0 || value == 1));  // alpha; no maps
+    }
+    const Affine pose = look_at({1, 3, 1}, {0, 0, -0.3f});
+    const Entity lamp = shine(even_spot(radians(30.0f)), pose);
+    const Vec3 right = {pose.row[0].x, pose.row[1].x, pose.row[2].x};
+    const Vec3 axis = -Vec3(pose.row[0].z, pose.row[1].z, pose.row[2].z);
+    for (const int resolution : {64, 256}) {
+        world.add(lamp, Shadow{.resolution = resolution});
+        const ShadowView map =
+            make_spot_view({1, 3, 1}, axis, radians(30.0f), 0.05f, resolution, 2, right);
+        const gpu::FloatImage image = texels();
+        for (const auto& [x, y] : {std::pair(32, 32), std::pair(20, 36), std::pair(36, 24)}) {
+            const Vec2 ndc = {
+                (static_cast<float>(x) + 0.5f) / 32 - 1, 1 - (static_cast<float>(y) + 0.5f) / 32};
+            const Affine& eye = view.world_from_camera;
+            const Vec3 ray = transform_vector(eye, {ndc.x, ndc.y, -1});
+            const Vec3 point = Vec3(0.3f, 2.5f, 1.5f) + ray * (2.5f / -ray.y);
+            CAPTURE(x);
+            CHECK(
+                image.at(x, y, 0)
+                == doctest::Approx(texels_per_pixel(map, view, point, {0, 1, 0})).epsilon(0.01));
+        }
+        CHECK(image.at(1, 1, 0) == 0);  // beyond the cone
+    }
+}
+
 // ---- point lights
 // ------------------------------------------------------------------------------------
 
