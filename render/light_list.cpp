@@ -116,6 +116,7 @@ void add_extras(
              *light.shadow,
              position_of(light.pose),
              axis_of(light.pose),
+             {light.pose.row[0].x, light.pose.row[1].x, light.pose.row[2].x},
              radius,
              outer_angle,
              false});
