@@ -41,7 +41,7 @@ bool shines(const layout::LightRecord& r) {
 }
 
 void set_attenuation(layout::LightRecord& record, const Attenuation& attenuation, float radius) {
-    record.position.w = radius > 0 ? 1 / square(radius) : 0;
+    record.position.w = std::isnan(radius) ? radius : radius > 0 ? 1 / square(radius) : 0;
     switch (attenuation.falloff) {
     case Falloff::InverseSquare:
         record.polynomial = {0, 0, 1, 0};
