@@ -26,7 +26,12 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
     vec3 normal = unpack_surface(texelFetch(gbuffer, pixel, 0)).normal_ws;
-    vec3 to_light = normalize(-away_from_light(position_ws, volume.light));
+    vec3 away = away_from_light(position_ws, volume.light);
+    vec3 to_light = normalize(-away);
+    if (dot(normal, to_light) <= 0.0 || dot(away, away) * volume.light.w > volume.extrusion.w * volume.extrusion.w) {
+        mask = 0.0;  // the light does not reach it
+        return;
+    }
     float lit = light_visibility(map, position_ws, normal, to_light, gl_FragCoord.xy);
     bool grazes = dot(normal, to_light) < kGrazing;
     mask = lit < kAgree ? 0.0 : lit > 1.0 - kAgree && !grazes ? 1.0 : 0.5;

@@ -22,7 +22,7 @@ struct VolumeInstance {
 // One light.
 struct VolumeBlock {
     vec4 light;      // world, homogeneous
-    vec4 extrusion;  // kExtrude*, distance [m], bias of the near cap [m]
+    vec4 extrusion;  // kExtrude*, distance [m], bias of the near cap [m], how far the light reaches [m]
 };
 
 const float kExtrudeInfinite = 0.0;  // to the end of the world
