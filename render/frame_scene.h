@@ -78,7 +78,8 @@ struct FrameScene {
     ClusterLights clusters;
     ClusterLists lists;
     LightMethod method = LightMethod::Clustered;
-    LightDraws light_draws;  ///< of LightMethod::LightMajor
+    bool per_vertex = false;  ///< with LightMethod::ObjectMajor: lit at vertices
+    LightDraws light_draws;   ///< of LightMethod::LightMajor
     ShadowList shadows;
     VolumeList volumes;
     SceneEnvironment environment;

@@ -52,9 +52,9 @@ Exposure exposure_of(const World& world) {
     return exposure != nullptr ? *exposure : Exposure{};
 }
 
-LightMethod method_of(const World& world) {
+Rendering rendering_of(const World& world) {
     const auto* rendering = world.find_resource<Rendering>();
-    return rendering != nullptr ? rendering->lights : LightMethod::Clustered;
+    return rendering != nullptr ? *rendering : Rendering{};
 }
 
 /// Whether surfaces are lit while they are drawn.
@@ -310,7 +310,9 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
             scene.lights.reach.size());
         dropped_reported_ = true;
     }
-    scene.method = for_probe ? LightMethod::Clustered : method_of(world);
+    const Rendering rendering = for_probe ? Rendering{} : rendering_of(world);
+    scene.per_vertex = rendering.shading == ShadingRate::Vertex;
+    scene.method = scene.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
     collector_.collect(
         world,
         view,
@@ -358,7 +360,9 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         list_draws_of_lights(light_objects_, scene.instances, scene.light_draws);
         scene.light_commands = push(scene.light_draws.commands);
     }
-    scene.view_block = ring_.push_value(make_view_block(view, scene.clusters.shape, scene.lights));
+    layout::ViewBlock view_block = make_view_block(view, scene.clusters.shape, scene.lights);
+    view_block.ray_forward.w = rendering.infinite_viewer ? 1.0f : 0.0f;
+    scene.view_block = ring_.push_value(view_block);
     scene.environment_block = ring_.push_value(scene.environment.block);
     const layout::ProbeBlock probes = probes_.make_block();
     const bool any_probes = !for_probe && probes.count.x > 0;

@@ -18,9 +18,17 @@ enum class LightMethod : std::uint8_t {
 
 inline constexpr int kLightMethods = 5;
 
+/// Where surfaces are lit.
+enum class ShadingRate : std::uint8_t {
+    Pixel,   ///< normals in between, lit at every pixel (light.phong-pixel)
+    Vertex,  ///< lit at the vertices, colors in between (light.gouraud); as ObjectMajor does
+};
+
 /// Resource: how pictures are made. Absent: the defaults.
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
+    ShadingRate shading = ShadingRate::Pixel;
+    bool infinite_viewer = false;  ///< shading sees the camera in the same direction everywhere
 };
 
 template <typename Visitor>
@@ -30,6 +38,12 @@ void visit_fields(Rendering& rendering, Visitor&& visit) {
         rendering.lights,
         {.doc = "in what order surfaces and lights meet; the picture is the same",
          .values = "clustered full_screen volumes object_major light_major"});
+    visit(
+        "shading", rendering.shading, {.doc = "where surfaces are lit", .values = "pixel vertex"});
+    visit(
+        "infinite_viewer",
+        rendering.infinite_viewer,
+        {.doc = "highlights as if seen from infinitely far along the view axis"});
 }
 
 }  // namespace limn

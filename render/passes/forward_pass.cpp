@@ -46,7 +46,7 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const FrameScene
         device,
         scene,
         scene.instances.opaque,
-        pass.list,
+        scene.per_vertex ? pass.gouraud : pass.list,
         0,
         lighting_key(scene) | kObjectLights,
         with(lighting_defines(scene), "OBJECT_LIGHTS"),
@@ -96,6 +96,7 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
     ForwardPass pass = {
         .depth = SurfacePrograms(device, "mesh.vert", "depth_first.frag"),
         .list = SurfacePrograms(device, "mesh.vert", "forward_list.frag"),
+        .gouraud = SurfacePrograms(device, "gouraud.vert", "gouraud.frag"),
         .base = SurfacePrograms(device, "mesh.vert", "forward_base.frag"),
         .one = SurfacePrograms(device, "mesh.vert", "forward_one.frag")};
     const Status plain = pass.depth.load(0, 0, {});

@@ -13,7 +13,8 @@ namespace limn {
 // Reads    InstanceList, LightObjects, light records, environment
 // Writes   depth, radiance: linear; alpha 1 where a surface is
 // Order    in place of the G-buffer and draw_lights()
-// Shaders  mesh.vert, depth_first.frag, forward_list.frag, forward_base.frag, forward_one.frag
+// Shaders  mesh.vert, depth_first.frag, forward_list.frag, forward_base.frag, forward_one.frag;
+//          gouraud.vert, gouraud.frag in place of forward_list.frag with ShadingRate::Vertex
 //
 // The first pass draws depth alone; the others draw where the depth is EQUAL, so that each visible
 // fragment is lit once (engine.depth-first). Where surfaces of two objects share a depth to the
@@ -22,6 +23,7 @@ namespace limn {
 struct ForwardPass {
     SurfacePrograms depth;
     SurfacePrograms list;
+    SurfacePrograms gouraud;
     SurfacePrograms base;
     SurfacePrograms one;
     const gpu::Program* nothing = nullptr;

@@ -16,7 +16,7 @@ void main() {
     Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, distance));
 
     // The mirror hides what it reflects in place of: its share of what lies behind is gone.
-    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    Reflector r = make_reflector(s, to_viewer(position_ws));
     float mirror = dot(r.mirror, vec3(1.0 / 3.0));
     radiance = vec4(
         opacity * (light.diffuse + s.emission) + light.specular, opacity + (1.0 - opacity) * mirror);

@@ -12,7 +12,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     SurfaceSample s = unpack_surface(texelFetch(gbuffer, pixel, 0));
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
-    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    Reflector r = make_reflector(s, to_viewer(position_ws));
     Reflected around = reflect_surroundings(r, s, position_ws);
     radiance = vec4(s.emission + around.diffuse + around.specular, 1.0);
 }

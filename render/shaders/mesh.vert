@@ -1,20 +1,11 @@
-// Every mesh instance, for the G-buffer and for the passes that shade while drawing.
+// Every mesh instance, for the G-buffer and for the passes that shade while drawing. Definitions of
+// lib/mesh_vertex.glsl, and
 //   VELOCITY  also where each point was the moment before
-//   INFLATE  vertices move along their normals
 //   OBJECT_LIGHTS  also the instance's place
 #version 450
-#include "lib/inflate.glsl"
+#include "lib/mesh_vertex.glsl"
 #include "lib/view.glsl"
 
-layout(location = 0) in vec3 position_ms;
-layout(location = 1) in vec3 normal_ms;
-layout(location = 2) in vec4 tangent_ms;  // w: sign of the bitangent
-layout(location = 3) in vec4 uvs;         // both sets
-layout(location = 4) in vec4 color;
-layout(location = 5) in vec4 world_row0;  // world_from_mesh
-layout(location = 6) in vec4 world_row1;
-layout(location = 7) in vec4 world_row2;
-layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 layout(location = 9) in vec4 before_row0;
 layout(location = 10) in vec4 before_row1;
 layout(location = 11) in vec4 before_row2;
@@ -33,24 +24,10 @@ layout(location = 6) flat out uint object;
 invariant gl_Position;  // passes that draw again what is nearest ask for the same depth
 
 void main() {
-    vec4 p = vec4(position_ms, 1.0);
-#ifdef INFLATE
-    p.xyz = inflate(position_ms, normal_ms, uintBitsToFloat(instance.w));
-#endif
-    vec3 position_ws = vec3(dot(world_row0, p), dot(world_row1, p), dot(world_row2, p));
-    gl_Position = view.clip_from_world * vec4(position_ws, 1.0);
-
-    // Normals go by the cofactor matrix, the inverse transpose times the determinant, whose sign is taken out:
-    // its rows are the cross products of the rows.
-    float side = (instance.y & 1u) != 0u ? -1.0 : 1.0;
-    normal_ws = side * vec3(
-        dot(cross(world_row1.xyz, world_row2.xyz), normal_ms),
-        dot(cross(world_row2.xyz, world_row0.xyz), normal_ms),
-        dot(cross(world_row0.xyz, world_row1.xyz), normal_ms));
-    normal_ws *= inversesqrt(max(dot(normal_ws, normal_ws), 1e-30));
-
+    gl_Position = view.clip_from_world * vec4(vertex_ws(), 1.0);
+    normal_ws = vertex_normal_ws();
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
-    tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * side);
+    tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());
     uv = uvs;
     vertex_color = color;
     material_and_flags = instance.xy;
@@ -59,6 +36,7 @@ void main() {
 #endif
 
 #ifdef VELOCITY
+    vec4 p = vec4(vertex_ms(), 1.0);
     vec4 q = vec4(dot(before_row0, p), dot(before_row1, p), dot(before_row2, p), 1.0);
     before = (view.previous_from_world * q).xyw;
 #endif

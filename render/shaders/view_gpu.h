@@ -12,7 +12,7 @@ struct ViewBlock {
     vec4 camera_ws;            // w: near plane [m]
     vec4 ray_right;            // world direction by which one unit of NDC x turns the view ray; w: jitter, NDC x
     vec4 ray_up;               // the same for y; w: jitter, NDC y
-    vec4 ray_forward;          // unit
+    vec4 ray_forward;          // unit; w: 1 where shading takes the viewer to be infinitely far away
     vec4 size;                 // width, height [px], 1 / width, 1 / height
     vec4 grid_cells;           // columns, rows, slices of the light clusters; w: side of a tile [px]
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first light

@@ -13,15 +13,16 @@ struct CrowdScene : Scene {
         for (int i = 0; i < count; ++i) {
             const float x = (static_cast<float>(i % side) + 0.5f) / static_cast<float>(side);
             const float y = (static_cast<float>(i / side) + 0.5f) / static_cast<float>(side);
-            place(
+            entities.push_back(place(
                 mesh,
                 material,
                 affine_from(
                     {2 * x - 1, 2 * y - 1, 0},
                     {1, 0, 0, 0},
-                    Vec3(0.6f / static_cast<float>(side))));
+                    Vec3(0.6f / static_cast<float>(side)))));
         }
     }
+    std::vector<Entity> entities;  ///< of all crowds
     [[nodiscard]] RenderView view() const { return look({0, 0, 1.2f}, {0, 0, 0}, 128, 128); }
 };
 
@@ -51,6 +52,34 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures
     CHECK(draw(view()).statistics.draws == 3);
     crowd(10, ball, add(Material{.alpha_mode = AlphaMode::Blend}));
     CHECK(draw(view()).statistics.draws == 4);
+}
+
+TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the picture is the same") {
+    // shade.batching: one state, then a state an object, each with a texture and a mesh of its own.
+    constexpr int kBalls = 36;
+    const auto white = [&] {
+        ImageData image;
+        image.width = 1;
+        image.height = 1;
+        image.pixels = {255, 255, 255, 255};
+        Material material;
+        material.base_color_texture.image = add(std::move(image));
+        return add(material);
+    };
+    shine(PointLight{}, at({0.5f, 0.5f, 1}));
+    crowd(kBalls, add(make_ball(4)), white());
+    const FrameOutput together = draw(view());
+    const std::int64_t triangles = together.statistics.triangles;
+    CHECK(together.statistics.draws == 1);
+    CHECK(triangles == kBalls * 4 * 8 * 2);
+    const gpu::FloatImage expected = gpu::read_floats(*together.radiance);
+    for (const Entity ball : entities) {
+        world.get<MeshInstance>(ball) = {add(make_ball(4)), white()};
+    }
+    const FrameOutput apart = draw(view());
+    CHECK(apart.statistics.draws == kBalls);         // as many as there are states
+    CHECK(apart.statistics.triangles == triangles);  // each drawn once
+    CHECK(largest_difference(gpu::read_floats(*apart.radiance), expected) == 0);
 }
 
 TEST_CASE_FIXTURE(CrowdScene, "instancing: what is not seen is not drawn") {

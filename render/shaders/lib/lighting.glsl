@@ -143,7 +143,7 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
 // Radiance toward the camera of a surface at `position_ws`, seen through `pixel`, without its emission; `list` as in
 // add_listed.
 Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
-    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    Reflector r = make_reflector(s, to_viewer(position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     add_directional(sum, r, position_ws, pixel);
     add_listed(sum, r, list, position_ws, pixel);

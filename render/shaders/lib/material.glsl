@@ -8,6 +8,7 @@
 //   SRGB_BASE_COLOR SRGB_EMISSION   the image is still encoded: filtered as it is, decoded here, because a software
 //                  OpenGL is slow at decoding every texel it filters; its mip levels were made in linear light
 //   DOUBLE_SIDED   seen from behind, the normal turns to the viewer
+//   LIT_AT_VERTICES  there are no normals: colors alone
 
 #include "lib/gbuffer.glsl"
 #include "material_gpu.h"
@@ -19,8 +20,10 @@ layout(binding = 3) uniform sampler2D occlusion_map;    // r
 layout(binding = 4) uniform sampler2D emission_map;
 layout(binding = 12) uniform samplerBuffer materials;   // MaterialRecord
 
+#ifndef LIT_AT_VERTICES
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
+#endif
 layout(location = 2) in vec4 uv;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 4) flat in uvec2 material_and_flags;
@@ -49,21 +52,39 @@ vec3 srgb_decode(vec3 c) {
     return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878);
 }
 
-vec4 surface_color() {
-    vec4 color = material_texel(0);
+// What the base color's map says; white without one.
+vec4 base_color_texel() {
+    vec4 texel = vec4(1.0);
 #ifdef BASE_COLOR_MAP
-    vec4 texel = texture(base_color_map, slot_uv(0));
+    texel = texture(base_color_map, slot_uv(0));
 #ifdef SRGB_BASE_COLOR
     texel.rgb = srgb_decode(texel.rgb);
 #endif
-    color *= texel;
 #endif
+    return texel;
+}
+
+vec4 surface_color() {
+    vec4 color = material_texel(0) * base_color_texel();
 #ifdef VERTEX_COLOR
     color *= max(vertex_color, 0.0);
 #endif
     return color;
 }
 
+vec3 surface_emission() {
+    vec3 emission = material_texel(1).rgb;
+#ifdef EMISSION_MAP
+    vec3 glow = texture(emission_map, slot_uv(4)).rgb;
+#ifdef SRGB_EMISSION
+    glow = srgb_decode(glow);
+#endif
+    emission *= glow;
+#endif
+    return emission;
+}
+
+#ifndef LIT_AT_VERTICES
 vec3 surface_normal(float strength) {
     vec3 n = normal_ws;
 #ifdef NORMAL_MAP
@@ -96,12 +117,11 @@ float widen_roughness(float roughness, vec3 normal) {
 }
 
 SurfaceSample surface_sample(vec3 albedo) {
-    vec4 emission = material_texel(1);
     vec4 factors = material_texel(2);
     SurfaceSample s;
-    s.normal_ws = surface_normal(emission.w);
+    s.normal_ws = surface_normal(material_texel(1).w);
     s.albedo = albedo;
-    s.emission = emission.rgb;
+    s.emission = surface_emission();
     s.metalness = factors.x;
     s.roughness = factors.y;
     s.occlusion = 1.0;
@@ -118,13 +138,6 @@ SurfaceSample surface_sample(vec3 albedo) {
 #ifdef OCCLUSION_MAP
     s.occlusion = 1.0 + factors.z * (texture(occlusion_map, slot_uv(3)).r - 1.0);
 #endif
-#ifdef EMISSION_MAP
-    vec3 glow = texture(emission_map, slot_uv(4)).rgb;
-#ifdef SRGB_EMISSION
-    glow = srgb_decode(glow);
-#endif
-    s.emission *= glow;
-#endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
     if (s.model == kModelUnlit) {
         s.emission += (1.0 - s.metalness) * s.albedo;
@@ -132,3 +145,4 @@ SurfaceSample surface_sample(vec3 albedo) {
     }
     return s;
 }
+#endif

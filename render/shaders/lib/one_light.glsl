@@ -5,7 +5,7 @@ uniform int light_index;
 
 // Radiance toward the camera that the light adds.
 vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
-    Reflector r = make_reflector(s, normalize(view.camera_ws.xyz - position_ws));
+    Reflector r = make_reflector(s, to_viewer(position_ws));
 #ifdef DIRECTIONAL_LIGHT
     Incoming light = incoming_directional(light_index, position_ws, r.normal, pixel);
 #else

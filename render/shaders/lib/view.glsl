@@ -20,3 +20,8 @@ float view_distance(float depth) {
 vec3 world_position(vec2 pixel, float depth) {
     return view.camera_ws.xyz + view_ray(pixel) * view_distance(depth);
 }
+
+// Unit direction from a surface to the camera; to an infinite viewer the same everywhere (light.infinite-approx).
+vec3 to_viewer(vec3 position_ws) {
+    return view.ray_forward.w > 0.5 ? -view.ray_forward.xyz : normalize(view.camera_ws.xyz - position_ws);
+}

@@ -1,0 +1,13 @@
+// What the vertices sent on, in between (light.gouraud). Holes need no test: the depth pass before has left them out.
+#version 450
+#define LIT_AT_VERTICES
+#include "lib/material.glsl"
+
+layout(location = 0) in vec3 diffuse;
+layout(location = 1) in vec3 specular;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    radiance = vec4(diffuse * base_color_texel().rgb + specular + surface_emission(), 1.0);
+}

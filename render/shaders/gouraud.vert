@@ -1,0 +1,65 @@
+// Surfaces lit at their vertices, by all lights that reach their object (light.gouraud). Maps of color and emission come
+// pixel by pixel, that of roughness and metalness counts by its mean, the others not at all.
+#version 450
+#define UNMASKED  // the masks of shadow volumes are of pixels
+#include "lib/mesh_vertex.glsl"
+#include "lib/lighting.glsl"
+
+layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord
+
+#ifdef METAL_ROUGH_MAP
+layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
+const float kLastLevel = 16.0;                          // or the last there is
+#endif
+
+layout(location = 0) out vec3 diffuse;   // what the base color's map still dims
+layout(location = 1) out vec3 specular;
+layout(location = 2) out vec4 uv;
+layout(location = 3) out vec4 vertex_color;
+layout(location = 4) flat out uvec2 material_and_flags;
+invariant gl_Position;  // drawn where the depth is that of depth_first.frag
+
+SurfaceSample vertex_surface() {
+    int texel = int(instance.x * kMaterialTexels);
+    vec4 base = texelFetch(materials, texel);
+    vec4 factors = texelFetch(materials, texel + 2);
+    SurfaceSample s;
+    s.normal_ws = vertex_normal_ws();
+    s.albedo = base.rgb;
+#ifdef VERTEX_COLOR
+    s.albedo *= max(color.rgb, 0.0);
+#endif
+    s.emission = vec3(0.0);
+    s.occlusion = 1.0;
+    s.roughness = factors.y;
+    s.metalness = factors.x;
+    s.material = instance.x;
+    s.model = instance.y >> 8;
+#ifdef METAL_ROUGH_MAP
+    vec2 mean = textureLod(metal_rough_map, vec2(0.5), kLastLevel).gb;
+    s.roughness *= mean.x;
+    s.metalness *= mean.y;
+#endif
+    return s;
+}
+
+void main() {
+    vec3 position_ws = vertex_ws();
+    gl_Position = view.clip_from_world * vec4(position_ws, 1.0);
+    vec2 pixel = (gl_Position.xy / gl_Position.w * 0.5 + 0.5) * view.size.xy;
+    SurfaceSample s = vertex_surface();
+#ifdef DOUBLE_SIDED
+    s.normal_ws *= dot(s.normal_ws, view.camera_ws.xyz - position_ws) < 0.0 ? -1.0 : 1.0;
+#endif
+    // light_cells holds objects' lists here, not cells'.
+    uvec2 list = uvec2(0u);
+#ifdef LOCAL_LIGHTS
+    list = texelFetch(light_cells, int(instance.z)).xy;
+#endif
+    Reflected light = reflect_all(s, position_ws, pixel, list);
+    diffuse = s.model == kModelUnlit ? s.albedo : light.diffuse;
+    specular = light.specular;
+    uv = uvs;
+    vertex_color = color;
+    material_and_flags = instance.xy;
+}

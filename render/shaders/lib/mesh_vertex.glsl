@@ -1,0 +1,42 @@
+// What vertex shaders of mesh instances share: their inputs, and where they take a vertex. Definition:
+//   INFLATE  vertices move along their normals
+
+#include "lib/inflate.glsl"
+
+layout(location = 0) in vec3 position_ms;
+layout(location = 1) in vec3 normal_ms;
+layout(location = 2) in vec4 tangent_ms;  // w: sign of the bitangent
+layout(location = 3) in vec4 uvs;         // both sets
+layout(location = 4) in vec4 color;
+layout(location = 5) in vec4 world_row0;  // world_from_mesh
+layout(location = 6) in vec4 world_row1;
+layout(location = 7) in vec4 world_row2;
+layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
+
+vec3 vertex_ms() {
+#ifdef INFLATE
+    return inflate(position_ms, normal_ms, uintBitsToFloat(instance.w));
+#else
+    return position_ms;
+#endif
+}
+
+vec3 vertex_ws() {
+    vec4 p = vec4(vertex_ms(), 1.0);
+    return vec3(dot(world_row0, p), dot(world_row1, p), dot(world_row2, p));
+}
+
+// -1 for mirrored instances.
+float vertex_side() {
+    return (instance.y & 1u) != 0u ? -1.0 : 1.0;
+}
+
+// Unit. Normals go by the cofactor matrix, the inverse transpose times the determinant, whose sign is taken out: its
+// rows are the cross products of the rows.
+vec3 vertex_normal_ws() {
+    vec3 n = vertex_side() * vec3(
+        dot(cross(world_row1.xyz, world_row2.xyz), normal_ms),
+        dot(cross(world_row2.xyz, world_row0.xyz), normal_ms),
+        dot(cross(world_row0.xyz, world_row1.xyz), normal_ms));
+    return n * inversesqrt(max(dot(n, n), 1e-30));
+}
