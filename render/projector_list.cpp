@@ -1,6 +1,7 @@
 #include "render/projector_list.h"
 
 #include "ecs/base/log.h"
+#include "ecs/base/srgb.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
@@ -10,10 +11,6 @@
 
 namespace limn {
 namespace {
-
-float linear_from_srgb(float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
 
 /// Linear color of a pixel; rows from the top.
 Vec3 pixel_of(const ImageData& image, int x, int y) {

@@ -2,6 +2,7 @@
 
 #include "content/app/hud_style.h"
 #include "content/load/component_json.h"
+#include "ecs/base/srgb.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"

@@ -1,5 +1,6 @@
 #include "content/load/component_json.h"
 
+#include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
@@ -630,10 +631,6 @@ Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {
                          * about(static_cast<double>(yaw_pitch_roll.y), 0)
                          * about(static_cast<double>(yaw_pitch_roll.z), 2);
     return Quat(glm::normalize(q));
-}
-
-float linear_from_srgb(float srgb) {
-    return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace limn

@@ -104,7 +104,4 @@ void for_each_asset(
 /// Rotation of [yaw, pitch, roll] in degrees: about y, then x, then z of the rotated frame.
 [[nodiscard]] Quat rotation_from_degrees(const Vec3& yaw_pitch_roll);
 
-/// sRGB's component 0 .. 1 to linear, IEC 61966-2-1.
-[[nodiscard]] float linear_from_srgb(float srgb);
-
 }  // namespace limn

@@ -1,4 +1,5 @@
-// Gradient noise of one, two or three coordinates, as ecs/base/gradient_noise.h explains it; the same to 1e-5.
+// Gradient noise of one, two or three coordinates, as ecs/base/gradient_noise.h explains it, the same to 1e-5; and
+// noise by the pixel.
 
 uint lattice_hash(int x, int y, uint seed) {
     uint h = seed * 0x9e3779b9u ^ uint(x) * 0x85ebca6bu;
@@ -118,4 +119,9 @@ float noise(vec3 p, uint seed, int octaves) {
         p *= 2.0;
     }
     return 0.5 + 0.5 * sum / total;
+}
+
+// Interleaved gradient noise in [0, 1) (Jimenez 2014): neighboring pixels differ much.
+float pixel_noise(vec2 pixel) {
+    return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
 }

@@ -13,6 +13,7 @@
 //   SHADOW_MAPS      some light has a map
 //   SHADOW_MASKS     some light has a layer of the mask: shadow volumes
 
+#include "lib/noise.glsl"
 #include "shadow_gpu.h"
 
 layout(binding = 15) uniform sampler2D shadow_atlas;     // reversed depth, 0 where nothing is
@@ -100,7 +101,7 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
     bool soft = filter_kind == kFilterSoft;
 
     // The disc is turned from pixel to pixel (Jimenez 2014): its steps become a fine grain.
-    float angle = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+    float angle = 6.2831853 * pixel_noise(pixel);
     vec2 turn = vec2(cos(angle), sin(angle));
     float search = min(0.5 * settings.z * (1.0 - p.depth), settings.w);
     float blocker = contact ? blocker_depth(p, search, turn) : 0.0;

@@ -1,5 +1,7 @@
 // From scene radiance to the display: luminance, curves, encodings and the dither before 8 bits.
 
+#include "lib/noise.glsl"
+
 // Of linear light (hdr.luminance). Rec. 709 would say 0.2126, 0.7152, 0.0722.
 float luminance(vec3 color) {
     return dot(color, vec3(0.27, 0.67, 0.06));
@@ -78,16 +80,8 @@ vec3 srgb_encode(vec3 linear) {
     return mix(power, 12.92 * linear, lessThan(linear, vec3(0.0031308)));
 }
 
-// Two uniform numbers in [0, 1) from a pixel: interleaved gradient noise (Jimenez 2014), whose neighbors
-// differ much, and a shifted copy.
-vec2 pixel_noise(vec2 pixel) {
-    vec2 n = vec2(dot(pixel, vec2(0.06711056, 0.00583715)), dot(pixel + 47.0, vec2(0.00583715, 0.06711056)));
-    return fract(52.9829189 * fract(n));
-}
-
 // Triangular noise in (-1, 1): added in units of one code before rounding it makes the rounding error
 // independent of the color, so that no band remains.
 float triangular_dither(vec2 pixel) {
-    vec2 n = pixel_noise(pixel);
-    return n.x + n.y - 1.0;
+    return pixel_noise(pixel) + pixel_noise(pixel.yx + 47.0) - 1.0;
 }
