@@ -56,8 +56,9 @@ void main() {
 #ifdef LOCAL_LIGHTS
     list = texelFetch(light_cells, int(instance.z)).xy;
 #endif
+    split_unlit(s);
     Reflected light = reflect_all(s, position_ws, pixel, list);
-    diffuse = s.model == kModelUnlit ? s.albedo : light.diffuse;
+    diffuse = light.diffuse + s.emission;
     specular = light.specular;
     uv = uvs;
     vertex_color = color;

@@ -1,6 +1,7 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
 #include "tests/render/scene_fixture.h"
 // clang-format on
+#include "ecs/components/rendering.h"
 #include "render/environment_light.h"
 #include "tests/render/shader_eval.h"
 
@@ -211,6 +212,23 @@ TEST_CASE_FIXTURE(
             }
         }
     }
+}
+
+TEST_CASE_FIXTURE(ControlScene, "env_control_map: the same by every way of lighting") {
+    const Material material = {
+        .shading = ShadingModel::Unlit,
+        .base_color = {0.8f, 0.6f, 0.1f, 1},
+        .metalness = 0.5f,
+        .roughness = 0};
+    const Vec3 want = 0.5f * Vec3(material.base_color) + 0.5f * kAround;
+    shine(PointLight{.intensity = 50}, at({0.3f, 0.4f, 0.8f}));  // which lights it not
+    for (int method = 0; method < kLightMethods; ++method) {
+        CAPTURE(method);
+        world.insert_resource(Rendering{.lights = static_cast<LightMethod>(method)});
+        CHECK(glm::distance(rgb_at(picture(material), 5, 9), want) < 3e-3f);
+    }
+    world.insert_resource(Rendering{.shading = ShadingRate::Vertex});
+    CHECK(glm::distance(rgb_at(picture(material), 5, 9), want) < 3e-3f);
 }
 
 TEST_CASE_FIXTURE(

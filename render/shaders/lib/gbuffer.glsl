@@ -31,6 +31,14 @@ struct SurfaceSample {
     uint model;       // kModel*
 };
 
+// Of an unlit surface, what is emission and what mirrors.
+void split_unlit(inout SurfaceSample s) {
+    if (s.model == kModelUnlit) {
+        s.emission += (1.0 - s.metalness) * s.albedo;
+        s.albedo = vec3(s.metalness);
+    }
+}
+
 // Nonnegative color with a shared exponent, as GL_RGB9_E5; 0 stays 0.
 uint pack_rgb9e5(vec3 color) {
     color = clamp(color, 0.0, 65408.0);

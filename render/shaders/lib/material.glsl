@@ -139,10 +139,7 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.occlusion = 1.0 + factors.z * (texture(occlusion_map, slot_uv(3)).r - 1.0);
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
-    if (s.model == kModelUnlit) {
-        s.emission += (1.0 - s.metalness) * s.albedo;
-        s.albedo = vec3(s.metalness);
-    }
+    split_unlit(s);
     return s;
 }
 #endif
