@@ -256,15 +256,16 @@ TEST_CASE_FIXTURE(
         const ShadowView map =
             make_spot_view({1, 3, 1}, axis, radians(30.0f), 0.05f, resolution, 2, right);
         const gpu::FloatImage image = texels();
-        for (const auto& [x, y] : {std::pair(32, 32), std::pair(20, 36), std::pair(36, 24)}) {
+        for (const IVec2& pixel : {IVec2(32, 32), IVec2(20, 36), IVec2(36, 24)}) {
             const Vec2 ndc = {
-                (static_cast<float>(x) + 0.5f) / 32 - 1, 1 - (static_cast<float>(y) + 0.5f) / 32};
+                (static_cast<float>(pixel.x) + 0.5f) / 32 - 1,
+                1 - (static_cast<float>(pixel.y) + 0.5f) / 32};
             const Affine& eye = view.world_from_camera;
             const Vec3 ray = transform_vector(eye, {ndc.x, ndc.y, -1});
             const Vec3 point = Vec3(0.3f, 2.5f, 1.5f) + ray * (2.5f / -ray.y);
-            CAPTURE(x);
+            CAPTURE(pixel.x);
             CHECK(
-                image.at(x, y, 0)
+                image.at(pixel.x, pixel.y, 0)
                 == doctest::Approx(texels_per_pixel(map, view, point, {0, 1, 0})).epsilon(0.01));
         }
         CHECK(image.at(1, 1, 0) == 0);  // beyond the cone
