@@ -6,6 +6,7 @@
 #include "content/app/stage.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/text.h"
+#include "ecs/components/camera_path.h"
 #include "ecs/components/light.h"
 #include "ecs/world.h"
 
@@ -108,6 +109,8 @@ measure_lights(Stage& stage, HeadlessRenderer& headless, const BenchOptions& opt
     if (total == 0) {
         return fail("{}: found no point lights, expected some to count", stage.scene.name);
     }
+    // Every point sees the same, however many frames those before it had.
+    stage.world.remove<CameraPath>(stage.scene.camera);
     LightsBench bench{.machine = machine_report(stage, headless, options)};
     bench.counts = light_counts(total);
     Progress progress("point", static_cast<int>(bench.counts.size()) * kLightMethods);
