@@ -91,6 +91,18 @@ void print_assets(const Assets& assets) {
         fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
     }
     print_rest(assets.images.size());
+
+    for (const SkeletonData& skeleton : assets.skeletons) {
+        fmt::print("skeleton of {} joints  {}\n", skeleton.joints.size(), skeleton.name);
+    }
+    if (!assets.clips.empty()) {
+        fmt::print("{} clips\n", assets.clips.size());
+    }
+    for (std::size_t i = 0; i < std::min(assets.clips.size(), kMostLines); ++i) {
+        const ClipData& clip = assets.clips[i];
+        fmt::print("    {:>8.2f} s  {} numbers  {}\n", clip.duration, clip_size(clip), clip.name);
+    }
+    print_rest(assets.clips.size());
 }
 
 Status print_scene(const std::string& file) {

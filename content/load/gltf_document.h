@@ -20,6 +20,8 @@ struct GltfDocument {
     tinygltf::Model model;  ///< without buffers, images and animations
     std::vector<std::vector<std::byte>> buffers;  ///< by the index of the file
     std::uint64_t values_left = 0;                ///< of limits.max_values
+    std::vector<std::int32_t>
+        scene_nodes;  ///< node of the file -> of the scene, -1; by build_nodes
     std::vector<std::string> warnings;
 };
 

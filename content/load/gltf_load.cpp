@@ -1,6 +1,7 @@
 #include "content/load/gltf_load.h"
 
 #include "content/load/atomic_file.h"
+#include "content/load/gltf_animation.h"
 #include "content/load/gltf_document.h"
 #include "content/load/gltf_material.h"
 #include "content/load/gltf_mesh.h"
@@ -64,6 +65,9 @@ Result<GltfScene> parse(
         return parts.error();
     }
     if (Status status = build_nodes(*document, *parts, scene); !status) {
+        return status.error();
+    }
+    if (Status status = build_animations(*document, scene); !status) {
         return status.error();
     }
     scene.warnings = std::move(document->warnings);

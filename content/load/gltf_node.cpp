@@ -81,7 +81,14 @@ class NodeBuilder {
         if (Status status = add_skinned_meshes(); !status) {
             return status;
         }
-        return add_components();
+        if (Status status = add_components(); !status) {
+            return status;
+        }
+        document_.scene_nodes.assign(nodes_.size(), -1);
+        for (const auto& [node, number] : number_) {
+            document_.scene_nodes[node] = static_cast<std::int32_t>(number);
+        }
+        return Done{};
     }
 
   private:
@@ -329,6 +336,7 @@ class NodeBuilder {
             node.name = source.name.empty() ? "" : source.name + ".skin";
             node.transform = *transform;
             node.parts = parts_[static_cast<std::size_t>(source.mesh)];
+            node.skin = source.skin;
             scene_.nodes.push_back(std::move(node));
         }
         return Done{};

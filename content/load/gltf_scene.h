@@ -3,6 +3,7 @@
 #include "ecs/any_component.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
+#include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 
@@ -33,6 +34,7 @@ struct GltfNode {
     bool has_camera = false;
     Camera camera;
     GltfLight light;
+    std::int32_t skin = -1;  ///< of `parts`, an index into GltfScene::skins
     /// From extras.limn. Entities in them are nodes, as gltf_node_entity() writes them; assets are
     /// indices into this scene.
     std::vector<AnyComponent> components;
@@ -44,6 +46,10 @@ struct GltfScene {
     std::vector<MeshData> meshes;     ///< one for each primitive that is drawn
     std::vector<Material> materials;  ///< their ImageIds are indices into `images`
     std::vector<ImageData> images;
+    SkeletonData skeleton;             ///< no joints where nothing moves; joint 0 is the scene
+    std::vector<std::int32_t> joints;  ///< of each node, -1: stays where its parent is
+    std::vector<SkinData> skins;
+    std::vector<ClipData> clips;
     std::vector<std::string> warnings;  ///< what the file asks for and was left out, a line each
 };
 

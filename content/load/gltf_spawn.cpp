@@ -48,6 +48,11 @@ Offsets append_assets(Assets& assets, GltfScene& scene) {
     offsets.image = append(assets.images, scene.images);
     offsets.mesh = append(assets.meshes, scene.meshes);
     offsets.material = append(assets.materials, scene.materials);
+    if (!scene.skeleton.joints.empty()) {
+        assets.skeletons.push_back(std::move(scene.skeleton));
+    }
+    append(assets.skins, scene.skins);
+    append(assets.clips, scene.clips);
     return offsets;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/skeleton.h"
 #include "ecs/reflect.h"
 
 #include <atomic>
@@ -138,6 +139,9 @@ struct Assets {
     std::vector<MeshData> meshes;
     std::vector<ImageData> images;
     std::vector<Material> materials;
+    std::vector<SkeletonData> skeletons;
+    std::vector<SkinData> skins;
+    std::vector<ClipData> clips;
     std::uint64_t material_version = 1;  ///< raise after editing a material in place
     AssetsIdentity identity;
 };

@@ -21,7 +21,7 @@ using namespace limn::test;
 namespace {
 
 #if defined(LIMN_SANITIZED)
-constexpr std::uint64_t kCompareEvery = 4000;
+constexpr std::uint64_t kCompareEvery = 16000;
 #else
 constexpr std::uint64_t kCompareEvery = 1500;
 #endif

@@ -1,0 +1,414 @@
+#include "content/load/gltf_animation.h"
+
+#include "content/load/gltf_accessor.h"
+#include "ecs/base/rotation.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kMostJoints = std::numeric_limits<std::uint16_t>::max();
+
+/// What a channel moves, in the order of kPaths.
+enum class Path : std::uint8_t { Rotation, Translation, Scale };
+constexpr std::pair<std::string_view, Path> kPaths[] = {
+    {"rotation", Path::Rotation}, {"translation", Path::Translation}, {"scale", Path::Scale}};
+
+constexpr std::pair<std::string_view, Interpolation> kInterpolations[] = {
+    {"LINEAR", Interpolation::Linear},
+    {"STEP", Interpolation::Step},
+    {"CUBICSPLINE", Interpolation::Cubic}};
+
+const JsonValue& member(const JsonValue& object, std::string_view key) {
+    return *object.find(key);  // gltf_schema.cpp has seen it
+}
+
+std::size_t index_in(const JsonValue& number) {
+    return static_cast<std::size_t>(number.number);
+}
+
+/// One joint's keys of one kind.
+struct Channel {
+    Path path = Path::Rotation;
+    std::uint16_t joint = 0;
+    std::vector<float> values;  ///< of the sampler's output
+};
+
+/// Channels with the same times.
+struct ChannelGroup {
+    std::vector<float> times;
+    Interpolation interpolation = Interpolation::Linear;
+    std::vector<Channel> channels;
+};
+
+/// The keys of all channels of one kind as rows, a value a joint; cubic keys are three rows.
+template <typename T>
+void fill_rows(
+    const ChannelGroup& group,
+    Path path,
+    std::vector<std::uint16_t>& joints,
+    std::vector<T>& rows,
+    T (*value_of)(const float* numbers)) {
+    std::vector<const Channel*> chosen;
+    for (const Channel& channel : group.channels) {
+        if (channel.path == path) {
+            chosen.push_back(&channel);
+            joints.push_back(channel.joint);
+        }
+    }
+    constexpr std::size_t kWidth = static_cast<std::size_t>(T::length());
+    const std::size_t height =
+        group.times.size() * (group.interpolation == Interpolation::Cubic ? 3 : 1);
+    rows.reserve(height * chosen.size());
+    for (std::size_t row = 0; row < height; ++row) {
+        for (const Channel* channel : chosen) {
+            rows.push_back(value_of(channel->values.data() + kWidth * row));
+        }
+    }
+}
+
+Vec3 vector_of(const float* numbers) {
+    return {numbers[0], numbers[1], numbers[2]};
+}
+Quat quaternion_of(const float* numbers) {
+    return {numbers[3], numbers[0], numbers[1], numbers[2]};
+}
+
+class AnimationBuilder {
+  public:
+    AnimationBuilder(GltfDocument& document, GltfScene& scene)
+        : document_(document), scene_(scene), animations_(document.json.find("animations")) {}
+
+    Status build() {
+        for (const auto step :
+             {&AnimationBuilder::find_joints,
+              &AnimationBuilder::add_skins,
+              &AnimationBuilder::add_clips}) {
+            if (Status status = (this->*step)(); !status) {
+                return status;
+            }
+        }
+        return Done{};
+    }
+
+  private:
+    [[nodiscard]] std::string skin_place(std::size_t skin) const {
+        return fmt::format("{}: skins[{}]", document_.file, skin);
+    }
+
+    /// The node of the scene that node `node` of the file became, -1 for none.
+    [[nodiscard]] std::int32_t scene_node(std::size_t node) const {
+        return document_.scene_nodes[node];
+    }
+
+    template <typename Visit>
+    void each_channel(Visit&& visit) const {
+        if (animations_ == nullptr) {
+            return;
+        }
+        for (const JsonValue& animation : animations_->items) {
+            for (const JsonValue& channel : member(animation, "channels").items) {
+                visit(channel);
+            }
+        }
+    }
+
+    /// The nodes that a skin in use or a channel names.
+    Result<std::vector<bool>> find_moving_nodes() {
+        std::vector<bool> moves(scene_.nodes.size(), false);
+        for (const GltfNode& node : scene_.nodes) {
+            if (node.skin >= 0) {
+                const auto skin = static_cast<std::size_t>(node.skin);
+                for (const int joint : document_.model.skins[skin].joints) {
+                    const std::int32_t found = scene_node(static_cast<std::size_t>(joint));
+                    if (found < 0) {
+                        return fail(
+                            "{}.joints: found node {}, which is not in the scene",
+                            skin_place(skin),
+                            joint);
+                    }
+                    moves[static_cast<std::size_t>(found)] = true;
+                }
+            }
+        }
+        each_channel([&](const JsonValue& channel) {
+            const JsonValue* node = member(channel, "target").find("node");
+            const std::int32_t found = node != nullptr ? scene_node(index_in(*node)) : -1;
+            if (found >= 0) {
+                moves[static_cast<std::size_t>(found)] = true;
+            }
+        });
+        return moves;
+    }
+
+    Status find_joints() {
+        Result<std::vector<bool>> moves = find_moving_nodes();
+        if (!moves) {
+            return moves.error();
+        }
+        // Parents are before their children: from the end on, each tells the one above it.
+        for (std::size_t i = scene_.nodes.size(); i-- > 0;) {
+            if ((*moves)[i] && scene_.nodes[i].parent >= 0) {
+                (*moves)[static_cast<std::size_t>(scene_.nodes[i].parent)] = true;
+            }
+        }
+        scene_.joints.assign(scene_.nodes.size(), -1);
+        const auto count = static_cast<std::size_t>(std::count(moves->begin(), moves->end(), true));
+        if (count == 0) {
+            return Done{};
+        }
+        if (count >= kMostJoints) {
+            return fail(
+                "{}: nodes: found {} that move, expected at most {}",
+                document_.file,
+                count,
+                kMostJoints - 1);
+        }
+        scene_.skeleton.name = scene_.name;
+        add_joint(scene_.name, -1, {});
+        for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+            if ((*moves)[i]) {
+                const GltfNode& node = scene_.nodes[i];
+                const std::int32_t parent =
+                    node.parent < 0 ? 0 : scene_.joints[static_cast<std::size_t>(node.parent)];
+                scene_.joints[i] = static_cast<std::int32_t>(scene_.skeleton.joints.size());
+                add_joint(node.name, parent, node.transform);
+            }
+        }
+        if (Status status = check_skeleton(scene_.skeleton); !status) {
+            return fail("{}: {}", document_.file, status.error().message);
+        }
+        return Done{};
+    }
+
+    void add_joint(const std::string& name, std::int32_t parent, const Transform& rest) {
+        SkeletonData& skeleton = scene_.skeleton;
+        skeleton.joints.push_back(name);
+        skeleton.parents.push_back(parent);
+        skeleton.rest.translations.push_back(rest.position);
+        skeleton.rest.rotations.push_back(rest.rotation);
+        skeleton.rest.scales.push_back(rest.scale);
+    }
+
+    [[nodiscard]] std::uint16_t joint_of(std::size_t node) const {
+        return static_cast<std::uint16_t>(
+            scene_.joints[static_cast<std::size_t>(scene_node(node))]);
+    }
+
+    /// Those that a node uses, in the order of the first use; nodes name them by the new number.
+    Status add_skins() {
+        std::map<std::int32_t, std::int32_t> numbers;
+        for (GltfNode& node : scene_.nodes) {
+            if (node.skin < 0) {
+                continue;
+            }
+            const auto [number, is_new] =
+                numbers.try_emplace(node.skin, static_cast<std::int32_t>(scene_.skins.size()));
+            if (is_new) {
+                if (Status status = add_skin(static_cast<std::size_t>(node.skin)); !status) {
+                    return status;
+                }
+            }
+            node.skin = number->second;
+        }
+        return Done{};
+    }
+
+    Status add_skin(std::size_t index) {
+        const tinygltf::Skin& source = document_.model.skins[index];
+        SkinData skin;
+        skin.name = source.name;
+        for (const int joint : source.joints) {
+            skin.joints.push_back(joint_of(static_cast<std::size_t>(joint)));
+        }
+        skin.joint_from_mesh.resize(skin.joints.size());
+        if (source.inverseBindMatrices >= 0) {
+            const std::string place = skin_place(index) + ".inverseBindMatrices";
+            const Result<std::vector<float>> values =
+                read_floats(document_, source.inverseBindMatrices, 16, place);
+            if (!values) {
+                return values.error();
+            }
+            if (values->size() < 16 * skin.joints.size()) {
+                return fail(
+                    "{}: found {} matrices, expected one for each of {} joints",
+                    place,
+                    values->size() / 16,
+                    skin.joints.size());
+            }
+            for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+                const float* columns = values->data() + 16 * i;
+                for (int row = 0; row < 3; ++row) {
+                    skin.joint_from_mesh[i].row[row] = {
+                        columns[row], columns[4 + row], columns[8 + row], columns[12 + row]};
+                }
+            }
+        }
+        if (Status status = check_skin(skin, scene_.skeleton.joints.size()); !status) {
+            return fail("{}: {}", skin_place(index), status.error().message);
+        }
+        scene_.skins.push_back(std::move(skin));
+        return Done{};
+    }
+
+    Status add_clips() {
+        const std::size_t count = animations_ != nullptr ? animations_->items.size() : 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const JsonValue& animation = animations_->items[i];
+            place_ = fmt::format("{}: animations[{}]", document_.file, i);
+            groups_.clear();
+            if (Status status = read_channels(animation); !status) {
+                return status;
+            }
+            const JsonValue* name = animation.find("name");
+            ClipData clip;
+            clip.name = name != nullptr ? name->text : fmt::format("clip {}", i);
+            for (const auto& [key, group] : groups_) {
+                clip.sheets.push_back(make_sheet(group));
+                clip.duration = std::max(clip.duration, group.times.back());
+            }
+            if (Status status = check_clip(clip, scene_.skeleton.joints.size(), 0); !status) {
+                return fail("{}: {}", place_, status.error().message);
+            }
+            scene_.clips.push_back(std::move(clip));
+        }
+        return Done{};
+    }
+
+    Status read_channels(const JsonValue& animation) {
+        const std::vector<JsonValue>& samplers = member(animation, "samplers").items;
+        const std::vector<JsonValue>& channels = member(animation, "channels").items;
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            const std::size_t sampler = index_in(member(channels[i], "sampler"));
+            if (sampler >= samplers.size()) {
+                return fail(
+                    "{}.channels[{}].sampler: found the number {}, expected an index below {}",
+                    place_,
+                    i,
+                    sampler,
+                    samplers.size());
+            }
+            const JsonValue& target = member(channels[i], "target");
+            const JsonValue* node = target.find("node");
+            if (node == nullptr || scene_node(index_in(*node)) < 0) {
+                continue;  // as the specification wants; and what is in no scene moves nothing
+            }
+            const std::string& name = member(target, "path").text;
+            const auto* path =
+                std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
+                    return known.first == name;
+                });
+            if (path == std::end(kPaths)) {
+                document_.warnings.push_back(fmt::format(
+                    "{}.channels[{}].target.path: {} is left out", place_, i, in_quotes(name)));
+                continue;
+            }
+            const std::string place = fmt::format("{}.samplers[{}]", place_, sampler);
+            if (Status status = read_sampler(
+                    samplers[sampler], place, {path->second, joint_of(index_in(*node)), {}});
+                !status) {
+                return status;
+            }
+        }
+        return Done{};
+    }
+
+    /// Reads the sampler's output into `channel` and puts it with the others of its times.
+    Status read_sampler(const JsonValue& sampler, const std::string& place, Channel channel) {
+        const JsonValue* word = sampler.find("interpolation");
+        Interpolation interpolation = Interpolation::Linear;
+        for (const auto& [name, value] : kInterpolations) {
+            interpolation = word != nullptr && word->text == name ? value : interpolation;
+        }
+        const auto input = static_cast<int>(index_in(member(sampler, "input")));
+        ChannelGroup& group = groups_[{input, interpolation}];
+        if (group.times.empty()) {
+            Result<std::vector<float>> times = read_floats(document_, input, 1, place + ".input");
+            if (!times) {
+                return times.error();
+            }
+            group.times = std::move(*times);
+            group.interpolation = interpolation;
+        }
+        const int width = channel.path == Path::Rotation ? 4 : 3;
+        const auto output = static_cast<int>(index_in(member(sampler, "output")));
+        Result<std::vector<float>> values =
+            read_floats(document_, output, width, place + ".output");
+        if (!values) {
+            return values.error();
+        }
+        const std::size_t expected =
+            group.times.size() * (interpolation == Interpolation::Cubic ? 3 : 1);
+        const std::size_t found = values->size() / static_cast<std::size_t>(width);
+        if (found != expected) {
+            return fail(
+                "{}.output: found {} values, expected {} for {} keys{}",
+                place,
+                found,
+                expected,
+                group.times.size(),
+                interpolation == Interpolation::Cubic ? ", with a slope on both sides of each"
+                                                      : "");
+        }
+        channel.values = std::move(*values);
+        group.channels.push_back(std::move(channel));
+        return Done{};
+    }
+
+    static ClipSheet make_sheet(const ChannelGroup& group) {
+        ClipSheet sheet;
+        sheet.times = group.times;
+        sheet.interpolation = group.interpolation;
+        fill_rows(group, Path::Rotation, sheet.rotating, sheet.rotations, quaternion_of);
+        fill_rows(group, Path::Translation, sheet.translating, sheet.translations, vector_of);
+        fill_rows(group, Path::Scale, sheet.scaling, sheet.scales, vector_of);
+        make_unit_and_near(sheet);
+        return sheet;
+    }
+
+    /// Rotations of length 1, each near the one before it; the slopes of cubic keys follow them.
+    static void make_unit_and_near(ClipSheet& sheet) {
+        const bool is_cubic = sheet.interpolation == Interpolation::Cubic;
+        const std::size_t joints = sheet.rotating.size();
+        const std::size_t step = (is_cubic ? 3 : 1) * joints;
+        const std::size_t value = is_cubic ? joints : 0;
+        for (std::size_t joint = 0; joint < joints; ++joint) {
+            const Quat* before = nullptr;
+            for (std::size_t at = joint; at < sheet.rotations.size(); at += step) {
+                Quat& key = sheet.rotations[at + value];
+                const float length = glm::length(key);
+                const float sign =
+                    before != nullptr && glm::dot(*before, key) < 0.0f ? -1.0f : 1.0f;
+                const float factor = length > 1e-6f ? sign / length : sign;
+                for (std::size_t part = 0; part < step; part += joints) {
+                    sheet.rotations[at + part] *= factor;
+                }
+                before = &key;
+            }
+        }
+    }
+
+    GltfDocument& document_;
+    GltfScene& scene_;
+    const JsonValue* animations_;
+    std::string place_;  ///< of the animation being read
+    /// By input accessor and interpolation.
+    std::map<std::pair<int, Interpolation>, ChannelGroup> groups_;
+};
+
+}  // namespace
+
+Status build_animations(GltfDocument& document, GltfScene& scene) {
+    return AnimationBuilder(document, scene).build();
+}
+
+}  // namespace limn
