@@ -1,5 +1,5 @@
 # limn_ecs for other projects: find_package(limn_ecs) gives the target limn::ecs, with the headers as
-# #include "ecs/world.h". Only the ECS is installed; ecs/base/math.h and rng.h are the engine's (GLM).
+# #include "ecs/world.h". Only the ECS is installed; those of ecs/base with GLM are the engine's.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -34,5 +34,8 @@ install(
     FILES_MATCHING
     PATTERN *.h
     PATTERN components EXCLUDE
+    PATTERN base/bezier.h EXCLUDE
+    PATTERN base/gradient_noise.h EXCLUDE
     PATTERN base/math.h EXCLUDE
-    PATTERN base/rng.h EXCLUDE)
+    PATTERN base/rng.h EXCLUDE
+    PATTERN base/rotation.h EXCLUDE)
