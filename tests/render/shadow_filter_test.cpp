@@ -158,8 +158,10 @@ TEST_CASE_FIXTURE(
     ShadowTest, "shadow filter: contact hardening makes penumbras as wide as the law, to 15 %") {
     // A half plane above a floor, its edge at x = 0, under a lamp straight above the edge.
     put(make_plane({.size = {4, 4}}), {0, 0, 0});
-    for (const auto& [height, source] :
+    for (const auto& setup :
          {std::pair(1.0f, 0.3f), std::pair(0.5f, 0.3f), std::pair(1.5f, 0.15f)}) {
+        const float height = setup.first;  // a lambda cannot capture a structured binding
+        const float source = setup.second;
         const Entity screen = put(make_plane({.size = {2, 4}}), {-1, height, 0});
         const Entity lamp = shine(
             SpotLight{
