@@ -1,6 +1,7 @@
 #include "render/mesh_pool.h"
 
 #include "ecs/base/log.h"
+#include "render/gpu/grown_buffer.h"
 #include "render/shaders/instance_gpu.h"
 
 #include <glm/gtc/packing.hpp>
@@ -92,15 +93,6 @@ bool drawable(const MeshData& mesh) {
     return true;
 }
 
-/// A buffer of `bytes` that begins with the first `kept` bytes of `old`.
-gpu::Buffer grown(const char* label, const gpu::Buffer& old, std::size_t kept, std::size_t bytes) {
-    gpu::Buffer buffer(label, bytes, gpu::BufferUse::Dynamic);
-    if (kept > 0) {
-        glCopyNamedBufferSubData(old.id(), buffer.id(), 0, 0, static_cast<GLsizeiptr>(kept));
-    }
-    return buffer;
-}
-
 }  // namespace
 
 std::span<const gpu::VertexAttribute> mesh_attributes() {
@@ -114,9 +106,9 @@ MeshPool::MeshPool() : vertices_("meshes", kMeshAttributes) {
 void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
     if (vertices > vertex_capacity_) {
         const std::size_t capacity = std::max(vertices, 2 * vertex_capacity_);
-        positions_ = grown(
+        positions_ = gpu::grown_buffer(
             "mesh positions", positions_, vertex_count_ * sizeof(Vec3), capacity * sizeof(Vec3));
-        attributes_ = grown(
+        attributes_ = gpu::grown_buffer(
             "mesh attributes",
             attributes_,
             vertex_count_ * sizeof(PackedVertex),
@@ -127,7 +119,7 @@ void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
     }
     if (indices > index_capacity_) {
         const std::size_t capacity = std::max(indices, 2 * index_capacity_);
-        indices_ = grown("mesh indices", indices_, index_count_ * 4, capacity * 4);
+        indices_ = gpu::grown_buffer("mesh indices", indices_, index_count_ * 4, capacity * 4);
         index_capacity_ = capacity;
         vertices_.set_indices(indices_);
     }

@@ -1,6 +1,7 @@
 #include "render/shadow/shadow_mesh_pool.h"
 
 #include "ecs/base/check.h"
+#include "render/gpu/grown_buffer.h"
 #include "render/shaders/shadow_volume_gpu.h"
 
 #include <algorithm>
@@ -26,15 +27,6 @@ constexpr gpu::VertexAttribute kVolumeAttributes[] = {
      .components = 4,
      .offset = offsetof(layout::VolumeInstance, light)},
 };
-
-/// A buffer of `bytes` that begins with the first `kept` bytes of `old`.
-gpu::Buffer grown(const char* label, const gpu::Buffer& old, std::size_t kept, std::size_t bytes) {
-    gpu::Buffer buffer(label, bytes, gpu::BufferUse::Dynamic);
-    if (kept > 0) {
-        glCopyNamedBufferSubData(old.id(), buffer.id(), 0, 0, static_cast<GLsizeiptr>(kept));
-    }
-    return buffer;
-}
 
 }  // namespace
 
@@ -76,7 +68,7 @@ const VolumeRange& ShadowMeshPool::triangle_volume(const Assets& assets, MeshId 
 void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
     if (vertices > vertex_capacity_) {
         const std::size_t capacity = std::max({vertices, 2 * vertex_capacity_, kFirstVertices});
-        corners_ = grown(
+        corners_ = gpu::grown_buffer(
             "volume corners",
             corners_,
             vertex_count_ * sizeof(VolumeVertex),
@@ -86,7 +78,7 @@ void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
     }
     if (indices > index_capacity_) {
         const std::size_t capacity = std::max({indices, 2 * index_capacity_, kFirstIndices});
-        indices_ = grown("volume indices", indices_, index_count_ * 4, capacity * 4);
+        indices_ = gpu::grown_buffer("volume indices", indices_, index_count_ * 4, capacity * 4);
         index_capacity_ = capacity;
         vertices_.set_indices(indices_);
     }
