@@ -1,5 +1,6 @@
 #include "ecs/components/all.h"
 
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/env_probe.h"
@@ -30,6 +31,12 @@ void register_all_components() {
     register_component<Sway>();
     register_component<MeshInstance>();
     register_component<Inflate>();
+    register_component<Skeleton>();
+    register_component<ClipPlayer>();
+    register_component<Pose>();
+    register_component<MorphWeights>();
+    register_component<Deformed>();
+    register_component<JointAttachment>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

@@ -91,6 +91,26 @@ struct SkinData {
     std::vector<Affine> joint_from_mesh;  ///< one a joint
 };
 
+/// Beside a mesh: which joints move its vertices and by how much. Those of vertex i are entries
+/// first[i] .. first[i + 1], any number of them; a vertex without any stays where it is.
+struct SkinWeights {
+    std::vector<std::uint32_t> first;   ///< one a vertex and one past the last; empty: no skin
+    std::vector<std::uint16_t> joints;  ///< places in SkinData::joints
+    std::vector<float> weights;         ///< > 0; those of a vertex sum to 1
+
+    [[nodiscard]] bool empty() const { return first.empty(); }
+};
+
+/// A shape that a mesh can take on, as differences from it at those vertices that move
+/// (char.morph-target).
+struct MorphTarget {
+    std::string name;
+    std::vector<std::uint32_t> vertices;  ///< that move, growing
+    std::vector<Vec3> positions;          ///< one a vertex of `vertices` [m]
+    std::vector<Vec3> normals;            ///< the same, or empty
+    std::vector<Vec3> tangents;           ///< the same, or empty
+};
+
 /// One line of what is wrong: lengths that differ, a parent that is no earlier joint, a second
 /// root, numbers that are not finite, a rotation of length 0.
 [[nodiscard]] Status check_skeleton(const SkeletonData& skeleton);

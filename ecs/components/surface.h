@@ -47,8 +47,10 @@ struct MeshData {
     std::vector<Vec2> uvs1;  ///< second set, or empty
     std::vector<Vec4> colors;  ///< linear RGBA factor a vertex, or empty
     std::vector<std::uint32_t>
-        indices;  ///< three a triangle, counter-clockwise seen from the front
-    Bounds bounds;
+        indices;                      ///< three a triangle, counter-clockwise seen from the front
+    SkinWeights skin;                 ///< empty: no joints move it
+    std::vector<MorphTarget> morphs;  ///< shapes it can take on, in the file's order
+    Bounds bounds;                    ///< at rest
 };
 
 enum class PixelFormat : std::uint8_t { Rgba8, Rgba16F, Rgba32F };
