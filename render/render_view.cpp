@@ -1,10 +1,14 @@
 #include "render/render_view.h"
 
+#include "ecs/base/log.h"
 #include "ecs/components/name.h"
 #include "ecs/world.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+
+#include <atomic>
 
 namespace limn {
 namespace {
@@ -82,14 +86,57 @@ RenderView with_jitter(const RenderView& view, const Vec2& jitter) {
     return jittered;
 }
 
+RenderView with_lens_sample(const RenderView& view, const Vec2& point) {
+    const Vec2 offset = view.lens.aperture_radius * point;
+    RenderView sampled = view;
+    sampled.lens.aperture_radius = 0;
+    for (Vec4& row : sampled.world_from_camera.row) {
+        row.w += offset.x * row.x + offset.y * row.y;
+    }
+    // The eye that moves by `offset` sees all move back by it, the more the nearer; the picture
+    // that moves on by as much as the focus did puts that back in its place.
+    const Vec2 moved = offset / view.tangent;
+    sampled.steady_from_world[3] -= Vec4(moved, 0, 0);
+    sampled.previous_from_world[3] -= Vec4(moved, 0, 0);
+    const Vec2 half = 0.5f * Vec2(view.width, view.height);
+    return with_jitter(sampled, view.jitter + half * moved / view.lens.focus_distance);
+}
+
+Vec2 widest_tangent(const RenderView& view) {
+    const Vec2 moved = glm::max(glm::abs(view.jitter) - 0.5f, Vec2(0));
+    return view.tangent * (1.0f + 2.0f * moved / Vec2(view.width, view.height));
+}
+
+namespace {
+
+LensView lens_view_of(const World& world, Entity camera) {
+    const auto* lens = world.find<Lens>(camera);
+    if (lens == nullptr) {
+        return {};
+    }
+    const Result<LensView> made = make_lens_view(*lens, world.get<Camera>(camera));
+    if (!made) {
+        static std::atomic<bool> told = false;
+        if (!told.exchange(true)) {
+            log_warn("{}; the camera is a pinhole", made.error().message);
+        }
+        return {};
+    }
+    return *made;
+}
+
+}  // namespace
+
 RenderView make_render_view(const World& world, Entity camera, const ViewRequest& request) {
     const Affine& current = world.get<WorldTransform>(camera).world;
     const auto* previous = world.find<PreviousWorldTransform>(camera);
-    return make_render_view(
+    RenderView view = make_render_view(
         world.get<Camera>(camera),
         current,
         previous != nullptr ? previous->world : current,
         request);
+    view.lens = lens_view_of(world, camera);
+    return view;
 }
 
 std::optional<Entity> find_camera(const World& world, std::string_view name) {

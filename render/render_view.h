@@ -4,6 +4,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
+#include "render/thin_lens.h"
 
 #include <optional>
 #include <string_view>
@@ -34,6 +35,7 @@ struct RenderView {
     Vec2 jitter = {0, 0};            ///< by which the picture is moved right and up [px]
     float alpha = 1.0f;              ///< moment shown, 0 .. 1
     float alpha_before = 0.0f;       ///< moment motion is measured from, <= alpha
+    LensView lens;                   ///< what is in front of the camera; at first a pinhole
     Entity hidden;                   ///< not shown, nor what is below it; null: all is shown
 };
 
@@ -56,7 +58,17 @@ struct ViewRequest {
 /// The same view with its picture moved by `jitter` [px] instead.
 [[nodiscard]] RenderView with_jitter(const RenderView& view, const Vec2& jitter);
 
-/// From an entity with Camera and WorldTransform.
+/// The same view through one point of its lens instead of all, a pinhole again: the eye stands on
+/// the aperture at radius * `point` (see point_on_aperture), and what is at the distance of focus
+/// stays where it was in the picture. The mean over the aperture is what the lens shows. Jitter
+/// goes first: with_lens_sample(with_jitter(view, jitter), point).
+[[nodiscard]] RenderView with_lens_sample(const RenderView& view, const Vec2& point);
+
+/// Tangents that hold all of the picture, however far a jitter of more than half a pixel moved it.
+[[nodiscard]] Vec2 widest_tangent(const RenderView& view);
+
+/// From an entity with Camera and WorldTransform, and with what a Lens beside them asks for; one
+/// that is none is told of once, and is a pinhole.
 [[nodiscard]] RenderView
 make_render_view(const World& world, Entity camera, const ViewRequest& request = {});
 

@@ -2,6 +2,7 @@
 
 #include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
@@ -48,6 +49,8 @@ void register_all_components() {
     register_component<EnvProbe>();
     register_component<EnvProbeState>();
     register_component<Camera>();
+    register_component<Lens>();
+    register_component<Autofocus>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();

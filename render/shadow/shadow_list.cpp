@@ -45,7 +45,8 @@ float near_of(const Shadow& shadow) {
 /// What the light can reach of what the camera sees; none if that is nothing.
 std::optional<ViewSlice>
 slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
-    ViewSlice slice = {view.near, distance, -view.tangent, view.tangent};
+    const Vec2 widest = widest_tangent(view);
+    ViewSlice slice = {view.near, distance, -widest, widest};
     if (light.kind == LightKind::Directional) {
         return slice;
     }
@@ -59,13 +60,15 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     if (is_empty(bounds)) {
         return std::nullopt;
     }
-    const auto slope = [](int pixel, int size, float tangent) {
-        return (2 * static_cast<float>(pixel) / static_cast<float>(size) - 1) * tangent;
+    const auto slope = [](int pixel, float jitter, int size, float tangent) {
+        const float steady = static_cast<float>(pixel) - jitter;
+        return (2 * steady / static_cast<float>(size) - 1) * tangent;
     };
-    slice.low.x = slope(bounds.x - 1, view.width, view.tangent.x);
-    slice.low.y = slope(bounds.y - 1, view.height, view.tangent.y);
-    slice.high.x = slope(bounds.x + bounds.width + 1, view.width, view.tangent.x);
-    slice.high.y = slope(bounds.y + bounds.height + 1, view.height, view.tangent.y);
+    const Vec2 jitter = view.jitter;
+    slice.low.x = slope(bounds.x - 1, jitter.x, view.width, view.tangent.x);
+    slice.low.y = slope(bounds.y - 1, jitter.y, view.height, view.tangent.y);
+    slice.high.x = slope(bounds.x + bounds.width + 1, jitter.x, view.width, view.tangent.x);
+    slice.high.y = slope(bounds.y + bounds.height + 1, jitter.y, view.height, view.tangent.y);
     slice.near = view.near / std::min(bounds.depth_max, 1.0f);
     slice.far = bounds.depth_min > 0 ? double(view.near) / bounds.depth_min : double(distance);
     return slice;

@@ -99,7 +99,8 @@ ShadowView make_cascade_view(
     int resolution,
     int guard) {
     // The smallest ball about the slice of the pyramid: its middle lies on the axis.
-    const double t2 = glm::dot(camera.tangent, camera.tangent);
+    const Vec2 tangent = widest_tangent(camera);
+    const double t2 = glm::dot(tangent, tangent);
     const double along =
         std::min<double>(slice_far, 0.5 * (1 + t2) * (double(slice_near) + double(slice_far)));
     const double radius =

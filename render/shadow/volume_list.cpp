@@ -320,7 +320,7 @@ void VolumeCollector::add_caster(
     }
     const auto& camera = view.world_from_camera.row;
     const Vec3 eye = {camera[0].w, camera[1].w, camera[2].w};
-    const float to_corner = view.near * glm::length(Vec3(view.tangent, 1));
+    const float to_corner = view.near * glm::length(Vec3(widest_tangent(view), 1));
     const bool may_hold_eye = shade_may_hold(
         box, candidate.light, eye, 1.01f * to_corner + std::max(settings.cap_bias, 0.0f));
     const bool z_fail =
