@@ -12,6 +12,7 @@
 #include "render/environment_light.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
+#include "render/lens.h"
 #include "render/passes/aov_pass.h"
 #include "render/passes/blend_pass.h"
 #include "render/passes/cluster_pass.h"
@@ -82,6 +83,7 @@ struct Passes {
     ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
+    LensPasses lens;
     const gpu::Program* accumulate = nullptr;
 };
 
@@ -91,8 +93,13 @@ double shown_time(const World& world, const RenderView& view) {
     return time != nullptr ? time->time - (1.0 - view.alpha) * time->step : 0.0;
 }
 
+bool asks_for_velocity(const FrameRequest& request) {
+    return std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+}
+
 /// What a frame's passes made.
 struct FrameTextures {
+    Gbuffer gbuffer;
     TextureId radiance;
     TextureId display;
     std::vector<std::pair<int, TextureId>> aovs;
@@ -113,8 +120,8 @@ class Renderer {
     /// What lies where; `attributes`: also of what kind, which forward lighting has no need of.
     Gbuffer draw_surfaces(bool attributes, bool velocity);
     TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer);
-    /// From its radiance to the display; once a picture, as the eye adapts.
-    void develop_image(const World& world, TextureId radiance, FrameTextures& made);
+    /// From its radiance through the lens to the display; once a picture, as the eye adapts.
+    void develop_image(const World& world, const LensSettings& lens, FrameTextures& made);
     void finish(FrameGraph& drawn);
     FrameOutput output(const FrameTextures& textures) const;
     const gpu::Texture& accumulation(int width, int height);
@@ -423,7 +430,8 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
 
 FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
     FrameTextures made;
-    const Gbuffer gbuffer = draw_surfaces(!request.aovs.empty(), velocity);
+    made.gbuffer = draw_surfaces(!request.aovs.empty() || velocity, velocity);
+    const Gbuffer& gbuffer = made.gbuffer;
     made.radiance = draw_radiance(graph, gbuffer);
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
@@ -435,14 +443,15 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
             graph.keep(made.aovs.back().second);
         }
     }
-    graph.keep(made.radiance);
     return made;
 }
 
-void Renderer::develop_image(const World& world, TextureId radiance, FrameTextures& made) {
+void Renderer::develop_image(const World& world, const LensSettings& lens, FrameTextures& made) {
+    made.radiance = apply_lens(graph, passes.lens, lens, scene, made.gbuffer, made.radiance);
+    graph.keep(made.radiance);
     const std::optional<float> seconds = seconds_since_last(
         clock_, assets_, shown_time(world, scene.view), scene.view.world_from_camera);
-    made.display = develop(graph, passes.developer, exposure_of(world), seconds, radiance);
+    made.display = develop(graph, passes.developer, exposure_of(world), seconds, made.radiance);
     graph.keep(made.display);
 }
 
@@ -543,19 +552,20 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(probes),
         *std::move(shadows),
         *std::move(volumes),
+        LensPasses(device),
         *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }
 
 FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
-    const bool velocity =
-        std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+    const LensSettings lens = lens_settings(world, view);
+    const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
     renderer.draw_probes(world, view);
     renderer.graph.begin_frame();
     renderer.prepare(world, view, velocity);
     FrameTextures textures = renderer.draw_image(request, velocity);
-    renderer.develop_image(world, textures.radiance, textures);
+    renderer.develop_image(world, lens, textures);
     renderer.finish(renderer.graph);
     return renderer.output(textures);
 }
@@ -593,17 +603,15 @@ FrameOutput render_accumulated(
 
     // Once more from the middle of the pixels, for what is no mean; then the mean takes the image's
     // place.
-    FrameOutput out;
     graph.begin_frame();
-    const bool velocity =
-        std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
+    const LensSettings lens = lens_of_mean(lens_settings(world, view));
+    const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
     renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
     FrameTextures textures = renderer.draw_image(request, velocity);
-    renderer.develop_image(world, graph.import("accumulation", sum), textures);
+    textures.radiance = graph.import("accumulation", sum);
+    renderer.develop_image(world, lens, textures);
     renderer.finish(graph);
-    out = renderer.output(textures);
-    out.radiance = &sum;
-    return out;
+    return renderer.output(textures);
 }
 
 const std::vector<std::string_view>& aov_names() {

@@ -113,6 +113,28 @@ Status set_in_entities(
     return Done{};
 }
 
+/// Makes the resource, with its defaults but for that field, if the scene has none.
+Status set_in_resource(
+    World& world,
+    const ComponentInfo& info,
+    std::string_view field_path,
+    const JsonValue& value,
+    const JsonPlace& place) {
+    const FindNames names = find_names_in(world);
+    if (void* const object = world.find_resource(info.id)) {
+        return set_field(info, object, field_path, value, place, names);
+    }
+    AnyComponent fresh(info);
+    const Status status = set_field(info, fresh.data(), field_path, value, place, names);
+    if (status) {
+        void* const made = world.insert_default_resource(info.id);
+        for (const FieldInfo& field : info.fields) {
+            copy_field(field, field_ptr(made, field), field_ptr(fresh.data(), field));
+        }
+    }
+    return status;
+}
+
 Status set_in_material(
     World& world, std::string_view rest, const JsonValue& value, const JsonPlace& place) {
     Assets* const assets = world.find_resource<Assets>();
@@ -193,12 +215,7 @@ Status set_value(World& world, std::string_view path, std::string_view value) {
     }
     const ComponentInfo* const resource = find_resource(first);
     if (resource != nullptr && find_entities(world, first).empty()) {
-        void* const object = world.find_resource(resource->id);
-        if (object == nullptr) {
-            return fail("{}: found no {} in this scene, expected one", name, resource->name);
-        }
-        return set_field(
-            *resource, object, path.substr(dot + 1), json, place, find_names_in(world));
+        return set_in_resource(world, *resource, path.substr(dot + 1), json, place);
     }
     return set_in_named(world, path, json, place);
 }

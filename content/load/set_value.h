@@ -11,9 +11,9 @@ class World;
 
 /// `--set path=value`: changes one field of a loaded scene.
 ///
-///     lamp.point_light.intensity = 20     entity, component, field; further dots for fields of
-///     structs exposure.ev = -1                    resource, field materials.gold.roughness = 0.4
-///     a material by name
+///     lamp.point_light.intensity = 20  entity, component, field; further dots for fields of
+///     structs exposure.ev = -1                 resource, field; made if the scene has none
+///     materials.gold.roughness = 0.4   a material by name
 ///
 /// `value` is JSON as a level has it; what is no JSON is taken as a string, so that words and
 /// colors need no quotes: `materials.gold.base_color = #ffcc80`. All entities of that name are

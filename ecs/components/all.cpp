@@ -6,6 +6,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/glow.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
@@ -62,6 +63,7 @@ void register_all_components() {
     register_resource<Environment>();
     register_resource<Rendering>();
     register_resource<Exposure>();
+    register_resource<Glow>();
 }
 
 }  // namespace limn

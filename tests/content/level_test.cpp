@@ -568,6 +568,14 @@ TEST_CASE("set: one field of an entity, a resource or a material changes") {
     CHECK(named<CameraPath>(world, "eye").keys.size() == 1);
 }
 
+TEST_CASE("set: a resource that the scene lacks is made, with its defaults otherwise") {
+    World world;
+    spawn_into(world, R"({"entities": []})");
+    CHECK(set_value(world, "exposure.ev", "-2").ok());
+    REQUIRE(world.find_resource<Exposure>() != nullptr);
+    CHECK(world.resource<Exposure>() == Exposure{.ev = -2});
+}
+
 TEST_CASE("set: what cannot be set is named, and nothing changes") {
     World world;
     spawn_into(
@@ -586,7 +594,8 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
         {"materials.gold.rough", "1"},
         {"materials.silver.roughness", "1"},
         {"materials.gold", "1"},
-        {"exposure.ev", "1"}};
+        {"exposure.ev", "100"},
+        {"exposure.evv", "1"}};
     for (const std::pair<const char*, const char*>& assignment : bad) {
         CAPTURE(assignment.first);
         const Status status = set_value(world, assignment.first, assignment.second);
@@ -595,6 +604,7 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
         CHECK(status.error().message.find('\n') == std::string::npos);
     }
     CHECK(named<PointLight>(world, "lamp").intensity == PointLight{}.intensity);
+    CHECK(world.find_resource<Exposure>() == nullptr);
     CHECK(set_value(world, "lmap.point_light.intensity", "1")
               .error()
               .message.ends_with("(did you mean lamp?)"));

@@ -1,0 +1,56 @@
+#include "render/lens.h"
+
+#include "ecs/base/log.h"
+#include "ecs/world.h"
+#include "render/frame_scene.h"
+
+#include <utility>
+
+namespace limn {
+
+template <typename Pass>
+Pass* OptionalPass<Pass>::get(gpu::Device& device, Result<Pass> (*create)(gpu::Device&)) {
+    if (!pass_ && !failed_) {
+        Result<Pass> made = create(device);
+        if (made) {
+            pass_ = *std::move(made);
+        } else {
+            failed_ = true;
+            log_error("{}", made.error().message);
+        }
+    }
+    return pass_ ? &*pass_ : nullptr;
+}
+
+LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
+    LensSettings settings;
+    if (const auto* glow = world.find_resource<Glow>()) {
+        settings.glow = *glow;
+    }
+    return settings;
+}
+
+LensSettings lens_of_mean(const LensSettings& settings) {
+    return settings;
+}
+
+bool needs_velocity(const LensSettings& /*settings*/) {
+    return false;
+}
+
+TextureId apply_lens(
+    FrameGraph& graph,
+    LensPasses& passes,
+    const LensSettings& settings,
+    const FrameScene& /*scene*/,
+    const Gbuffer& /*gbuffer*/,
+    TextureId radiance) {
+    if (settings.glow.strength > 0) {
+        if (const GlowPass* pass = passes.glow.get(*passes.device, create_glow_pass)) {
+            radiance = draw_glow(graph, *pass, settings.glow, radiance);
+        }
+    }
+    return radiance;
+}
+
+}  // namespace limn

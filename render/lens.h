@@ -1,0 +1,68 @@
+#pragma once
+
+#include "ecs/components/glow.h"
+#include "render/gbuffer.h"
+#include "render/passes/glow_pass.h"
+
+#include <optional>
+
+namespace limn {
+
+class World;
+struct FrameScene;
+struct RenderView;
+
+namespace gpu {
+class Device;
+}
+
+// What happens to a picture's radiance in the lens and behind the shutter, before it is developed:
+//
+//     ripple -> motion blur -> depth of field -> glow
+//
+// Each is a pass of its own that a resource or component of the world asks for; what nobody asks
+// for adds no pass. Programs are compiled when they are first needed.
+
+/// What the world and the camera ask of the lens, at the moment that a view shows.
+struct LensSettings {
+    Glow glow{.strength = 0};
+};
+
+[[nodiscard]] LensSettings lens_settings(const World& world, const RenderView& view);
+
+/// For a picture that is the mean of many, which sampled what the lens would else be made to do.
+[[nodiscard]] LensSettings lens_of_mean(const LensSettings& settings);
+
+/// Whether some effect wants to know what moves.
+[[nodiscard]] bool needs_velocity(const LensSettings& settings);
+
+/// A pass that is made when it is first needed. If that fails, it is logged once and there is none.
+template <typename Pass>
+class OptionalPass {
+  public:
+    /// Null if it cannot be made.
+    [[nodiscard]] Pass* get(gpu::Device& device, Result<Pass> (*create)(gpu::Device&));
+
+  private:
+    std::optional<Pass> pass_;
+    bool failed_ = false;
+};
+
+struct LensPasses {
+    explicit LensPasses(gpu::Device& its_device) : device(&its_device) {}
+
+    gpu::Device* device;
+    OptionalPass<GlowPass> glow;
+};
+
+/// Adds the passes to this frame; returns the radiance that reaches the film, or `radiance` itself
+/// if nothing is to be done. What is drawn into is always a texture of its own.
+[[nodiscard]] TextureId apply_lens(
+    FrameGraph& graph,
+    LensPasses& passes,
+    const LensSettings& settings,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
+    TextureId radiance);
+
+}  // namespace limn
