@@ -2,6 +2,7 @@
 
 #include "ecs/components/input.h"
 #include "ecs/components/time.h"
+#include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/orbit_camera_system.h"
@@ -25,6 +26,7 @@ Schedule make_world_schedule() {
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
     schedule.add<update_env_probes>();  // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
+    schedule.add<update_autofocus>();      // after all cameras stand where they are seen from
     return schedule;
 }
 
@@ -49,6 +51,7 @@ void start_world(World& world) {
     world.run(add_env_probe_states);
     world.run(update_env_probes);
     world.run(update_orbit_cameras);
+    world.run(update_autofocus);
 }
 
 void step_world(World& world, Schedule& schedule) {

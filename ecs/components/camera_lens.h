@@ -27,7 +27,7 @@ struct Lens {
 
 /// Keeps the Lens beside it focused on an entity.
 struct Autofocus {
-    Entity target;            ///< null or gone: the focus stays where it is
+    Entity target{};          ///< null or gone: the focus stays where it is
     Vec3 offset = {0, 0, 0};  ///< of the point that is to be sharp, in the target's space [m]
     float response = 0.2f;    ///< time in which 63 % of the way is gone [s], >= 0; 0 = at once
 };
