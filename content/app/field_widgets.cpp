@@ -1,6 +1,7 @@
 #include "content/app/field_widgets.h"
 
 #include "content/app/hud_style.h"
+#include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/camera.h"
@@ -202,23 +203,17 @@ bool edit_enum(const FieldInfo& field, void* element) {
 }
 
 const std::string* asset_name(const Assets& assets, std::string_view kind, std::uint32_t index) {
-    if (kind == "mesh" && index < assets.meshes.size()) {
-        return &assets.meshes[index].name;
-    }
-    if (kind == "material" && index < assets.materials.size()) {
-        return &assets.materials[index].name;
-    }
-    if (kind == "image" && index < assets.images.size()) {
-        return &assets.images[index].name;
-    }
-    return nullptr;
+    const std::string* name = nullptr;
+    visit_asset_list(assets, kind, [&](const auto& list) {
+        name = index < list.size() ? &list[index].name : nullptr;
+    });
+    return name;
 }
 
 std::size_t asset_count(const Assets& assets, std::string_view kind) {
-    if (kind == "mesh") {
-        return assets.meshes.size();
-    }
-    return kind == "material" ? assets.materials.size() : assets.images.size();
+    std::size_t count = 0;
+    visit_asset_list(assets, kind, [&](const auto& list) { count = list.size(); });
+    return count;
 }
 
 void format_asset(

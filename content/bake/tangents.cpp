@@ -95,6 +95,26 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
     append(mesh.uvs1);
     append(mesh.colors);
     append(mesh.positions);  // last: its size is what the others are compared with
+    if (SkinWeights& skin = mesh.skin; !skin.empty()) {
+        for (std::uint32_t i = skin.first[v], end = skin.first[v + 1]; i < end; ++i) {
+            skin.joints.push_back(std::uint16_t{skin.joints[i]});
+            skin.weights.push_back(float{skin.weights[i]});
+        }
+        skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
+    }
+    for (MorphTarget& morph : mesh.morphs) {
+        const auto found = std::lower_bound(morph.vertices.begin(), morph.vertices.end(), v);
+        if (found != morph.vertices.end() && *found == v) {
+            const auto place = static_cast<std::size_t>(found - morph.vertices.begin());
+            for (std::vector<Vec3>* const values :
+                 {&morph.positions, &morph.normals, &morph.tangents}) {
+                if (!values->empty()) {
+                    values->push_back(Vec3((*values)[place]));
+                }
+            }
+            morph.vertices.push_back(copy);  // the largest yet
+        }
+    }
     return copy;
 }
 
@@ -217,6 +237,79 @@ find_triangle_frames(const MeshData& mesh, const std::vector<Vec2>& uvs) {
     return frames;
 }
 
+/// What triangle `t` adds to the normals of its corners.
+void add_face(
+    const std::vector<Vec3>& positions, const std::uint32_t* v, DVec3 (&shares)[3], double sign) {
+    const DVec3 p[3] = {DVec3(positions[v[0]]), DVec3(positions[v[1]]), DVec3(positions[v[2]])};
+    const DVec3 normal = direction(glm::cross(p[1] - p[0], p[2] - p[0]));
+    for (int k = 0; k < 3; ++k) {
+        shares[k] += sign * corner_angle(p, k) * normal;
+    }
+}
+
+/// Vertices of equal position and normal, numbered: their faces are smoothed together.
+struct SmoothGroups {
+    std::vector<std::uint32_t> group_of;
+    std::vector<DVec3> sums;  ///< of the faces around each
+
+    explicit SmoothGroups(const MeshData& mesh) {
+        Welder<6> welder(mesh.positions.size());
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            const Vec3& p = mesh.positions[v];
+            const Vec3& n = mesh.normals[v];
+            group_of.push_back(welder.number({p.x, p.y, p.z, n.x, n.y, n.z}));
+        }
+        sums.assign(welder.size(), DVec3(0));
+        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+            DVec3 shares[3] = {DVec3(0), DVec3(0), DVec3(0)};
+            add_face(mesh.positions, &mesh.indices[i], shares, 1.0);
+            for (std::size_t k = 0; k < 3; ++k) {
+                sums[group_of[mesh.indices[i + k]]] += shares[k];
+            }
+        }
+    }
+};
+
+void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothGroups& groups) {
+    std::vector<Vec3> moved = mesh.positions;
+    std::vector<bool> moves(moved.size(), false);
+    for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
+        moved[morph.vertices[i]] += morph.positions[i];
+        moves[morph.vertices[i]] = true;
+    }
+    std::vector<DVec3> sums = groups.sums;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const std::uint32_t* v = &mesh.indices[i];
+        if (moves[v[0]] || moves[v[1]] || moves[v[2]]) {
+            DVec3 shares[3] = {DVec3(0), DVec3(0), DVec3(0)};
+            add_face(moved, v, shares, 1.0);
+            add_face(mesh.positions, v, shares, -1.0);
+            for (std::size_t k = 0; k < 3; ++k) {
+                sums[groups.group_of[v[k]]] += shares[k];
+            }
+        }
+    }
+    constexpr float kLeastTurn = 1e-6f;  // rounding of the sums stays below
+    MorphTarget result;
+    result.name = std::move(morph.name);
+    for (std::uint32_t v = 0; v < moved.size(); ++v) {
+        const std::uint32_t group = groups.group_of[v];
+        const Vec3 turn(direction(sums[group]) - direction(groups.sums[group]));
+        if (moves[v] || glm::length(turn) > kLeastTurn) {
+            result.vertices.push_back(v);
+            result.normals.push_back(turn);
+            result.positions.emplace_back(0);
+        }
+    }
+    for (std::size_t i = 0, at = 0; i < morph.vertices.size(); ++i) {
+        while (result.vertices[at] != morph.vertices[i]) {
+            ++at;
+        }
+        result.positions[at] = morph.positions[i];  // exactly as they were
+    }
+    morph = std::move(result);
+}
+
 }  // namespace
 
 TriangleFrame triangle_frame(const Vec3 (&p)[3], const Vec2 (&uv)[3]) {
@@ -316,6 +409,36 @@ void generate_tangents(MeshData& mesh, int uv_set) {
             Vec3(direction(sum - DVec3(n) * glm::dot(DVec3(n), sum))), any_perpendicular(n));
         const bool left = glm::dot(DVec3(glm::cross(n, tangent)), bitangent_sum[group_of[v]]) < 0;
         mesh.tangents.emplace_back(tangent, left ? -1.0f : 1.0f);
+    }
+}
+
+void generate_morph_normals(MeshData& mesh) {
+    LIMN_CHECK(mesh.normals.size() == mesh.positions.size());
+    if (mesh.morphs.empty()) {
+        return;
+    }
+    const SmoothGroups groups(mesh);
+    for (MorphTarget& morph : mesh.morphs) {
+        if (morph.normals.empty()) {
+            generate_normals_of(morph, mesh, groups);
+        }
+    }
+}
+
+void generate_morph_tangents(MeshData& mesh) {
+    LIMN_CHECK(mesh.tangents.size() == mesh.positions.size());
+    for (MorphTarget& morph : mesh.morphs) {
+        if (morph.normals.empty() || !morph.tangents.empty()) {
+            continue;
+        }
+        for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
+            const std::uint32_t v = morph.vertices[i];
+            const Vec3 tangent(mesh.tangents[v]);
+            const Vec3 normal = normalize_or(mesh.normals[v] + morph.normals[i], mesh.normals[v]);
+            const Vec3 turned = normalize_or(
+                tangent - normal * glm::dot(normal, tangent), any_perpendicular(normal));
+            morph.tangents.push_back(turned - tangent);
+        }
     }
 }
 

@@ -33,13 +33,23 @@ struct TriangleFrame {
 /// Replaces the normals of `mesh`. Faces that meet in a point (equal positions, whatever their
 /// index) are smoothed together where they differ by at most `crease_angle` [rad]: 0 gives flat
 /// faces, pi one normal for each point. Vertices are split where faces stay apart. Degenerate
-/// triangles count nothing; vertices of no triangle get +y.
+/// triangles count nothing; vertices of no triangle get +y. What splits a vertex keeps its joints
+/// and morph targets.
 void generate_normals(MeshData& mesh, float crease_angle = kPi);
 
 /// Replaces the tangents of `mesh` by those of `uvs` (or `uvs1` for set 1), which must be there as
 /// well as normals. Splits vertices where mirrored and unmirrored triangles meet. A vertex without
 /// any triangle that has an area in uv gets some tangent perpendicular to its normal, w = 1.
 void generate_tangents(MeshData& mesh, int uv_set = 0);
+
+/// Gives normals to the morph targets that have none: the differences between the smooth normals of
+/// the mesh and of the mesh with the whole target. Vertices that share position and normal stay
+/// smooth. Vertices that only turn are added to the target.
+void generate_morph_normals(MeshData& mesh);
+
+/// Gives tangents to the morph targets that have normals but no tangents: with the whole target,
+/// tangents are perpendicular to the normals again.
+void generate_morph_tangents(MeshData& mesh);
 
 /// Makes `bounds` the box of the positions.
 void update_bounds(MeshData& mesh);

@@ -18,10 +18,13 @@ namespace {
 
 constexpr std::size_t kMostJoints = std::numeric_limits<std::uint16_t>::max();
 
-/// What a channel moves, in the order of kPaths.
-enum class Path : std::uint8_t { Rotation, Translation, Scale };
+/// What a channel moves.
+enum class Path : std::uint8_t { Rotation, Translation, Scale, Weights };
 constexpr std::pair<std::string_view, Path> kPaths[] = {
-    {"rotation", Path::Rotation}, {"translation", Path::Translation}, {"scale", Path::Scale}};
+    {"rotation", Path::Rotation},
+    {"translation", Path::Translation},
+    {"scale", Path::Scale},
+    {"weights", Path::Weights}};
 
 constexpr std::pair<std::string_view, Interpolation> kInterpolations[] = {
     {"LINEAR", Interpolation::Linear},
@@ -36,10 +39,11 @@ std::size_t index_in(const JsonValue& number) {
     return static_cast<std::size_t>(number.number);
 }
 
-/// One joint's keys of one kind.
+/// One joint's keys of one kind, or those of a node's morph weights.
 struct Channel {
     Path path = Path::Rotation;
-    std::uint16_t joint = 0;
+    std::uint16_t subject = 0;  ///< the joint; the first of the weights
+    std::size_t count = 1;      ///< of weights, as many a row
     std::vector<float> values;  ///< of the sampler's output
 };
 
@@ -49,6 +53,11 @@ struct ChannelGroup {
     Interpolation interpolation = Interpolation::Linear;
     std::vector<Channel> channels;
 };
+
+/// Rows of its sheet; cubic keys have three.
+std::size_t height_of(const ChannelGroup& group) {
+    return group.times.size() * (group.interpolation == Interpolation::Cubic ? 3 : 1);
+}
 
 /// The keys of all channels of one kind as rows, a value a joint; cubic keys are three rows.
 template <typename T>
@@ -62,16 +71,34 @@ void fill_rows(
     for (const Channel& channel : group.channels) {
         if (channel.path == path) {
             chosen.push_back(&channel);
-            joints.push_back(channel.joint);
+            joints.push_back(channel.subject);
         }
     }
     constexpr std::size_t kWidth = static_cast<std::size_t>(T::length());
-    const std::size_t height =
-        group.times.size() * (group.interpolation == Interpolation::Cubic ? 3 : 1);
+    const std::size_t height = height_of(group);
     rows.reserve(height * chosen.size());
     for (std::size_t row = 0; row < height; ++row) {
         for (const Channel* channel : chosen) {
             rows.push_back(value_of(channel->values.data() + kWidth * row));
+        }
+    }
+}
+
+/// As above; a channel has several neighboring weights.
+void fill_weights(const ChannelGroup& group, ClipSheet& sheet) {
+    for (const Channel& channel : group.channels) {
+        for (std::size_t i = 0; channel.path == Path::Weights && i < channel.count; ++i) {
+            sheet.morphing.push_back(static_cast<std::uint16_t>(channel.subject + i));
+        }
+    }
+    for (std::size_t row = 0; row < height_of(group); ++row) {
+        for (const Channel& channel : group.channels) {
+            if (channel.path == Path::Weights) {
+                const auto first =
+                    channel.values.begin() + static_cast<std::ptrdiff_t>(row * channel.count);
+                sheet.weights.insert(
+                    sheet.weights.end(), first, first + static_cast<std::ptrdiff_t>(channel.count));
+            }
         }
     }
 }
@@ -141,7 +168,9 @@ class AnimationBuilder {
             }
         }
         each_channel([&](const JsonValue& channel) {
-            const JsonValue* node = member(channel, "target").find("node");
+            const JsonValue& target = member(channel, "target");
+            const JsonValue* node =
+                member(target, "path").text == "weights" ? nullptr : target.find("node");
             const std::int32_t found = node != nullptr ? scene_node(index_in(*node)) : -1;
             if (found >= 0) {
                 moves[static_cast<std::size_t>(found)] = true;
@@ -276,7 +305,9 @@ class AnimationBuilder {
                 clip.sheets.push_back(make_sheet(group));
                 clip.duration = std::max(clip.duration, group.times.back());
             }
-            if (Status status = check_clip(clip, scene_.skeleton.joints.size(), 0); !status) {
+            if (Status status =
+                    check_clip(clip, scene_.skeleton.joints.size(), scene_.morph_weights.size());
+                !status) {
                 return fail("{}: {}", place_, status.error().message);
             }
             scene_.clips.push_back(std::move(clip));
@@ -307,15 +338,22 @@ class AnimationBuilder {
                 std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
                     return known.first == name;
                 });
-            if (path == std::end(kPaths)) {
+            const bool is_weights = path != std::end(kPaths) && path->second == Path::Weights;
+            const GltfMorphs& morphs = document_.node_morphs[index_in(*node)];
+            if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
                 document_.warnings.push_back(fmt::format(
                     "{}.channels[{}].target.path: {} is left out", place_, i, in_quotes(name)));
                 continue;
             }
             const std::string place = fmt::format("{}.samplers[{}]", place_, sampler);
-            if (Status status = read_sampler(
-                    samplers[sampler], place, {path->second, joint_of(index_in(*node)), {}});
-                !status) {
+            Channel moved{path->second, 0, 1, {}};
+            if (is_weights) {
+                moved.subject = static_cast<std::uint16_t>(morphs.first);
+                moved.count = morphs.count;
+            } else {
+                moved.subject = joint_of(index_in(*node));
+            }
+            if (Status status = read_sampler(samplers[sampler], place, std::move(moved)); !status) {
                 return status;
             }
         }
@@ -339,23 +377,26 @@ class AnimationBuilder {
             group.times = std::move(*times);
             group.interpolation = interpolation;
         }
-        const int width = channel.path == Path::Rotation ? 4 : 3;
+        const int width = channel.path == Path::Weights    ? 1
+                          : channel.path == Path::Rotation ? 4
+                                                           : 3;
         const auto output = static_cast<int>(index_in(member(sampler, "output")));
         Result<std::vector<float>> values =
             read_floats(document_, output, width, place + ".output");
         if (!values) {
             return values.error();
         }
-        const std::size_t expected =
-            group.times.size() * (interpolation == Interpolation::Cubic ? 3 : 1);
+        const std::size_t expected = height_of(group) * channel.count;
         const std::size_t found = values->size() / static_cast<std::size_t>(width);
         if (found != expected) {
             return fail(
-                "{}.output: found {} values, expected {} for {} keys{}",
+                "{}.output: found {} values, expected {} for {} keys{}{}",
                 place,
                 found,
                 expected,
                 group.times.size(),
+                channel.path == Path::Weights ? fmt::format(" of {} morph targets", channel.count)
+                                              : "",
                 interpolation == Interpolation::Cubic ? ", with a slope on both sides of each"
                                                       : "");
         }
@@ -371,6 +412,7 @@ class AnimationBuilder {
         fill_rows(group, Path::Rotation, sheet.rotating, sheet.rotations, quaternion_of);
         fill_rows(group, Path::Translation, sheet.translating, sheet.translations, vector_of);
         fill_rows(group, Path::Scale, sheet.scaling, sheet.scales, vector_of);
+        fill_weights(group, sheet);
         make_unit_and_near(sheet);
         return sheet;
     }

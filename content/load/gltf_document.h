@@ -10,6 +10,12 @@
 
 namespace limn {
 
+/// Weights of the morph targets of one node: places in GltfScene::morph_weights.
+struct GltfMorphs {
+    std::int32_t first = -1;
+    std::size_t count = 0;
+};
+
 /// A glTF file on its way into a GltfScene. Everything the model says has the right type, and every
 /// index in it is in range (gltf_schema.h); every buffer view lies within its buffer.
 struct GltfDocument {
@@ -21,7 +27,8 @@ struct GltfDocument {
     std::vector<std::vector<std::byte>> buffers;  ///< by the index of the file
     std::uint64_t values_left = 0;                ///< of limits.max_values
     std::vector<std::int32_t>
-        scene_nodes;  ///< node of the file -> of the scene, -1; by build_nodes
+        scene_nodes;                      ///< node of the file -> of the scene, -1; by build_nodes
+    std::vector<GltfMorphs> node_morphs;  ///< of each node of the file; by build_nodes
     std::vector<std::string> warnings;
 };
 

@@ -3,6 +3,7 @@
 #include "content/load/atomic_file.h"
 #include "content/load/gltf_animation.h"
 #include "content/load/gltf_document.h"
+#include "content/load/gltf_extras.h"
 #include "content/load/gltf_material.h"
 #include "content/load/gltf_mesh.h"
 #include "content/load/gltf_node.h"
@@ -68,6 +69,9 @@ Result<GltfScene> parse(
         return status.error();
     }
     if (Status status = build_animations(*document, scene); !status) {
+        return status.error();
+    }
+    if (Status status = read_extras(*document, scene); !status) {
         return status.error();
     }
     scene.warnings = std::move(document->warnings);

@@ -18,10 +18,10 @@ namespace limn {
 // Understood: nodes, meshes of all index types as triangles, strips and fans, vertex colors, two uv
 // sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective
 // cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
-// KHR_mesh_quantization, KHR_texture_transform, skeletons, skins and clips, and our components in
-// extras.limn of a node. Left out, with a warning: points and lines, orthographic cameras, textures
-// without an image we can read, animated weights. Skinned meshes stand in their bind pose; morph
-// targets are not read.
+// KHR_mesh_quantization, KHR_texture_transform, skeletons, skins of any number of joints a vertex,
+// morph targets, clips of all of them, and our components in extras.limn of a node. Left out, with
+// a warning: points and lines, orthographic cameras, textures without an image we can read, morph
+// targets of texture coordinates and colors.
 //
 // Missing normals are made with a crease angle of 50 degrees instead of flat, as the specification
 // has it: models without normals are mostly organic scans and low-poly animals, which gain, and
@@ -29,7 +29,8 @@ namespace limn {
 //
 // The way of a file: gltf_file.h (container and URIs) -> gltf_schema.h (every value has the right
 // type and every index a target) -> tinygltf (structs; it never sees a URI or an image) ->
-// gltf_accessor.h, gltf_mesh.h, gltf_material.h, gltf_node.h, gltf_animation.h -> GltfScene.
+// gltf_accessor.h, gltf_material.h, gltf_mesh.h, gltf_deform.h, gltf_node.h, gltf_animation.h,
+// gltf_extras.h -> GltfScene.
 
 /// What a file may cost.
 struct GltfLimits {

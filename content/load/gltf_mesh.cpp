@@ -2,6 +2,7 @@
 
 #include "content/bake/tangents.h"
 #include "content/load/gltf_accessor.h"
+#include "content/load/gltf_deform.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -41,10 +42,37 @@ std::vector<std::uint32_t> make_triangles(const std::vector<std::uint32_t>& list
     return triangles;
 }
 
+/// extras.targetNames of the mesh, as most exporters write them.
+std::vector<std::string> morph_names(const GltfDocument& document, std::size_t mesh) {
+    std::vector<std::string> names;
+    const JsonValue* extras = json_item(document, "meshes", mesh).find("extras");
+    const JsonValue* list = extras != nullptr ? extras->find("targetNames") : nullptr;
+    if (list != nullptr && list->kind == JsonKind::Array) {
+        for (const JsonValue& name : list->items) {
+            names.push_back(name.text);
+        }
+    }
+    return names;
+}
+
+/// The joints that every skin has with which a node draws the mesh; 0: it is drawn without.
+std::size_t common_joints(const tinygltf::Model& model, std::size_t mesh) {
+    std::size_t count = 0;
+    for (const tinygltf::Node& node : model.nodes) {
+        if (node.mesh == static_cast<int>(mesh) && node.skin >= 0) {
+            const std::size_t joints =
+                model.skins[static_cast<std::size_t>(node.skin)].joints.size();
+            count = count == 0 ? joints : std::min(count, joints);
+        }
+    }
+    return count;
+}
+
 class MeshBuilder {
   public:
     MeshBuilder(GltfDocument& document, std::size_t mesh, std::size_t primitive)
-        : document_(document), source_(document.model.meshes[mesh].primitives[primitive]),
+        : document_(document), mesh_(mesh),
+          source_(document.model.meshes[mesh].primitives[primitive]),
           place_(fmt::format("{}: meshes[{}].primitives[{}]", document.file, mesh, primitive)) {
         result_.name = document.model.meshes[mesh].name;
         if (document.model.meshes[mesh].primitives.size() > 1 && !result_.name.empty()) {
@@ -62,7 +90,8 @@ class MeshBuilder {
         for (const auto step :
              {&MeshBuilder::read_positions,
               &MeshBuilder::read_triangles,
-              &MeshBuilder::read_attributes}) {
+              &MeshBuilder::read_attributes,
+              &MeshBuilder::read_deformations}) {
             if (Status status = (this->*step)(); !status) {
                 return status.error();
             }
@@ -212,6 +241,24 @@ class MeshBuilder {
         return Done{};
     }
 
+    Status read_deformations() {
+        const GltfVertices vertices{source_, place_, positions_.size(), used_};
+        if (const std::size_t joints = common_joints(document_.model, mesh_); joints > 0) {
+            Result<SkinWeights> skin = read_skin_weights(document_, vertices, joints);
+            if (!skin) {
+                return skin.error();
+            }
+            result_.skin = std::move(*skin);
+        }
+        Result<std::vector<MorphTarget>> morphs =
+            read_morph_targets(document_, vertices, morph_names(document_, mesh_));
+        if (!morphs) {
+            return morphs.error();
+        }
+        result_.morphs = std::move(*morphs);
+        return Done{};
+    }
+
     /// The set of texture coordinates that the normal map uses, if the mesh has it.
     [[nodiscard]] int tangent_uv_set() const {
         const bool asks_for_second =
@@ -227,13 +274,21 @@ class MeshBuilder {
             result_.uvs.assign(result_.positions.size(), Vec2(0));
         }
         if (result_.normals.empty()) {
-            result_.tangents.clear();  // they would not fit the new normals
+            // What else there is would not fit the new normals.
+            result_.tangents.clear();
+            for (MorphTarget& morph : result_.morphs) {
+                morph.normals.clear();
+            }
             generate_normals(result_, kCreaseAngle);
+            generate_morph_normals(result_);
         }
         for (Vec3& normal : result_.normals) {
             normal = normalize_or(normal, Vec3(0, 1, 0));
         }
         if (result_.tangents.empty()) {
+            for (MorphTarget& morph : result_.morphs) {
+                morph.tangents.clear();
+            }
             generate_tangents(result_, tangent_uv_set());
         }
         for (std::size_t i = 0; i < result_.tangents.size(); ++i) {
@@ -242,10 +297,12 @@ class MeshBuilder {
                 normalize_or(Vec3(tangent), any_perpendicular(result_.normals[i]));
             tangent = Vec4(direction, tangent.w < 0 ? -1.0f : 1.0f);
         }
+        generate_morph_tangents(result_);
         update_bounds(result_);
     }
 
     GltfDocument& document_;
+    std::size_t mesh_;
     const tinygltf::Primitive& source_;
     std::string place_;
     std::vector<Vec3> positions_;      ///< all of the accessor

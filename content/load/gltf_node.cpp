@@ -1,7 +1,5 @@
 #include "content/load/gltf_node.h"
 
-#include "content/load/component_json.h"
-#include "content/load/gltf_accessor.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -10,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <unordered_map>
 
 namespace limn {
@@ -18,6 +16,8 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
+
+constexpr std::size_t kMostMorphs = std::numeric_limits<std::uint16_t>::max();
 
 /// A scale of 0, with which some files hide a node, has no inverse; this is as good as hidden.
 constexpr float kSmallestScale = 1e-6f;
@@ -73,15 +73,13 @@ class NodeBuilder {
         if (Status status = order_nodes(); !status) {
             return status;
         }
+        document_.node_morphs.assign(nodes_.size(), {});
         for (const std::uint32_t index : order_) {
             if (Status status = add_node(index); !status) {
                 return status;
             }
         }
         if (Status status = add_skinned_meshes(); !status) {
-            return status;
-        }
-        if (Status status = add_components(); !status) {
             return status;
         }
         document_.scene_nodes.assign(nodes_.size(), -1);
@@ -197,7 +195,9 @@ class NodeBuilder {
             return status;
         }
         if (source.mesh >= 0 && source.skin < 0) {
-            node.parts = parts_[static_cast<std::size_t>(source.mesh)];
+            if (Status status = add_parts(index, node); !status) {
+                return status;
+            }
         }
         read_camera(source, node);
         if (const auto light = source.extensions.find("KHR_lights_punctual");
@@ -305,195 +305,65 @@ class NodeBuilder {
         return light;
     }
 
-    /// World matrix of node `index` of the file; in double precision, since a skin multiplies it
-    /// with an inverse.
-    [[nodiscard]] glm::dmat4 world_matrix(std::uint32_t index) const {
-        glm::dmat4 world(1.0);
-        for (auto i = static_cast<std::int32_t>(index); i >= 0;
-             i = scene_.nodes[static_cast<std::size_t>(i)].parent) {
-            const Transform& t = scene_.nodes[static_cast<std::size_t>(i)].transform;
-            glm::dmat4 local(glm::mat3_cast(glm::dquat(t.rotation)));
-            for (int k = 0; k < 3; ++k) {
-                local[k] *= static_cast<double>(t.scale[k]);
-            }
-            local[3] = glm::dvec4(t.position, 1.0);
-            world = local * world;
-        }
-        return world;
-    }
-
+    /// Their joints put them where they are, not their nodes: they stand in nodes of their own.
     Status add_skinned_meshes() {
         for (const std::uint32_t index : order_) {
             const tinygltf::Node& source = nodes_[index];
             if (source.mesh < 0 || source.skin < 0) {
                 continue;
             }
-            Result<Transform> transform = find_bind_pose(source.skin);
-            if (!transform) {
-                return transform.error();
-            }
             GltfNode node;
             node.name = source.name.empty() ? "" : source.name + ".skin";
-            node.transform = *transform;
-            node.parts = parts_[static_cast<std::size_t>(source.mesh)];
             node.skin = source.skin;
+            if (Status status = add_parts(index, node); !status) {
+                return status;
+            }
             scene_.nodes.push_back(std::move(node));
         }
         return Done{};
     }
 
-    /// What the first joint does to its vertices in the pose of the file: in bind pose every joint
-    /// does the same.
-    Result<Transform> find_bind_pose(int skin_index) {
-        const tinygltf::Skin& skin = document_.model.skins[static_cast<std::size_t>(skin_index)];
-        const auto joint = number_.find(static_cast<std::uint32_t>(skin.joints[0]));
-        const std::string place = fmt::format("{}: skins[{}]", document_.file, skin_index);
-        if (joint == number_.end()) {
-            return fail(
-                "{}.joints: found node {}, which is not in the scene", place, skin.joints[0]);
-        }
-        glm::dmat4 inverse_bind(1.0);
-        if (skin.inverseBindMatrices >= 0) {
-            const Result<std::vector<float>> values = read_floats(
-                document_, skin.inverseBindMatrices, 16, place + ".inverseBindMatrices");
-            if (!values) {
-                return values.error();
-            }
-            for (int i = 0; i < 16; ++i) {
-                inverse_bind[i / 4][i % 4] =
-                    static_cast<double>((*values)[static_cast<std::size_t>(i)]);
-            }
-        }
-        const Mat4 matrix(world_matrix(joint->second) * inverse_bind);
-        for (int i = 0; i < 16; ++i) {
-            if (!(std::abs(matrix[i / 4][i % 4]) <= 1e9f)) {
-                return fail("{}.inverseBindMatrices: found a matrix that is too large", place);
-            }
-        }
-        bool sheared = false;
-        Transform transform = decompose(matrix, sheared);
-        avoid_zero_scale(transform);
-        return transform;
-    }
-
-    Status add_components() {
-        std::unordered_map<std::string_view, std::uint32_t> by_name;
-        for (std::uint32_t i = 0; i < scene_.nodes.size(); ++i) {
-            by_name.try_emplace(scene_.nodes[i].name, i);
-        }
-        by_name.erase("");
-        FindNames names;
-        names.entity = [&by_name](std::string_view name, SourcePosition) -> std::optional<Entity> {
-            const auto found = by_name.find(name);
-            return found == by_name.end() ? std::nullopt
-                                          : std::optional(gltf_node_entity(found->second));
-        };
-        names.asset = [this](std::string_view kind, std::string_view name) {
-            return find_asset(kind, name);
-        };
-        names.all = [this](std::string_view kind) { return all_names(kind); };
-        for (const std::uint32_t index : order_) {
-            const JsonValue& source = json_item(document_, "nodes", index);
-            const JsonValue* extras = source.find("extras");
-            const JsonValue* limn = extras != nullptr ? extras->find("limn") : nullptr;
-            if (limn != nullptr) {
-                if (Status status = read_components(*limn, index, names); !status) {
-                    return status;
-                }
-            }
-        }
-        return Done{};
-    }
-
-    /// An object with a member for each component; or that object as text, as Blender writes a
-    /// custom property that somebody typed.
-    Status read_components(const JsonValue& limn, std::uint32_t index, const FindNames& names) {
-        const std::string where = fmt::format("nodes[{}].extras.limn", index);
-        if (limn.kind == JsonKind::String) {
-            const Result<JsonValue> parsed =
-                parse_json(limn.text, fmt::format("{}: {}", document_.file, where));
-            if (!parsed) {
-                return parsed.error();
-            }
-            return read_component_object(*parsed, index, where, names);
-        }
-        return read_component_object(limn, index, where, names);
-    }
-
-    Status read_component_object(
-        const JsonValue& object,
-        std::uint32_t index,
-        const std::string& where,
-        const FindNames& names) {
-        if (object.kind != JsonKind::Object) {
-            return fail(
-                "{}: {}: found {}, expected an object with a member for each component",
-                document_.file,
-                where,
-                describe(object));
-        }
-        for (const JsonMember& member : object.members) {
-            const ComponentInfo* info = find_component(member.key);
-            if (info == nullptr) {
-                std::vector<std::string_view> known;
-                for (const ComponentInfo* other : all_components()) {
-                    known.push_back(other->name);
-                }
+    /// What draws the mesh of node `index`, and weights for its morph targets.
+    Status add_parts(std::uint32_t index, GltfNode& node) {
+        const tinygltf::Node& source = nodes_[index];
+        const auto mesh = static_cast<std::size_t>(source.mesh);
+        node.parts = parts_[mesh];
+        const std::size_t count =
+            node.parts.empty() ? 0 : scene_.meshes[node.parts[0].mesh].morphs.size();
+        for (const GltfPart& part : node.parts) {
+            if (const std::size_t own = scene_.meshes[part.mesh].morphs.size(); own != count) {
                 return fail(
-                    "{}: {}: found {}, expected the name of a component{}",
+                    "{}: meshes[{}].primitives: found {} and {} targets, expected as many in each",
                     document_.file,
-                    where,
-                    in_quotes(member.key),
-                    did_you_mean(member.key, known));
+                    mesh,
+                    count,
+                    own);
             }
-            Result<AnyComponent> component = read_component(
-                member.value, *info, {document_.file, where + "." + member.key}, names);
-            if (!component) {
-                return component.error();
-            }
-            scene_.nodes[number_.at(index)].components.push_back(std::move(*component));
+        }
+        if (count == 0) {
+            return Done{};
+        }
+        std::vector<float>& weights = scene_.morph_weights;
+        if (weights.size() + count > kMostMorphs) {
+            return fail(
+                "{}: found more than {} morph targets in all nodes", place(index), kMostMorphs);
+        }
+        const bool own = !source.weights.empty();
+        const std::vector<double>& values =
+            own ? source.weights : document_.model.meshes[mesh].weights;
+        if (!values.empty() && values.size() != count) {
+            return fail(
+                "{}.weights: found {}, expected one for each of {} targets",
+                own ? place(index) : fmt::format("{}: meshes[{}]", document_.file, mesh),
+                values.size(),
+                count);
+        }
+        node.first_morph = static_cast<std::int32_t>(weights.size());
+        document_.node_morphs[index] = {node.first_morph, count};
+        for (std::size_t i = 0; i < count; ++i) {
+            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i]));
         }
         return Done{};
-    }
-
-    /// Calls visit(names of the assets of that kind, in order).
-    template <typename Visit>
-    void visit_assets(std::string_view kind, Visit&& visit) const {
-        if (kind == "mesh") {
-            visit(scene_.meshes);
-        } else if (kind == "material") {
-            visit(scene_.materials);
-        } else if (kind == "image") {
-            visit(scene_.images);
-        }
-    }
-
-    [[nodiscard]] std::optional<std::uint32_t>
-    find_asset(std::string_view kind, std::string_view name) const {
-        std::optional<std::uint32_t> result;
-        visit_assets(kind, [&](const auto& assets) {
-            for (std::uint32_t i = 0; i < assets.size() && !result; ++i) {
-                if (assets[i].name == name) {
-                    result = i;
-                }
-            }
-        });
-        return result;
-    }
-
-    [[nodiscard]] std::vector<std::string_view> all_names(std::string_view kind) const {
-        std::vector<std::string_view> names;
-        visit_assets(kind, [&](const auto& assets) {
-            for (const auto& asset : assets) {
-                names.push_back(asset.name);
-            }
-        });
-        if (kind == "entity") {
-            for (const GltfNode& node : scene_.nodes) {
-                names.push_back(node.name);
-            }
-        }
-        return names;
     }
 
     GltfDocument& document_;

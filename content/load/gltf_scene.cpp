@@ -35,12 +35,50 @@ Bounds transform_bounds(const Affine& matrix, const Bounds& box) {
     return result;
 }
 
+std::vector<Affine> find_rest_joints(const SkeletonData& skeleton) {
+    std::vector<Affine> joints;
+    joints.reserve(skeleton.joints.size());
+    for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
+        const LocalPose& rest = skeleton.rest;
+        const Affine local = affine_from(rest.translations[i], rest.rotations[i], rest.scales[i]);
+        const std::int32_t parent = skeleton.parents[i];
+        joints.push_back(parent < 0 ? local : joints[static_cast<std::size_t>(parent)] * local);
+    }
+    return joints;
+}
+
+Bounds posed_bounds(const MeshData& mesh, const SkinData& skin, std::span<const Affine> joints) {
+    std::vector<Affine> palette;
+    palette.reserve(skin.joints.size());
+    for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+        palette.push_back(joints[skin.joints[i]] * skin.joint_from_mesh[i]);
+    }
+    Bounds bounds;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const std::uint32_t first = mesh.skin.empty() ? 0 : mesh.skin.first[v];
+        const std::uint32_t end = mesh.skin.empty() ? 0 : mesh.skin.first[v + 1];
+        Vec3 position = first == end ? mesh.positions[v] : Vec3(0);
+        for (std::uint32_t i = first; i < end; ++i) {
+            position += mesh.skin.weights[i]
+                        * transform_point(palette[mesh.skin.joints[i]], mesh.positions[v]);
+        }
+        grow(bounds, position);
+    }
+    return bounds;
+}
+
 Bounds find_bounds(const GltfScene& scene) {
     const std::vector<Affine> matrices = find_node_matrices(scene);
+    const std::vector<Affine> joints = find_rest_joints(scene.skeleton);
     Bounds bounds;
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const std::int32_t skin = scene.nodes[i].skin;
         for (const GltfPart& part : scene.nodes[i].parts) {
-            const Bounds box = transform_bounds(matrices[i], scene.meshes[part.mesh].bounds);
+            const MeshData& mesh = scene.meshes[part.mesh];
+            const Bounds rest =
+                skin < 0 ? mesh.bounds
+                         : posed_bounds(mesh, scene.skins[static_cast<std::size_t>(skin)], joints);
+            const Bounds box = transform_bounds(matrices[i], rest);
             if (!is_empty(box)) {
                 grow(bounds, box);
             }

@@ -8,6 +8,7 @@
 #include "ecs/components/transform.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,7 +35,8 @@ struct GltfNode {
     bool has_camera = false;
     Camera camera;
     GltfLight light;
-    std::int32_t skin = -1;  ///< of `parts`, an index into GltfScene::skins
+    std::int32_t skin = -1;         ///< of `parts`, an index into GltfScene::skins
+    std::int32_t first_morph = -1;  ///< of `parts`, the place of target 0 in morph_weights
     /// From extras.limn. Entities in them are nodes, as gltf_node_entity() writes them; assets are
     /// indices into this scene.
     std::vector<AnyComponent> components;
@@ -50,6 +52,7 @@ struct GltfScene {
     std::vector<std::int32_t> joints;  ///< of each node, -1: stays where its parent is
     std::vector<SkinData> skins;
     std::vector<ClipData> clips;
+    std::vector<float> morph_weights;   ///< of all nodes with morph targets, as the file has them
     std::vector<std::string> warnings;  ///< what the file asks for and was left out, a line each
 };
 
@@ -61,7 +64,15 @@ struct GltfScene {
 /// World matrix of every node, when roots stand at the origin.
 [[nodiscard]] std::vector<Affine> find_node_matrices(const GltfScene& scene);
 
-/// Box around everything that is drawn, in world space [m]; empty when nothing is.
+/// skeleton_from_joint of every joint at rest.
+[[nodiscard]] std::vector<Affine> find_rest_joints(const SkeletonData& skeleton);
+
+/// Box around the vertices of `mesh` where `joints` put them; in the space of those matrices.
+[[nodiscard]] Bounds
+posed_bounds(const MeshData& mesh, const SkinData& skin, std::span<const Affine> joints);
+
+/// Box around everything that is drawn, skinned meshes at rest, in world space [m]; empty when
+/// nothing is.
 [[nodiscard]] Bounds find_bounds(const GltfScene& scene);
 
 /// The box around `box` after `matrix`.

@@ -1,63 +1,65 @@
 #include "content/load/gltf_spawn.h"
 
+#include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
 #include "ecs/component_bytes.h"
 #include "ecs/components/name.h"
+#include "ecs/components/placement.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
-#include <iterator>
+#include <algorithm>
 #include <utility>
 
 namespace limn {
 
 namespace {
 
-/// What the indices of a scene become when its assets stand behind others.
-struct Offsets {
-    std::uint32_t mesh = 0;
-    std::uint32_t material = 0;
-    std::uint32_t image = 0;
-};
-
-template <typename T>
-std::uint32_t append(std::vector<T>& target, std::vector<T>& source) {
-    const auto offset = static_cast<std::uint32_t>(target.size());
-    target.insert(
-        target.end(),
-        std::make_move_iterator(source.begin()),
-        std::make_move_iterator(source.end()));
-    return offset;
+AssetOffsets append_scene(Assets& assets, GltfScene& scene) {
+    Assets own;
+    own.meshes = std::move(scene.meshes);
+    own.materials = std::move(scene.materials);
+    own.images = std::move(scene.images);
+    own.skins = std::move(scene.skins);
+    own.clips = std::move(scene.clips);
+    if (!scene.skeleton.joints.empty()) {
+        own.skeletons.push_back(std::move(scene.skeleton));
+    }
+    return append_assets(assets, own);
 }
 
-Offsets append_assets(Assets& assets, GltfScene& scene) {
-    const auto image_offset = static_cast<std::uint32_t>(assets.images.size());
-    for (Material& material : scene.materials) {
-        for (TextureSlot* slot :
-             {&material.base_color_texture,
-              &material.metal_rough_texture,
-              &material.normal_texture,
-              &material.occlusion_texture,
-              &material.emission_texture}) {
-            if (slot->image.index != kNoAsset) {
-                slot->image.index += image_offset;
-            }
+bool is_of_character(const AnyComponent& component) {
+    const ComponentInfo* const info = &component.info();
+    return info == &component_info<Skeleton>() || info == &component_info<ClipPlayer>()
+           || info == &component_info<MorphWeights>();
+}
+
+/// Which nodes become entities: joints only where they are needed.
+std::vector<bool> find_kept_nodes(const GltfScene& scene, bool has_character) {
+    std::vector<bool> keeps(scene.nodes.size(), false);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const GltfNode& node = scene.nodes[i];
+        const bool is_joint = scene.joints[i] >= 0;
+        const auto components =
+            std::count_if(node.components.begin(), node.components.end(), [&](const auto& c) {
+                return !has_character || !is_of_character(c);
+            });
+        keeps[i] = keeps[i] || !is_joint || !node.parts.empty() || node.has_camera
+                   || node.light.index() != 0 || components > 0;
+        if (!is_joint && node.parent >= 0) {
+            keeps[static_cast<std::size_t>(node.parent)] = true;
+        }
+        for (const AnyComponent& component : node.components) {
+            // for_each_entity gives what may be written
+            AnyComponent copy = component;
+            for_each_entity(copy.info().fields, copy.data(), [&](const Entity& named) {
+                if (!named.is_null()) {
+                    keeps[named.index] = true;
+                }
+            });
         }
     }
-    Offsets offsets;
-    offsets.image = append(assets.images, scene.images);
-    offsets.mesh = append(assets.meshes, scene.meshes);
-    offsets.material = append(assets.materials, scene.materials);
-    if (!scene.skeleton.joints.empty()) {
-        assets.skeletons.push_back(std::move(scene.skeleton));
-    }
-    append(assets.skins, scene.skins);
-    append(assets.clips, scene.clips);
-    return offsets;
-}
-
-MeshInstance make_instance(const GltfPart& part, const Offsets& offsets) {
-    return {{part.mesh + offsets.mesh}, {part.material + offsets.material}};
+    return keeps;
 }
 
 /// The component of the light, if there is one.
@@ -72,78 +74,169 @@ void add_light(World& world, Entity entity, const GltfLight& light) {
         light);
 }
 
-void add_parts(World& world, Entity entity, const GltfNode& node, const Offsets& offsets) {
-    if (node.parts.size() == 1) {
-        world.add(entity, make_instance(node.parts[0], offsets));
-        return;
+class GltfSpawner {
+  public:
+    GltfSpawner(World& world, Assets& assets, GltfScene& scene, Entity parent)
+        : world_(world), scene_(scene), parent_(parent) {
+        has_joints_ = !scene.skeleton.joints.empty();
+        has_clips_ = !scene.clips.empty();
+        result_.rig.is_character = has_joints_ || !scene.morph_weights.empty();
+        rest_ = find_rest_joints(scene.skeleton);
+        scene_.joints.resize(scene_.nodes.size(), -1);
+        offsets_ = append_scene(assets, scene);
     }
-    for (const GltfPart& part : node.parts) {
-        const Entity child = world.create(Transform{}, make_instance(part, offsets));
-        const Status linked = set_parent(world, child, entity);
+
+    SpawnedGltf spawn() {
+        make_rig();
+        keeps_ = find_kept_nodes(scene_, result_.rig.is_character);
+        for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+            entities_.push_back(keeps_[i] ? create(i) : Entity{});
+        }
+        // After all nodes, since components may name any of them.
+        for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+            if (keeps_[i]) {
+                add_parts(entities_[i], scene_.nodes[i]);
+            }
+            for (AnyComponent& component : scene_.nodes[i].components) {
+                add_component(i, component);
+            }
+        }
+        if (result_.rig.is_character) {
+            make_character(world_, parent_, result_.rig);
+        }
+        return std::move(result_);
+    }
+
+  private:
+    void make_rig() {
+        GltfRig& rig = result_.rig;
+        if (!rig.is_character) {
+            return;
+        }
+        if (has_joints_) {
+            rig.skeleton = {offsets_.skeleton};
+        }
+        if (has_clips_) {
+            rig.player.clip = {offsets_.clip};
+        }
+        rig.weights = std::move(scene_.morph_weights);
+        if (parent_.is_null()) {
+            parent_ = world_.create(Transform{}, Name{scene_.name});
+            result_.roots.push_back(parent_);
+            owns_character_ = true;
+        }
+    }
+
+    void link(Entity child, Entity parent) {
+        const Status linked = set_parent(world_, child, parent);
         LIMN_CHECK(linked.ok());
     }
-}
 
-void add_components(
-    World& world,
-    Entity entity,
-    std::vector<AnyComponent>& components,
-    const std::vector<Entity>& entities,
-    const Offsets& offsets) {
-    for (AnyComponent& component : components) {
+    Entity create(std::size_t index) {
+        const GltfNode& node = scene_.nodes[index];
+        const std::int32_t joint = scene_.joints[index];
+        const Entity entity = world_.create(
+            joint >= 0 ? placement_of(rest_[static_cast<std::size_t>(joint)])
+                       : Transform{node.transform});
+        if (joint >= 0) {
+            world_.add(entity, JointAttachment{parent_, static_cast<std::uint16_t>(joint)});
+            link(entity, parent_);
+        } else if (node.parent >= 0) {
+            link(entity, entities_[static_cast<std::size_t>(node.parent)]);
+        } else if (!parent_.is_null()) {
+            link(entity, parent_);
+        }
+        if (!owns_character_ && (joint >= 0 || node.parent < 0)) {
+            result_.roots.push_back(entity);
+        }
+        if (!node.name.empty()) {
+            world_.add(entity, Name{node.name});
+        }
+        if (node.has_camera) {
+            world_.add(entity, node.camera);
+        }
+        add_light(world_, entity, node.light);
+        return entity;
+    }
+
+    void add_parts(Entity entity, const GltfNode& node) {
+        for (const GltfPart& part : node.parts) {
+            const MeshInstance instance{
+                {part.mesh + offsets_.mesh}, {part.material + offsets_.material}};
+            Entity drawn = entity;
+            if (node.parts.size() == 1) {
+                world_.add(entity, instance);
+            } else {
+                drawn = world_.create(Transform{}, instance);
+                link(drawn, entity);
+            }
+            if (node.skin >= 0 || node.first_morph >= 0) {
+                Deformed deformed;
+                deformed.character = parent_;
+                if (node.skin >= 0) {
+                    deformed.skin = {static_cast<std::uint32_t>(node.skin) + offsets_.skin};
+                }
+                deformed.first_morph = static_cast<std::uint32_t>(std::max(node.first_morph, 0));
+                world_.add(drawn, deformed);
+            }
+        }
+    }
+
+    void add_component(std::size_t node, AnyComponent& component) {
         const ComponentInfo& info = component.info();
         for_each_entity(info.fields, component.data(), [&](Entity& reference) {
             if (!reference.is_null()) {
-                reference = entities[reference.index];
+                reference = entities_[reference.index];
             }
         });
-        for_each_asset(
-            info.fields, component.data(), [&](std::string_view kind, std::uint32_t& index) {
-                if (index != kNoAsset) {
-                    index += kind == "mesh"       ? offsets.mesh
-                             : kind == "material" ? offsets.material
-                                                  : offsets.image;
-                }
-            });
-        world.add_move(entity, info.id, component.data());
+        shift_assets(info, component.data(), offsets_);
+        const bool is_for_character = result_.rig.is_character && is_of_character(component);
+        const Entity target = is_for_character ? parent_ : entities_[node];
+        if (!is_for_character || !world_.has(target, info.id)) {
+            world_.add_move(target, info.id, component.data());
+        }
     }
-}
+
+    World& world_;
+    GltfScene& scene_;
+    Entity parent_;  ///< the character, if the file has one
+    bool has_joints_ = false;
+    bool has_clips_ = false;
+    bool owns_character_ = false;
+    AssetOffsets offsets_;
+    std::vector<Affine> rest_;
+    std::vector<bool> keeps_;
+    std::vector<Entity> entities_;  ///< of the nodes; null where there is none
+    SpawnedGltf result_;
+};
 
 }  // namespace
 
-std::vector<Entity> spawn_gltf(World& world, Assets& assets, GltfScene&& scene, Entity parent) {
+SpawnedGltf spawn_gltf(World& world, Assets& assets, GltfScene&& scene, Entity parent) {
     LIMN_CHECK(parent.is_null() || world.alive(parent));
-    const Offsets offsets = append_assets(assets, scene);
+    return GltfSpawner(world, assets, scene, parent).spawn();
+}
 
-    std::vector<Entity> entities;
-    std::vector<Entity> roots;
-    entities.reserve(scene.nodes.size());
-    for (const GltfNode& node : scene.nodes) {
-        const Entity entity = world.create(Transform{node.transform});
-        const Entity above =
-            node.parent < 0 ? parent : entities[static_cast<std::size_t>(node.parent)];
-        if (!above.is_null()) {
-            const Status linked = set_parent(world, entity, above);
-            LIMN_CHECK(linked.ok());
-        }
-        if (node.parent < 0) {
-            roots.push_back(entity);
-        }
-        if (!node.name.empty()) {
-            world.add(entity, Name{node.name});
-        }
-        if (node.has_camera) {
-            world.add(entity, node.camera);
-        }
-        add_light(world, entity, node.light);
-        entities.push_back(entity);
+void make_character(World& world, Entity entity, const GltfRig& rig) {
+    if (rig.skeleton.index != kNoAsset && world.find<Skeleton>(entity) == nullptr) {
+        world.add(entity, Skeleton{rig.skeleton});
     }
-    // After all nodes, since components may name any of them.
-    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        add_parts(world, entities[i], scene.nodes[i], offsets);
-        add_components(world, entities[i], scene.nodes[i].components, entities, offsets);
+    if (ClipPlayer* const player = world.find<ClipPlayer>(entity)) {
+        player->clip = player->clip.index == kNoAsset ? rig.player.clip : player->clip;
+    } else {
+        world.add(entity, rig.player);
     }
-    return roots;
+    if (rig.weights.empty()) {
+        return;
+    }
+    if (MorphWeights* const morph = world.find<MorphWeights>(entity)) {
+        std::vector<float>& weights = morph->weights;
+        for (std::size_t i = weights.size(); i < rig.weights.size(); ++i) {
+            weights.push_back(rig.weights[i]);
+        }
+    } else {
+        world.add(entity, MorphWeights{rig.weights, {}});
+    }
 }
 
 }  // namespace limn

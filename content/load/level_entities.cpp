@@ -2,6 +2,7 @@
 
 #include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/name.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
@@ -74,6 +75,35 @@ AnyComponent* find_component_in(std::vector<AnyComponent>& components, Component
             return c.info().id == id;
         });
     return found == components.end() ? nullptr : &*found;
+}
+
+/// What is to follow a character and names none follows its own entity, or else the nearest one
+/// above that is a character.
+void follow_character(Prefab& list, std::uint32_t index) {
+    std::vector<AnyComponent>& own = list.entities[index].components;
+    std::vector<Entity*> open;
+    if (AnyComponent* const deformed = find_component_in(own, component_id<Deformed>)) {
+        open.push_back(&deformed->as<Deformed>().character);
+    }
+    if (AnyComponent* const attached = find_component_in(own, component_id<JointAttachment>)) {
+        open.push_back(&attached->as<JointAttachment>().character);
+    }
+    std::erase_if(open, [](const Entity* character) { return !character->is_null(); });
+    for (std::uint32_t at = index; !open.empty();) {
+        std::vector<AnyComponent>& components = list.entities[at].components;
+        if (find_component_in(components, component_id<Skeleton>) != nullptr
+            || find_component_in(components, component_id<MorphWeights>) != nullptr) {
+            for (Entity* const character : open) {
+                *character = prefab_entity(at);
+            }
+            return;
+        }
+        const AnyComponent* const parent = find_component_in(components, component_id<Parent>);
+        if (parent == nullptr) {
+            return;
+        }
+        at = parent->as<Parent>().entity.index;
+    }
 }
 
 }  // namespace
@@ -289,6 +319,7 @@ Status LevelEntities::add_copy(
         }
     }
     list.entities.entities.push_back({std::move(components)});
+    follow_character(list.entities, index);
     std::uint32_t scope = around.scope;
     if (node.is_copy && node.has_children) {
         scope = static_cast<std::uint32_t>(list.scopes.size());

@@ -3,6 +3,7 @@
 #include "content/load/component_json.h"
 #include "content/load/gltf_file.h"
 #include "content/load/level_events.h"
+#include "content/load/level_names.h"
 #include "ecs/base/log.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/transform.h"
@@ -69,7 +70,7 @@ class LevelParser {
     [[nodiscard]] Status read_entities();
     [[nodiscard]] Status read_events(LevelEntities& entities);
     void place_cameras();
-    [[nodiscard]] FindNames asset_names() const;
+    [[nodiscard]] FindNames asset_names();
     [[nodiscard]] Names& names_of(std::string_view kind);
 
     const JsonValue& json_;
@@ -318,20 +319,28 @@ Status LevelParser::read_mesh(const JsonMember& member, const JsonPlace& at) {
     return Done{};
 }
 
-FindNames LevelParser::asset_names() const {
-    const auto names_of_kind = [this](std::string_view kind) -> const Names& {
-        return kind == "mesh" ? meshes_ : kind == "material" ? materials_ : images_;
+FindNames LevelParser::asset_names() {
+    const auto names_of_kind = [this](std::string_view kind) -> const Names* {
+        return kind == asset_kind<MeshId>       ? &meshes_
+               : kind == asset_kind<MaterialId> ? &materials_
+               : kind == asset_kind<ImageId>    ? &images_
+                                                : nullptr;
     };
     FindNames names;
-    names.asset = [names_of_kind](
+    names.asset = [this, names_of_kind](
                       std::string_view kind,
                       std::string_view name) -> std::optional<std::uint32_t> {
-        const Names& all = names_of_kind(kind);
-        const auto found = all.find(std::string(name));
-        return found == all.end() ? std::nullopt : std::optional(found->second);
+        const Names* const all = names_of_kind(kind);
+        if (all == nullptr) {  // files that are not read yet have them
+            level_.late_names.emplace_back(name);
+            return static_cast<std::uint32_t>(level_.late_names.size() - 1);
+        }
+        const auto found = all->find(std::string(name));
+        return found == all->end() ? std::nullopt : std::optional(found->second);
     };
     names.all = [names_of_kind](std::string_view kind) {
-        return sorted_names(names_of_kind(kind));
+        const Names* const all = names_of_kind(kind);
+        return all == nullptr ? std::vector<std::string_view>() : sorted_names(*all);
     };
     return names;
 }
@@ -552,7 +561,7 @@ Status load_level_assets(Level& level, const std::string& folder, const LevelLim
         }
         level.scenes.push_back(*std::move(scene));
     }
-    return Done{};
+    return resolve_late_names(level);
 }
 
 Result<Level> load_level(const std::string& path, const LevelLimits& limits) {

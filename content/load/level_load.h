@@ -46,21 +46,24 @@ class World;
 // A NODE is an entity and what is below it. Every entity has a Transform.
 //
 //     {
-//       "name": "lamp 1",                       // unique among its neighbors; no '.'
-//       "prefab": "lamp",                       // begins as a copy of it; what follows is changed
-//       in it "transform": {"position": [0, 2, 0], "rotation": [90, 0, 0]},   // components by name
-//       "point_light": {"color": "#ffcc80", "intensity": 30},           //
-//       (content/load/component_json.h) "spin": null,                           // the prefab's is
-//       left out "gltf": "helmet.glb",                   // its roots become children "repeat":
-//       REPEAT,                       // as many of it, with what is below it "children": [NODE,
-//       ...]                 // after those of the prefab
+//       "name": "lamp 1",          // unique among its neighbors; no '.'
+//       "prefab": "lamp",          // begins as a copy of it; what follows is changed in it
+//       "transform": {"position": [0, 2, 0], "rotation": [90, 0, 0]},
+//       "point_light": {"color": "#ffcc80", "intensity": 30},
+//       "spin": null,              // the prefab's is left out
+//       "gltf": "fox.glb",         // its roots become children
+//       "clip_player": {"clip": "Run"},     // a clip of that file
+//       "repeat": REPEAT,          // as many of it, with what is below it
+//       "children": [NODE, ...]    // after those of the prefab
 //     }
 //
-// A field that is an entity names one of the same prefab, or else one of the level. A `sway`
-// without center swings about where its entity stands. A repeated entity called "post" becomes
-// "post[0]", "post[1]" ... REPEAT and the ways its copies differ are in level_repeat.h, EVENT is in
-// level_events.h; `limn components
-// --schema` prints it all as JSON Schema.
+// Components by name: content/load/component_json.h. A field that is an entity names one of the
+// same prefab, or else one of the level. A `sway` without center swings about where its entity
+// stands. A `deformed` or `joint_attachment` without character follows the entity it is on, or the
+// nearest above, that has a `skeleton` or `morph_weights`. A glTF file with joints or morph targets
+// makes its entity a character (gltf_spawn.h). A repeated entity called "post" becomes "post[0]",
+// "post[1]" ... REPEAT and the ways its copies differ are in level_repeat.h, EVENT is in
+// level_events.h; `limn components --schema` prints it all as JSON Schema.
 //
 // Loading has three steps, so that a bad file leaves nothing half done: parse_level reads and
 // checks the text and touches nothing else; load_level_assets reads the files it names and makes
@@ -106,6 +109,10 @@ struct Level {
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(number in `entities`).
     EventList events;
+
+    /// Names of skeletons, skins and clips in components, which hold their places here until
+    /// load_level_assets has read the files that they are in.
+    std::vector<std::string> late_names;
 
     Assets assets;  ///< materials after parse_level, the rest after load_level_assets
     std::vector<GltfScene> scenes;  ///< one for each of `gltfs`, after load_level_assets

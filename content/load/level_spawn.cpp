@@ -1,4 +1,4 @@
-#include "content/load/component_json.h"
+#include "content/load/asset_lists.h"
 #include "content/load/gltf_spawn.h"
 #include "content/load/level_load.h"
 #include "ecs/command_buffer.h"
@@ -7,47 +7,9 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
-#include <iterator>
-
 namespace limn {
 
 namespace {
-
-/// How many assets stood in the world before those of the level.
-struct AssetOffsets {
-    std::uint32_t mesh = 0;
-    std::uint32_t image = 0;
-    std::uint32_t material = 0;
-};
-
-template <typename T>
-std::uint32_t append(std::vector<T>& target, std::vector<T>& source) {
-    const auto offset = static_cast<std::uint32_t>(target.size());
-    std::move(source.begin(), source.end(), std::back_inserter(target));
-    return offset;
-}
-
-void shift_assets(const ComponentInfo& info, void* object, const AssetOffsets& offsets) {
-    for_each_asset(info.fields, object, [&](std::string_view kind, std::uint32_t& index) {
-        if (index != kNoAsset) {
-            index += kind == "mesh"    ? offsets.mesh
-                     : kind == "image" ? offsets.image
-                                       : offsets.material;
-        }
-    });
-}
-
-AssetOffsets append_assets(Assets& assets, Assets& level) {
-    AssetOffsets offsets;
-    offsets.image = static_cast<std::uint32_t>(assets.images.size());
-    for (Material& material : level.materials) {
-        shift_assets(component_info<Material>(), &material, offsets);
-    }
-    (void)append(assets.images, level.images);
-    offsets.mesh = append(assets.meshes, level.meshes);
-    offsets.material = append(assets.materials, level.materials);
-    return offsets;
-}
 
 /// Numbers of the level's entities become handles. In what an event spawns, `is_outside`, numbers
 /// of its own entities stay.
@@ -107,6 +69,20 @@ std::vector<Entity> create_entities(World& world, Prefab& prefab, const AssetOff
     return entities;
 }
 
+/// Whoever in the prefab follows the character `from` follows `to`.
+void change_character(Prefab& prefab, Entity from, Entity to) {
+    for (PrefabEntity& entity : prefab.entities) {
+        for (AnyComponent& component : entity.components) {
+            if (component.info().has_entities) {
+                for_each_entity(
+                    component.info().fields, component.data(), [from, to](Entity& named) {
+                        named = named == from ? to : named;
+                    });
+            }
+        }
+    }
+}
+
 /// The first use brings the file's assets; the others are copies of its entities.
 void spawn_scene(
     World& world,
@@ -114,12 +90,20 @@ void spawn_scene(
     GltfScene scene,
     const GltfUse& use,
     const std::vector<Entity>& entities) {
-    const std::vector<Entity> roots =
-        spawn_gltf(world, assets, std::move(scene), entities[use.entities.front()]);
-    for (const Entity root : roots) {
-        const Prefab prefab = make_prefab(world, root);
-        for (std::size_t i = 1; i < use.entities.size(); ++i) {
-            (void)spawn(world, prefab, 1, entities[use.entities[i]]);
+    const Entity first = entities[use.entities.front()];
+    const SpawnedGltf spawned = spawn_gltf(world, assets, std::move(scene), first);
+    std::vector<Prefab> prefabs;
+    for (const Entity root : spawned.roots) {
+        prefabs.push_back(make_prefab(world, root));
+    }
+    for (std::size_t i = 1; i < use.entities.size(); ++i) {
+        const Entity entity = entities[use.entities[i]];
+        for (Prefab& prefab : prefabs) {
+            change_character(prefab, entities[use.entities[i - 1]], entity);
+            (void)spawn(world, prefab, 1, entity);
+        }
+        if (spawned.rig.is_character) {
+            make_character(world, entity, spawned.rig);
         }
     }
 }

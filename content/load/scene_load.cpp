@@ -6,6 +6,7 @@
 #include "content/load/level_load.h"
 #include "ecs/base/text.h"
 #include "ecs/components/all.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
@@ -19,7 +20,9 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <map>
 #include <unordered_map>
 
 namespace limn {
@@ -95,6 +98,48 @@ bool has_lights(World& world) {
            || !world.query<const DirectionalLight>().empty();
 }
 
+/// Boxes of meshes: skinned ones are where their joints rest.
+class RestBounds {
+  public:
+    RestBounds(const World& world, const Assets& assets) : world_(world), assets_(assets) {}
+
+    const Bounds& of(Entity entity, const MeshInstance& instance) {
+        const MeshData& mesh = assets_.meshes[instance.mesh.index];
+        const Deformed* const deformed = world_.find<Deformed>(entity);
+        const Skeleton* const character = deformed != nullptr && world_.alive(deformed->character)
+                                              ? world_.find<Skeleton>(deformed->character)
+                                              : nullptr;
+        if (character == nullptr || deformed->skin.index >= assets_.skins.size()
+            || character->skeleton.index >= assets_.skeletons.size()) {
+            return mesh.bounds;
+        }
+        const SkinData& skin = assets_.skins[deformed->skin.index];
+        const std::array key = {
+            instance.mesh.index, deformed->skin.index, character->skeleton.index};
+        const auto [found, is_new] = known_.try_emplace(key, mesh.bounds);
+        if (is_new && fits(mesh, skin, assets_.skeletons[character->skeleton.index])) {
+            found->second = posed_bounds(
+                mesh, skin, find_rest_joints(assets_.skeletons[character->skeleton.index]));
+        }
+        return found->second;
+    }
+
+  private:
+    /// A level may put together what does not belong together.
+    static bool fits(const MeshData& mesh, const SkinData& skin, const SkeletonData& skeleton) {
+        const auto below = [](const std::vector<std::uint16_t>& joints, std::size_t count) {
+            return std::all_of(
+                joints.begin(), joints.end(), [count](std::uint16_t j) { return j < count; });
+        };
+        return below(mesh.skin.joints, skin.joints.size())
+               && below(skin.joints, skeleton.joints.size());
+    }
+
+    const World& world_;
+    const Assets& assets_;
+    std::map<std::array<std::uint32_t, 3>, Bounds> known_;
+};
+
 /// Around everything that is drawn where the Transforms are now: the WorldTransforms are not yet.
 Bounds find_bounds(World& world) {
     const auto local = [&](Entity entity) {
@@ -109,14 +154,14 @@ Bounds find_bounds(World& world) {
     }
     Bounds bounds;
     const Assets& assets = world.resource<Assets>();
+    RestBounds rest(world, assets);
     world.query<const MeshInstance>().each([&](Entity entity, const MeshInstance& instance) {
         if (instance.mesh.index >= assets.meshes.size()) {
             return;
         }
         const auto matrix = matrices.find(entity);
         const Bounds box = transform_bounds(
-            matrix == matrices.end() ? local(entity) : matrix->second,
-            assets.meshes[instance.mesh.index].bounds);
+            matrix == matrices.end() ? local(entity) : matrix->second, rest.of(entity, instance));
         if (!is_empty(box)) {
             grow(bounds, box);
         }

@@ -1,5 +1,6 @@
 #include "content/load/set_value.h"
 
+#include "content/load/asset_lists.h"
 #include "ecs/base/text.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
@@ -15,18 +16,11 @@ namespace {
 /// Calls visit(index, name) for the assets of a kind.
 template <typename Visit>
 void for_each_name(const Assets& assets, std::string_view kind, const Visit& visit) {
-    const auto visit_all = [&](const auto& list) {
+    visit_asset_list(assets, kind, [&](const auto& list) {
         for (std::uint32_t i = 0; i < list.size(); ++i) {
             visit(i, list[i].name);
         }
-    };
-    if (kind == "mesh") {
-        visit_all(assets.meshes);
-    } else if (kind == "image") {
-        visit_all(assets.images);
-    } else {
-        visit_all(assets.materials);
-    }
+    });
 }
 
 std::vector<Entity> find_entities(const World& world, std::string_view name) {

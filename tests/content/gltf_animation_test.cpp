@@ -18,39 +18,6 @@ using namespace limn::test;
 
 namespace {
 
-/// Numbers of a buffer; each list is a view and an accessor of its own.
-class Numbers {
-  public:
-    void add(const char* type, std::size_t width, const std::vector<float>& values) {
-        const std::size_t at = bytes_.size();
-        append_values(bytes_, values);
-        views_ += fmt::format(
-            R"(,{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})",
-            at,
-            values.size() * sizeof(float));
-        accessors_ += fmt::format(
-            R"(,{{"bufferView": {}, "componentType": 5126, "count": {}, "type": "{}"}})",
-            count_,
-            values.size() / width,
-            type);
-        ++count_;
-    }
-    [[nodiscard]] std::string json() const {
-        return fmt::format(
-            R"("buffers": [{{"byteLength": {}}}], "bufferViews": [{}], "accessors": [{}])",
-            bytes_.size(),
-            views_.substr(1),
-            accessors_.substr(1));
-    }
-    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
-
-  private:
-    std::vector<std::byte> bytes_;
-    std::string views_;
-    std::string accessors_;
-    int count_ = 0;
-};
-
 std::vector<float> turn_about_z(float angle, float length = 1.0f) {
     const Quat q = rotation_about({0, 0, 1}, radians(angle));
     return {length * q.x, length * q.y, length * q.z, length * q.w};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -37,6 +39,53 @@ inline std::vector<std::byte> make_glb(std::string json, std::vector<std::byte> 
     std::memcpy(glb.data() + 8, &length, 4);
     return glb;
 }
+
+/// Numbers of a buffer; each list is a view and an accessor of its own.
+class Numbers {
+  public:
+    void add(const char* type, std::size_t width, const std::vector<float>& values) {
+        add_typed(type, width, 5126, false, values);
+    }
+    template <typename T>
+    void add_typed(
+        const char* type,
+        std::size_t width,
+        int component_type,
+        bool normalized,
+        const std::vector<T>& values) {
+        bytes_.resize((bytes_.size() + 3) / 4 * 4);
+        const std::size_t at = bytes_.size();
+        append_values(bytes_, values);
+        views_ += fmt::format(
+            R"(,{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})",
+            at,
+            values.size() * sizeof(T));
+        accessors_ += fmt::format(
+            R"(,{{"bufferView": {}, "componentType": {}, "normalized": {}, "count": {}, "type": "{}"}})",
+            count_,
+            component_type,
+            normalized,
+            values.size() / width,
+            type);
+        ++count_;
+    }
+    /// A further accessor as JSON; views are numbered as the lists are.
+    void add_accessor(const std::string& json) { accessors_ += "," + json; }
+    [[nodiscard]] std::string json() const {
+        return fmt::format(
+            R"("buffers": [{{"byteLength": {}}}], "bufferViews": [{}], "accessors": [{}])",
+            bytes_.size(),
+            views_.substr(1),
+            accessors_.substr(1));
+    }
+    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
+
+  private:
+    std::vector<std::byte> bytes_;
+    std::string views_;
+    std::string accessors_;
+    int count_ = 0;
+};
 
 /// `text` with its only `from` replaced; the text itself when it is not there once, which parses
 /// and so fails the test.

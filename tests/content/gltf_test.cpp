@@ -393,7 +393,7 @@ TEST_CASE("gltf: a scene spawns as entities with the hierarchy of the file, behi
     assets.meshes.resize(3);
     assets.materials.resize(2);
     const Entity place = world.create(Transform{});
-    const std::vector<Entity> roots = spawn_gltf(world, assets, load_square({}), place);
+    const std::vector<Entity> roots = spawn_gltf(world, assets, load_square({}), place).roots;
     REQUIRE(roots.size() == 1);
     CHECK(world.get<const Name>(roots[0]).text == "root");
     CHECK(parent_of(world, roots[0]) == place);
@@ -428,7 +428,7 @@ TEST_CASE("gltf: a mesh of several primitives spawns a child for each") {
     Assets assets;
     const std::string primitive = R"({"attributes": {"POSITION": 0}, "indices": 1, "material": 0})";
     const std::vector<Entity> roots =
-        spawn_gltf(world, assets, load_square({{primitive, primitive + ", " + primitive}}));
+        spawn_gltf(world, assets, load_square({{primitive, primitive + ", " + primitive}})).roots;
     const Entity leaf = children_of(world, roots[0])[0];
     CHECK_FALSE(world.has<MeshInstance>(leaf));
     CHECK(children_of(world, leaf).size() == 2);
@@ -448,10 +448,13 @@ TEST_CASE("gltf: extras.limn adds our components, and they may name nodes and ma
         World world;
         Assets assets;
         assets.meshes.resize(5);
-        const std::vector<Entity> roots = spawn_gltf(
-            world,
-            assets,
-            load_square({{R"("translation": [1, 2, 3])", R"("extras": {"limn": )" + form + "}"}}));
+        const std::vector<Entity> roots =
+            spawn_gltf(
+                world,
+                assets,
+                load_square(
+                    {{R"("translation": [1, 2, 3])", R"("extras": {"limn": )" + form + "}"}}))
+                .roots;
         const Entity leaf = children_of(world, roots[0])[0];
         CHECK(world.get<const Spin>(leaf).speed == 2.5f);
         CHECK(world.get<const OrbitCamera>(leaf).target == roots[0]);

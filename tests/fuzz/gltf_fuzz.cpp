@@ -4,6 +4,7 @@
 #include "content/load/gltf_load.h"
 #include "ecs/components/all.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <span>
 
@@ -21,6 +22,70 @@ constexpr limn::GltfLimits kLimits = {
 void require(bool condition) {
     if (!condition) {
         std::abort();
+    }
+}
+
+void check_deformations(const limn::MeshData& mesh) {
+    const std::size_t count = mesh.positions.size();
+    const limn::SkinWeights& skin = mesh.skin;
+    if (!skin.empty()) {
+        require(skin.first.size() == count + 1 && skin.first.front() == 0);
+        require(skin.first.back() == skin.joints.size());
+        require(skin.joints.size() == skin.weights.size());
+        for (std::size_t v = 0; v < count; ++v) {
+            float sum = 0;
+            for (std::uint32_t i = skin.first[v]; i < skin.first[v + 1]; ++i) {
+                require(i == skin.first[v] || skin.joints[i - 1] < skin.joints[i]);
+                require(skin.weights[i] > 0);
+                sum += skin.weights[i];
+            }
+            require(std::abs(sum - 1.0f) < 1e-4f);
+        }
+    }
+    for (const limn::MorphTarget& morph : mesh.morphs) {
+        const std::size_t moving = morph.vertices.size();
+        require(morph.positions.size() == moving);
+        require(morph.normals.empty() || morph.normals.size() == moving);
+        require(morph.tangents.empty() || morph.tangents.size() == moving);
+        for (std::size_t i = 0; i < moving; ++i) {
+            require(morph.vertices[i] < count);
+            require(i == 0 || morph.vertices[i - 1] < morph.vertices[i]);
+            for (int k = 0; k < 3; ++k) {
+                require(std::isfinite(morph.positions[i][k]));
+                require(morph.normals.empty() || std::isfinite(morph.normals[i][k]));
+                require(morph.tangents.empty() || std::isfinite(morph.tangents[i][k]));
+            }
+        }
+    }
+}
+
+void check_characters(const limn::GltfScene& scene) {
+    const std::size_t joints = scene.skeleton.joints.size();
+    require(joints == 0 || limn::check_skeleton(scene.skeleton).ok());
+    for (const limn::SkinData& skin : scene.skins) {
+        require(limn::check_skin(skin, joints).ok());
+    }
+    for (const limn::ClipData& clip : scene.clips) {
+        require(limn::check_clip(clip, joints, scene.morph_weights.size()).ok());
+    }
+    for (const limn::MeshData& mesh : scene.meshes) {
+        check_deformations(mesh);
+    }
+    for (const limn::GltfNode& node : scene.nodes) {
+        for (const limn::GltfPart& part : node.parts) {
+            const limn::MeshData& mesh = scene.meshes[part.mesh];
+            if (node.first_morph >= 0) {
+                const auto first = static_cast<std::size_t>(node.first_morph);
+                require(first + mesh.morphs.size() <= scene.morph_weights.size());
+            }
+            if (node.skin >= 0) {
+                const auto skin = static_cast<std::size_t>(node.skin);
+                require(skin < scene.skins.size());
+                for (const std::uint16_t joint : mesh.skin.joints) {
+                    require(joint < scene.skins[skin].joints.size());
+                }
+            }
+        }
     }
 }
 
@@ -51,6 +116,7 @@ void check_scene(const limn::GltfScene& scene) {
             }
         }
     }
+    check_characters(scene);
     for (const limn::Material& material : scene.materials) {
         for (const limn::TextureSlot* slot :
              {&material.base_color_texture,

@@ -1,0 +1,308 @@
+#include "content/load/gltf_deform.h"
+
+#include "content/load/gltf_accessor.h"
+#include "ecs/base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kWidth = 4;  ///< influences a vertex of one set
+constexpr double kMostOff = 1e-3;  ///< of a sum of weights from 1
+/// What rounding may make of a weight of 0.
+constexpr float kLeastWeight = -1e-3f;
+/// [m]; as that of positions.
+constexpr float kLargestOffset = 1e9f;
+
+using Influence = std::pair<std::uint16_t, double>;
+
+/// One JOINTS_n with its WEIGHTS_n.
+struct InfluenceSet {
+    std::string joints_place;
+    std::string weights_place;
+    std::vector<float> joints;
+    std::vector<float> weights;
+};
+
+Result<std::vector<float>> read_attribute(
+    GltfDocument& document,
+    const GltfVertices& vertices,
+    int accessor,
+    int width,
+    const std::string& place) {
+    Result<std::vector<float>> values = read_floats(document, accessor, width, place);
+    if (values && values->size() != vertices.count * static_cast<std::size_t>(width)) {
+        return fail(
+            "{}: found {} elements, expected as many as POSITION has, {}",
+            place,
+            values->size() / static_cast<std::size_t>(width),
+            vertices.count);
+    }
+    return values;
+}
+
+Result<std::vector<InfluenceSet>>
+read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
+    const auto& attributes = vertices.primitive.attributes;
+    std::vector<InfluenceSet> sets;
+    for (int n = 0;; ++n) {
+        const auto joints = attributes.find(fmt::format("JOINTS_{}", n));
+        const auto weights = attributes.find(fmt::format("WEIGHTS_{}", n));
+        if (joints == attributes.end() && weights == attributes.end()) {
+            return sets;
+        }
+        if (joints == attributes.end() || weights == attributes.end()) {
+            return fail(
+                "{}.attributes: found {} alone, expected JOINTS_{} and WEIGHTS_{}",
+                vertices.place,
+                joints == attributes.end() ? weights->first : joints->first,
+                n,
+                n);
+        }
+        InfluenceSet set;
+        set.joints_place = fmt::format("{}.attributes.{}", vertices.place, joints->first);
+        set.weights_place = fmt::format("{}.attributes.{}", vertices.place, weights->first);
+        const int type =
+            document.model.accessors[static_cast<std::size_t>(joints->second)].componentType;
+        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+            && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
+            return fail(
+                "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
+                set.joints_place,
+                joints->second,
+                type);
+        }
+        for (const auto& [accessor, place, target] :
+             {std::tuple(joints->second, &set.joints_place, &set.joints),
+              std::tuple(weights->second, &set.weights_place, &set.weights)}) {
+            Result<std::vector<float>> values =
+                read_attribute(document, vertices, accessor, kWidth, *place);
+            if (!values) {
+                return values.error();
+            }
+            *target = std::move(*values);
+        }
+        sets.push_back(std::move(set));
+    }
+}
+
+/// Vertices whose weights had to be changed: how many, and the first.
+struct Changed {
+    std::size_t count = 0;
+    std::uint32_t vertex = 0;
+    double sum = 0;
+
+    void add(std::uint32_t changed, double found) {
+        if (count++ == 0) {
+            vertex = changed;
+            sum = found;
+        }
+    }
+};
+
+void append_influences(SkinWeights& skin, std::vector<Influence>& influences, double sum) {
+    std::sort(influences.begin(), influences.end());
+    const std::size_t begin = skin.joints.size();
+    for (const auto& [joint, weight] : influences) {
+        const auto share = static_cast<float>(weight / sum);
+        if (share == 0.0f) {  // beside one that is larger by far
+            continue;
+        }
+        if (skin.joints.size() > begin && skin.joints.back() == joint) {
+            skin.weights.back() += share;
+        } else {
+            skin.joints.push_back(joint);
+            skin.weights.push_back(share);
+        }
+    }
+}
+
+/// The influences of vertex `vertex` of the file, those without weight left out.
+Status gather_influences(
+    const std::vector<InfluenceSet>& sets,
+    std::uint32_t vertex,
+    std::size_t joints,
+    std::vector<Influence>& influences) {
+    influences.clear();
+    for (const InfluenceSet& set : sets) {
+        for (std::size_t i = kWidth * vertex; i < kWidth * (vertex + std::size_t{1}); ++i) {
+            const float weight = set.weights[i];
+            if (weight < kLeastWeight) {
+                return fail(
+                    "{}: found {} in element {}, expected at least 0",
+                    set.weights_place,
+                    weight,
+                    vertex);
+            }
+            // A tiny weight would vanish, and its sum with it, in the division below.
+            if (!(weight > 1e-9f)) {
+                continue;
+            }
+            if (set.joints[i] >= static_cast<float>(joints)) {
+                return fail(
+                    "{}: found joint {} in element {}, expected one of the {} of the skin",
+                    set.joints_place,
+                    set.joints[i],
+                    vertex,
+                    joints);
+            }
+            influences.emplace_back(static_cast<std::uint16_t>(set.joints[i]), weight);
+        }
+    }
+    return Done{};
+}
+
+std::string name_of(const std::vector<std::string>& names, std::size_t target) {
+    return target < names.size() ? names[target] : fmt::format("target {}", target);
+}
+
+/// The differences of one target at all of the primitive's vertices; empty where it has none.
+struct Differences {
+    std::vector<float> positions;
+    std::vector<float> normals;
+    std::vector<float> tangents;
+};
+
+Vec3 vector_at(const std::vector<float>& values, std::size_t element) {
+    return values.empty()
+               ? Vec3(0)
+               : Vec3(values[3 * element], values[3 * element + 1], values[3 * element + 2]);
+}
+
+MorphTarget keep_moving(const Differences& all, std::span<const std::uint32_t> used) {
+    MorphTarget target;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        const Vec3 position = vector_at(all.positions, used[i]);
+        const Vec3 normal = vector_at(all.normals, used[i]);
+        const Vec3 tangent = vector_at(all.tangents, used[i]);
+        if (position == Vec3(0) && normal == Vec3(0) && tangent == Vec3(0)) {
+            continue;
+        }
+        target.vertices.push_back(static_cast<std::uint32_t>(i));
+        target.positions.push_back(position);
+        if (!all.normals.empty()) {
+            target.normals.push_back(normal);
+        }
+        if (!all.tangents.empty()) {
+            target.tangents.push_back(tangent);
+        }
+    }
+    return target;
+}
+
+Result<Differences> read_differences(
+    GltfDocument& document,
+    const GltfVertices& vertices,
+    const std::map<std::string, int>& source,
+    const std::string& place) {
+    Differences all;
+    for (const auto& [name, accessor] : source) {
+        std::vector<float>* const target = name == "POSITION"  ? &all.positions
+                                           : name == "NORMAL"  ? &all.normals
+                                           : name == "TANGENT" ? &all.tangents
+                                                               : nullptr;
+        const std::string here = fmt::format("{}.{}", place, name);
+        if (target == nullptr) {
+            document.warnings.push_back(here + " is left out");
+            continue;
+        }
+        Result<std::vector<float>> values = read_attribute(document, vertices, accessor, 3, here);
+        if (!values) {
+            return values.error();
+        }
+        const auto large = std::find_if(values->begin(), values->end(), [](float value) {
+            return std::abs(value) > kLargestOffset;
+        });
+        if (large != values->end()) {
+            return fail(
+                "{}: found {} in element {}, expected at most {}",
+                here,
+                *large,
+                (large - values->begin()) / 3,
+                kLargestOffset);
+        }
+        *target = std::move(*values);
+    }
+    return all;
+}
+
+}  // namespace
+
+Result<SkinWeights>
+read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::size_t joints) {
+    const Result<std::vector<InfluenceSet>> sets = read_influence_sets(document, vertices);
+    if (!sets) {
+        return sets.error();
+    }
+    SkinWeights skin;
+    if (sets->empty()) {
+        return skin;
+    }
+    Changed loose;  // no weight at all
+    Changed off;    // did not sum to 1
+    std::vector<Influence> influences;
+    for (const std::uint32_t vertex : vertices.used) {
+        skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
+        if (Status status = gather_influences(*sets, vertex, joints, influences); !status) {
+            return status.error();
+        }
+        double sum = 0;
+        for (const auto& [joint, weight] : influences) {
+            sum += weight;
+        }
+        if (influences.empty()) {
+            loose.add(vertex, 0);
+            influences = {{std::uint16_t{0}, 1.0}};
+            sum = 1;
+        } else if (std::abs(sum - 1.0) > kMostOff) {
+            off.add(vertex, sum);
+        }
+        append_influences(skin, influences, sum);
+    }
+    skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
+    const std::string& place = (*sets)[0].weights_place;
+    if (off.count > 0) {
+        document.warnings.push_back(fmt::format(
+            "{}: the weights of {} vertices do not sum to 1 and were scaled; of element {} the "
+            "sum is {:.4g}",
+            place,
+            off.count,
+            off.vertex,
+            off.sum));
+    }
+    if (loose.count > 0) {
+        document.warnings.push_back(fmt::format(
+            "{}: {} vertices have no weight and follow the first joint; the first is element {}",
+            place,
+            loose.count,
+            loose.vertex));
+    }
+    return skin;
+}
+
+Result<std::vector<MorphTarget>> read_morph_targets(
+    GltfDocument& document, const GltfVertices& vertices, const std::vector<std::string>& names) {
+    std::vector<MorphTarget> targets;
+    for (std::size_t i = 0; i < vertices.primitive.targets.size(); ++i) {
+        const Result<Differences> all = read_differences(
+            document,
+            vertices,
+            vertices.primitive.targets[i],
+            fmt::format("{}.targets[{}]", vertices.place, i));
+        if (!all) {
+            return all.error();
+        }
+        targets.push_back(keep_moving(*all, vertices.used));
+        targets.back().name = name_of(names, i);
+    }
+    return targets;
+}
+
+}  // namespace limn
