@@ -1,7 +1,10 @@
 #include "systems/update_world.h"
 
 #include "ecs/components/input.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "systems/animation/clip_player_system.h"
+#include "systems/animation/pose_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
@@ -18,13 +21,17 @@ Schedule make_world_schedule() {
     schedule.add<run_events>();  // first: everything else sees what the level wants now
     schedule.add<add_world_transforms>();
     schedule.add<add_env_probe_states>();
+    schedule.add<add_poses>();
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
-    schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
-    schedule.add<update_env_probes>();  // after transforms: looks around from where it is now
+    schedule.add<advance_clips>();
+    schedule.add<update_poses>();        // after clips: shows their new moment
+    schedule.add<update_attachments>();  // after poses: hangs on the joints
+    schedule.add<update_transforms>();   // after all that move things: rendering reads the matrices
+    schedule.add<update_env_probes>();   // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
     schedule.add<update_autofocus>();      // after all cameras stand where they are seen from
     return schedule;
@@ -44,8 +51,12 @@ void start_world(World& world) {
     resource_or_default<FrameTime>(world);
     resource_or_default<RandomSeed>(world);
     resource_or_default<Input>(world);
+    resource_or_default<Assets>(world);
     world.run(update_sways);
     world.run(update_camera_paths);
+    world.run(add_poses);
+    world.run(update_poses);
+    world.run(update_attachments);
     world.run(add_world_transforms);
     world.run(update_transforms);
     world.run(add_env_probe_states);
@@ -57,6 +68,7 @@ void start_world(World& world) {
 void step_world(World& world, Schedule& schedule) {
     resource_or_default<RandomSeed>(world);
     resource_or_default<Input>(world);
+    resource_or_default<Assets>(world);
     FrameTime& time = resource_or_default<FrameTime>(world);
     if (time.time > 0) {
         ++time.frame;

@@ -17,7 +17,7 @@ namespace limn {
 void start_world(World& world);
 
 /// Advances FrameTime by one step and runs the schedule. Resources that the systems need
-/// (FrameTime, RandomSeed, Input) are inserted with their defaults where they are missing.
+/// (FrameTime, RandomSeed, Input, Assets) are inserted with their defaults where they are missing.
 void step_world(World& world, Schedule& schedule);
 
 }  // namespace limn

@@ -1,0 +1,191 @@
+#include "systems/animation/pose_system.h"
+
+#include "ecs/base/jobs.h"
+#include "ecs/components/placement.h"
+#include "systems/animation/clip_sampling.h"
+
+#include <algorithm>
+#include <map>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kGrain = 16;  ///< characters a task; each takes some microseconds
+
+bool is_below(const std::vector<std::uint16_t>& numbers, std::size_t count) {
+    return std::all_of(
+        numbers.begin(), numbers.end(), [count](std::uint16_t number) { return number < count; });
+}
+
+bool fits(const ClipData& clip, std::size_t joints, std::size_t weights) {
+    return std::all_of(clip.sheets.begin(), clip.sheets.end(), [=](const ClipSheet& sheet) {
+        return is_below(sheet.rotating, joints) && is_below(sheet.translating, joints)
+               && is_below(sheet.scaling, joints) && is_below(sheet.morphing, weights);
+    });
+}
+
+/// Who jumps in this step: an entity with a Teleport, and everything below it.
+class Jumps {
+  public:
+    Jumps(
+        const Query<const Transform, With<Teleport>>& teleports, const Query<const Parent>& parents)
+        : teleports_(teleports), parents_(parents), any_(!teleports.empty()) {}
+
+    [[nodiscard]] bool has(Entity entity) const {
+        while (any_) {
+            if (teleports_.find<const Transform>(entity) != nullptr) {
+                return true;
+            }
+            const Parent* const parent = parents_.find<const Parent>(entity);
+            if (parent == nullptr) {
+                return false;
+            }
+            entity = parent->entity;
+        }
+        return false;
+    }
+
+  private:
+    const Query<const Transform, With<Teleport>>& teleports_;
+    const Query<const Parent>& parents_;
+    bool any_;
+};
+
+template <typename T>
+const T* find_asset(const std::vector<T>& assets, std::uint32_t index) {
+    return index < assets.size() ? &assets[index] : nullptr;
+}
+
+/// Samples the clip of one character that has a Pose.
+void step_character(
+    const Assets& assets,
+    const SkeletonData& skeleton,
+    const ClipPlayer* player,
+    bool jumps,
+    Pose& pose,
+    MorphWeights* morph) {
+    thread_local LocalPose scratch;  // keeps its memory from character to character
+    const bool is_new = pose.joints.size() != skeleton.joints.size();
+    if (is_new) {
+        pose.joints.resize(skeleton.joints.size());
+        pose.previous.resize(skeleton.joints.size());
+    }
+    std::swap(pose.joints, pose.previous);
+    std::span<float> weights;
+    if (morph != nullptr) {
+        morph->previous = morph->weights;
+        weights = morph->weights;
+    }
+    const ClipData* const clip =
+        player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
+    const float time = player != nullptr ? player->time : 0.0f;
+    evaluate_pose(skeleton, clip, time, scratch, pose.joints, weights);
+    if (is_new || jumps) {
+        pose.previous = pose.joints;
+        if (morph != nullptr) {
+            morph->previous = morph->weights;
+        }
+    }
+}
+
+/// The same for what has morph targets alone.
+void step_weights(const Assets& assets, const ClipPlayer& player, bool jumps, MorphWeights& morph) {
+    static const SkeletonData kNoJoints;
+    LocalPose none;
+    const bool is_new = morph.previous.size() != morph.weights.size();
+    morph.previous = morph.weights;
+    const ClipData* const clip = find_asset(assets.clips, player.clip.index);
+    evaluate_pose(kNoJoints, clip, player.time, none, {}, morph.weights);
+    if (is_new || jumps) {
+        morph.previous = morph.weights;
+    }
+}
+
+}  // namespace
+
+void add_poses(
+    Query<const Skeleton, Without<Pose>> bare,
+    Query<const Deformed, const MeshInstance> meshes,
+    Query<const MorphWeights> weights,
+    Res<const Assets> assets,
+    Commands commands) {
+    if (bare.empty()) {
+        return;
+    }
+    bare.each([&](Entity entity, const Skeleton&) { commands.add(entity, Pose{}); });
+    std::map<Entity, std::size_t> counts;
+    meshes.each([&](const Deformed& deformed, const MeshInstance& instance) {
+        const MeshData* const mesh = find_asset(assets->meshes, instance.mesh.index);
+        if (mesh != nullptr && !mesh->morphs.empty()
+            && bare.find<const Skeleton>(deformed.character) != nullptr
+            && weights.find<const MorphWeights>(deformed.character) == nullptr) {
+            std::size_t& count = counts[deformed.character];
+            count = std::max(count, deformed.first_morph + mesh->morphs.size());
+        }
+    });
+    for (const auto& [character, count] : counts) {
+        commands.add(character, MorphWeights{std::vector<float>(count, 0.0f), {}});
+    }
+}
+
+void update_poses(
+    Query<const Skeleton, Optional<const ClipPlayer>, Optional<MorphWeights>, Pose> characters,
+    Query<const ClipPlayer, MorphWeights, Without<Skeleton>> faces,
+    Query<const Transform, With<Teleport>> teleports,
+    Query<const Parent> parents,
+    Res<const Assets> assets) {
+    const Jumps jumps(teleports, parents);
+    characters.chunks([&](ChunkView chunk,
+                          std::span<const Skeleton> skeletons,
+                          std::span<const ClipPlayer> players,
+                          std::span<MorphWeights> morphs,
+                          std::span<Pose> poses) {
+        const std::span<const Entity> entities = chunk.entities();
+        parallel_for(poses.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const SkeletonData* const skeleton =
+                    find_asset(assets->skeletons, skeletons[i].skeleton.index);
+                if (skeleton != nullptr) {
+                    step_character(
+                        *assets,
+                        *skeleton,
+                        players.empty() ? nullptr : &players[i],
+                        jumps.has(entities[i]),
+                        poses[i],
+                        morphs.empty() ? nullptr : &morphs[i]);
+                }
+            }
+        });
+    });
+    faces.each([&](Entity entity, const ClipPlayer& player, MorphWeights& morph) {
+        step_weights(*assets, player, jumps.has(entity), morph);
+    });
+}
+
+void update_attachments(Query<const JointAttachment, Transform> attached, Query<const Pose> poses) {
+    attached.par_each([&](const JointAttachment& attachment, Transform& transform) {
+        const Pose* const pose = poses.find<const Pose>(attachment.character);
+        if (pose != nullptr && attachment.joint < pose->joints.size()) {
+            transform = placement_of(pose->joints[attachment.joint]);
+        }
+    });
+}
+
+void evaluate_pose(
+    const SkeletonData& skeleton,
+    const ClipData* clip,
+    float time,
+    LocalPose& scratch,
+    std::span<Affine> joints,
+    std::span<float> weights) {
+    scratch.translations = skeleton.rest.translations;
+    scratch.rotations = skeleton.rest.rotations;
+    scratch.scales = skeleton.rest.scales;
+    if (clip != nullptr && fits(*clip, joints.size(), weights.size())) {
+        sample_clip(*clip, time, scratch, weights);
+    }
+    find_joint_matrices(skeleton, scratch, joints);
+}
+
+}  // namespace limn
