@@ -27,24 +27,35 @@ LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
     if (const auto* glow = world.find_resource<Glow>()) {
         settings.glow = *glow;
     }
+    if (const auto* blur = world.find_resource<MotionBlur>()) {
+        settings.motion_blur = *blur;
+    }
     return settings;
 }
 
 LensSettings lens_of_mean(const LensSettings& settings) {
-    return settings;
+    LensSettings rest = settings;
+    rest.motion_blur.shutter = 0;
+    return rest;
 }
 
-bool needs_velocity(const LensSettings& /*settings*/) {
-    return false;
+bool needs_velocity(const LensSettings& settings) {
+    return blurs(settings.motion_blur);
 }
 
 TextureId apply_lens(
     FrameGraph& graph,
     LensPasses& passes,
     const LensSettings& settings,
-    const FrameScene& /*scene*/,
-    const Gbuffer& /*gbuffer*/,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
     TextureId radiance) {
+    if (blurs(settings.motion_blur)) {
+        if (const MotionBlurPass* pass =
+                passes.motion_blur.get(*passes.device, create_motion_blur_pass)) {
+            radiance = blur_motion(graph, *pass, settings.motion_blur, scene, gbuffer, radiance);
+        }
+    }
     if (settings.glow.strength > 0) {
         if (const GlowPass* pass = passes.glow.get(*passes.device, create_glow_pass)) {
             radiance = draw_glow(graph, *pass, settings.glow, radiance);

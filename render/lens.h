@@ -1,8 +1,10 @@
 #pragma once
 
 #include "ecs/components/glow.h"
+#include "ecs/components/motion_blur.h"
 #include "render/gbuffer.h"
 #include "render/passes/glow_pass.h"
+#include "render/passes/motion_blur_pass.h"
 
 #include <optional>
 
@@ -26,6 +28,7 @@ class Device;
 /// What the world and the camera ask of the lens, at the moment that a view shows.
 struct LensSettings {
     Glow glow{.strength = 0};
+    MotionBlur motion_blur{.shutter = 0};
 };
 
 [[nodiscard]] LensSettings lens_settings(const World& world, const RenderView& view);
@@ -52,6 +55,7 @@ struct LensPasses {
     explicit LensPasses(gpu::Device& its_device) : device(&its_device) {}
 
     gpu::Device* device;
+    OptionalPass<MotionBlurPass> motion_blur;
     OptionalPass<GlowPass> glow;
 };
 

@@ -577,6 +577,9 @@ FrameOutput render_accumulated(
     int samples,
     const FrameRequest& request) {
     LIMN_CHECK(samples >= 1);
+    if (samples == 1) {
+        return render_frame(renderer, world, with_jitter(view, {0, 0}), request);
+    }
     const gpu::Texture& sum = renderer.accumulation(view.width, view.height);
     FrameGraph& graph = renderer.graph;
     renderer.draw_probes(world, view);

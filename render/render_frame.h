@@ -101,6 +101,7 @@ FrameOutput render_frame(
 
 /// The mean radiance of `samples` >= 1 pictures whose pixels are shifted by sample_jitter: edges
 /// become smooth. Radiance is RGBA32F; AOVs and statistics are those of the picture in the middle.
+/// One sample is the picture of render_frame.
 FrameOutput render_accumulated(
     Renderer& renderer,
     const World& world,

@@ -9,6 +9,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
+#include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
@@ -64,6 +65,7 @@ void register_all_components() {
     register_resource<Rendering>();
     register_resource<Exposure>();
     register_resource<Glow>();
+    register_resource<MotionBlur>();
 }
 
 }  // namespace limn

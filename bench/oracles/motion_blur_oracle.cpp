@@ -1,0 +1,63 @@
+#include "bench/oracles/motion_blur_oracle.h"
+
+#include "ecs/base/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::oracle {
+
+double exposure_moment(int index, int count, double shutter) {
+    return ((index + 0.5) / count - 0.5) * shutter / 360.0;
+}
+
+void MeanPicture::add(const gpu::FloatImage& picture) {
+    if (count_ == 0) {
+        shape_ = picture;
+        sum_.assign(picture.pixels.size(), 0.0);
+    }
+    LIMN_CHECK(sum_.size() == picture.pixels.size());
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+        sum_[i] += static_cast<double>(picture.pixels[i]);
+    }
+    ++count_;
+}
+
+gpu::FloatImage MeanPicture::mean() const {
+    gpu::FloatImage picture = shape_;
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+        picture.pixels[i] = static_cast<float>(sum_[i] / count_);
+    }
+    return picture;
+}
+
+std::vector<double> box_filter(std::span<const double> row, double way) {
+    const int count = static_cast<int>(row.size());
+    std::vector<double> filtered(row.begin(), row.end());
+    if (count == 0 || way <= 0.0) {
+        return filtered;
+    }
+    for (int i = 0; i < count; ++i) {
+        const double low = i + 0.5 - 0.5 * way;
+        const double high = i + 0.5 + 0.5 * way;
+        double sum = 0;
+        for (int j = static_cast<int>(std::floor(low)); j < high; ++j) {
+            const double overlap = std::min(high, j + 1.0) - std::max(low, static_cast<double>(j));
+            sum += overlap * row[static_cast<std::size_t>(std::clamp(j, 0, count - 1))];
+        }
+        filtered[static_cast<std::size_t>(i)] = sum / way;
+    }
+    return filtered;
+}
+
+double bar_coverage(double x, double begin, double end, double way) {
+    if (way <= 0.0) {
+        return x >= begin && x < end ? 1.0 : 0.0;
+    }
+    // It is there while begin + s <= x < end + s, for s in -way / 2 .. way / 2.
+    const double low = std::max(x - end, -0.5 * way);
+    const double high = std::min(x - begin, 0.5 * way);
+    return std::max(high - low, 0.0) / way;
+}
+
+}  // namespace limn::oracle

@@ -1,0 +1,152 @@
+// What each pixel sees while the shutter is open, guessed from the one moment that was drawn. See motion_blur_pass.h.
+#version 450
+#include "lib/noise.glsl"
+
+layout(binding = 0) uniform sampler2D radiance;
+layout(binding = 1) uniform sampler2D motion_map;  // motion_pack.frag
+layout(binding = 2) uniform sampler2D neighbors;   // motion_neighbor.frag
+
+uniform int side;     // of a tile [px]
+uniform int samples;  // along a smear
+
+layout(location = 0) out vec4 blurred;
+
+const float kStill = 0.5;       // less than this [px] to either side is no motion
+const float kSameDepth = 0.02;  // share of the distance; within it the faster one is in front
+
+struct Pixel {
+    vec2 motion;
+    float depth;
+    float speed;
+};
+
+// What was found on the way, in pixels of length along a line unless it says otherwise.
+struct Found {
+    vec3 front;         // radiance of what passes before this pixel, times share of the exposure
+    float front_share;  // of the exposure
+    vec3 own;           // the pixel's own layer: what moves with it
+    float own_length;
+    float gap;          // of the same stretch, where the layer behind shows
+    vec3 behind;
+    float behind_weight;
+};
+
+vec4 fetch_motion(ivec2 at) {
+    return texelFetch(motion_map, at, 0);
+}
+
+// Whether something that reaches so far gets there; over one pixel, as edges lie between them.
+float covers(float reach, float way) {
+    return clamp(reach - way + 0.5, 0.0, 1.0);
+}
+
+// Samples one line through the pixel, `reach` [px] to either side, where it crosses columns or rows of pixels: all
+// of them if `most` are enough, else one in so many. as_front: what passes from elsewhere counts; as_own: the
+// pixel's own layer and what is behind it do.
+void gather(
+    inout Found found, Pixel here, vec2 direction, float reach, int most, float jitter, bool as_front, bool as_own) {
+    ivec2 last = textureSize(radiance, 0) - 1;
+    float major = max(abs(direction.x), abs(direction.y));
+    vec2 pace = direction / major;
+    int far = int(reach * major + 0.5);
+    int stride = (2 * far + most) / most;
+    float spacing = float(stride) / major;
+    float own_reach = abs(dot(here.motion, direction));
+    for (int k = int(jitter * float(stride)) - far; k <= far; k += stride) {
+        ivec2 there = clamp(ivec2(gl_FragCoord.xy + float(k) * pace), ivec2(0), last);
+        vec4 texel = fetch_motion(there);
+        vec3 color = texelFetch(radiance, there, 0).rgb;
+        float distance_px = abs(float(k)) / major;
+
+        // What moves alike is one layer, however deep: nothing in it hides more than before.
+        float apart = distance(texel.xy, here.motion);
+        float alike = clamp(1.5 - apart / (0.5 + 0.2 * max(texel.w, here.speed)), 0.0, 1.0);
+        float nearer = (texel.z - here.depth) / (kSameDepth * max(max(texel.z, here.depth), 1e-9));
+        float faster = clamp((texel.w - here.speed) / (0.5 + 0.1 * here.speed), -1.0, 1.0);
+        float before = clamp(0.5 + nearer + 0.5 * faster, 0.0, 1.0);
+
+        if (as_front) {
+            float along = abs(dot(texel.xy, direction));
+            float straight = clamp(2.0 * along / max(texel.w, 1e-3) - 1.0, 0.0, 1.0);
+            float share = spacing / max(2.0 * along, 1.0) * covers(along, distance_px) * straight;
+            share *= (1.0 - alike) * before;
+            found.front += share * color;
+            found.front_share += share;
+        }
+        if (as_own) {
+            float inside = spacing * covers(own_reach, distance_px);
+            found.own += inside * alike * color;
+            found.own_length += inside * alike;
+            float back = inside * (1.0 - alike) * (1.0 - before);
+            found.gap += back;
+            float weight = back * (1.05 - distance_px / max(own_reach, distance_px));
+            found.behind += weight * color;
+            found.behind_weight += weight;
+        }
+    }
+}
+
+// All that is near moves alike: the mean of the way, a box filter.
+vec3 gather_alike(vec2 motion, float jitter) {
+    ivec2 last = textureSize(radiance, 0) - 1;
+    float reach = max(abs(motion.x), abs(motion.y));
+    vec2 pace = motion / max(reach, 1e-6);
+    int far = int(reach + 0.5);
+    int most = 2 * samples + 1;
+    int stride = (2 * far + most) / most;
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int k = int(jitter * float(stride)) - far; k <= far; k += stride) {
+        ivec2 there = clamp(ivec2(gl_FragCoord.xy + float(k) * pace), ivec2(0), last);
+        float weight = covers(reach, abs(float(k)));
+        sum += weight * texelFetch(radiance, there, 0).rgb;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 color = texelFetch(radiance, pixel, 0);
+    vec4 neighbor = texelFetch(neighbors, pixel / side, 0);
+    float longest = length(neighbor.xy);
+    blurred = color;
+    if (longest <= kStill) {
+        return;
+    }
+    float jitter = pixel_noise(gl_FragCoord.xy);
+    vec4 texel = fetch_motion(pixel);
+    Pixel here = Pixel(texel.xy, texel.z, texel.w);
+
+    if (neighbor.xy == neighbor.zw) {
+        blurred.rgb = gather_alike(here.motion, jitter);
+        return;
+    }
+
+    Found found = Found(vec3(0.0), 0.0, 1e-3 * color.rgb, 1e-3, 0.0, vec3(0.0), 0.0);
+    bool moves = here.speed > kStill;
+    vec2 main_way = neighbor.xy / longest;
+    // A pixel that moves like the fastest: one line says it all.
+    bool one_line = moves && distance(here.motion, neighbor.xy) < 0.2 * longest + 0.5;
+    float other = length(neighbor.zw);
+    bool crossing = other > kStill;
+    int lines = (moves && !one_line ? 2 : 1) + (crossing ? 1 : 0);
+    int most = max(2 * samples / (lines + 1), 4);
+    gather(found, here, main_way, longest, most, jitter, true, one_line);
+    if (moves && !one_line) {
+        gather(found, here, here.motion / here.speed, here.speed, most, jitter, false, true);
+    }
+    if (crossing) {
+        gather(found, here, neighbor.zw / other, other, most, jitter, true, false);
+    }
+
+    vec3 own = found.own / found.own_length;
+    if (found.behind_weight > 0.0) {
+        own = mix(found.behind / found.behind_weight, own, found.own_length / (found.own_length + found.gap));
+    }
+    if (found.front_share > 1.0) {
+        found.front /= found.front_share;
+        found.front_share = 1.0;
+    }
+    blurred.rgb = found.front + (1.0 - found.front_share) * own;
+}

@@ -1,0 +1,321 @@
+#include "bench/oracles/motion_blur_oracle.h"
+#include "ecs/components/motion_blur.h"
+#include "render/graph/frame_graph.h"
+#include "tests/render/scene_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::test {
+namespace {
+
+constexpr int kSize = 64;
+constexpr float kPerMeter = 32;  // pixels in the plane z = 0, seen from (0, 0, 1)
+
+/// Flat colors in the plane of the picture, so that all of it can be reckoned.
+class Shutter : public Scene {
+  public:
+    MaterialId unlit(const Vec3& color) {
+        return add(Material{.shading = ShadingModel::Unlit, .base_color = {color, 1}});
+    }
+    /// From `begin` to `end` [px] across the picture, and moving by `way` [px] in a picture's time.
+    Entity
+    bar(MaterialId material,
+        float begin,
+        float end,
+        float way,
+        float z = 0,
+        float half_height = 2) {
+        const float center = (0.5f * (begin + end) - 0.5f * kSize) / kPerMeter;
+        const float half = 0.5f * (end - begin) / kPerMeter;
+        const float scale = 1 - z;  // covers the same pixels from farther away
+        const auto pose = [&](float x) {
+            return affine_from(
+                {x * scale, 0, z}, {1, 0, 0, 0}, {half * scale, half_height * scale, 1});
+        };
+        const Entity entity = place(square, material, pose(center));
+        world.get<PreviousWorldTransform>(entity).world = pose(center - way / kPerMeter);
+        return entity;
+    }
+    void open(float shutter, int samples = 64, float longest = 1) {
+        world.insert_resource(
+            MotionBlur{.shutter = shutter, .samples = samples, .longest = longest});
+    }
+    [[nodiscard]] RenderView front(int width = kSize, int height = kSize) const {
+        return look({0, 0, 1}, {0, 0, 0}, width, height);
+    }
+    gpu::FloatImage picture() { return radiance(front()); }
+    gpu::FloatImage sharp() {
+        const MotionBlur kept = world.resource<MotionBlur>();
+        world.remove_resource<MotionBlur>();
+        gpu::FloatImage image = picture();
+        world.insert_resource(kept);
+        return image;
+    }
+
+    MeshId square = add(make_square());
+};
+
+std::vector<double> row_of(const gpu::FloatImage& image, int y, int channel) {
+    std::vector<double> row;
+    for (int x = 0; x < image.width; ++x) {
+        row.push_back(image.at(x, y, channel));
+    }
+    return row;
+}
+
+double sum_of(const gpu::FloatImage& image, int channel) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (const double value : row_of(image, y, channel)) {
+            sum += value;
+        }
+    }
+    return sum;
+}
+
+bool all_finite(const gpu::FloatImage& image) {
+    return std::all_of(
+        image.pixels.begin(), image.pixels.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool has_pass(std::string_view name) {
+    return frame_graph(shared_renderer()).was_run(name);
+}
+
+}  // namespace
+
+TEST_CASE("motion blur: the oracle's box and bar agree with each other") {
+    std::vector<double> row(40, 0.0);
+    std::fill(row.begin() + 12, row.begin() + 25, 1.0);
+    for (const double way : {0.0, 0.5, 3.0, 7.0, 20.0}) {
+        const std::vector<double> filtered = oracle::box_filter(row, way);
+        double sum = 0;
+        for (int x = 0; x < 40; ++x) {
+            CAPTURE(x);
+            CHECK(filtered[x] == doctest::Approx(oracle::bar_coverage(x + 0.5, 12, 25, way)));
+            sum += filtered[x];
+        }
+        CHECK(sum == doctest::Approx(13));
+    }
+    CHECK(oracle::exposure_moment(0, 2, 180) == doctest::Approx(-0.125));
+    CHECK(oracle::exposure_moment(1, 2, 180) == doctest::Approx(0.125));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes no bit") {
+    bar(unlit({1, 0.5f, 0.2f}), 20, 40, 12);
+    const gpu::FloatImage plain = picture();
+    open(0);
+    CHECK(picture().pixels == plain.pixels);
+    CHECK_FALSE(has_pass("motion blur"));
+    open(180);
+    CHECK(picture().pixels != plain.pixels);
+    CHECK(has_pass("motion blur"));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: where nothing moves, no bit changes") {
+    bar(unlit({1, 0.5f, 0.2f}), 20, 40, 0);
+    bar(unlit({0.1f, 0.7f, 0.2f}), 10, 30, 0, -0.5f);
+    world.insert_resource(Environment{});
+    open(360);
+    CHECK(picture().pixels == sharp().pixels);
+    // Nor far from what does.
+    bar(unlit({1, 1, 1}), 50, 56, 4);
+    const gpu::FloatImage blurred = picture();
+    const gpu::FloatImage still = sharp();
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            CHECK(rgb_at(blurred, x, y) == rgb_at(still, x, y));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: a picture of one color keeps it, whatever moves") {
+    const Vec3 color = {0.3f, 0.6f, 0.9f};
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = color});
+    const MaterialId same = unlit(color);
+    bar(same, 10, 30, 9);
+    bar(same, 25, 50, -14, -0.5f);
+    bar(same, 5, 60, 3, -1);
+    open(360, 16);
+    const gpu::FloatImage blurred = picture();
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < kSize; ++x) {
+            CHECK(glm::distance(rgb_at(blurred, x, y), color) < 2e-3f);  // as albedo is stored
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: a plane that goes by is a box filter of it") {
+    // Bars of many widths side by side that all move alike.
+    float begin = -40;
+    for (int i = 0; begin < 110; ++i) {
+        const float width = static_cast<float>(1 + (i * 7) % 11);
+        const float gray = static_cast<float>((i * 37) % 17) / 16;
+        bar(unlit({gray, 1 - gray, 0.5f}), begin, begin + width, 20);
+        begin += width;
+    }
+    for (const float shutter : {90.0f, 180.0f, 270.0f}) {
+        open(shutter);
+        const gpu::FloatImage blurred = picture();
+        const gpu::FloatImage plain = sharp();
+        for (const int channel : {0, 1}) {
+            const std::vector<double> want =
+                oracle::box_filter(row_of(plain, 32, channel), 20.0 * shutter / 360);
+            const std::vector<double> found = row_of(blurred, 32, channel);
+            for (int x = 10; x < 54; ++x) {
+                CAPTURE(x);
+                CHECK(found[x] == doctest::Approx(want[x]).epsilon(2e-3));
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: a bar over the sky covers each pixel for its share of the exposure") {
+    bar(unlit({1, 1, 1}), 22, 42, 16);
+    for (const float shutter : {180.0f, 360.0f}) {
+        open(shutter);
+        const gpu::FloatImage blurred = picture();
+        const double way = 16.0 * shutter / 360;
+        for (int x = 0; x < kSize; ++x) {
+            CAPTURE(x);
+            const double want = oracle::bar_coverage(x + 0.5, 22, 42, way);
+            CHECK(std::abs(blurred.at(x, 32, 0) - want) < 0.07);
+        }
+        // Half of the smear lies outside the silhouette, on either side alike.
+        CHECK(blurred.at(22 - 1, 32, 0) > 0.3);
+        CHECK(blurred.at(42, 32, 0) > 0.3);
+        CHECK(blurred.at(22 - static_cast<int>(way / 2) - 1, 32, 0) == 0.0f);
+        CHECK(blurred.at(42 + static_cast<int>(way / 2), 32, 0) == 0.0f);
+        CHECK(sum_of(blurred, 0) == doctest::Approx(sum_of(sharp(), 0)).epsilon(0.02));
+    }
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: behind a moving bar the background comes back") {
+    const Vec3 front = {0.9f, 0.1f, 0.1f};
+    const Vec3 back = {0.1f, 0.5f, 0.9f};
+    bar(unlit(back), -10, 80, 0, -1);
+    bar(unlit(front), 20, 44, 12);
+    open(360);
+    const gpu::FloatImage blurred = picture();
+    for (int x = 0; x < kSize; ++x) {
+        CAPTURE(x);
+        const auto share = static_cast<float>(oracle::bar_coverage(x + 0.5, 20, 44, 12));
+        const Vec3 want = share * front + (1 - share) * back;
+        CHECK(glm::distance(rgb_at(blurred, x, 32), want) < 0.09f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: a still object before what moves is neither touched nor a halo") {
+    bar(unlit({0.1f, 0.2f, 0.7f}), -60, 120, 18, -2);
+    bar(unlit({0.9f, 0.8f, 0.1f}), 28, 36, 0);
+    open(360);
+    const gpu::FloatImage blurred = picture();
+    CHECK(largest_difference(blurred, sharp()) < 1e-5f);
+}
+
+TEST_CASE_FIXTURE(
+    Shutter, "motion blur: things of different depth that move alike stay one picture") {
+    bar(unlit({0, 0, 1}), -60, 120, 10, -1);
+    bar(unlit({1, 0, 0}), 24, 40, 10);
+    open(360);
+    const gpu::FloatImage blurred = picture();
+    const std::vector<double> want = oracle::box_filter(row_of(sharp(), 32, 0), 10);
+    for (int x = 0; x < kSize; ++x) {
+        CAPTURE(x);
+        CHECK(blurred.at(x, 32, 0) == doctest::Approx(want[x]).epsilon(2e-3));
+    }
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
+    world.insert_resource(Environment{
+        .sky = SkyKind::Gradient,
+        .zenith = {0, 0, 4},
+        .horizon = {1, 1, 0},
+        .ground = {0.5f, 0, 0}});
+    // About x: the horizon runs through the picture.
+    const auto pose = [](double moment) {
+        return affine_from(
+            {0, 0, 0}, glm::angleAxis(0.2f * static_cast<float>(moment), Vec3(1, 0, 0)), Vec3(1));
+    };
+    const auto view = [&](double moment) {
+        return make_render_view(
+            {.fov_y = radians(90.0f)},
+            pose(moment),
+            pose(moment - 1),
+            {.width = kSize, .height = kSize});
+    };
+    oracle::MeanPicture mean;
+    for (int i = 0; i < 64; ++i) {
+        mean.add(radiance(view(oracle::exposure_moment(i, 64, 360))));
+    }
+    const gpu::FloatImage truth = mean.mean();
+    const gpu::FloatImage plain = radiance(view(0));
+    open(360);
+    const gpu::FloatImage blurred = radiance(view(0));
+    const auto error = [&](const gpu::FloatImage& image) {
+        double sum = 0;
+        for (int y = 8; y < kSize - 8; ++y) {
+            sum += std::abs(image.at(32, y, 2) - truth.at(32, y, 2));
+        }
+        return sum;
+    };
+    CHECK(error(plain) > 1);
+    CHECK(error(blurred) < 0.25 * error(plain));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: no smear is longer than the longest") {
+    bar(unlit({1, 1, 1}), 30, 34, 400);
+    open(360, 64, 0.25f);
+    const gpu::FloatImage blurred = picture();
+    for (int x = 0; x < kSize; ++x) {
+        CAPTURE(x);
+        if (x < 30 - 8 || x >= 34 + 8) {
+            CHECK(blurred.at(x, 32, 0) == 0.0f);
+        }
+    }
+    CHECK(blurred.at(24, 32, 0) > 0.1f);
+    CHECK(sum_of(blurred, 0) == doctest::Approx(sum_of(sharp(), 0)).epsilon(0.05));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: motion that is no number is none") {
+    const Entity broken = bar(unlit({1, 0.5f, 0.25f}), 20, 44, 0);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e30f}) {
+        world.get<PreviousWorldTransform>(broken).world.row[0] = {bad, bad, bad, bad};
+        open(360);
+        CHECK(all_finite(picture()));
+    }
+    world.get<PreviousWorldTransform>(broken).world.row[0] = {nan, nan, nan, nan};
+    CHECK(picture().pixels == sharp().pixels);
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: what was behind the camera smears within bounds") {
+    const Entity flown = bar(unlit({1, 1, 1}), 20, 44, 0);
+    world.get<PreviousWorldTransform>(flown).world = at({0, 0, 3});
+    world.insert_resource(Environment{});
+    open(1440, 16);
+    CHECK(all_finite(picture()));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: it works in a picture 16384 pixels wide") {
+    bar(unlit({1, 1, 1}), -60, 120, 30);
+    open(360, 16);
+    const gpu::FloatImage wide = radiance(front(16384, 4));
+    CHECK(wide.width == 16384);
+    CHECK(all_finite(wide));
+    CHECK(wide.at(8192, 2, 0) == doctest::Approx(1));
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice gives the same bits") {
+    bar(unlit({1, 0.4f, 0.1f}), 20, 40, 21);
+    bar(unlit({0.2f, 0.4f, 1}), 30, 60, -17, -1);
+    open(360, 6);
+    const gpu::FloatImage once = picture();
+    CHECK(picture().pixels == once.pixels);
+}
+
+}  // namespace limn::test
