@@ -1,6 +1,7 @@
 #include "content/app/quality.h"
 
 #include "content/app/quality_lights.h"
+#include "content/app/quality_motion_blur.h"
 #include "content/app/quality_shadows.h"
 #include "content/app/quality_surfaces.h"
 #include "content/app/quality_tone.h"
@@ -21,6 +22,9 @@ std::span<const QualityEffect> quality_effects() {
         {"tone",
          "statistics and tone operators in double precision, with true Gaussians",
          measure_tone},
+        {"motion-blur",
+         "the mean of 128 pictures of moments within the exposure",
+         measure_motion_blur},
     };
     return kEffects;
 }

@@ -151,4 +151,22 @@ TEST_CASE("quality: statistics and tone operators of the GPU are those of the or
     }
 }
 
+TEST_CASE("quality: motion blur comes close to the mean of the moments of an exposure") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "motion-blur", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 14);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        if (row["bound"] == "none") {  // without the effect
+            CHECK(row["found"] < 32);
+        }
+    }
+}
+
 }  // namespace limn

@@ -1,0 +1,328 @@
+#include "content/app/quality_motion_blur.h"
+
+#include "bench/oracles/motion_blur_oracle.h"
+#include "content/app/quality_court.h"
+#include "content/app/quality_scene.h"
+#include "content/make/shapes.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/motion_blur.h"
+#include "ecs/components/shadow.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 180;
+constexpr int kSubframes = 128;
+constexpr float kShutter = 180;
+constexpr double kLeastPsnr = 32;  // [dB] (design 7)
+
+/// Where something is; 0 is the moment shown, -1 the picture before.
+using Path = std::function<Affine(double moment)>;
+
+/// A scene that knows where all of it is at any moment.
+struct MovingScene : QualityScene {
+    struct Mover {
+        Entity entity;
+        Path path;
+    };
+    std::vector<Mover> movers;
+    Path camera;
+    float fov_y = radians(50.0f);
+
+    Entity move(MeshId mesh, MaterialId material, Path path) {
+        const Entity entity = place(mesh, material, path(0));
+        movers.push_back({entity, std::move(path)});
+        return entity;
+    }
+
+    /// Brings the world to `moment`, with the motion of a whole picture behind it.
+    void set_moment(double moment) {
+        for (const Mover& mover : movers) {
+            world.get<WorldTransform>(mover.entity).world = mover.path(moment);
+            world.get<PreviousWorldTransform>(mover.entity).world = mover.path(moment - 1);
+        }
+    }
+    [[nodiscard]] RenderView view_at(double moment) const {
+        return make_render_view(
+            {.fov_y = fov_y, .near = 0.05f},
+            camera(moment),
+            camera(moment - 1),
+            {.width = kWidth, .height = kHeight});
+    }
+};
+
+// ---- what the scenes are made of
+
+Affine
+posed(const Vec3& position, const Quat& rotation = {1, 0, 0, 0}, const Vec3& scale = Vec3(1)) {
+    return affine_from(position, rotation, scale);
+}
+
+Path still(const Affine& pose) {
+    return [pose](double) { return pose; };
+}
+
+/// Goes straight: `step` between two pictures.
+Path straight(const Vec3& position, const Vec3& step, const Quat& rotation = {1, 0, 0, 0}) {
+    return [=](double moment) {
+        return posed(position + static_cast<float>(moment) * step, rotation);
+    };
+}
+
+/// Something to see motion by: tiles in two tones with lines between them, speckled.
+MaterialId tiled(MovingScene& scene, const Vec3& light, const Vec3& dark, float repeats) {
+    constexpr int kSide = 64;
+    ImageData image{.name = "tiles", .width = kSide, .height = kSide, .srgb = true, .pixels = {}};
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            const bool line = x % 16 == 0 || y % 16 == 0;
+            const bool even = (x / 16 + y / 16) % 2 == 0;
+            const unsigned speck = (static_cast<unsigned>(x * 73 + y * 151) * 2654435761u) >> 29;
+            const Vec3 color = line ? 0.5f * dark : even ? light : dark;
+            for (int c = 0; c < 3; ++c) {
+                const float value = color[c] * (0.85f + 0.02f * static_cast<float>(speck));
+                image.pixels.push_back(static_cast<std::uint8_t>(255 * std::min(value, 1.0f)));
+            }
+            image.pixels.push_back(255);
+        }
+    }
+    auto& images = scene.world.resource<Assets>().images;
+    images.push_back(std::move(image));
+    Material material{.base_color = {1, 1, 1, 1}, .roughness = 0.8f};
+    material.base_color_texture.image = {static_cast<std::uint32_t>(images.size() - 1)};
+    material.base_color_texture.scale = {repeats, repeats};
+    return scene.add(material);
+}
+
+void light_up(MovingScene& scene) {
+    scene.world.insert_resource(Environment{
+        .sky = SkyKind::Gradient,
+        .zenith = {0.25f, 0.4f, 0.75f},
+        .horizon = {0.75f, 0.8f, 0.85f},
+        .ground = {0.2f, 0.19f, 0.17f}});
+    scene.shine(
+        DirectionalLight{.color = {1, 0.95f, 0.85f}, .illuminance = 2},
+        look_at({0, 0, 0}, {-0.4f, -1, -0.6f}));
+}
+
+void add_wall(MovingScene& scene, Path path = still(posed({0, 1, -3}))) {
+    const MaterialId wall = tiled(scene, {0.85f, 0.75f, 0.6f}, {0.55f, 0.4f, 0.3f}, 8);
+    scene.move(scene.add(make_box({.size = {24, 12, 0.2f}})), wall, std::move(path));
+}
+
+void watch_from(MovingScene& scene, const Vec3& eye, const Vec3& target) {
+    scene.camera = still(look_at(eye, target));
+}
+
+// ---- the scenes of design 7
+
+/// A ball flies past a wall.
+void furnish_rigid(MovingScene& scene) {
+    light_up(scene);
+    add_wall(scene);
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    scene.move(
+        scene.add(make_sphere({.radius = 0.75f, .segments = 48, .rings = 24})),
+        tiled(scene, {0.95f, 0.5f, 0.2f}, {0.35f, 0.1f, 0.1f}, 4),
+        straight({0, 1, 0}, {0.85f, 0.2f, 0}));
+}
+
+/// A wall passes behind posts that stand.
+void furnish_static_foreground(MovingScene& scene) {
+    light_up(scene);
+    add_wall(scene, straight({0, 1, -3}, {1.6f, 0, 0}));
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    const MaterialId post = tiled(scene, {0.3f, 0.6f, 0.35f}, {0.1f, 0.25f, 0.15f}, 2);
+    const MeshId mesh = scene.add(make_box({.size = {0.35f, 3, 0.35f}}));
+    for (int i = -2; i <= 2; ++i) {
+        scene.move(mesh, post, still(posed({1.1f * static_cast<float>(i), 1, 0})));
+    }
+}
+
+/// Two boxes and a ball cross each other's ways.
+void furnish_crossing(MovingScene& scene) {
+    light_up(scene);
+    add_wall(scene);
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    const MaterialId red = tiled(scene, {0.9f, 0.25f, 0.2f}, {0.4f, 0.08f, 0.08f}, 3);
+    const MaterialId blue = tiled(scene, {0.3f, 0.5f, 0.95f}, {0.1f, 0.15f, 0.4f}, 3);
+    const MeshId box = scene.add(make_box({.size = {1, 1, 0.4f}}));
+    scene.move(box, red, straight({-0.3f, 1.1f, 0.4f}, {0.7f, 0, 0}));
+    scene.move(box, blue, straight({0.5f, 0.8f, -0.6f}, {0, 0.8f, 0}));
+    scene.move(
+        scene.add(make_sphere({.radius = 0.4f, .segments = 32, .rings = 16})),
+        blue,
+        straight({-1.4f, 1.4f, -1}, {0.4f, -0.5f, 0}));
+}
+
+/// A wheel with spokes rolls before the wall.
+void furnish_wheel(MovingScene& scene) {
+    light_up(scene);
+    add_wall(scene);
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    const MaterialId tire = tiled(scene, {0.25f, 0.25f, 0.28f}, {0.08f, 0.08f, 0.1f}, 12);
+    const MaterialId spoke = tiled(scene, {0.95f, 0.85f, 0.3f}, {0.5f, 0.4f, 0.1f}, 2);
+    constexpr float kTurn = -0.5f;  // [rad] between two pictures
+    constexpr float kRadius = 1.05f;
+    const auto roll = [](const Affine& part) {
+        return [part](double moment) {
+            const float turned = kTurn * static_cast<float>(moment);
+            return posed({-kRadius * turned, 1, 0}, glm::angleAxis(turned, Vec3(0, 0, 1))) * part;
+        };
+    };
+    scene.move(
+        scene.add(make_torus({.radius = 0.9f, .tube = 0.15f, .segments = 64, .sides = 16})),
+        tire,
+        roll(posed({0, 0, 0}, glm::angleAxis(radians(90.0f), Vec3(1, 0, 0)))));
+    const MeshId bar = scene.add(make_box({.size = {1.75f, 0.12f, 0.08f}}));
+    for (int i = 0; i < 3; ++i) {
+        scene.move(
+            bar,
+            spoke,
+            roll(posed(
+                {0, 0, 0}, glm::angleAxis(radians(60.0f * static_cast<float>(i)), Vec3(0, 0, 1)))));
+    }
+}
+
+/// The camera turns in the court.
+void furnish_pan(MovingScene& scene) {
+    light_up(scene);
+    furnish_court(scene);
+    scene.fov_y = radians(42.0f);
+    scene.camera = [](double moment) {
+        const float turn = 0.09f * static_cast<float>(moment);
+        const Vec3 eye = {1.7f, 2.5f, 4.4f};
+        const Vec3 forward = Vec3(-0.25f, 0.75f, -0.6f) - eye;
+        return look_at(eye, eye + glm::angleAxis(turn, Vec3(0, 1, 0)) * forward);
+    };
+}
+
+/// The camera runs past the court.
+void furnish_run(MovingScene& scene) {
+    light_up(scene);
+    furnish_court(scene);
+    scene.fov_y = radians(42.0f);
+    scene.camera = [](double moment) {
+        const Vec3 moved = static_cast<float>(moment) * Vec3(0.3f, 0, -0.25f);
+        return look_at(Vec3(1.7f, 2.5f, 4.4f) + moved, Vec3(-0.25f, 0.75f, -0.6f) + moved);
+    };
+}
+
+// ---- what is measured
+
+gpu::FloatImage accumulate(HeadlessRenderer& headless, MovingScene& scene) {
+    oracle::MeanPicture mean;
+    for (int i = 0; i < kSubframes; ++i) {
+        const double moment = oracle::exposure_moment(i, kSubframes, kShutter);
+        scene.set_moment(moment);
+        mean.add(gpu::read_floats(
+            *render_frame(*headless.renderer, scene.world, scene.view_at(moment)).radiance));
+    }
+    return mean.mean();
+}
+
+gpu::FloatImage blur(HeadlessRenderer& headless, MovingScene& scene) {
+    scene.set_moment(0);
+    scene.world.insert_resource(MotionBlur{.shutter = kShutter});
+    const gpu::FloatImage picture =
+        gpu::read_floats(*render_frame(*headless.renderer, scene.world, scene.view_at(0)).radiance);
+    scene.world.remove_resource<MotionBlur>();
+    return picture;
+}
+
+struct SceneToMeasure {
+    const char* name;
+    void (*furnish)(MovingScene& scene);
+};
+
+void measure_scene(
+    HeadlessRenderer& headless, const SceneToMeasure& wanted, QualityReport& report) {
+    MovingScene scene;
+    wanted.furnish(scene);
+    scene.set_moment(0);
+    const ColorImage sharp = displayed(gpu::read_floats(
+        *render_frame(*headless.renderer, scene.world, scene.view_at(0)).radiance));
+    const ColorImage truth = displayed(accumulate(headless, scene));
+    ColorImage effect = displayed(blur(headless, scene));
+    report.rows.push_back(
+        {fmt::format("{}, PSNR", wanted.name),
+         psnr(effect, truth),
+         QualityBound::AtLeast,
+         kLeastPsnr,
+         "dB"});
+    report.rows.push_back(
+        {fmt::format("{}, PSNR of the sharp picture", wanted.name),
+         psnr(sharp, truth),
+         QualityBound::None,
+         0,
+         "dB"});
+    report.pictures.push_back({wanted.name, std::move(effect), truth});
+}
+
+/// How much of the smear of a bright bar before nothing lies outside its silhouette.
+void measure_smear(HeadlessRenderer& headless, QualityReport& report) {
+    MovingScene scene;
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    scene.move(
+        scene.add(make_box({.size = {1.6f, 1.6f, 0.1f}})),
+        scene.add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        straight({0, 1, 0}, {1, 0, 0}));
+    scene.set_moment(0);
+    const gpu::FloatImage sharp =
+        gpu::read_floats(*render_frame(*headless.renderer, scene.world, scene.view_at(0)).radiance);
+    const gpu::FloatImage blurred = blur(headless, scene);
+    double smeared = 0;
+    double outside = 0;
+    double light = 0;
+    double sharp_light = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const float share = blurred.at(x, y, 0);
+            const bool partly = share > 0.01f && share < 0.99f;
+            smeared += partly ? 1 : 0;
+            outside += partly && sharp.at(x, y, 0) == 0.0f ? 1 : 0;
+            light += static_cast<double>(share);
+            sharp_light += static_cast<double>(sharp.at(x, y, 0));
+        }
+    }
+    const double share = 100 * outside / std::max(smeared, 1.0);
+    report.rows.push_back(
+        {"smear outside the silhouette, from half",
+         std::abs(share - 50),
+         QualityBound::AtMost,
+         3,
+         "%"});
+    report.rows.push_back(
+        {"light that a smear gains or loses",
+         100 * std::abs(light / sharp_light - 1),
+         QualityBound::AtMost,
+         1,
+         "%"});
+}
+
+}  // namespace
+
+Result<QualityReport> measure_motion_blur(HeadlessRenderer& headless) {
+    QualityReport report;
+    for (const SceneToMeasure& scene :
+         {SceneToMeasure{"a ball before a wall", furnish_rigid},
+          SceneToMeasure{"still posts before a moving wall", furnish_static_foreground},
+          SceneToMeasure{"crossing boxes", furnish_crossing},
+          SceneToMeasure{"a rolling wheel", furnish_wheel},
+          SceneToMeasure{"a camera that turns", furnish_pan},
+          SceneToMeasure{"a camera that runs", furnish_run}}) {
+        measure_scene(headless, scene, report);
+    }
+    measure_smear(headless, report);
+    return report;
+}
+
+}  // namespace limn
