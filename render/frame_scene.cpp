@@ -28,11 +28,12 @@ constexpr FeatureName kFeatureNames[] = {
     {kVertexColor, "VERTEX_COLOR"},
     {kVelocity, "VELOCITY"},
     {kInflate, "INFLATE"},
+    {kDeformed, "DEFORMED"},
 };
 
 /// The instance streams point into this frame's part of the ring.
-void set_instance_streams(const FrameScene& scene, const InstanceList& list) {
-    const GLuint id = scene.meshes->vertices().id();
+void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) {
+    const GLuint id = vertices.id();
     glVertexArrayVertexBuffer(
         id,
         kInstanceStream,
@@ -49,13 +50,21 @@ void set_instance_streams(const FrameScene& scene, const InstanceList& list) {
 
 /// What all runs of a list share.
 void bind_instances(gpu::Device& device, const FrameScene& scene, const InstanceList& list) {
-    set_instance_streams(scene, list);
+    set_instance_streams(scene.meshes->vertices(), list);
+    set_instance_streams(scene.shapes->vertices().vertices(), list);
     scene.materials->records().bind(device, kMaterialsUnit);
-    device.bind_vertex_array(scene.meshes->vertices());
     device.bind_indirect(list.commands.buffer);
 }
 
-void draw_run(gpu::Device& device, const InstanceList& list, const DrawRun& run) {
+void bind_vertices(gpu::Device& device, const FrameScene& scene, const DrawRun& run) {
+    const bool deformed = (run.features & kDeformed) != 0;
+    device.bind_vertex_array(
+        deformed ? scene.shapes->vertices().vertices() : scene.meshes->vertices());
+}
+
+void draw_run(
+    gpu::Device& device, const FrameScene& scene, const InstanceList& list, const DrawRun& run) {
+    bind_vertices(device, scene, run);
     device.draw_indexed_indirect(
         GL_TRIANGLES,
         GL_UNSIGNED_INT,
@@ -89,7 +98,7 @@ void draw_depth(
     if (holes) {
         scene.materials->bind_textures(run.textures);
     }
-    draw_run(device, list, run);
+    draw_run(device, scene, list, run);
 }
 
 }  // namespace
@@ -212,6 +221,9 @@ std::uint32_t lighting_key(const FrameScene& scene) {
 
 const gpu::Program* SurfacePrograms::get(
     std::uint32_t features, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more) {
+    if ((features & kVelocity) == 0) {
+        features &= ~static_cast<std::uint32_t>(kDeformed);  // a vertex is a vertex
+    }
     const std::uint64_t key = static_cast<std::uint64_t>(more_key) << 32 | features;
     const auto found = programs_.find(key);
     if (found != programs_.end()) {
@@ -264,7 +276,7 @@ void draw_runs(
             program->set("light_index", light);
         }
         scene.materials->bind_textures(run.textures);
-        draw_run(device, scene.instances, run);
+        draw_run(device, scene, scene.instances, run);
     }
 }
 
@@ -287,6 +299,7 @@ void draw_light_runs(
         device.use(gpu::Pipeline{program, seen_sides(state, run)});
         program->set("light_index", static_cast<int>(lit.light));
         scene.materials->bind_textures(run.textures);
+        bind_vertices(device, scene, run);
         device.draw_indexed_indirect(
             GL_TRIANGLES,
             GL_UNSIGNED_INT,

@@ -73,6 +73,7 @@ struct ClusterLists {
 struct FrameScene {
     MeshPool* meshes = nullptr;
     const MaterialPool* materials = nullptr;
+    DeformedList* shapes = nullptr;
     InstanceList instances;
     LightList lights;
     ClusterLights clusters;

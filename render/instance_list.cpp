@@ -20,12 +20,18 @@ namespace {
 constexpr std::uint16_t kHidden = 0xffff;
 static_assert(kChunkRows <= kCullBlock);
 
-// A key: blended last, then inflated, batch, mirrored, mesh. Sorting keys sorts draws.
-constexpr std::uint64_t
-make_key(bool blend, bool inflated, std::uint32_t batch, bool mirrored, std::uint32_t mesh) {
+// A key: blended last, then inflated, deformed, batch, mirrored, mesh or deformed instance. Sorting
+// keys sorts draws.
+constexpr std::uint64_t make_key(
+    bool blend,
+    bool inflated,
+    bool deformed,
+    std::uint32_t batch,
+    bool mirrored,
+    std::uint32_t what) {
     return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(inflated) << 62
-           | static_cast<std::uint64_t>(batch) << 33 | static_cast<std::uint64_t>(mirrored) << 32
-           | mesh;
+           | static_cast<std::uint64_t>(deformed) << 61 | static_cast<std::uint64_t>(batch) << 33
+           | static_cast<std::uint64_t>(mirrored) << 32 | what;
 }
 constexpr bool is_blended(std::uint64_t key) {
     return key >> 63 != 0;
@@ -33,13 +39,17 @@ constexpr bool is_blended(std::uint64_t key) {
 constexpr bool is_inflated(std::uint64_t key) {
     return (key >> 62 & 1) != 0;
 }
+constexpr bool is_deformed(std::uint64_t key) {
+    return (key >> 61 & 1) != 0;
+}
 constexpr std::uint32_t batch_of(std::uint64_t key) {
-    return static_cast<std::uint32_t>(key >> 33) & 0x1fffffffu;
+    return static_cast<std::uint32_t>(key >> 33) & 0x0fffffffu;
 }
 constexpr bool is_mirrored(std::uint64_t key) {
     return (key >> 32 & 1) != 0;
 }
-constexpr std::uint32_t mesh_of(std::uint64_t key) {
+/// Index of the deformed instance, of other keys of the mesh.
+constexpr std::uint32_t index_of(std::uint64_t key) {
     return static_cast<std::uint32_t>(key);
 }
 
@@ -111,6 +121,7 @@ void InstanceCollector::collect(
     const RenderView& view,
     const MeshPool& meshes,
     const MaterialPool& materials,
+    DeformedList& shapes,
     bool velocity,
     gpu::RingBuffer& ring,
     InstanceList& list,
@@ -119,7 +130,8 @@ void InstanceCollector::collect(
         const MeshInstance,
         const WorldTransform,
         Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>>();
+        Optional<const Inflate>,
+        Optional<const Deformed>>();
     const auto& camera = view.world_from_camera.row;
     const Selection seen = {
         .frustum = make_frustum(view.clip_from_world),
@@ -131,7 +143,7 @@ void InstanceCollector::collect(
         .world = &world,
         .hidden = view.hidden,
         .boxes = boxes};
-    collect_from(query, seen, meshes, materials, ring, list);
+    collect_from(query, seen, {meshes, materials, shapes}, ring, list);
 }
 
 void InstanceCollector::collect_casters(
@@ -140,6 +152,7 @@ void InstanceCollector::collect_casters(
     float alpha,
     const MeshPool& meshes,
     const MaterialPool& materials,
+    DeformedList& shapes,
     gpu::RingBuffer& ring,
     InstanceList& list) {
     const auto query = world.query<
@@ -147,6 +160,7 @@ void InstanceCollector::collect_casters(
         const WorldTransform,
         Optional<const PreviousWorldTransform>,
         Optional<const Inflate>,
+        Optional<const Deformed>,
         Without<NoShadow>>();
     const Selection casters = {
         .frustum = volume.frustum,
@@ -154,17 +168,18 @@ void InstanceCollector::collect_casters(
         .reach = volume.reach,
         .alpha = alpha,
         .casters = true};
-    collect_from(query, casters, meshes, materials, ring, list);
+    collect_from(query, casters, {meshes, materials, shapes}, ring, list);
 }
 
 template <typename Instances>
 void InstanceCollector::collect_from(
     const Instances& query,
     const Selection& selection,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
+    const Sources& from,
     gpu::RingBuffer& ring,
     InstanceList& list) {
+    const std::vector<MeshRange>& meshes = from.meshes.meshes();
+    const MaterialPool& materials = from.materials;
     list = {};
     list.total = static_cast<int>(query.count());
     chunks_.resize(query.chunk_count());
@@ -173,14 +188,16 @@ void InstanceCollector::collect_from(
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate) {
+                         std::span<const Inflate> inflate,
+                         std::span<const Deformed> deformed) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         const auto count = static_cast<int>(chunk.size());
         ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {surfaces, now, before, inflate};
-        fill_boxes(rows, selection.alpha, meshes.meshes(), boxes, mirrored);
+        const InstanceRows rows = {
+            surfaces, now, before, inflate, deformed, chunk.entities(), from.shapes};
+        fill_boxes(rows, selection.alpha, meshes, boxes, mirrored);
         cull_boxes(selection.frustum, boxes, count, visible);
         if (selection.casters) {
             cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
@@ -203,15 +220,22 @@ void InstanceCollector::collect_from(
             const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
             const float far_side = glm::dot(selection.forward, c - selection.eye)
                                    + glm::dot(glm::abs(selection.forward), h);
-            const std::uint64_t key =
-                make_key(blend, !inflate.empty(), batch, mirrored[i] != 0, surfaces[i].mesh.index);
+            const std::uint32_t shape = rows.shape(i);
+            const bool own = shape != DeformedList::kNone;
+            const std::uint64_t key = make_key(
+                blend,
+                !inflate.empty(),
+                own,
+                batch,
+                mirrored[i] != 0,
+                own ? shape : surfaces[i].mesh.index);
             work.local[i] = table.count(key, far_side);
         }
     });
 
     commands_.clear();
-    place_keys(meshes, materials, list);
     const bool velocity = selection.velocity;
+    place_keys(from, velocity, list);
     list.visible = static_cast<int>(visible_count_);
     list.opaque_instances = static_cast<int>(opaque_count_);
     if (selection.boxes) {
@@ -227,9 +251,11 @@ void InstanceCollector::collect_from(
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate) {
+                         std::span<const Inflate> inflate,
+                         std::span<const Deformed> deformed) {
         ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {surfaces, now, before, inflate};
+        const InstanceRows rows = {
+            surfaces, now, before, inflate, deformed, chunk.entities(), from.shapes};
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             if (work.local[i] == kHidden) {
                 continue;
@@ -245,25 +271,23 @@ void InstanceCollector::collect_from(
                 place,
                 inflate.empty() ? 0.0f : inflate[i].distance};
             if (selection.boxes) {
-                const Bounds& box = meshes.meshes()[mesh_of(kind.key)].bounds;
                 set_box(
                     list.boxes[place / kCullBlock],
                     place % kCullBlock,
-                    transform_bounds(a, inflate.empty() ? box : inflated(box, inflate[i])));
+                    transform_bounds(a, rows.bounds(i, meshes)));
             }
             if (velocity) {
                 moments_before[place] = rows.at(i, selection.alpha_before);
             }
             if (is_blended(kind.key)) {
-                const Vec3 middle =
-                    transform_point(a, center(meshes.meshes()[mesh_of(kind.key)].bounds));
+                const Vec3 middle = transform_point(a, center(rows.bounds(i, meshes)));
                 blended_[place - opaque_count_] = {
                     glm::dot(selection.forward, middle), place, kind.key};
             }
         }
     });
 
-    order_blended(meshes, materials, list);
+    order_blended(from, velocity, list);
     list.command_values = commands_;
     list.commands = ring.push(list.command_values);
     for (const DrawCommand& command : commands_) {
@@ -310,8 +334,7 @@ void InstanceCollector::group_keys() {
     });
 }
 
-void InstanceCollector::place_keys(
-    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+void InstanceCollector::place_keys(const Sources& from, bool velocity, InstanceList& list) {
     group_keys();
     std::uint32_t place = 0;
     opaque_count_ = 0;
@@ -323,20 +346,19 @@ void InstanceCollector::place_keys(
             place += kind.count;
         }
         if (!is_blended(group.key)) {
-            add_command(group.key, first, place - first, meshes, materials, list);
+            add_command(group.key, first, place - first, from, velocity, list);
             opaque_count_ = place;
         }
     }
     visible_count_ = place;
 }
 
-void InstanceCollector::order_blended(
-    const MeshPool& meshes, const MaterialPool& materials, InstanceList& list) {
+void InstanceCollector::order_blended(const Sources& from, bool velocity, InstanceList& list) {
     std::sort(blended_.begin(), blended_.end(), [](const Blended& a, const Blended& b) {
         return a.distance != b.distance ? a.distance > b.distance : a.instance < b.instance;
     });
     for (const Blended& one : blended_) {
-        add_command(one.key, one.instance, 1, meshes, materials, list);
+        add_command(one.key, one.instance, 1, from, velocity, list);
     }
 }
 
@@ -344,24 +366,28 @@ void InstanceCollector::add_command(
     std::uint64_t key,
     std::uint32_t first,
     std::uint32_t count,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
+    const Sources& from,
+    bool velocity,
     InstanceList& list) {
     std::vector<DrawRun>& runs = is_blended(key) ? list.blended : list.opaque;
-    const MeshRange& mesh = meshes.meshes()[mesh_of(key)];
-    const SurfaceBatch& batch = materials.batch(batch_of(key));
+    const bool own = is_deformed(key);
+    const std::uint32_t mesh_index = own ? from.shapes[index_of(key)].mesh.index : index_of(key);
+    const MeshRange& mesh = from.meshes.meshes()[mesh_index];
+    const std::int32_t base_vertex =
+        own ? from.shapes.request(index_of(key), velocity) : mesh.base_vertex;
+    const SurfaceBatch& batch = from.materials.batch(batch_of(key));
     DrawRun run;
-    run.features =
-        batch.features | (mesh.colored ? kVertexColor : 0u) | (is_inflated(key) ? kInflate : 0u);
+    run.features = batch.features | (mesh.colored ? kVertexColor : 0u)
+                   | (is_inflated(key) ? kInflate : 0u) | (own ? kDeformed : 0u);
     if ((run.features & kNormalMap) != 0 && !mesh.tangents) {
         run.features &= ~static_cast<std::uint32_t>(kNormalMap);
-        list.without_tangents.push_back(mesh_of(key));
+        list.without_tangents.push_back(mesh_index);
     }
     run.textures = batch.textures;
     run.mirrored = is_mirrored(key);
     run.first_command = static_cast<std::uint32_t>(commands_.size());
     run.command_count = 1;
-    commands_.push_back({mesh.index_count, count, mesh.first_index, mesh.base_vertex, first});
+    commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});
     if (!runs.empty() && runs.back().features == run.features
         && runs.back().textures == run.textures && runs.back().mirrored == run.mirrored) {
         ++runs.back().command_count;

@@ -5,6 +5,7 @@
 #include "render/material_pool.h"
 #include "render/mesh_pool.h"
 #include "render/render_view.h"
+#include "render/skinning/deformed_list.h"
 
 #include <vector>
 
@@ -16,7 +17,8 @@ class World;
 // what they are drawn with; the keys are counted and summed, and every visible row writes its
 // record to its place: equal keys lie together, in world order, whatever thread did it. A key is
 // one command of a multi-draw, all commands of a batch are one draw: ten thousand equal meshes are
-// one. Only what is seen is written. A mesh without tangents is drawn without its normal map.
+// one. Only what is seen is written. A mesh without tangents is drawn without its normal map. What
+// is deformed has a key of its own: its vertices are its own.
 //
 // 100,000 moving boxes, all in the picture, take 1.6 ms of one core (instance_bench).
 
@@ -69,6 +71,7 @@ class InstanceCollector {
         const RenderView& view,
         const MeshPool& meshes,
         const MaterialPool& materials,
+        DeformedList& shapes,
         bool velocity,
         gpu::RingBuffer& ring,
         InstanceList& list,
@@ -80,6 +83,7 @@ class InstanceCollector {
         float alpha,
         const MeshPool& meshes,
         const MaterialPool& materials,
+        DeformedList& shapes,
         gpu::RingBuffer& ring,
         InstanceList& list);
 
@@ -128,24 +132,29 @@ class InstanceCollector {
         std::uint64_t key;
     };
     class KeyTable;
+    /// What instances are drawn from.
+    struct Sources {
+        const MeshPool& meshes;
+        const MaterialPool& materials;
+        DeformedList& shapes;
+    };
 
     template <typename Instances>
     void collect_from(
         const Instances& query,
         const Selection& selection,
-        const MeshPool& meshes,
-        const MaterialPool& materials,
+        const Sources& from,
         gpu::RingBuffer& ring,
         InstanceList& list);
     void group_keys();
-    void place_keys(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
-    void order_blended(const MeshPool& meshes, const MaterialPool& materials, InstanceList& list);
+    void place_keys(const Sources& from, bool velocity, InstanceList& list);
+    void order_blended(const Sources& from, bool velocity, InstanceList& list);
     void add_command(
         std::uint64_t key,
         std::uint32_t first,
         std::uint32_t count,
-        const MeshPool& meshes,
-        const MaterialPool& materials,
+        const Sources& from,
+        bool velocity,
         InstanceList& list);
 
     std::vector<ChunkWork> chunks_;

@@ -24,9 +24,7 @@ void fill_boxes(
         float det = 1;
         if (mesh < meshes.size() && meshes[mesh].index_count > 0) {
             const Affine a = rows.at(i, alpha);
-            const Bounds& around = meshes[mesh].bounds;
-            box = transform_bounds(
-                a, rows.inflate.empty() ? around : inflated(around, rows.inflate[i]));
+            box = transform_bounds(a, rows.bounds(i, meshes));
             det = determinant(a);
         }
         const Vec3 c = center(box);

@@ -46,6 +46,7 @@ enum SurfaceFeature : std::uint32_t {
     kVertexColor = 1u << 11,  // added by the mesh
     kVelocity = 1u << 12,     // added by the frame
     kInflate = 1u << 14,      // added by the instance
+    kDeformed = 1u << 15,     // added by the instance: its vertices are its own (skinning/)
 };
 
 /// Materials that are drawn alike.

@@ -51,6 +51,7 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 9, .stream = kBeforeStream, .components = 4, .offset = 0},
     {.location = 10, .stream = kBeforeStream, .components = 4, .offset = 16},
     {.location = 11, .stream = kBeforeStream, .components = 4, .offset = 32},
+    {.location = 12, .stream = kVertexBeforeStream, .components = 3},
 };
 
 std::int16_t to_snorm(float x) {
@@ -116,6 +117,8 @@ void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
         vertex_capacity_ = capacity;
         vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
         vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
+        // Nobody reads it here, but something must be bound.
+        vertices_.set_vertices(kVertexBeforeStream, positions_, 0, sizeof(Vec3));
     }
     if (indices > index_capacity_) {
         const std::size_t capacity = std::max(indices, 2 * index_capacity_);

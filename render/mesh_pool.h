@@ -49,6 +49,9 @@ class MeshPool {
     [[nodiscard]] const std::vector<MeshRange>& meshes() const { return meshes_; }
     /// The attributes 0 .. 4 of mesh.vert; instance streams are set by who draws.
     [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
+    [[nodiscard]] const gpu::Buffer& positions() const { return positions_; }
+    [[nodiscard]] const gpu::Buffer& attributes() const { return attributes_; }  ///< PackedVertex
+    [[nodiscard]] const gpu::Buffer& indices() const { return indices_; }
 
   private:
     void reserve(std::size_t vertices, std::size_t indices);
@@ -72,5 +75,6 @@ inline constexpr unsigned kPositionStream = 0;
 inline constexpr unsigned kAttributeStream = 1;
 inline constexpr unsigned kInstanceStream = 2;
 inline constexpr unsigned kBeforeStream = 3;
+inline constexpr unsigned kVertexBeforeStream = 4;  ///< of deformed meshes alone
 
 }  // namespace limn

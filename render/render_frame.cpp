@@ -16,6 +16,7 @@
 #include "render/passes/aov_pass.h"
 #include "render/passes/blend_pass.h"
 #include "render/passes/cluster_pass.h"
+#include "render/passes/deform_pass.h"
 #include "render/passes/forward_pass.h"
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_each_pass.h"
@@ -70,6 +71,7 @@ bool same_light(const Environment& a, const Environment& b) {
 }
 
 struct Passes {
+    DeformPass deform;
     GbufferPass gbuffer;
     LightPass lights;
     ClusterPass clusters;
@@ -144,6 +146,7 @@ class Renderer {
     gpu::RingBuffer ring_;
     MeshPool meshes_;
     MaterialPool materials_;
+    DeformedList shapes_;
     InstanceCollector collector_;
     ShadowCollector shadow_collector_;
     VolumeCollector volume_collector_;
@@ -173,8 +176,10 @@ void RendererDeleter::operator()(Renderer* renderer) const {
 Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Passes made)
     : device(gpu_device), graph(gpu_device), passes(std::move(made)), probe_graph_(gpu_device),
       ring_(gpu_device.caps(), "frame data", kRingBytes),
-      materials_(gpu_device, settings.anisotropy), light_records_("lights", GL_RGBA32F),
-      shadow_views_("shadow views", GL_RGBA32F), projector_records_("projectors", GL_RGBA32F),
+      materials_(gpu_device, settings.anisotropy),
+      shapes_(static_cast<std::size_t>(gpu_device.caps().max_storage_bytes)),
+      light_records_("lights", GL_RGBA32F), shadow_views_("shadow views", GL_RGBA32F),
+      projector_records_("projectors", GL_RGBA32F),
       specular_albedo_(
           "specular albedo",
           {.format = GL_RG32F, .width = kSpecularAlbedoSize, .height = kSpecularAlbedoSize}) {
@@ -186,6 +191,7 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
         settings.full_float || gpu_device.caps().software ? GL_RGBA32F : GL_RGBA16F;
     scene.meshes = &meshes_;
     scene.materials = &materials_;
+    scene.shapes = &shapes_;
     scene.light_records = &light_records_;
     scene.shadow_views = &shadow_views_;
     scene.projector_records = &projector_records_;
@@ -210,6 +216,7 @@ void Renderer::update_assets(const World& world) {
                        || materials_.image_count() > assets.images.size();
     if (fresh) {
         meshes_.clear();
+        shapes_.forget();
         volume_collector_.forget();
         assets_ = assets.identity.value();
         environment_.reset();  // its panorama may be another
@@ -273,6 +280,7 @@ void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, f
     const int face = static_cast<int>(slot.drawn % kCubeFaces);
     probe_graph_.begin_frame();
     prepare(world, make_probe_view(slot, face, alpha), false, true);
+    deform_meshes(probe_graph_, passes.deform, shapes_);
     const Gbuffer gbuffer = draw_gbuffer(probe_graph_, passes.gbuffer, scene, false);
     const TextureId radiance = draw_radiance(probe_graph_, gbuffer);
     keep_probe_face(probe_graph_, passes.probes, radiance, slot.cube, face);
@@ -320,18 +328,21 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     const Rendering rendering = for_probe ? Rendering{} : rendering_of(world);
     scene.per_vertex = rendering.shading == ShadingRate::Vertex;
     scene.method = scene.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
+    shapes_.update(world, meshes_, view.alpha, view.alpha_before);
     collector_.collect(
         world,
         view,
         meshes_,
         materials_,
+        shapes_,
         velocity,
         ring_,
         scene.instances,
         is_forward(scene.method));
-    volume_collector_.collect(world, view, ring_, scene.lights, scene.volumes);
+    volume_collector_.collect(world, view, shapes_, ring_, scene.lights, scene.volumes);
     shadow_collector_.collect(
-        world, view, meshes_, materials_, assets_, ring_, scene.lights, scene.shadows);
+        world, view, meshes_, materials_, shapes_, assets_, ring_, scene.lights, scene.shadows);
+    shapes_.write_jobs(ring_);
     resize_shadow_atlas(passes.shadows, scene.shadows);
     VolumeCollector::take_over_hybrids(scene.lights, scene.volumes);
     if (const auto* assets = world.find_resource<Assets>()) {
@@ -383,6 +394,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         .visible_instances = list.visible,
         .draws = static_cast<int>(list.opaque.size() + list.blended.size()),
         .triangles = list.triangles,
+        .deformed = shapes_.work().instances,
         .lights = static_cast<int>(scene.lights.records.size()),
         .shadow_views = static_cast<int>(scene.shadows.records.size()),
         .shadow_views_drawn = static_cast<int>(scene.shadows.due.size()),
@@ -394,6 +406,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
 }
 
 Gbuffer Renderer::draw_surfaces(bool attributes, bool velocity) {
+    deform_meshes(graph, passes.deform, shapes_);
     const bool hybrids = std::any_of(
         scene.volumes.lights.begin(), scene.volumes.lights.end(), [](const VolumeLight& light) {
             return light.hybrid;  // asks for normals
@@ -481,6 +494,10 @@ const gpu::Texture& Renderer::accumulation(int width, int height) {
 }
 
 Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& settings) {
+    Result<DeformPass> deform = create_deform_pass(device);
+    if (!deform) {
+        return deform.error();
+    }
     Result<GbufferPass> gbuffer = create_gbuffer_pass(device);
     if (!gbuffer) {
         return gbuffer.error();
@@ -539,6 +556,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         return accumulate.error();
     }
     Passes passes = {
+        *std::move(deform),
         *std::move(gbuffer),
         *std::move(lights),
         *std::move(clusters),

@@ -59,6 +59,7 @@ struct FrameStatistics {
     int visible_instances = 0;   ///< after culling
     int draws = 0;               ///< submitted for geometry; a multi-draw counts as one
     std::int64_t triangles = 0;  ///< submitted
+    int deformed = 0;            ///< instances whose shape changed and was drawn
     int lights = 0;              ///< that shine
     int shadow_views = 0;        ///< in the shadow atlas
     int shadow_views_drawn = 0;  ///< of them, in this frame

@@ -59,10 +59,11 @@ void collect_100k(benchmark::State& state) {
     const RenderView view = make_render_view({}, eye, eye);
     InstanceCollector collector;
     InstanceList list;
+    DeformedList shapes(1 << 27);
     for (auto _ : state) {
         crowd.ring->begin_frame();
         collector.collect(
-            crowd.world, view, *crowd.meshes, *crowd.materials, false, *crowd.ring, list);
+            crowd.world, view, *crowd.meshes, *crowd.materials, shapes, false, *crowd.ring, list);
         crowd.ring->end_frame();
     }
     state.counters["seen"] = list.visible;

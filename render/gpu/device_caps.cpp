@@ -48,6 +48,9 @@ DeviceCaps read_device_caps() {
     caps.max_uniform_block_bytes = get_int(GL_MAX_UNIFORM_BLOCK_SIZE);
     caps.max_uniform_bindings = get_int(GL_MAX_UNIFORM_BUFFER_BINDINGS);
     caps.max_storage_bindings = get_int(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    caps.max_storage_bytes = bytes;
     caps.max_vertex_storage_blocks = get_int(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS);
     caps.max_fragment_storage_blocks = get_int(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS);
     caps.max_compute_invocations = get_int(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);

@@ -2,6 +2,7 @@
 
 #include "ecs/base/result.h"
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct DeviceCaps {
     int max_uniform_block_bytes = 0;
     int max_uniform_bindings = 0;
     int max_storage_bindings = 0;
+    std::int64_t max_storage_bytes = 0;  ///< of one block
     int max_vertex_storage_blocks = 0;
     int max_fragment_storage_blocks = 0;
     int max_compute_invocations = 0;  ///< of one work group

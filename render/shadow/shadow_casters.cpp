@@ -28,6 +28,7 @@ void sign_casters(
     float alpha,
     const MeshPool& meshes,
     const MaterialPool& materials,
+    const DeformedList& shapes,
     std::span<const CasterVolume> volumes,
     std::span<std::uint64_t> signatures) {
     const auto query = world.query<
@@ -35,6 +36,7 @@ void sign_casters(
         const WorldTransform,
         Optional<const PreviousWorldTransform>,
         Optional<const Inflate>,
+        Optional<const Deformed>,
         Without<NoShadow>>();
     const std::size_t count = volumes.size();
     std::vector<std::uint64_t> sums(query.chunk_count() * count);
@@ -43,12 +45,14 @@ void sign_casters(
                          std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate) {
+                         std::span<const Inflate> inflate,
+                         std::span<const Deformed> deformed) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         std::uint64_t hashes[kCullBlock];
-        const InstanceRows rows = {surfaces, now, before, inflate};
+        const InstanceRows rows = {
+            surfaces, now, before, inflate, deformed, chunk.entities(), shapes};
         const auto rows_here = static_cast<int>(chunk.size());
         fill_boxes(rows, alpha, meshes.meshes(), boxes, mirrored);
         for (std::size_t i = 0; i < chunk.size(); ++i) {
@@ -56,10 +60,13 @@ void sign_casters(
             const std::uint32_t material = materials.record_of(surfaces[i].material);
             const std::uint64_t drawn =
                 static_cast<std::uint64_t>(surfaces[i].mesh.index) << 32 | material;
+            const std::uint32_t own = rows.shape(i);
+            const std::uint64_t what =
+                own != DeformedList::kNone ? hash_combine(drawn, shapes[own].shape) : drawn;
             const float swollen = inflate.empty() ? 0.0f : inflate[i].distance;
             const bool casts = !materials.batch(materials.batch_of(material)).blend;
             hashes[i] =
-                casts ? hash_bytes(&a, sizeof a, hash_bytes(&swollen, sizeof swollen, drawn)) | 1
+                casts ? hash_bytes(&a, sizeof a, hash_bytes(&swollen, sizeof swollen, what)) | 1
                       : 0;  // of a caster never 0
         }
         for (std::size_t v = 0; v < count; ++v) {

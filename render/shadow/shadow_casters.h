@@ -17,12 +17,13 @@ class World;
 [[nodiscard]] CasterVolume make_caster_volume(const ShadowView& view);
 
 /// A number for each volume that changes when a caster comes, goes, moves or changes its mesh,
-/// material or Inflate: equal numbers, equal map. The order of the casters does not count.
+/// shape, material or Inflate: equal numbers, equal map. The order of the casters does not count.
 void sign_casters(
     const World& world,
     float alpha,
     const MeshPool& meshes,
     const MaterialPool& materials,
+    const DeformedList& shapes,
     std::span<const CasterVolume> volumes,
     std::span<std::uint64_t> signatures);
 

@@ -286,6 +286,7 @@ void ShadowCollector::collect(
     const RenderView& view,
     const MeshPool& meshes,
     const MaterialPool& materials,
+    DeformedList& shapes,
     std::uint64_t assets,
     gpu::RingBuffer& ring,
     LightList& lights,
@@ -315,7 +316,7 @@ void ShadowCollector::collect(
         volumes_.push_back(make_caster_volume(one));
     }
     signatures_.resize(views_.size());
-    sign_casters(world, view.alpha, meshes, materials, volumes_, signatures_);
+    sign_casters(world, view.alpha, meshes, materials, shapes, volumes_, signatures_);
     for (const LightViews& wanted : wanted_) {
         for (std::size_t i = 0; wanted.placed && i < wanted.count; ++i) {
             const std::size_t v = wanted.first_view + i;
@@ -335,7 +336,7 @@ void ShadowCollector::collect(
             draw.clamp_depth = views_[v].clamp_depth;
             draw.view_block = ring.push_value(block);
             collector_.collect_casters(
-                world, volumes_[v], view.alpha, meshes, materials, ring, draw.casters);
+                world, volumes_[v], view.alpha, meshes, materials, shapes, ring, draw.casters);
         }
     }
 }

@@ -14,7 +14,8 @@ namespace limn {
 // them must be drawn again. A view keeps its place and its depths as long as neither its light nor
 // a caster in it changes; a light that is gone gives its places back.
 //
-//     collector.collect(world, view, scene.lights, meshes, materials, ring, scene.shadows);
+//     collector.collect(world, view, meshes, materials, shapes, assets, ring, scene.lights,
+//         scene.shadows);
 
 /// A view to be drawn in this frame.
 struct ShadowDraw {
@@ -46,6 +47,7 @@ class ShadowCollector {
         const RenderView& view,
         const MeshPool& meshes,
         const MaterialPool& materials,
+        DeformedList& shapes,
         std::uint64_t assets,
         gpu::RingBuffer& ring,
         LightList& lights,

@@ -127,6 +127,7 @@ bool shade_is_outside(const Bounds& box, const Vec4& light, const Frustum& frust
 void VolumeCollector::collect(
     const World& world,
     const RenderView& view,
+    const DeformedList& shapes,
     gpu::RingBuffer& ring,
     LightList& lights,
     VolumeList& list) {
@@ -138,7 +139,7 @@ void VolumeCollector::collect(
     if (candidates_.empty() || assets == nullptr) {
         return;
     }
-    find_casters(world, view);
+    find_casters(world, view, shapes);
 
     // Layers in the order of the records. Lights that reach nothing, or that nothing shades, need
     // none.
@@ -233,7 +234,8 @@ void VolumeCollector::find_candidates(const World& world, const LightList& light
     }
 }
 
-void VolumeCollector::find_casters(const World& world, const RenderView& view) {
+void VolumeCollector::find_casters(
+    const World& world, const RenderView& view, const DeformedList& shapes) {
     const auto& assets = world.resource<Assets>();
     const Frustum frustum = make_frustum(view.clip_from_world);
     world
@@ -243,7 +245,8 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
             Optional<const PreviousWorldTransform>,
             Optional<const Inflate>,
             Without<NoShadow>>()
-        .each([&](const MeshInstance& surface,
+        .each([&](Entity entity,
+                  const MeshInstance& surface,
                   const WorldTransform& now,
                   const PreviousWorldTransform* before,
                   const Inflate* inflate) {
@@ -261,8 +264,10 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
                                  ? now.world
                                  : mix_affine(before->world, now.world, view.alpha);
             const MeshData& mesh = assets.meshes[surface.mesh.index];
-            const Bounds box =
-                transform_bounds(a, inflate ? inflated(mesh.bounds, *inflate) : mesh.bounds);
+            const std::uint32_t shape = shapes.find(entity);
+            const bool deformed = shape != DeformedList::kNone;
+            const Bounds& own = deformed ? shapes[shape].bounds : mesh.bounds;
+            const Bounds box = transform_bounds(a, inflate ? inflated(own, *inflate) : own);
             if (!is_somewhere(box, a)) {
                 return;
             }
@@ -270,11 +275,12 @@ void VolumeCollector::find_casters(const World& world, const RenderView& view) {
                 if (!candidate.served || !reaches_box(candidate.reach, box)) {
                     continue;
                 }
-                if (inflate != nullptr) {
+                if (inflate != nullptr || deformed) {
                     refuse(
                         candidate,
                         "shadow volumes: mesh " + mesh.name
-                            + " is inflated; lights that reach it get maps");
+                            + (deformed ? " changes its shape" : " is inflated")
+                            + "; lights that reach it get maps");
                 } else {
                     add_caster(candidate, view, frustum, assets, surface, a, box);
                 }

@@ -17,7 +17,8 @@ namespace limn {
 // Which lights have stencil volumes in this frame, and the draws that count them. A light with the
 // method volume or hybrid gets a layer of the screen's mask; it gets a map instead, and the log
 // says so once, if kMaxVolumeLights others come before it or if a caster in its reach cannot have a
-// volume: a mesh that is not closed, or a material with holes (shadow.selection). What only needs
+// volume: a mesh that is not closed or changes its shape, or a material with holes
+// (shadow.selection). What only needs
 // to be asked of casters near the light is asked of those (shadow.caster-cull); of these, casters
 // whose volume lies beside the picture are left out, those outside of the picture are not.
 //
@@ -78,6 +79,7 @@ class VolumeCollector {
     void collect(
         const World& world,
         const RenderView& view,
+        const DeformedList& shapes,
         gpu::RingBuffer& ring,
         LightList& lights,
         VolumeList& list);
@@ -103,7 +105,7 @@ class VolumeCollector {
     };
 
     void find_candidates(const World& world, const LightList& lights);
-    void find_casters(const World& world, const RenderView& view);
+    void find_casters(const World& world, const RenderView& view, const DeformedList& shapes);
     void add_caster(
         Candidate& candidate,
         const RenderView& view,

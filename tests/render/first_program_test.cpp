@@ -282,6 +282,7 @@ TEST_CASE_FIXTURE(
         for (const std::vector<gpu::ShaderDefine>& defines :
              {std::vector<gpu::ShaderDefine>{},
               {{"NORMAL_MAP"}, {"BASE_COLOR_MAP"}, {"VERTEX_COLOR"}, {"VELOCITY"}},
+              {{"VELOCITY"}, {"DEFORMED"}},
               {{"INFLATE"}, {"ALPHA_MASK"}}}) {
             const auto program = device().shaders().load(
                 {.vertex = "mesh.vert", .fragment = fragment, .defines = defines});

@@ -736,9 +736,10 @@ TEST_CASE_FIXTURE(
     MeshPool meshes;
     MaterialPool materials(device(), 1);
     materials.update(world.resource<Assets>(), true);
+    DeformedList shapes(1 << 27);
     ring.begin_frame();
     collector.collect(
-        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, 1, ring, lights, shadows);
+        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, shapes, 1, ring, lights, shadows);
     ring.end_frame();
     CHECK(shadows.unserved == 2);  // six faces of 4096 have no room even alone
     CHECK(shadows.records.empty());
@@ -748,7 +749,7 @@ TEST_CASE_FIXTURE(
     collect_lights(world, 1, lights);
     ring.begin_frame();
     collector.collect(
-        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, 1, ring, lights, shadows);
+        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, shapes, 1, ring, lights, shadows);
     ring.end_frame();
     CHECK(shadows.unserved == 1);
     CHECK(shadows.records.size() == 6);

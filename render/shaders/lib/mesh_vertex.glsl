@@ -13,12 +13,17 @@ layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
 layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 
-vec3 vertex_ms() {
+// Inflated or not.
+vec3 moved_vertex(vec3 position) {
 #ifdef INFLATE
-    return inflate(position_ms, normal_ms, uintBitsToFloat(instance.w));
+    return inflate(position, normal_ms, uintBitsToFloat(instance.w));
 #else
-    return position_ms;
+    return position;
 #endif
+}
+
+vec3 vertex_ms() {
+    return moved_vertex(position_ms);
 }
 
 vec3 vertex_ws() {

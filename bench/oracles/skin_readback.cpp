@@ -1,0 +1,118 @@
+#include "bench/oracles/skin_readback.h"
+
+#include "ecs/components/surface.h"
+#include "ecs/world.h"
+#include "render/gpu/ring_buffer.h"
+#include "render/graph/frame_graph.h"
+#include "render/mesh_pool.h"
+#include "render/passes/deform_pass.h"
+#include "render/skinning/deformed_list.h"
+
+namespace limn::oracle {
+namespace {
+
+float from_snorm(std::int16_t x) {
+    return static_cast<float>(x) / 32767.0f;
+}
+
+template <typename T>
+std::vector<T> read(const gpu::Buffer& buffer, std::size_t first, std::size_t count) {
+    std::vector<T> values(count);
+    buffer.read(first * sizeof(T), std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+}  // namespace
+
+struct SkinReadback::Machine {
+    Machine(gpu::Device& device, DeformPass made, std::size_t storage_bytes)
+        : pass(std::move(made)), shapes(storage_bytes), ring(device.caps(), "readback", 1 << 16),
+          graph(device) {}
+
+    DeformPass pass;
+    MeshPool meshes;
+    DeformedList shapes;
+    gpu::RingBuffer ring;
+    FrameGraph graph;
+};
+
+void SkinReadback::Deleter::operator()(Machine* machine) const {
+    delete machine;
+}
+
+SkinReadback::SkinReadback(std::unique_ptr<Machine, Deleter> machine)
+    : machine_(std::move(machine)) {}
+
+Result<SkinReadback> SkinReadback::create(gpu::Device& device, std::size_t storage_bytes) {
+    Result<DeformPass> pass = create_deform_pass(device);
+    if (!pass) {
+        return pass.error();
+    }
+    const auto most = static_cast<std::size_t>(device.caps().max_storage_bytes);
+    return SkinReadback(std::unique_ptr<Machine, Deleter>(
+        new Machine(device, *std::move(pass), storage_bytes > 0 ? storage_bytes : most)));
+}
+
+const DeformedList& SkinReadback::shapes() const {
+    return machine_->shapes;
+}
+
+DeformedList& SkinReadback::shapes() {
+    return machine_->shapes;
+}
+
+std::vector<ReadSkin> SkinReadback::run(
+    const World& world,
+    std::span<const Entity> drawn,
+    float alpha,
+    float alpha_before,
+    bool before,
+    int views) {
+    Machine& m = *machine_;
+    const auto& assets = world.resource<Assets>();
+    m.meshes.append(std::span(assets.meshes).subspan(m.meshes.meshes().size()));
+    m.ring.begin_frame();
+    m.graph.begin_frame();
+    m.shapes.update(world, m.meshes, alpha, alpha_before);
+    for (int view = 0; view < views; ++view) {
+        for (const Entity entity : drawn) {
+            const std::uint32_t index = m.shapes.find(entity);
+            if (index != DeformedList::kNone) {
+                m.shapes.request(index, before);
+            }
+        }
+    }
+    m.shapes.write_jobs(m.ring);
+    deform_meshes(m.graph, m.pass, m.shapes);
+    m.graph.execute();
+    m.ring.end_frame();
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+
+    std::vector<ReadSkin> skins;
+    for (const Entity entity : drawn) {
+        ReadSkin& skin = skins.emplace_back();
+        const std::uint32_t index = m.shapes.find(entity);
+        if (index == DeformedList::kNone) {
+            continue;
+        }
+        const auto first = static_cast<std::size_t>(m.shapes.request(index, false));
+        const std::size_t count = assets.meshes[m.shapes[index].mesh.index].positions.size();
+        const DeformedVertices& vertices = m.shapes.vertices();
+        skin.positions = read<Vec3>(vertices.positions(), first, count);
+        if (before) {
+            skin.before = read<Vec3>(vertices.before(), first, count);
+        }
+        for (const PackedVertex& v : read<PackedVertex>(vertices.attributes(), first, count)) {
+            skin.normals.emplace_back(
+                from_snorm(v.normal[0]), from_snorm(v.normal[1]), from_snorm(v.normal[2]));
+            skin.tangents.emplace_back(
+                from_snorm(v.tangent[0]),
+                from_snorm(v.tangent[1]),
+                from_snorm(v.tangent[2]),
+                from_snorm(v.tangent[3]));
+        }
+    }
+    return skins;
+}
+
+}  // namespace limn::oracle

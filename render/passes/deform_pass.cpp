@@ -1,0 +1,91 @@
+#include "render/passes/deform_pass.h"
+
+#include "render/gpu/shader_library.h"
+#include "render/mesh_pool.h"
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kJobsUnit = 0;
+constexpr unsigned kGroupsUnit = 1;
+constexpr unsigned kRestUnit = 2;
+constexpr unsigned kPalettesUnit = 3;
+constexpr unsigned kWeightsUnit = 4;
+constexpr unsigned kPositionsBinding = 0;
+constexpr unsigned kBeforeBinding = 1;
+constexpr unsigned kAttributesBinding = 2;
+
+/// The vertices of a batch in one of their streams.
+void bind_stream(
+    gpu::Device& device,
+    unsigned binding,
+    const gpu::Buffer& buffer,
+    const DeformBatch& batch,
+    std::size_t stride) {
+    device.bind_storage(
+        binding,
+        buffer.id(),
+        batch.first_vertex * stride,
+        (batch.end_vertex - batch.first_vertex) * stride);
+}
+
+void run_batch(
+    gpu::Device& device,
+    const gpu::Program& program,
+    const DeformedVertices& vertices,
+    const DeformBatch& batch) {
+    const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
+    bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
+    bind_stream(device, kBeforeBinding, before, batch, sizeof(Vec3));
+    bind_stream(device, kAttributesBinding, vertices.attributes(), batch, sizeof(PackedVertex));
+    program.set("first_group", batch.first_group);
+    program.set("group_count", batch.group_count);
+    program.set("first_vertex", batch.first_vertex);
+    const unsigned wide = std::min(batch.group_count, layout::kDeformGroupsWide);
+    device.dispatch(wide, (batch.group_count + wide - 1) / wide);
+}
+
+}  // namespace
+
+Result<DeformPass> create_deform_pass(gpu::Device& device) {
+    const Result<const gpu::Program*> program = device.shaders().load({.compute = "deform.comp"});
+    if (!program) {
+        return program.error();
+    }
+    DeformPass pass;
+    pass.program = *program;
+    return pass;
+}
+
+void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
+    const DeformWork& work = shapes.work();
+    if (work.batches.empty()) {
+        return;
+    }
+    pass.jobs.set(work.jobs);
+    pass.groups.set(work.groups);
+    pass.rest.set(shapes.rest().texels());
+    pass.palettes.set(work.palettes);
+    pass.weights.set(work.weights);
+    graph.add_pass("deform", {}, {}, [&pass, &shapes](PassContext& context) {
+        gpu::Device& device = context.device();
+        device.use(*pass.program);
+        pass.jobs.bind(device, kJobsUnit);
+        pass.groups.bind(device, kGroupsUnit);
+        pass.rest.bind(device, kRestUnit);
+        pass.palettes.bind(device, kPalettesUnit);
+        pass.weights.bind(device, kWeightsUnit);
+        for (const DeformBatch& batch : shapes.work().batches) {
+            run_batch(device, *pass.program, shapes.vertices(), batch);
+        }
+        // Vertex buffers are no resources of the graph.
+        glMemoryBarrier(
+            GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT
+            | GL_SHADER_STORAGE_BARRIER_BIT);
+    });
+    graph.always_run();
+}
+
+}  // namespace limn

@@ -1,0 +1,164 @@
+// Meshes that change their shape, all instances in one dispatch: a thread a vertex adds what morph targets add and
+// goes where its joints take it (lib/skinning.glsl), now and the moment before.
+#version 450
+#include "deform_gpu.h"
+#include "lib/skinning.glsl"
+
+layout(local_size_x = 64) in;  // kDeformGroup
+layout(binding = 0) uniform usamplerBuffer jobs;        // DeformJob
+layout(binding = 1) uniform usamplerBuffer group_jobs;  // whose vertices a work group has
+layout(binding = 2) uniform usamplerBuffer rest;        // see deform_gpu.h
+layout(binding = 3) uniform samplerBuffer palettes;
+layout(binding = 4) uniform samplerBuffer weights;
+layout(std430, binding = 0) buffer Positions {
+    float positions[];
+};
+layout(std430, binding = 1) writeonly buffer Before {
+    float before[];
+};
+layout(std430, binding = 2) writeonly buffer Attributes {
+    uint attributes[];  // layout of PackedVertex
+};
+
+uniform uint first_group;
+uniform uint group_count;
+uniform uint first_vertex;  // that the three buffers show
+
+const uint kVertexWords = 10u;
+
+struct Vertex {
+    vec3 position;
+    vec3 normal;
+    vec3 tangent;
+};
+
+// Where a vertex's data are.
+struct Lists {
+    int texel;  // of the mesh
+    int influence;
+    int influence_end;
+    int offset;
+    int offset_end;
+};
+
+vec3 unpack_turn(uint a, uint b, bool second) {
+    vec2 u = unpackSnorm2x16(a);
+    vec2 v = unpackSnorm2x16(b);
+    return kLargestTurn * (second ? vec3(u.y, v) : vec3(u, v.x));
+}
+
+Vertex add_morphs(Vertex v, Lists lists, int first_weight, int weight_count) {
+    for (int i = lists.offset; i < lists.offset_end; i += int(kOffsetTexels)) {
+        uvec4 move = texelFetch(rest, lists.texel + i);
+        float w = int(move.w) < weight_count ? texelFetch(weights, first_weight + int(move.w)).x : 0.0;
+        if (w != 0.0) {
+            uvec4 turn = texelFetch(rest, lists.texel + i + 1);
+            v.position += w * uintBitsToFloat(move.xyz);
+            v.normal += w * unpack_turn(turn.x, turn.y, false);
+            v.tangent += w * unpack_turn(turn.y, turn.z, true);
+        }
+    }
+    return v;
+}
+
+Rows fetch_rows(int palette, uint joint) {
+    int texel = palette + 3 * int(joint);
+    return Rows(texelFetch(palettes, texel), texelFetch(palettes, texel + 1), texelFetch(palettes, texel + 2));
+}
+
+Vertex move_by_rows(Vertex v, Lists lists, int palette) {
+    Rows sum = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
+    uint strongest = 0u;
+    float most = -1.0;
+    for (int i = lists.influence; i < lists.influence_end; ++i) {
+        uvec4 two = texelFetch(rest, lists.texel + i);
+        vec2 w = uintBitsToFloat(two.yw);
+        sum = add_rows(sum, w.x, fetch_rows(palette, two.x));
+        sum = add_rows(sum, w.y, fetch_rows(palette, two.z));
+        uint stronger = w.x >= w.y ? two.x : two.z;
+        strongest = max(w.x, w.y) > most ? stronger : strongest;
+        most = max(most, max(w.x, w.y));
+    }
+    vec3 normal = rows_normal(sum, fetch_rows(palette, strongest), v.normal);
+    return Vertex(rows_point(sum, v.position), normal, rows_vector(sum, v.tangent));
+}
+
+Dual fetch_dual(int palette, uint joint) {
+    int texel = palette + 2 * int(joint);
+    return Dual(texelFetch(palettes, texel), texelFetch(palettes, texel + 1));
+}
+
+Vertex move_by_duals(Vertex v, Lists lists, int palette) {
+    Dual first = fetch_dual(palette, texelFetch(rest, lists.texel + lists.influence).x);
+    Dual sum = Dual(vec4(0.0), vec4(0.0));
+    for (int i = lists.influence; i < lists.influence_end; ++i) {
+        uvec4 two = texelFetch(rest, lists.texel + i);
+        vec2 w = uintBitsToFloat(two.yw);
+        sum = add_dual(sum, w.x, fetch_dual(palette, two.x), first.real);
+        sum = add_dual(sum, w.y, fetch_dual(palette, two.z), first.real);
+    }
+    Dual d = unit_dual(sum, first);
+    return Vertex(dual_point(d, v.position), dual_vector(d, v.normal), dual_vector(d, v.tangent));
+}
+
+Vertex deformed(Vertex v, Lists lists, uint flags, uint palette, uint first_weight, uint weight_count) {
+    v = add_morphs(v, lists, int(first_weight), int(weight_count));
+    if ((flags & kDeformJoints) == 0u || lists.influence == lists.influence_end) {
+        return v;
+    }
+    return (flags & kDeformDual) != 0u ? move_by_duals(v, lists, int(palette))
+                                       : move_by_rows(v, lists, int(palette));
+}
+
+void main() {
+    uint group = gl_WorkGroupID.y * kDeformGroupsWide + gl_WorkGroupID.x;
+    if (group >= group_count) {
+        return;
+    }
+    group += first_group;
+    int job = int(kDeformJobTexels * texelFetch(group_jobs, int(group)).x);
+    uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, flags
+    uvec4 job1 = texelFetch(jobs, job + 1);  // palette, palette_before, weights, weights_before
+    uvec4 job2 = texelFetch(jobs, job + 2);  // weight_count, first_group
+    uint number = (group - job2.y) * kDeformGroup + gl_LocalInvocationID.x;
+    if (number >= job0.y) {
+        return;
+    }
+    uint flags = job0.w;
+    uint place = job0.z + number - first_vertex;
+
+    if ((flags & kDeformCopyBefore) != 0u) {
+        for (uint i = 0u; i < 3u; ++i) {
+            before[3u * place + i] = positions[3u * place + i];
+        }
+    }
+    int texel = int(job0.x + kRestTexels * number);
+    uvec4 a = texelFetch(rest, texel);
+    uvec4 b = texelFetch(rest, texel + 1);
+    uvec4 c = texelFetch(rest, texel + 2);
+    Vertex v = Vertex(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz));
+    Lists lists = Lists(
+        int(job0.x),
+        int(a.w),
+        int(texelFetch(rest, texel + int(kRestTexels)).w),
+        int(b.w),
+        int(texelFetch(rest, texel + int(kRestTexels) + 1).w));
+    if ((flags & kDeformBefore) != 0u) {
+        vec3 p = deformed(v, lists, flags, job1.y, job1.w, job2.x).position;
+        before[3u * place] = p.x;
+        before[3u * place + 1u] = p.y;
+        before[3u * place + 2u] = p.z;
+    }
+    if ((flags & kDeformNow) != 0u) {
+        Vertex now = deformed(v, lists, flags, job1.x, job1.z, job2.x);
+        positions[3u * place] = now.position.x;
+        positions[3u * place + 1u] = now.position.y;
+        positions[3u * place + 2u] = now.position.z;
+        vec3 normal = unit_or(now.normal, uintBitsToFloat(b.xyz));
+        vec3 tangent = unit_or(now.tangent, uintBitsToFloat(c.xyz));
+        attributes[kVertexWords * place] = packSnorm2x16(normal.xy);
+        attributes[kVertexWords * place + 1u] = packSnorm2x16(vec2(normal.z, 0.0));
+        attributes[kVertexWords * place + 2u] = packSnorm2x16(tangent.xy);
+        attributes[kVertexWords * place + 3u] = packSnorm2x16(vec2(tangent.z, uintBitsToFloat(c.w)));
+    }
+}

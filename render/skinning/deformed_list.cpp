@@ -1,0 +1,371 @@
+#include "render/skinning/deformed_list.h"
+
+#include "ecs/base/hash.h"
+#include "ecs/base/jobs.h"
+#include "ecs/base/log.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "render/buffer_texture.h"
+#include "render/mesh_pool.h"
+#include "render/skinning/skin_palette.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kReckonGrain = 16;
+
+/// A number for what `now` and `before` are at the moment `alpha`; equal bytes, equal numbers.
+template <typename T>
+std::uint64_t sign_moment(const std::vector<T>& before, const std::vector<T>& now, float alpha) {
+    const auto hash = [](const std::vector<T>& values) {
+        return hash_bytes(values.data(), values.size() * sizeof(T), values.size());
+    };
+    const bool still = before.size() != now.size()
+                       || std::memcmp(before.data(), now.data(), now.size() * sizeof(T)) == 0;
+    if (still || alpha == 1.0f) {
+        return hash(now);
+    }
+    if (alpha == 0.0f) {
+        return hash(before);
+    }
+    return hash_combine(hash_combine(hash(before), hash(now)), std::bit_cast<std::uint32_t>(alpha));
+}
+
+bool is_finite(const Bounds& box) {
+    const Vec3 sum = box.min + box.max;
+    return std::isfinite(sum.x + sum.y + sum.z);
+}
+
+}  // namespace
+
+DeformedList::Entry& DeformedList::entry_of(Entity entity) {
+    index_of_.resize(std::max<std::size_t>(index_of_.size(), entity.index + 1), kNone);
+    std::uint32_t& index = index_of_[entity.index];
+    if (index != kNone && entries_[index].entity == entity) {
+        return entries_[index];
+    }
+    if (index != kNone) {
+        release(entries_[index]);  // the same slot of the world, another tenant
+        free_.push_back(index);
+    }
+    if (free_.empty()) {
+        free_.push_back(static_cast<std::uint32_t>(entries_.size()));
+        entries_.emplace_back();
+    }
+    index = free_.back();
+    free_.pop_back();
+    entries_[index] = {};
+    entries_[index].entity = entity;
+    return entries_[index];
+}
+
+void DeformedList::release(Entry& entry) {
+    if (entry.placed) {
+        vertices_.release(entry.first_vertex, entry.vertex_count);
+    }
+    entry.placed = false;
+    entry.drawn = 0;
+    entry.drawn_before = 0;
+}
+
+void DeformedList::forget() {
+    entries_.clear();
+    free_.clear();
+    index_of_.clear();
+    active_.clear();
+    reported_.clear();
+    rest_.clear();
+    vertices_.clear();
+}
+
+void DeformedList::report(const std::string& fault) {
+    if (reported_.insert(fault).second) {
+        log_warn("{}; it is drawn at rest", fault);
+    }
+}
+
+bool DeformedList::resolve(
+    const World& world, const Assets& assets, Entry& entry, std::string& fault) {
+    const std::string& name = assets.meshes[entry.mesh.index].name;
+    const Deformed& settings = entry.settings;
+    entry.rest = &rest_.get(assets, entry.mesh);
+    if (!entry.rest->fault.empty()) {
+        fault = fmt::format("deformed mesh {} {}", name, entry.rest->fault);
+        return false;
+    }
+    const bool alive = !settings.character.is_null() && world.alive(settings.character);
+    entry.pose = alive ? world.find<Pose>(settings.character) : nullptr;
+    entry.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
+    if (entry.pose == nullptr && entry.morphs == nullptr) {
+        fault = fmt::format(
+            "deformed mesh {}: its character {}",
+            name,
+            alive ? "has neither Pose nor MorphWeights" : "is gone");
+        return false;
+    }
+    entry.skin = nullptr;
+    if (settings.skin.index == kNoAsset) {
+        return true;
+    }
+    if (settings.skin.index >= assets.skins.size()) {
+        fault = fmt::format(
+            "deformed mesh {}: skin {} of {}", name, settings.skin.index, assets.skins.size());
+        return false;
+    }
+    const SkinData& skin = assets.skins[settings.skin.index];
+    const std::size_t joints = entry.pose != nullptr ? entry.pose->joints.size() : 0;
+    const auto beyond = std::find_if(
+        skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
+    if (beyond != skin.joints.end()) {
+        fault = fmt::format(
+            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}",
+            name,
+            skin.name,
+            *beyond,
+            joints);
+        return false;
+    }
+    if (skin.joint_from_mesh.size() != skin.joints.size()
+        || skin.joints.size() < entry.rest->joint_count) {
+        fault = fmt::format(
+            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices",
+            name,
+            entry.rest->joint_count,
+            skin.name,
+            skin.joints.size(),
+            skin.joint_from_mesh.size());
+        return false;
+    }
+    entry.skin = entry.rest->joint_count > 0 ? &skin : nullptr;
+    return true;
+}
+
+void DeformedList::reckon(Entry& entry) const {
+    const Deformed& settings = entry.settings;
+    const auto sign = [&](float alpha) {
+        std::uint64_t shape = hash_combine(entry.mesh.index, settings.skin.index);
+        shape = hash_combine(shape, static_cast<std::uint64_t>(settings.skinning));
+        shape = hash_combine(shape, settings.first_morph);
+        if (entry.skin != nullptr) {
+            shape =
+                hash_combine(shape, sign_moment(entry.pose->previous, entry.pose->joints, alpha));
+        }
+        if (entry.morphs != nullptr) {
+            shape = hash_combine(
+                shape, sign_moment(entry.morphs->previous, entry.morphs->weights, alpha));
+        }
+        return shape | 1;
+    };
+    entry.shape = sign(alpha_);
+    entry.before = sign(alpha_before_);
+    if (entry.reckoned == entry.shape) {
+        return;
+    }
+    entry.reckoned = entry.shape;
+    make_palette(entry.skin, entry.pose, settings.skinning, alpha_, entry.palette);
+    make_morph_weights(
+        entry.morphs,
+        settings.first_morph,
+        entry.rest->bounds.morphs.size(),
+        alpha_,
+        entry.weights);
+    entry.bounds =
+        posed_bounds(entry.rest->bounds, entry.palette, settings.skinning, entry.weights);
+}
+
+void DeformedList::update(
+    const World& world, const MeshPool& meshes, float alpha, float alpha_before) {
+    meshes_ = &meshes;
+    alpha_ = alpha;
+    alpha_before_ = alpha_before;
+    active_.clear();
+    for (Entry& entry : entries_) {
+        entry.seen = false;
+        entry.active = false;
+        entry.wanted = false;
+        entry.wanted_before = false;
+    }
+    const auto* assets = world.find_resource<Assets>();
+    if (assets == nullptr) {
+        return;
+    }
+    world.query<const Deformed, const MeshInstance, With<WorldTransform>>().each(
+        [&](Entity entity, const Deformed& settings, const MeshInstance& instance) {
+            const std::uint32_t mesh = instance.mesh.index;
+            if (mesh >= meshes.meshes().size() || meshes.meshes()[mesh].index_count == 0) {
+                return;
+            }
+            Entry& entry = entry_of(entity);
+            if (entry.mesh != instance.mesh) {
+                release(entry);
+            }
+            entry.seen = true;
+            entry.mesh = instance.mesh;
+            entry.settings = settings;
+            std::string fault;
+            entry.active = resolve(world, *assets, entry, fault);
+            if (entry.active) {
+                active_.push_back(static_cast<std::uint32_t>(&entry - entries_.data()));
+            } else {
+                report(fault);
+            }
+        });
+    // A mesh that is seen for the first time may have moved the others.
+    for (const std::uint32_t i : active_) {
+        entries_[i].rest = &rest_.get(*assets, entries_[i].mesh);
+    }
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+        Entry& entry = entries_[i];
+        if (!entry.active) {
+            release(entry);
+        }
+        if (!entry.seen && !entry.entity.is_null()) {
+            index_of_[entry.entity.index] = kNone;
+            entry = {};
+            free_.push_back(i);
+        }
+    }
+    parallel_for(active_.size(), kReckonGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            reckon(entries_[active_[i]]);
+        }
+    });
+    for (const std::uint32_t i : active_) {
+        Entry& entry = entries_[i];
+        if (!is_finite(entry.bounds)) {
+            entry.active = false;
+            release(entry);
+            report(fmt::format(
+                "deformed mesh {}: its character's pose or morph weights are not finite",
+                assets->meshes[entry.mesh.index].name));
+        }
+    }
+}
+
+std::int32_t DeformedList::request(std::uint32_t index, bool before) {
+    Entry& entry = entries_[index];
+    if (!entry.placed) {
+        entry.vertex_count = entry.rest->vertex_count;
+        entry.first_vertex =
+            vertices_.allocate(*meshes_, meshes_->meshes()[entry.mesh.index], entry.vertex_count);
+        entry.placed = true;
+    }
+    entry.wanted = true;
+    entry.wanted_before = entry.wanted_before || before;
+    if (before) {
+        vertices_.need_before();
+    }
+    return static_cast<std::int32_t>(entry.first_vertex);
+}
+
+void DeformedList::add_job(Entry& entry) {
+    const auto add_palette = [&](const std::vector<Affine>& palette) {
+        const auto first = static_cast<std::uint32_t>(palette_texels_.size());
+        append_texels(palette, entry.settings.skinning, palette_texels_);
+        return first;
+    };
+    const auto add_weights = [&](const std::vector<float>& values) {
+        const auto first = static_cast<std::uint32_t>(weights_.size());
+        weights_.insert(weights_.end(), values.begin(), values.end());
+        return first;
+    };
+    layout::DeformJob job{};
+    job.rest = entry.rest->first_texel;
+    job.vertex_count = entry.vertex_count;
+    job.slot = entry.first_vertex;
+    job.weight_count = static_cast<std::uint32_t>(entry.weights.size());
+    job.first_group = static_cast<std::uint32_t>(groups_.size());
+    if (entry.skin != nullptr) {
+        job.flags |= layout::kDeformJoints;
+        job.flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
+    }
+    if (entry.wanted_before && entry.drawn_before != entry.before) {
+        if (entry.drawn == entry.before) {
+            job.flags |= layout::kDeformCopyBefore;
+        } else {
+            job.flags |= layout::kDeformBefore;
+            std::vector<Affine> palette;
+            std::vector<float> weights;
+            make_palette(entry.skin, entry.pose, entry.settings.skinning, alpha_before_, palette);
+            make_morph_weights(
+                entry.morphs,
+                entry.settings.first_morph,
+                entry.weights.size(),
+                alpha_before_,
+                weights);
+            job.palette_before = add_palette(palette);
+            job.weights_before = add_weights(weights);
+        }
+        entry.drawn_before = entry.before;
+    }
+    if (entry.drawn != entry.shape) {
+        job.flags |= layout::kDeformNow;
+        job.palette = add_palette(entry.palette);
+        job.weights = add_weights(entry.weights);
+        entry.drawn = entry.shape;
+    }
+    const std::uint32_t groups =
+        (job.vertex_count + layout::kDeformGroup - 1) / layout::kDeformGroup;
+    groups_.insert(groups_.end(), groups, static_cast<std::uint32_t>(jobs_.size()));
+    jobs_.push_back(job);
+
+    // As many as a storage block can show in one dispatch.
+    const std::uint32_t end = job.slot + job.vertex_count;
+    const auto most = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedVertex));
+    if (work_.batches.empty() || end - work_.batches.back().first_vertex > most) {
+        const std::uint32_t aligned = job.slot / layout::kDeformGroup * layout::kDeformGroup;
+        work_.batches.push_back({.first_group = job.first_group, .first_vertex = aligned});
+    }
+    DeformBatch& batch = work_.batches.back();
+    batch.group_count += groups;
+    batch.end_vertex = end;
+}
+
+void DeformedList::write_jobs(gpu::RingBuffer& ring) {
+    work_ = {};
+    due_.clear();
+    jobs_.clear();
+    groups_.clear();
+    palette_texels_.clear();
+    weights_.clear();
+    if (meshes_ != nullptr) {
+        vertices_.use_indices_of(*meshes_);
+    }
+    for (const std::uint32_t i : active_) {
+        const Entry& entry = entries_[i];
+        const bool before = entry.wanted_before && entry.drawn_before != entry.before;
+        if (entry.wanted && (before || entry.drawn != entry.shape)) {
+            due_.push_back(i);
+        }
+    }
+    if (due_.empty()) {
+        return;
+    }
+    std::sort(due_.begin(), due_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return entries_[a].first_vertex < entries_[b].first_vertex;
+    });
+    for (const std::uint32_t i : due_) {
+        add_job(entries_[i]);
+        work_.vertices += entries_[i].vertex_count;
+    }
+    work_.instances = static_cast<int>(due_.size());
+    const auto push = [&](const auto& items) {
+        const std::span bytes = std::as_bytes(std::span(items));
+        const gpu::RingSlice slice =
+            ring.allocate(std::max<std::size_t>(bytes.size(), 16), BufferTexture::alignment());
+        std::memcpy(slice.data, bytes.data(), bytes.size());
+        return slice;
+    };
+    work_.jobs = push(jobs_);
+    work_.groups = push(groups_);
+    work_.palettes = push(palette_texels_);
+    work_.weights = push(weights_);
+}
+
+}  // namespace limn

@@ -1,0 +1,154 @@
+#include "render/skinning/rest_pool.h"
+
+#include "render/gpu/grown_buffer.h"
+#include "render/shaders/deform_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kFirstTexels = 1 << 14;
+constexpr std::size_t kTexelBytes = 16;
+
+using Texels = std::vector<layout::uvec4>;
+
+layout::uint bits(float x) {
+    return std::bit_cast<layout::uint>(std::isfinite(x) ? x : 0.0f);
+}
+
+/// Two shares of kLargestTurn.
+layout::uint pack_turn(float x, float y) {
+    const auto one = [](float v) {
+        const float share = std::isfinite(v) ? v / layout::kLargestTurn : 0.0f;
+        const long number = std::lround(std::clamp(share, -1.0f, 1.0f) * 32767.0f);
+        return static_cast<layout::uint>(number) & 0xffffu;
+    };
+    return one(x) | one(y) << 16;
+}
+
+/// One target's move of one vertex.
+struct Offset {
+    std::uint32_t target = 0;
+    std::size_t entry = 0;
+};
+
+/// By vertex, which targets move it, in their order.
+std::vector<std::vector<Offset>> offsets_of_vertices(const MeshData& mesh) {
+    std::vector<std::vector<Offset>> offsets(mesh.positions.size());
+    for (std::uint32_t t = 0; t < mesh.morphs.size(); ++t) {
+        const std::vector<std::uint32_t>& moved = mesh.morphs[t].vertices;
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            offsets[moved[i]].push_back({t, i});
+        }
+    }
+    return offsets;
+}
+
+/// The influences of all vertices; `first` gets the place of each vertex's own, and the end.
+Texels
+influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std::size_t>& first) {
+    Texels texels;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        first.push_back(texels.size());
+        const std::uint32_t end = skin.empty() ? 0 : skin.first[v + 1];
+        for (std::uint32_t i = skin.empty() ? 0 : skin.first[v]; i < end; i += 2) {
+            // An odd one out shares its texel with itself and no weight.
+            const bool alone = i + 1 == end;
+            texels.push_back(
+                {skin.joints[i],
+                 bits(skin.weights[i]),
+                 skin.joints[alone ? i : i + 1],
+                 alone ? 0 : bits(skin.weights[i + 1])});
+        }
+    }
+    first.push_back(texels.size());
+    return texels;
+}
+
+Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
+    Texels texels;
+    const auto at = [](const std::vector<Vec3>& offsets, std::size_t i) {
+        return offsets.empty() ? Vec3(0) : offsets[i];
+    };
+    for (const std::vector<Offset>& offsets : offsets_of_vertices(mesh)) {
+        first.push_back(texels.size());
+        for (const Offset& offset : offsets) {
+            const MorphTarget& target = mesh.morphs[offset.target];
+            const Vec3 p = target.positions[offset.entry];
+            const Vec3 n = at(target.normals, offset.entry);
+            const Vec3 t = at(target.tangents, offset.entry);
+            texels.push_back({bits(p.x), bits(p.y), bits(p.z), offset.target});
+            texels.push_back({pack_turn(n.x, n.y), pack_turn(n.z, t.x), pack_turn(t.y, t.z), 0});
+        }
+    }
+    first.push_back(texels.size());
+    return texels;
+}
+
+}  // namespace
+
+const RestMesh& RestPool::get(const Assets& assets, MeshId mesh) {
+    meshes_.resize(std::max<std::size_t>(meshes_.size(), mesh.index + 1));
+    std::optional<RestMesh>& made = meshes_[mesh.index];
+    if (!made) {
+        made = upload(assets.meshes[mesh.index]);
+    }
+    return *made;
+}
+
+RestMesh RestPool::upload(const MeshData& mesh) {
+    RestMesh made;
+    made.fault = check_deformable(mesh);
+    if (!made.fault.empty()) {
+        return made;
+    }
+    made.bounds = make_skin_bounds(mesh);
+    made.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    made.joint_count = made.bounds.joints.empty() ? 0u : made.bounds.joints.back().joint + 1u;
+
+    std::vector<std::size_t> first_influence;
+    std::vector<std::size_t> first_offset;
+    const Texels influences = influence_texels(mesh.skin, mesh.positions.size(), first_influence);
+    const Texels offsets = offset_texels(mesh, first_offset);
+    const std::size_t influences_at = layout::kRestTexels * (mesh.positions.size() + 1);
+    const std::size_t offsets_at = influences_at + influences.size();
+
+    Texels texels;
+    texels.reserve(offsets_at + offsets.size());
+    const auto at = [](const auto& values, std::size_t i, const auto& fallback) {
+        return i < values.size() ? values[i] : fallback;
+    };
+    for (std::size_t v = 0; v <= mesh.positions.size(); ++v) {
+        const Vec3 p = at(mesh.positions, v, Vec3(0));
+        const Vec3 n = normalize_or(at(mesh.normals, v, Vec3(0, 0, 1)), {0, 0, 1});
+        const Vec4 t = at(mesh.tangents, v, Vec4(any_perpendicular(n), 1));
+        const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
+        const auto influence = static_cast<layout::uint>(influences_at + first_influence[v]);
+        const auto offset = static_cast<layout::uint>(offsets_at + first_offset[v]);
+        texels.push_back({bits(p.x), bits(p.y), bits(p.z), influence});
+        texels.push_back({bits(n.x), bits(n.y), bits(n.z), offset});
+        texels.push_back({bits(t3.x), bits(t3.y), bits(t3.z), bits(t.w < 0 ? -1.0f : 1.0f)});
+    }
+    texels.insert(texels.end(), influences.begin(), influences.end());
+    texels.insert(texels.end(), offsets.begin(), offsets.end());
+
+    if (used_ + texels.size() > capacity_) {
+        capacity_ = std::max({used_ + texels.size(), 2 * capacity_, kFirstTexels});
+        buffer_ = gpu::grown_buffer(
+            "meshes at rest", buffer_, used_ * kTexelBytes, capacity_ * kTexelBytes);
+    }
+    buffer_.write(used_ * kTexelBytes, std::span<const layout::uvec4>(texels));
+    made.first_texel = static_cast<std::uint32_t>(used_);
+    used_ += texels.size();
+    return made;
+}
+
+void RestPool::clear() {
+    meshes_.clear();
+    used_ = 0;
+}
+
+}  // namespace limn

@@ -1,0 +1,82 @@
+#include "render/skinning/skin_palette.h"
+
+#include "ecs/base/rotation.h"
+#include "render/render_view.h"
+
+#include <cmath>
+
+namespace limn {
+namespace {
+
+Mat3 linear_part(const Affine& a) {
+    return glm::transpose(Mat3(Vec3(a.row[0]), Vec3(a.row[1]), Vec3(a.row[2])));
+}
+
+Vec3 translation_of(const Affine& a) {
+    return {a.row[0].w, a.row[1].w, a.row[2].w};
+}
+
+Quat turn_of(const Affine& a) {
+    return rotation_in(linear_part(a)).value_or(Quat(1, 0, 0, 0));
+}
+
+}  // namespace
+
+void make_palette(
+    const SkinData* skin,
+    const Pose* pose,
+    Skinning skinning,
+    float alpha,
+    std::vector<Affine>& palette) {
+    palette.clear();
+    if (skin == nullptr || pose == nullptr) {
+        return;
+    }
+    const bool moves = alpha != 1.0f && pose->previous.size() == pose->joints.size();
+    palette.reserve(skin->joints.size());
+    for (std::size_t i = 0; i < skin->joints.size(); ++i) {
+        const std::uint16_t j = skin->joints[i];
+        const Affine joint =
+            moves ? mix_affine(pose->previous[j], pose->joints[j], alpha) : pose->joints[j];
+        const Affine taken = joint * skin->joint_from_mesh[i];
+        palette.push_back(
+            skinning == Skinning::Linear
+                ? taken
+                : affine_from(translation_of(taken), turn_of(taken), Vec3(1)));
+    }
+}
+
+void make_morph_weights(
+    const MorphWeights* morphs,
+    std::size_t first,
+    std::size_t count,
+    float alpha,
+    std::vector<float>& weights) {
+    weights.assign(count, 0.0f);
+    if (morphs == nullptr) {
+        return;
+    }
+    const bool moves = alpha != 1.0f && morphs->previous.size() == morphs->weights.size();
+    for (std::size_t i = 0; i < count && first + i < morphs->weights.size(); ++i) {
+        const float now = morphs->weights[first + i];
+        const float before = moves ? morphs->previous[first + i] : now;
+        const float mixed = moves ? before + alpha * (now - before) : now;
+        weights[i] = std::isfinite(mixed) ? mixed : 0.0f;
+    }
+}
+
+void append_texels(
+    const std::vector<Affine>& palette, Skinning skinning, std::vector<Vec4>& texels) {
+    for (const Affine& joint : palette) {
+        if (skinning == Skinning::Linear) {
+            texels.insert(texels.end(), {joint.row[0], joint.row[1], joint.row[2]});
+            continue;
+        }
+        const Quat turn = turn_of(joint);
+        const Quat way = 0.5f * (Quat(0, translation_of(joint)) * turn);
+        texels.emplace_back(turn.x, turn.y, turn.z, turn.w);
+        texels.emplace_back(way.x, way.y, way.z, way.w);
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,505 @@
+// clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
+#include "tests/render/skin_fixture.h"
+// clang-format on
+#include "render/skinning/deformed_list.h"
+#include "tests/support.h"
+
+#include <glm/geometric.hpp>
+
+#include <string>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+struct SkinTest : SkinScene {
+    oracle::ReadSkin read(Entity entity, float alpha = 1, float alpha_before = 0) {
+        return gpu.run(world, std::vector<Entity>{entity}, alpha, alpha_before)[0];
+    }
+    /// A tube of eleven joints, most of its vertices on several.
+    Entity snake(Skinning skinning, int joints, int most, std::uint64_t seed) {
+        Random random(seed, 0, 0, 0);
+        MeshData tube = make_tube(4 * joints, 8, 0.25f * static_cast<float>(joints - 1));
+        add_weights(tube, joints, most, random);
+        const bool scaled = skinning == Skinning::Linear;
+        Pose pose;
+        pose.joints = random_joints(joints, 0.25f, 0.7f, scaled, random);
+        pose.previous = random_joints(joints, 0.25f, 0.7f, scaled, random);
+        return SkinScene::pose(
+            add(std::move(tube)),
+            gray,
+            add_skin(make_chain(joints, 0.25f)),
+            std::move(pose),
+            skinning);
+    }
+
+    oracle::SkinReadback gpu = *oracle::SkinReadback::create(device());
+    const MaterialId gray = add(Material{});
+};
+
+/// A tube of two joints, the upper one at `y` and turned; all vertices above 0 half and half.
+struct Bend {
+    MeshData mesh;
+    SkinData skin;
+    Pose pose;
+};
+Bend make_bend(const Vec3& axis, float angle, float upper_weight) {
+    Bend bend = {.mesh = make_tube(4, 16, 1), .skin = {}, .pose = {}};
+    bend.mesh.skin.first.push_back(0);
+    for (std::size_t i = 0; i < bend.mesh.positions.size(); ++i) {
+        bend.mesh.skin.joints.insert(bend.mesh.skin.joints.end(), {0, 1});
+        bend.mesh.skin.weights.insert(
+            bend.mesh.skin.weights.end(), {1 - upper_weight, upper_weight});
+        bend.mesh.skin.first.push_back(static_cast<std::uint32_t>(2 * (i + 1)));
+    }
+    bend.skin = make_chain(2, 0);
+    bend.pose.joints = {Affine{}, affine_from(Vec3(0), rotation_about(axis, angle), Vec3(1))};
+    bend.pose.previous = bend.pose.joints;
+    return bend;
+}
+
+float axis_distance(const Vec3& p) {
+    return std::hypot(p.x, p.z);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: vertices are those of double precision within 1e-4 of the box") {
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        for (const int joints : {2, 11, 300}) {  // 300: more than a byte counts
+            const Entity entity = snake(skinning, joints, 6, static_cast<std::uint64_t>(joints));
+            const oracle::ReadSkin got = read(entity);
+            const auto want_now = want(entity);
+            CHECK(largest_error(got.positions, want_now) <= 1e-4);
+            CHECK(largest_error(got.before, want(entity, true)) <= 1e-4);
+            double worst_normal = 0;
+            double worst_tangent = 0;
+            for (std::size_t i = 0; i < want_now.size(); ++i) {
+                CHECK(std::abs(glm::length(got.normals[i]) - 1) <= 1e-4f);
+                CHECK(got.tangents[i].w == 1.0f);
+                worst_normal = std::max(
+                    worst_normal, glm::distance(glm::dvec3(got.normals[i]), want_now[i].normal));
+                worst_tangent = std::max(
+                    worst_tangent,
+                    glm::distance(glm::dvec3(Vec3(got.tangents[i])), want_now[i].tangent));
+            }
+            CHECK(worst_normal <= 2e-4);
+            CHECK(worst_tangent <= 2e-4);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: where joints are as they were bound, vertices stay") {
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        const Entity entity = snake(skinning, 7, 5, 3);
+        Pose& pose = world.get<Pose>(entity);
+        for (std::size_t j = 0; j < pose.joints.size(); ++j) {
+            pose.joints[j] = at({0, 0.25f * static_cast<float>(j), 0});
+        }
+        const oracle::ReadSkin got = read(entity);
+        const MeshData& rest = mesh_of(entity);
+        for (std::size_t i = 0; i < rest.positions.size(); ++i) {
+            CHECK(glm::distance(got.positions[i], rest.positions[i]) <= 1e-5f);
+            CHECK(glm::distance(got.normals[i], rest.normals[i]) <= 1e-4f);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: a rigid motion of all joints is that motion of all vertices") {
+    const Affine motion = affine_from({1, 2, 3}, rotation_about({1, 2, 0}, 1.1f), Vec3(1));
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        const Entity entity = snake(skinning, 7, 5, 4);
+        Pose& pose = world.get<Pose>(entity);
+        for (std::size_t j = 0; j < pose.joints.size(); ++j) {
+            pose.joints[j] = motion * at({0, 0.25f * static_cast<float>(j), 0});
+        }
+        const oracle::ReadSkin got = read(entity);
+        const MeshData& rest = mesh_of(entity);
+        for (std::size_t i = 0; i < rest.positions.size(); ++i) {
+            const Vec3 want = transform_point(motion, rest.positions[i]);
+            CHECK(glm::distance(got.positions[i], want) <= 2e-5f);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest,
+    "skin_gpu: one joint of weight 1 carries a vertex, and joints without weight nothing") {
+    MeshData tube = make_tube(4, 8, 1);
+    tube.skin.first.push_back(0);
+    for (std::size_t i = 0; i < tube.positions.size(); ++i) {
+        tube.skin.joints.insert(tube.skin.joints.end(), {1, 0});
+        tube.skin.weights.insert(tube.skin.weights.end(), {1, 0});
+        tube.skin.first.push_back(static_cast<std::uint32_t>(2 * (i + 1)));
+    }
+    const Affine carried = affine_from({1, 2, 3}, rotation_about({1, 1, 0}, 2), Vec3(1));
+    Pose pose;
+    pose.joints = {
+        affine_from(Vec3(1e6f), Quat(1, 0, 0, 0), Vec3(-1e5f, 7, 0)), carried, at({0, 0, 0})};
+    pose.joints[2].row[1] = Vec4(NAN);  // nobody's
+    const SkinId skin = add_skin(make_chain(3, 0.5f));
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        const Entity entity = SkinScene::pose(add(tube), gray, skin, pose, skinning);
+        const oracle::ReadSkin got = read(entity);
+        REQUIRE(got.positions.size() == tube.positions.size());
+        for (std::size_t i = 0; i < tube.positions.size(); ++i) {
+            // char.skin-rigid: as far from the joint as at rest.
+            const Vec3 rest = tube.positions[i] - Vec3(0, 0.5f, 0);
+            CHECK(glm::distance(got.positions[i], transform_point(carried, rest)) <= 1e-5f);
+            const Vec3 normal = transform_vector(carried, tube.normals[i]);
+            CHECK(glm::distance(got.normals[i], normal) <= 1e-4f);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: offsets a joint of each vertex give what offsets of the joints give") {
+    const Entity entity = snake(Skinning::Linear, 9, 4, 5);
+    const std::vector<Vec3> got = read(entity).positions;
+    const MeshData& mesh = mesh_of(entity);
+    const Pose& pose = world.get<Pose>(entity);
+    const SkinData& skin = world.resource<Assets>().skins[0];
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        Vec3 sum(0);  // char.skin-vertex-offset: o = M_rest^-1 v, v' = sum w M o
+        for (std::uint32_t i = mesh.skin.first[v]; i < mesh.skin.first[v + 1]; ++i) {
+            const std::uint16_t j = mesh.skin.joints[i];
+            const Vec3 offset = transform_point(skin.joint_from_mesh[j], mesh.positions[v]);
+            sum += mesh.skin.weights[i] * transform_point(pose.joints[j], offset);
+        }
+        CHECK(glm::distance(got[v], sum) <= 1e-5f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: a twist by half weights keeps the radius with dual quaternions") {
+    for (const float angle : {30.0f, 60.0f, 90.0f, 120.0f, 150.0f, 179.0f}) {
+        Bend bend = make_bend({0, 1, 0}, radians(angle), 0.5f);
+        const MeshId mesh = add(bend.mesh);
+        const SkinId skin = add_skin(bend.skin);
+        const Entity linear = pose(mesh, gray, skin, bend.pose);
+        const Entity dual = pose(mesh, gray, skin, bend.pose, Skinning::DualQuaternion);
+        const std::vector<Vec3> shrunk = read(linear).positions;
+        const std::vector<Vec3> kept = read(dual).positions;
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            CHECK(axis_distance(kept[i]) / 0.2f >= 0.99f);
+            CHECK(axis_distance(kept[i]) / 0.2f <= 1.01f);
+            // char.skin-defects: r cos(a / 2).
+            const float want = 0.2f * std::cos(radians(angle) / 2);
+            CHECK(axis_distance(shrunk[i]) == doctest::Approx(want).epsilon(1e-4));
+        }
+        world.destroy(linear);
+        world.destroy(dual);
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a twist by half a turn leaves unit normals") {
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        const Bend bend = make_bend({0, 1, 0}, kPi, 0.4f);
+        const Bend worst = make_bend({0, 1, 0}, kPi, 0.5f);
+        for (const Bend& one : {bend, worst}) {
+            const Entity entity = pose(add(one.mesh), gray, add_skin(one.skin), one.pose, skinning);
+            const oracle::ReadSkin got = read(entity);
+            for (std::size_t i = 0; i < got.normals.size(); ++i) {
+                CHECK(std::abs(glm::length(got.normals[i]) - 1) <= 1e-4f);
+                CHECK(std::isfinite(got.positions[i].x));
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: 300 morph targets add up as in double precision") {
+    Random random(7, 0, 0, 0);
+    MeshData ball = make_ball(12);
+    add_morphs(ball, 300, 3, 0.05f, random);
+    const MeshId mesh = add(std::move(ball));
+    const Entity entity = place(mesh, gray, {});
+    MorphWeights morphs;
+    for (int i = 0; i < 304; ++i) {
+        const bool on = random.below(3) != 0;
+        morphs.weights.push_back(on ? random.uniform(-0.5f, 1.5f) : 0.0f);
+        morphs.previous.push_back(random.uniform());
+    }
+    world.add(entity, morphs);
+    world.add(entity, Deformed{entity, {}, 4, Skinning::Linear});
+    const oracle::ReadSkin got = read(entity);
+    const auto now = want(entity);
+    CHECK(largest_error(got.positions, now) <= 1e-4);
+    CHECK(largest_error(got.before, want(entity, true)) <= 1e-4);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        CHECK(glm::distance(glm::dvec3(got.normals[i]), now[i].normal) <= 4e-3);
+    }
+    // Fewer weights than targets: the others are 0. No number: 0.
+    world.get<MorphWeights>(entity).weights.resize(10);
+    world.get<MorphWeights>(entity).previous.resize(10);
+    CHECK(largest_error(read(entity).positions, want(entity)) <= 1e-4);
+    world.get<MorphWeights>(entity).weights[5] = NAN;
+    world.get<MorphWeights>(entity).previous[5] = NAN;
+    const oracle::ReadSkin without = read(entity);
+    world.get<MorphWeights>(entity).weights[5] = 0;
+    CHECK(largest_error(without.positions, want(entity)) <= 1e-4);
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest,
+    "skin_gpu: a morph target moves its vertices and not a bit of the others, then joints turn "
+    "all") {
+    Random random(8, 0, 0, 0);
+    Bend bend = make_bend({1, 0, 0}, 0.8f, 1.0f);
+    add_morphs(bend.mesh, 1, 2, 0.1f, random);
+    const SkinId skin = add_skin(bend.skin);
+    const Entity entity = pose(add(bend.mesh), gray, skin, bend.pose);
+    const std::vector<Vec3> without = read(entity).positions;
+    world.add(entity, MorphWeights{.weights = {1}, .previous = {1}});
+    const std::vector<Vec3> with = read(entity).positions;
+    const MorphTarget& target = mesh_of(entity).morphs[0];
+    for (std::uint32_t v = 0; v < with.size(); ++v) {
+        const auto found = std::find(target.vertices.begin(), target.vertices.end(), v);
+        if (found == target.vertices.end()) {
+            CHECK(with[v] == without[v]);
+            continue;
+        }
+        const Vec3 offset =
+            target.positions[static_cast<std::size_t>(found - target.vertices.begin())];
+        const Vec3 want = without[v] + transform_vector(bend.pose.joints[1], offset);
+        CHECK(glm::distance(with[v], want) <= 1e-6f);
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: positions before are those that the last frame had") {
+    const Entity entity = snake(Skinning::Linear, 11, 4, 9);
+    Random random(9, 1, 0, 0);
+    std::vector<Vec3> last = read(entity).positions;
+    for (int frame = 0; frame < 3; ++frame) {
+        Pose& pose = world.get<Pose>(entity);
+        pose.previous = pose.joints;
+        pose.joints = random_joints(11, 0.25f, 0.5f, true, random);
+        const oracle::ReadSkin got = read(entity);
+        CHECK(got.before == last);
+        CHECK(got.positions != last);
+        last = got.positions;
+    }
+    // A character that has just come was always there: no motion.
+    world.get<Pose>(entity).previous.clear();
+    const oracle::ReadSkin spawned = read(entity);
+    CHECK(spawned.before == spawned.positions);
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: between two steps joints are componentwise between") {
+    const Entity entity = snake(Skinning::Linear, 5, 4, 10);
+    const oracle::ReadSkin ends = read(entity, 1, 0);
+    const oracle::ReadSkin between = read(entity, 0.25f, -0.5f);
+    for (std::size_t i = 0; i < ends.positions.size(); ++i) {
+        // Linear blending is linear in the joints.
+        const Vec3 motion = ends.positions[i] - ends.before[i];
+        CHECK(glm::distance(between.positions[i], ends.before[i] + 0.25f * motion) <= 1e-5f);
+        CHECK(glm::distance(between.before[i], ends.before[i] - 0.5f * motion) <= 1e-5f);
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: no vertex leaves the box that culls it") {
+    Random random(11, 0, 0, 0);
+    for (int i = 0; i < 40; ++i) {
+        const Skinning skinning = i % 2 == 0 ? Skinning::Linear : Skinning::DualQuaternion;
+        MeshData tube = make_tube(20, 8, 1);
+        add_weights(tube, 5, 2 + i % 3, random);
+        add_morphs(tube, 3, 2, 0.3f, random);
+        Pose pose;
+        const bool wild = i < 30;
+        pose.joints = random_joints(5, 0.25f, wild ? kPi : 0.4f, i % 4 == 0, random);
+        const Entity entity = SkinScene::pose(
+            add(std::move(tube)), gray, add_skin(make_chain(5, 0.25f)), pose, skinning);
+        const float most = wild ? 1.0f : 0.1f;
+        MorphWeights morphs;
+        for (int t = 0; t < 3; ++t) {
+            morphs.weights.push_back(random.uniform(-most, most));
+        }
+        world.add(entity, morphs);
+        const std::vector<Vec3> got = read(entity).positions;
+        const Bounds box = gpu.shapes()[gpu.shapes().find(entity)].bounds;
+        const Vec3 slack = Vec3(1e-5f);
+        for (const Vec3& p : got) {
+            CHECK(glm::all(glm::lessThanEqual(box.min - slack, p)));
+            CHECK(glm::all(glm::lessThanEqual(p, box.max + slack)));
+        }
+        CHECK((wild || glm::length(box.max - box.min) < 2 * size_of(got)));
+        world.destroy(entity);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: only what is drawn and changed is reckoned, once for all views") {
+    const Entity first = snake(Skinning::Linear, 5, 4, 12);
+    const Entity second = snake(Skinning::DualQuaternion, 5, 4, 13);
+    world.get<Pose>(first).previous = world.get<Pose>(first).joints;
+    world.get<Pose>(second).previous = world.get<Pose>(second).joints;
+    const std::vector<Entity> both = {first, second};
+    const auto reckoned = [&](const std::vector<Entity>& drawn, float alpha) {
+        gpu.run(world, drawn, alpha, 0, true, 3);
+        return gpu.shapes().work().instances;
+    };
+    CHECK(reckoned({first}, 1) == 1);
+    CHECK(reckoned(both, 1) == 1);
+    CHECK(reckoned(both, 1) == 0);  // a still herd costs nothing
+    CHECK(reckoned(both, 0.5f) == 0);
+    world.get<Pose>(first).joints[2].row[0].w += 0.1f;
+    CHECK(reckoned({second}, 1) == 0);  // not seen
+    CHECK(reckoned(both, 1) == 1);
+    CHECK(reckoned(both, 1) == 0);
+    CHECK(reckoned(both, 0.5f) == 1);
+    world.get<Deformed>(second).skinning = Skinning::Linear;
+    CHECK(reckoned(both, 0.5f) == 1);
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, and each is itself") {
+    Random random(14, 0, 0, 0);
+    MeshData tube = make_tube(8, 6, 1);
+    add_weights(tube, 5, 4, random);
+    const MeshId mesh = add(std::move(tube));
+    const SkinId skin = add_skin(make_chain(5, 0.25f));
+    std::vector<Entity> herd;
+    for (int i = 0; i < 1000; ++i) {
+        Pose its;
+        its.joints = random_joints(5, 0.25f, 0.6f, false, random);
+        herd.push_back(pose(mesh, gray, skin, std::move(its)));
+    }
+    device().reset_stats();
+    const std::vector<oracle::ReadSkin> got = gpu.run(world, herd);
+    CHECK(device().stats().dispatches == 1);
+    for (std::size_t i = 0; i < herd.size(); i += 111) {
+        CHECK(largest_error(got[i].positions, want(herd[i])) <= 1e-4);
+    }
+    // Where a storage block shows few vertices, several dispatches do the same.
+    oracle::SkinReadback narrow = *oracle::SkinReadback::create(device(), 40 * 1024);
+    device().reset_stats();
+    const std::vector<oracle::ReadSkin> same = narrow.run(world, herd);
+    CHECK(device().stats().dispatches > 50);
+    for (std::size_t i = 0; i < herd.size(); i += 37) {
+        CHECK(same[i].positions == got[i].positions);
+        CHECK(same[i].normals == got[i].normals);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: who goes gives its vertices back, and the others keep theirs") {
+    std::vector<Entity> herd;
+    for (std::uint64_t i = 0; i < 24; ++i) {
+        herd.push_back(snake(Skinning::Linear, 2 + static_cast<int>(i % 5) * 3, 4, 20 + i));
+    }
+    gpu.run(world, herd);
+    const std::uint32_t used = gpu.shapes().vertices().slots().used();
+    const std::uint32_t capacity = gpu.shapes().vertices().slots().capacity();
+    for (std::size_t i = 0; i < herd.size(); i += 2) {
+        world.destroy(herd[i]);
+        herd[i] = {};
+    }
+    std::erase(herd, Entity{});
+    gpu.run(world, {});
+    CHECK(gpu.shapes().vertices().slots().used() < used);
+    for (std::uint64_t i = 0; i < 12; ++i) {
+        herd.push_back(snake(Skinning::Linear, 2 + static_cast<int>(i % 5) * 3, 4, 50 + i));
+    }
+    const std::vector<oracle::ReadSkin> got = gpu.run(world, herd);
+    CHECK(gpu.shapes().vertices().slots().capacity() == capacity);
+    for (std::size_t i = 0; i < herd.size(); ++i) {
+        CHECK(largest_error(got[i].positions, want(herd[i])) <= 1e-4);
+    }
+    // Growing keeps what is there, without another look at it.
+    herd.push_back(snake(Skinning::Linear, 200, 4, 90));
+    const std::vector<oracle::ReadSkin> more = gpu.run(world, herd);
+    CHECK(gpu.shapes().vertices().slots().capacity() > capacity);
+    CHECK(gpu.shapes().work().instances == 1);
+    for (std::size_t i = 0; i < herd.size(); ++i) {
+        CHECK(largest_error(more[i].positions, want(herd[i])) <= 1e-4);
+    }
+    world.clear();
+    world.insert_resource(Assets{});
+    gpu.shapes().forget();
+    CHECK(gpu.shapes().vertices().slots().used() == 0);
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one line says why") {
+    const auto complaint = [&](Entity entity) {
+        const std::vector<std::string> messages = messages_of([&] {
+            for (int frame = 0; frame < 2; ++frame) {
+                CHECK(read(entity).positions.empty());
+            }
+        });
+        gpu.shapes().forget();
+        REQUIRE(messages.size() == 1);
+        CHECK(messages[0].find("tube") != std::string::npos);
+        CHECK(messages[0].find("at rest") != std::string::npos);
+        world.destroy(entity);
+        return messages[0];
+    };
+    const auto has = [](const std::string& text, const char* part) {
+        return text.find(part) != std::string::npos;
+    };
+    Entity entity = snake(Skinning::Linear, 5, 4, 30);
+    const Entity gone = world.create();
+    world.get<Deformed>(entity).character = gone;
+    CHECK(has(complaint(entity), "neither Pose nor MorphWeights"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Deformed>(entity).character = gone;
+    world.destroy(gone);
+    CHECK(has(complaint(entity), "is gone"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Deformed>(entity).character = {};
+    CHECK(has(complaint(entity), "is gone"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Pose>(entity).joints.resize(4);
+    CHECK(has(complaint(entity), "follows joint 4, its character's pose has 4"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Deformed>(entity).skin = add_skin(make_chain(3, 0.25f));
+    CHECK(has(complaint(entity), "name 5 joints, skin chain has 3"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Deformed>(entity).skin = {77};
+    CHECK(has(complaint(entity), "skin 77"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<Pose>(entity).joints[3].row[1].y = NAN;
+    CHECK(has(complaint(entity), "not finite"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    world.get<MeshInstance>(entity).mesh = add(make_tube(2, 5, 1));
+    CHECK(has(complaint(entity), "neither joints nor morph targets"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    MeshData broken = mesh_of(entity);
+    broken.skin.first.pop_back();
+    world.get<MeshInstance>(entity).mesh = add(broken);
+    CHECK(has(complaint(entity), "ranges"));
+    entity = snake(Skinning::Linear, 5, 4, 30);
+    broken = mesh_of(entity);
+    broken.morphs.push_back(
+        {.name = "far",
+         .vertices = {99999},
+         .positions = {Vec3(0)},
+         .normals = {},
+         .tangents = {}});
+    world.get<MeshInstance>(entity).mesh = add(broken);
+    CHECK(has(complaint(entity), "vertex 99999"));
+}
+
+TEST_CASE("slot_allocator: what is given back is found again, and neighbors become one") {
+    SlotAllocator slots;
+    CHECK_FALSE(slots.allocate(1).has_value());
+    slots.grow(100);
+    CHECK(slots.allocate(40) == 0u);
+    CHECK(slots.allocate(30) == 40u);
+    CHECK(slots.allocate(20) == 70u);
+    CHECK_FALSE(slots.allocate(11).has_value());
+    slots.release(40, 30);
+    CHECK(slots.gaps() == 2);
+    CHECK(slots.allocate(10) == 40u);
+    slots.release(70, 20);
+    CHECK(slots.gaps() == 1);
+    CHECK(slots.allocate(50) == 50u);
+    slots.release(0, 40);
+    slots.release(40, 10);
+    slots.release(50, 50);
+    CHECK(slots.gaps() == 1);
+    CHECK(slots.used() == 0);
+    slots.grow(150);
+    CHECK(slots.allocate(150) == 0u);
+}
+
+}  // namespace limn::test
