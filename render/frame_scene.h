@@ -17,6 +17,7 @@
 #include "render/shadow/volume_list.h"
 
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -85,6 +86,7 @@ struct FrameScene {
     VolumeList volumes;
     SceneEnvironment environment;
     RenderView view;
+    std::optional<float> since_last;  ///< simulated time since the picture before [s]; none: a cut
     GLenum radiance_format = GL_RGBA16F;
     gpu::RingSlice view_block;
     gpu::RingSlice environment_block;

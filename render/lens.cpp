@@ -4,6 +4,7 @@
 #include "ecs/world.h"
 #include "render/frame_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace limn {
@@ -21,6 +22,45 @@ Pass* OptionalPass<Pass>::get(gpu::Device& device, Result<Pass> (*create)(gpu::D
     }
     return pass_ ? &*pass_ : nullptr;
 }
+
+namespace {
+
+bool opens_shutter(const MotionBlur& blur) {
+    return blur.shutter > 0.0f && blur.longest > 0.0f;
+}
+
+TextureId apply_motion_blur(
+    FrameGraph& graph,
+    LensPasses& passes,
+    const MotionBlur& blur,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
+    TextureId radiance) {
+    const bool open = opens_shutter(blur);
+    if (open && blur.mode == MotionBlurMode::Accumulate) {
+        auto* pass = passes.motion_accumulate.get(*passes.device, create_motion_accumulate_pass);
+        const int window = std::clamp(blur.window, 1, 16);
+        return pass == nullptr
+                   ? radiance
+                   : accumulate_motion(graph, *pass, window, !scene.since_last, radiance);
+    }
+    if (auto* pass = passes.motion_accumulate.made()) {
+        forget_motion(*pass);
+    }
+    if (open && blur.mode == MotionBlurMode::Reconstruct) {
+        const auto* pass = passes.motion_blur.get(*passes.device, create_motion_blur_pass);
+        return pass == nullptr ? radiance
+                               : blur_motion(graph, *pass, blur, scene, gbuffer, radiance);
+    }
+    if (open && blur.mode == MotionBlurMode::Camera) {
+        const auto* pass = passes.motion_camera.get(*passes.device, create_motion_camera_pass);
+        return pass == nullptr ? radiance
+                               : blur_camera_motion(graph, *pass, blur, scene, gbuffer, radiance);
+    }
+    return radiance;
+}
+
+}  // namespace
 
 LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
     LensSettings settings;
@@ -40,7 +80,8 @@ LensSettings lens_of_mean(const LensSettings& settings) {
 }
 
 bool needs_velocity(const LensSettings& settings) {
-    return blurs(settings.motion_blur);
+    return opens_shutter(settings.motion_blur)
+           && settings.motion_blur.mode == MotionBlurMode::Reconstruct;
 }
 
 TextureId apply_lens(
@@ -50,12 +91,7 @@ TextureId apply_lens(
     const FrameScene& scene,
     const Gbuffer& gbuffer,
     TextureId radiance) {
-    if (blurs(settings.motion_blur)) {
-        if (const MotionBlurPass* pass =
-                passes.motion_blur.get(*passes.device, create_motion_blur_pass)) {
-            radiance = blur_motion(graph, *pass, settings.motion_blur, scene, gbuffer, radiance);
-        }
-    }
+    radiance = apply_motion_blur(graph, passes, settings.motion_blur, scene, gbuffer, radiance);
     if (settings.glow.strength > 0) {
         if (const GlowPass* pass = passes.glow.get(*passes.device, create_glow_pass)) {
             radiance = draw_glow(graph, *pass, settings.glow, radiance);

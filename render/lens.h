@@ -4,7 +4,9 @@
 #include "ecs/components/motion_blur.h"
 #include "render/gbuffer.h"
 #include "render/passes/glow_pass.h"
+#include "render/passes/motion_accumulate_pass.h"
 #include "render/passes/motion_blur_pass.h"
+#include "render/passes/motion_camera_pass.h"
 
 #include <optional>
 
@@ -45,6 +47,8 @@ class OptionalPass {
   public:
     /// Null if it cannot be made.
     [[nodiscard]] Pass* get(gpu::Device& device, Result<Pass> (*create)(gpu::Device&));
+    /// Null if it was not needed yet.
+    [[nodiscard]] Pass* made() { return pass_ ? &*pass_ : nullptr; }
 
   private:
     std::optional<Pass> pass_;
@@ -56,6 +60,8 @@ struct LensPasses {
 
     gpu::Device* device;
     OptionalPass<MotionBlurPass> motion_blur;
+    OptionalPass<MotionAccumulatePass> motion_accumulate;
+    OptionalPass<MotionCameraPass> motion_camera;
     OptionalPass<GlowPass> glow;
 };
 

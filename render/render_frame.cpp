@@ -460,11 +460,12 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
 }
 
 void Renderer::develop_image(const World& world, const LensSettings& lens, FrameTextures& made) {
+    scene.since_last = seconds_since_last(
+        clock_, assets_, shown_time(world, scene.view), scene.view.world_from_camera);
     made.radiance = apply_lens(graph, passes.lens, lens, scene, made.gbuffer, made.radiance);
     graph.keep(made.radiance);
-    const std::optional<float> seconds = seconds_since_last(
-        clock_, assets_, shown_time(world, scene.view), scene.view.world_from_camera);
-    made.display = develop(graph, passes.developer, exposure_of(world), seconds, made.radiance);
+    made.display =
+        develop(graph, passes.developer, exposure_of(world), scene.since_last, made.radiance);
     graph.keep(made.display);
 }
 

@@ -2,19 +2,40 @@
 
 #include "ecs/reflect.h"
 
+#include <cstdint>
+
 namespace limn {
+
+/// How a smear is made. All but the first are older methods, here to be compared with.
+enum class MotionBlurMode : std::uint8_t {
+    Reconstruct,  ///< each pixel gathers what passes it, by depth and velocity: the one to use
+    Accumulate,   ///< the mean of the last pictures (post.motion-blur-accumulation)
+    Camera,       ///< the camera's motion alone (post.motion-blur-camera-psf)
+};
 
 /// Resource: what moves while the shutter is open is smeared. Absent: as if the shutter opened for
 /// no time. The exposure is centered on the moment shown and lasts shutter / 360 of the time
 /// between two pictures.
 struct MotionBlur {
+    MotionBlurMode mode = MotionBlurMode::Reconstruct;
     float shutter = 180.0f;  ///< angle of a rotary shutter [deg], 0 = off, 360 = always open
     int samples = 16;      ///< along a smear, 4 .. 64; what fast things do costs no more than that
     float longest = 0.2f;  ///< smear, as a share of the picture's height; longer ones are cut
+    int window = 5;        ///< pictures of Accumulate, 1 .. 16; has no shutter
 };
+
+/// Half of the exposure, as a share of the time between two pictures.
+[[nodiscard]] inline float half_exposure(const MotionBlur& blur) {
+    return 0.5f * blur.shutter / 360.0f;
+}
 
 template <typename Visitor>
 void visit_fields(MotionBlur& blur, Visitor&& visit) {
+    visit(
+        "mode",
+        blur.mode,
+        {.doc = "how a smear is made; all but reconstruct are older methods",
+         .values = "reconstruct accumulate camera"});
     visit(
         "shutter",
         blur.shutter,
@@ -29,6 +50,7 @@ void visit_fields(MotionBlur& blur, Visitor&& visit) {
         {.doc = "smear, as a share of the picture's height; longer ones are cut",
          .min = 0.01,
          .max = 1});
+    visit("window", blur.window, {.doc = "pictures of accumulate", .min = 1, .max = 16});
 }
 
 }  // namespace limn

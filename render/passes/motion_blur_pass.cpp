@@ -45,10 +45,11 @@ TextureId pack_motion(
         "motion blur, pack",
         {gbuffer.velocity, gbuffer.depth},
         {discarded(motion)},
-        [&program, &scene, gbuffer, longest, shutter = settings.shutter](PassContext& context) {
+        [&program, &scene, gbuffer, longest, half_share = half_exposure(settings)](
+            PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             bind_view(context.device(), scene);
-            program.set("half_exposure", 0.5f * shutter / 360.0f);
+            program.set("half_exposure", half_share);
             program.set("longest", longest);
             context.bind_texture(0, gbuffer.velocity);
             context.bind_texture(1, gbuffer.depth);
@@ -126,10 +127,6 @@ Result<MotionBlurPass> create_motion_blur_pass(gpu::Device& device) {
         wanted.program = *made;
     }
     return pass;
-}
-
-bool blurs(const MotionBlur& settings) {
-    return settings.shutter > 0.0f && settings.longest > 0.0f;
 }
 
 TextureId blur_motion(

@@ -16,7 +16,8 @@ struct FrameScene;
 // Reads    radiance, depth, velocity
 // Writes   radiance: a new texture
 // Order    after ripple, before depth of field: the lens sees a moving picture
-// Shaders  motion_pack.frag, motion_tile.frag, motion_neighbor.frag, motion_blur.frag
+// Shaders  motion_pack.frag, motion_tile.frag, motion_neighbor.frag, motion_blur.frag,
+//          lib/motion.glsl
 //
 // Velocity goes over the time between two pictures; the exposure is the share shutter / 360 of it
 // and centered, so that a pixel's smear reaches +-v shutter / 720. The longest motion of each tile
@@ -44,9 +45,6 @@ struct MotionBlurPass {
 };
 
 [[nodiscard]] Result<MotionBlurPass> create_motion_blur_pass(gpu::Device& device);
-
-/// Whether it asks for anything at all.
-[[nodiscard]] bool blurs(const MotionBlur& settings);
 
 /// `gbuffer` must have velocity.
 [[nodiscard]] TextureId blur_motion(

@@ -1,5 +1,6 @@
 // What each pixel sees while the shutter is open, guessed from the one moment that was drawn. See motion_blur_pass.h.
 #version 450
+#include "lib/motion.glsl"
 #include "lib/noise.glsl"
 
 layout(binding = 0) uniform sampler2D radiance;
@@ -33,11 +34,6 @@ struct Found {
 
 vec4 fetch_motion(ivec2 at) {
     return texelFetch(motion_map, at, 0);
-}
-
-// Whether something that reaches so far gets there; over one pixel, as edges lie between them.
-float covers(float reach, float way) {
-    return clamp(reach - way + 0.5, 0.0, 1.0);
 }
 
 // Samples one line through the pixel, `reach` [px] to either side, where it crosses columns or rows of pixels: all
@@ -86,25 +82,6 @@ void gather(
     }
 }
 
-// All that is near moves alike: the mean of the way, a box filter.
-vec3 gather_alike(vec2 motion, float jitter) {
-    ivec2 last = textureSize(radiance, 0) - 1;
-    float reach = max(abs(motion.x), abs(motion.y));
-    vec2 pace = motion / max(reach, 1e-6);
-    int far = int(reach + 0.5);
-    int most = 2 * samples + 1;
-    int stride = (2 * far + most) / most;
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
-    for (int k = int(jitter * float(stride)) - far; k <= far; k += stride) {
-        ivec2 there = clamp(ivec2(gl_FragCoord.xy + float(k) * pace), ivec2(0), last);
-        float weight = covers(reach, abs(float(k)));
-        sum += weight * texelFetch(radiance, there, 0).rgb;
-        weights += weight;
-    }
-    return sum / weights;
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 color = texelFetch(radiance, pixel, 0);
@@ -119,7 +96,8 @@ void main() {
     Pixel here = Pixel(texel.xy, texel.z, texel.w);
 
     if (neighbor.xy == neighbor.zw) {
-        blurred.rgb = gather_alike(here.motion, jitter);
+        // All that is near moves alike.
+        blurred.rgb = mean_along(radiance, gl_FragCoord.xy, here.motion, 2 * samples + 1, jitter);
         return;
     }
 

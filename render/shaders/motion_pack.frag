@@ -4,6 +4,7 @@
 //   w   length of xy
 // The sky has no velocity in the G-buffer: its is that of the camera's turning.
 #version 450
+#include "lib/motion.glsl"
 #include "lib/view.glsl"
 
 layout(binding = 0) uniform sampler2D velocity_map;
@@ -23,13 +24,6 @@ void main() {
         vec3 before = (view.previous_from_world * vec4(view_ray(gl_FragCoord.xy), 0.0)).xyw;
         moved = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6));
     }
-    vec2 reach = moved * view.size.xy * half_exposure;
-    float length_px = length(reach);
-    // NaN and infinity are no motion: better sharp than a picture of NaN.
-    if (!(length_px < 1e7)) {
-        reach = vec2(0.0);
-        length_px = 0.0;
-    }
-    float kept = min(length_px, longest);
-    motion = vec4(reach * (kept / max(length_px, 1e-6)), depth, kept);
+    vec2 reach = bounded_motion(moved * view.size.xy * half_exposure, longest);
+    motion = vec4(reach, depth, length(reach));
 }

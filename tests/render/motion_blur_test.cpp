@@ -1,7 +1,6 @@
 #include "bench/oracles/motion_blur_oracle.h"
-#include "ecs/components/motion_blur.h"
 #include "render/graph/frame_graph.h"
-#include "tests/render/scene_fixture.h"
+#include "tests/render/shutter_fixture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,70 +9,7 @@
 namespace limn::test {
 namespace {
 
-constexpr int kSize = 64;
-constexpr float kPerMeter = 32;  // pixels in the plane z = 0, seen from (0, 0, 1)
-
-/// Flat colors in the plane of the picture, so that all of it can be reckoned.
-class Shutter : public Scene {
-  public:
-    MaterialId unlit(const Vec3& color) {
-        return add(Material{.shading = ShadingModel::Unlit, .base_color = {color, 1}});
-    }
-    /// From `begin` to `end` [px] across the picture, and moving by `way` [px] in a picture's time.
-    Entity
-    bar(MaterialId material,
-        float begin,
-        float end,
-        float way,
-        float z = 0,
-        float half_height = 2) {
-        const float center = (0.5f * (begin + end) - 0.5f * kSize) / kPerMeter;
-        const float half = 0.5f * (end - begin) / kPerMeter;
-        const float scale = 1 - z;  // covers the same pixels from farther away
-        const auto pose = [&](float x) {
-            return affine_from(
-                {x * scale, 0, z}, {1, 0, 0, 0}, {half * scale, half_height * scale, 1});
-        };
-        const Entity entity = place(square, material, pose(center));
-        world.get<PreviousWorldTransform>(entity).world = pose(center - way / kPerMeter);
-        return entity;
-    }
-    void open(float shutter, int samples = 64, float longest = 1) {
-        world.insert_resource(
-            MotionBlur{.shutter = shutter, .samples = samples, .longest = longest});
-    }
-    [[nodiscard]] RenderView front(int width = kSize, int height = kSize) const {
-        return look({0, 0, 1}, {0, 0, 0}, width, height);
-    }
-    gpu::FloatImage picture() { return radiance(front()); }
-    gpu::FloatImage sharp() {
-        const MotionBlur kept = world.resource<MotionBlur>();
-        world.remove_resource<MotionBlur>();
-        gpu::FloatImage image = picture();
-        world.insert_resource(kept);
-        return image;
-    }
-
-    MeshId square = add(make_square());
-};
-
-std::vector<double> row_of(const gpu::FloatImage& image, int y, int channel) {
-    std::vector<double> row;
-    for (int x = 0; x < image.width; ++x) {
-        row.push_back(image.at(x, y, channel));
-    }
-    return row;
-}
-
-double sum_of(const gpu::FloatImage& image, int channel) {
-    double sum = 0;
-    for (int y = 0; y < image.height; ++y) {
-        for (const double value : row_of(image, y, channel)) {
-            sum += value;
-        }
-    }
-    return sum;
-}
+constexpr int kSize = Shutter::kSize;
 
 bool all_finite(const gpu::FloatImage& image) {
     return std::all_of(

@@ -1,0 +1,31 @@
+// A picture convolved with the way that the camera's motion moves each of its points (post.motion-blur-camera-psf).
+#version 450
+#include "lib/motion.glsl"
+#include "lib/noise.glsl"
+#include "lib/view.glsl"
+
+layout(binding = 0) uniform sampler2D radiance;
+layout(binding = 1) uniform sampler2D depth_map;
+
+uniform float half_exposure;  // share of the time between two pictures
+uniform float longest;        // [px]
+uniform int samples;
+
+layout(location = 0) out vec4 blurred;
+
+const float kStill = 0.02;  // [px]; rounding is less
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float depth = texelFetch(depth_map, pixel, 0).r;
+    vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
+    // The sky has a direction and no place.
+    vec4 point = depth > 0.0 ? vec4(world_position(gl_FragCoord.xy, depth), 1.0) : vec4(view_ray(gl_FragCoord.xy), 0.0);
+    vec3 before = (view.previous_from_world * point).xyw;
+    vec2 moved = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6)) * view.size.xy;
+    vec2 motion = bounded_motion(half_exposure * moved, longest);
+    blurred = texelFetch(radiance, pixel, 0);
+    if (dot(motion, motion) > kStill * kStill) {
+        blurred.rgb = mean_along(radiance, gl_FragCoord.xy, motion, samples, pixel_noise(gl_FragCoord.xy));
+    }
+}
