@@ -1,0 +1,412 @@
+#include "bench/oracles/skin_offset_oracle.h"
+#include "ecs/base/rng.h"
+#include "ecs/base/rotation.h"
+#include "systems/animation/clip_sampling.h"
+#include "systems/animation/skin_kernels.h"
+#include "tests/systems/clip_fixture.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <cstring>
+
+using namespace limn;
+using namespace limn::test;
+
+namespace {
+
+/// A mesh at rest on a posed skeleton, and where it went.
+struct Puppet {
+    SkeletonData skeleton;
+    SkinData skin;
+    MeshData mesh;
+    std::vector<Affine> joints;
+    std::vector<Affine> palette;
+    std::vector<DualQuaternion> duals;
+    MeshData moved;
+
+    void bind() {
+        std::vector<Affine> rest(skeleton.joints.size());
+        find_joint_matrices(skeleton, skeleton.rest, rest);
+        skin.joints.clear();
+        skin.joint_from_mesh.clear();
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            skin.joints.push_back(static_cast<std::uint16_t>(i));
+            skin.joint_from_mesh.push_back(to_affine(glm::inverse(to_mat4(rest[i]))));
+        }
+        pose(skeleton.rest);
+    }
+    void pose(const LocalPose& local) {
+        joints.resize(skeleton.joints.size());
+        find_joint_matrices(skeleton, local, joints);
+        palette.resize(joints.size());
+        duals.resize(joints.size());
+        find_palette(skin, joints, palette);
+        find_dual_palette(palette, duals);
+        moved = mesh;
+    }
+    [[nodiscard]] RestVertices rest() const {
+        return {mesh.positions, mesh.normals, mesh.tangents};
+    }
+    MovedVertices target() { return {moved.positions, moved.normals, moved.tangents}; }
+    void linear() { skin_linear(mesh.skin, palette, rest(), target(), 0, mesh.positions.size()); }
+    void dual() { skin_dual(mesh.skin, duals, rest(), target(), 0, mesh.positions.size()); }
+};
+
+void add_vertex(
+    MeshData& mesh, const Vec3& position, const std::vector<std::pair<int, float>>& by) {
+    mesh.positions.push_back(position);
+    mesh.normals.push_back(normalize_or(Vec3(position.x, 0, position.z), Vec3(0, 0, 1)));
+    mesh.tangents.emplace_back(any_perpendicular(mesh.normals.back()), -1.0f);
+    if (mesh.skin.first.empty()) {
+        mesh.skin.first.push_back(0);
+    }
+    for (const auto& [joint, weight] : by) {
+        mesh.skin.joints.push_back(static_cast<std::uint16_t>(joint));
+        mesh.skin.weights.push_back(weight);
+    }
+    mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
+}
+
+/// Vertices around a chain of `joints`, with up to `most` influences each.
+Puppet make_puppet(std::size_t joints, std::size_t vertices, std::size_t most) {
+    Puppet puppet;
+    puppet.skeleton = make_chain(joints);
+    Random random(7, 0, name_hash("puppet"), 0);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const float height = random.uniform(0, static_cast<float>(joints));
+        std::vector<std::pair<int, float>> by;
+        const std::size_t count = v % (most + 1);  // some have none
+        float sum = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto joint = (static_cast<std::size_t>(height) + i) % joints;
+            by.emplace_back(static_cast<int>(joint), random.uniform(0.1f, 1));
+            sum += by.back().second;
+        }
+        for (auto& [joint, weight] : by) {
+            weight /= sum;
+        }
+        const Vec3 around = random.direction();
+        add_vertex(puppet.mesh, Vec3(around.x, height, around.z), by);
+    }
+    puppet.bind();
+    return puppet;
+}
+
+LocalPose random_pose(const SkeletonData& skeleton, float most) {
+    Random random(11, 0, name_hash("pose"), 0);
+    LocalPose pose = skeleton.rest;
+    for (Quat& rotation : pose.rotations) {
+        rotation = rotation_about(random.direction(), random.uniform(-most, most));
+    }
+    pose.translations[0] = {3, -2, 5};
+    return pose;
+}
+
+/// A tube around the second of two joints, half on each, whose upper joint is turned.
+Puppet make_tube(const Vec3& axis, float angle, float upper_weight) {
+    Puppet puppet;
+    puppet.skeleton = make_chain(2);
+    for (int i = 0; i < 16; ++i) {
+        const float turn = 2.0f * kPi * static_cast<float>(i) / 16.0f;
+        add_vertex(
+            puppet.mesh,
+            Vec3(std::cos(turn), 1, std::sin(turn)),
+            {{0, 1 - upper_weight}, {1, upper_weight}});
+    }
+    puppet.bind();
+    LocalPose pose = puppet.skeleton.rest;
+    pose.rotations[1] = rotation_about(axis, radians(angle));
+    puppet.pose(pose);
+    return puppet;
+}
+
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+double error_of(const Vec3& found, const glm::dvec3& exact) {
+    return glm::length(glm::dvec3(found) - exact);
+}
+
+}  // namespace
+
+TEST_CASE("skin: at rest every vertex stays, and the palette changes nothing") {
+    Puppet puppet = make_puppet(20, 200, 4);
+    for (const Affine& m : puppet.palette) {
+        for (int row = 0; row < 3; ++row) {
+            CHECK(glm::length(m.row[row] - Affine().row[row]) < 1e-5f);
+        }
+    }
+    for (const bool is_dual : {false, true}) {
+        is_dual ? puppet.dual() : puppet.linear();
+        for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+            CHECK(glm::distance(puppet.moved.positions[v], puppet.mesh.positions[v]) < 2e-5f);
+            CHECK(glm::distance(puppet.moved.normals[v], puppet.mesh.normals[v]) < 1e-5f);
+            CHECK(glm::distance(puppet.moved.tangents[v], puppet.mesh.tangents[v]) < 1e-5f);
+        }
+    }
+}
+
+TEST_CASE("skin: a motion of the root moves all vertices as one body") {
+    Puppet puppet = make_puppet(12, 300, 6);
+    LocalPose pose = puppet.skeleton.rest;
+    const Affine motion = affine_from({1, 2, 3}, rotation_about({1, -2, 0.5f}, 1.2f), Vec3(1));
+    pose.translations[0] = {1, 2, 3};
+    pose.rotations[0] = rotation_about({1, -2, 0.5f}, 1.2f);
+    puppet.pose(pose);
+    for (const bool is_dual : {false, true}) {
+        is_dual ? puppet.dual() : puppet.linear();
+        for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+            if (puppet.mesh.skin.first[v] == puppet.mesh.skin.first[v + 1]) {
+                CHECK(puppet.moved.positions[v] == puppet.mesh.positions[v]);  // without joints
+                continue;
+            }
+            const Vec3 p = transform_point(motion, puppet.mesh.positions[v]);
+            CHECK(glm::distance(puppet.moved.positions[v], p) < 3e-5f);
+            const Vec3 n = transform_vector(motion, puppet.mesh.normals[v]);
+            CHECK(glm::distance(puppet.moved.normals[v], n) < 1e-5f);
+            const Vec3 t = transform_vector(motion, Vec3(puppet.mesh.tangents[v]));
+            CHECK(glm::distance(Vec3(puppet.moved.tangents[v]), t) < 1e-5f);
+            CHECK(puppet.moved.tangents[v].w == -1);
+        }
+    }
+}
+
+TEST_CASE("skin: vertices of one joint keep their distances, to it and to each other") {
+    Puppet puppet = make_puppet(6, 90, 1);
+    puppet.pose(random_pose(puppet.skeleton, 3));
+    for (const bool is_dual : {false, true}) {
+        is_dual ? puppet.dual() : puppet.linear();
+        for (std::size_t v = 1; v + 2 < puppet.mesh.positions.size(); v += 2) {
+            const auto joint = puppet.mesh.skin.joints[puppet.mesh.skin.first[v]];
+            const Vec3 bone = transform_point(puppet.joints[joint], Vec3(0));
+            const Vec3 bone_at_rest(0, static_cast<float>(joint), 0);
+            CHECK(
+                glm::distance(puppet.moved.positions[v], bone)
+                == doctest::Approx(glm::distance(puppet.mesh.positions[v], bone_at_rest))
+                       .epsilon(1e-5));
+            if (puppet.mesh.skin.joints[puppet.mesh.skin.first[v + 2]] == joint) {
+                CHECK(
+                    glm::distance(puppet.moved.positions[v], puppet.moved.positions[v + 2])
+                    == doctest::Approx(
+                           glm::distance(puppet.mesh.positions[v], puppet.mesh.positions[v + 2]))
+                           .epsilon(1e-5));
+            }
+        }
+    }
+}
+
+TEST_CASE("skin: the mean of matrices agrees with offsets in joint space, in double precision") {
+    Puppet puppet = make_puppet(24, 1000, 8);
+    puppet.pose(random_pose(puppet.skeleton, 0.8f));
+    puppet.linear();
+    for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+        if (puppet.mesh.skin.first[v] == puppet.mesh.skin.first[v + 1]) {
+            continue;
+        }
+        const glm::dvec3 exact =
+            oracle::skin_by_offsets(puppet.mesh, puppet.skin, puppet.joints, v);
+        CHECK(error_of(puppet.moved.positions[v], exact) < 1e-5 * 24);  // of the box
+        CHECK(glm::length(puppet.moved.normals[v]) == doctest::Approx(1).epsilon(1e-5));
+        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == doctest::Approx(1).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("skin: the mean of screw motions agrees with its definition in double precision") {
+    for (const float angle : {10.0f, 80.0f, 170.0f, 260.0f}) {
+        for (const float weight : {0.1f, 0.5f, 0.75f}) {
+            Puppet puppet = make_tube(Vec3(0.3f, 1, 0.2f), angle, weight);
+            puppet.dual();
+            for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+                const glm::dvec3 exact = oracle::move_by_screws(
+                    oracle::double_matrix(puppet.palette[0]),
+                    oracle::double_matrix(puppet.palette[1]),
+                    static_cast<double>(weight),
+                    puppet.mesh.positions[v]);
+                CHECK(error_of(puppet.moved.positions[v], exact) < 1e-5);
+            }
+        }
+    }
+}
+
+TEST_CASE("skin: a vertex between two joints is the mean of where either would take it") {
+    Puppet puppet = make_tube({1, 0, 0}, 70, 0.5f);
+    puppet.linear();
+    for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+        const Vec3 a = transform_point(puppet.palette[0], puppet.mesh.positions[v]);
+        const Vec3 b = transform_point(puppet.palette[1], puppet.mesh.positions[v]);
+        CHECK(glm::distance(puppet.moved.positions[v], 0.5f * (a + b)) < 1e-6f);
+    }
+}
+
+TEST_CASE("skin: matrices shrink a twisted joint by the cosine law, screw motions do not at all") {
+    // Twist angle a, weights 1 - w and w: r sqrt(1 - 2 w (1 - w) (1 - cos a)).
+    for (const float angle : {30.0f, 60.0f, 90.0f, 120.0f, 150.0f, 180.0f}) {
+        for (const float w : {0.5f, 0.75f}) {
+            Puppet puppet = make_tube({0, 1, 0}, angle, w);
+            const float law =
+                std::sqrt(std::max(1 - 2 * w * (1 - w) * (1 - std::cos(radians(angle))), 0.0f));
+            puppet.linear();
+            for (const Vec3& p : puppet.moved.positions) {
+                CHECK(std::abs(std::hypot(p.x, p.z) - law) < 2e-4f);
+            }
+            if (w == 0.5f) {
+                CHECK(std::abs(law - std::cos(radians(angle / 2))) < 4e-4f);
+            }
+            puppet.dual();
+            for (const Vec3& p : puppet.moved.positions) {
+                CHECK(std::hypot(p.x, p.z) == doctest::Approx(1).epsilon(1e-5));
+                CHECK(p.y == doctest::Approx(1).epsilon(1e-5));
+            }
+        }
+    }
+}
+
+TEST_CASE("skin: where opposite turns cancel a normal, the strongest joint turns it") {
+    Puppet puppet = make_tube({0, 1, 0}, 180, 0.5f);
+    puppet.palette[1].row[0] = {-1, 0, 0, 0};  // half a turn to the last bit
+    puppet.palette[1].row[2] = {0, 0, -1, 0};
+    puppet.palette[0] = Affine{};
+    puppet.linear();
+    for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+        CHECK(std::isfinite(puppet.moved.positions[v].x));
+        CHECK(puppet.moved.normals[v] == puppet.mesh.normals[v]);  // the first of two equal ones
+        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("skin: scaled and mirrored joints keep normals perpendicular to the surface") {
+    Puppet puppet = make_tube({0, 1, 0}, 0, 1);
+    LocalPose pose = puppet.skeleton.rest;
+    for (const Vec3 scale : {Vec3(3, 1, 0.5f), Vec3(-1, 1, 1)}) {
+        pose.scales[1] = scale;
+        puppet.pose(pose);
+        puppet.linear();
+        for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
+            // Along the ellipse the surface goes with the derivative of its points.
+            const Vec3 rest = puppet.mesh.positions[v];
+            const Vec3 along = scale * Vec3(-rest.z, 0, rest.x);
+            CHECK(std::abs(glm::dot(along, puppet.moved.normals[v])) < 1e-5f);
+            CHECK(glm::dot(puppet.moved.positions[v], puppet.moved.normals[v]) > 0);  // outward
+        }
+    }
+}
+
+TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut anywhere") {
+    for (const std::size_t count : {1, 15, 16, 17, 203}) {
+        Puppet puppet = make_puppet(30, count, 5);
+        puppet.pose(random_pose(puppet.skeleton, 3));
+        MeshData plain = puppet.mesh;
+        const MovedVertices target = {plain.positions, plain.normals, plain.tangents};
+        puppet.linear();
+        skin_linear_scalar(puppet.mesh.skin, puppet.palette, puppet.rest(), target, 0, count);
+        CHECK(same_bits(plain.positions, puppet.moved.positions));
+        CHECK(same_bits(plain.normals, puppet.moved.normals));
+        CHECK(same_bits(plain.tangents, puppet.moved.tangents));
+        puppet.dual();
+        skin_dual_scalar(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, count);
+        CHECK(same_bits(plain.positions, puppet.moved.positions));
+        CHECK(same_bits(plain.normals, puppet.moved.normals));
+        const std::size_t middle = count / 3;
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, middle);
+        skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, middle, count);
+        CHECK(same_bits(plain.positions, puppet.moved.positions));
+        CHECK(same_bits(plain.tangents, puppet.moved.tangents));
+    }
+}
+
+TEST_CASE("skin: more than 256 joints and more than 256 morph targets work") {
+    Puppet puppet = make_puppet(300, 600, 4);
+    std::vector<float> weights;
+    for (std::uint32_t t = 0; t < 300; ++t) {
+        puppet.mesh.morphs.push_back({"", {2 * t + 1}, {Vec3(0, 0, 2)}, {}, {}});
+        weights.push_back(0.5f);
+    }
+    puppet.pose(random_pose(puppet.skeleton, 0.1f));
+    MeshData shaped = puppet.mesh;
+    add_morphs(puppet.mesh.morphs, weights, {shaped.positions, shaped.normals, shaped.tangents});
+    std::swap(shaped.positions, puppet.mesh.positions);  // what is skinned is the shape
+    puppet.linear();
+    for (std::size_t v = 0; v < 600; ++v) {
+        if (puppet.mesh.skin.first[v] == puppet.mesh.skin.first[v + 1]) {
+            continue;
+        }
+        const bool moves = v % 2 == 1;
+        CHECK(puppet.mesh.positions[v] == shaped.positions[v] + (moves ? Vec3(0, 0, 1) : Vec3(0)));
+        const glm::dvec3 exact =
+            oracle::skin_by_offsets(puppet.mesh, puppet.skin, puppet.joints, v);
+        CHECK(error_of(puppet.moved.positions[v], exact) < 1e-5 * 300);
+    }
+}
+
+TEST_CASE("skin: morph targets are linear, add up in any order and leave the others alone") {
+    MeshData mesh;
+    for (int i = 0; i < 6; ++i) {
+        add_vertex(mesh, Vec3(0.1f * static_cast<float>(i), 1, 1), {{0, 1.0f}});
+    }
+    mesh.morphs.push_back({"a", {1, 3}, {{1, 0, 0}, {0, 2, 0}}, {{0, 1, 0}, {0, 0, 1}}, {}});
+    mesh.morphs.push_back({"b", {3, 4}, {{0, 0, 4}, {1, 1, 1}}, {}, {{1, 0, 0}, {0, 1, 0}}});
+    const auto shaped = [&](std::vector<float> weights) {
+        MeshData copy = mesh;
+        add_morphs(mesh.morphs, weights, {copy.positions, copy.normals, copy.tangents});
+        return copy;
+    };
+    CHECK(same_bits(shaped({0, 0}).positions, mesh.positions));
+    const MeshData one = shaped({1});
+    CHECK(one.positions[1] == mesh.positions[1] + Vec3(1, 0, 0));
+    CHECK(one.normals[3] == mesh.normals[3] + Vec3(0, 0, 1));
+    for (const std::size_t v : {0, 2, 4, 5}) {
+        CHECK(one.positions[v] == mesh.positions[v]);
+    }
+    const MeshData half = shaped({0.5f, -2});
+    CHECK(glm::distance(half.positions[3], mesh.positions[3] + Vec3(0, 1, -8)) < 1e-6f);
+    CHECK(half.tangents[4] == mesh.tangents[4] + Vec4(0, -2, 0, 0));
+    std::swap(mesh.morphs[0], mesh.morphs[1]);
+    CHECK(glm::distance(shaped({-2, 0.5f}).positions[3], half.positions[3]) < 1e-6f);
+    CHECK(same_bits(shaped({0, 0, 9, 9}).positions, mesh.positions));  // nobody has those
+}
+
+TEST_CASE("skin: a shape that was morphed before it is skinned turns with its joint") {
+    Puppet puppet = make_tube({0, 1, 0}, 90, 1);
+    puppet.mesh.morphs.push_back({"bump", {0}, {{1, 0, 0}}, {}, {}});
+    add_morphs(
+        puppet.mesh.morphs,
+        std::vector<float>{1},
+        {puppet.mesh.positions, puppet.mesh.normals, puppet.mesh.tangents});
+    puppet.linear();
+    CHECK(glm::distance(puppet.moved.positions[0], Vec3(0, 1, -2)) < 1e-5f);
+}
+
+TEST_CASE(
+    "skin: a palette of three rows a joint does what 4x4 matrices do, in three quarters of it") {
+    Puppet puppet = make_puppet(98, 200, 4);
+    puppet.pose(random_pose(puppet.skeleton, 0.2f));
+    CHECK(puppet.palette.size() * sizeof(Affine) == 4704);
+    CHECK(puppet.palette.size() * sizeof(Mat4) == 6272);
+    for (const Affine& rows : puppet.palette) {
+        const Vec3 p(0.3f, 0.5f, -0.7f);
+        const Vec3 by_matrix(to_mat4(rows) * Vec4(p, 1));
+        CHECK(glm::distance(transform_point(rows, p), by_matrix) < 1e-6f * 98);
+    }
+}
+
+TEST_CASE("skin: the largest influences are kept and sum to 1 again") {
+    SkinWeights skin;
+    skin.first = {0, 4, 5};
+    skin.joints = {1, 3, 5, 8, 2};
+    skin.weights = {0.15f, 0.5f, 0.05f, 0.3f, 1};
+    const SkinWeights two = limit_influences(skin, 2);
+    CHECK(two.first == std::vector<std::uint32_t>{0, 2, 3});
+    CHECK(two.joints == std::vector<std::uint16_t>{3, 8, 2});
+    CHECK(two.weights[0] == doctest::Approx(0.625));
+    CHECK(two.weights[1] == doctest::Approx(0.375));
+    CHECK(limit_influences(skin, 1).weights == std::vector<float>{1, 1});
+    const SkinWeights all = limit_influences(skin, 4);
+    CHECK(all.joints == skin.joints);
+    CHECK(
+        all.weights[0] + all.weights[1] + all.weights[2] + all.weights[3]
+        == doctest::Approx(1).epsilon(1e-6));
+}
