@@ -98,7 +98,8 @@ machine_report(const Stage& stage, const HeadlessRenderer& headless, const Bench
 }
 
 Status run_bench(const BenchOptions& options) {
-    Result<std::unique_ptr<Stage>> opened = open_stage(options.scene);
+    Result<std::unique_ptr<Stage>> opened =
+        open_stage(options.scene, std::nullopt, options.assignments);
     if (!opened) {
         return opened.error();
     }

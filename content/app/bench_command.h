@@ -1,9 +1,11 @@
 #pragma once
 
+#include "content/app/command_values.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 
 #include <string>
+#include <vector>
 
 namespace limn {
 
@@ -17,6 +19,7 @@ struct BenchOptions {
     int frames = 300;  ///< measured
     int warmup = 60;   ///< run before, not measured
     IVec2 size = {1280, 720};
+    std::vector<Assignment> assignments;  ///< --set
     std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;   ///< the same
 };

@@ -115,6 +115,24 @@ CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
         std::numeric_limits<std::int64_t>::max());
 }
 
+void add_assignments(CLI::App& app, std::vector<Assignment>& assignments) {
+    app.add_option_function<std::vector<std::string>>(
+           "--set",
+           [&assignments](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) {
+                   Result<Assignment> assignment = parse_assignment(text);
+                   if (!assignment) {
+                       throw CLI::ValidationError("--set", assignment.error().message);
+                   }
+                   assignments.push_back(*std::move(assignment));
+               }
+           },
+           "change a field after loading; may be repeated")
+        ->type_name("PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
     app->add_option("scene", options.scene, std::string(kSceneDoc) + "; the tour if absent")
@@ -175,21 +193,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
         ->default_str(std::to_string(options.samples));
     add_parsed(*app, "--aov", "named layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
-    app->add_option_function<std::vector<std::string>>(
-           "--set",
-           [&options](const std::vector<std::string>& texts) {
-               for (const std::string& text : texts) {
-                   Result<Assignment> assignment = parse_assignment(text);
-                   if (!assignment) {
-                       throw CLI::ValidationError("--set", assignment.error().message);
-                   }
-                   options.assignments.push_back(*std::move(assignment));
-               }
-           },
-           "change a field after loading; may be repeated")
-        ->type_name("PATH=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_assignments(*app, options.assignments);
     app->add_option("--camera", options.camera, "by name, instead of the level's")
         ->type_name("NAME");
     app->footer(
@@ -222,6 +226,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     add_integer(*app, "--warmup", "run before, not measured", options.warmup, 0, kMaxFrames)
         ->default_str(std::to_string(options.warmup));
     add_size(*app, options.size);
+    add_assignments(*app, options.assignments);
     app->add_option("--json", options.json, "write the numbers as JSON; - is stdout")
         ->type_name("FILE");
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
@@ -248,7 +253,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         "CSV: method,lights,frames,median_ms,p95_ms,max_ms\n\n"
         "Examples:\n"
         "  limn bench lights --size 640x360\n"
-        "  limn bench gallery --size 640x360\n"
+        "  limn bench gallery --size 640x360 --set glow.strength=0.1\n"
         "  limn bench stress-instances --frames 600 --json numbers.json");
     return {app, [&options] { return run_bench(options); }};
 }

@@ -4,7 +4,6 @@
 #include "content/app/picture_file.h"
 #include "content/app/progress.h"
 #include "content/app/stage.h"
-#include "content/load/set_value.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 #include "ecs/components/name.h"
@@ -105,17 +104,12 @@ Status check_render_options(const RenderOptions& options) {
 }
 
 Status run_render(const RenderOptions& options) {
-    Result<std::unique_ptr<Stage>> opened = open_stage(options.scene, options.seed);
+    Result<std::unique_ptr<Stage>> opened =
+        open_stage(options.scene, options.seed, options.assignments);
     if (!opened) {
         return opened.error();
     }
     Stage& stage = **opened;
-    for (const Assignment& assignment : options.assignments) {
-        const Status status = set_value(stage.world, assignment.path, assignment.value);
-        if (!status) {
-            return status.error();
-        }
-    }
     const Result<Entity> camera = choose_camera(stage, options.camera);
     if (!camera) {
         return camera.error();

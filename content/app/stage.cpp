@@ -1,5 +1,6 @@
 #include "content/app/stage.h"
 
+#include "content/load/set_value.h"
 #include "ecs/components/time.h"
 #include "systems/update_world.h"
 
@@ -15,8 +16,10 @@ constexpr double kRounding = 1e-3;
 
 }  // namespace
 
-Result<std::unique_ptr<Stage>>
-open_stage(const std::string& scene, std::optional<std::uint64_t> seed) {
+Result<std::unique_ptr<Stage>> open_stage(
+    const std::string& scene,
+    std::optional<std::uint64_t> seed,
+    std::span<const Assignment> assignments) {
     auto stage = std::make_unique<Stage>();
     Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = seed});
     if (!loaded) {
@@ -25,6 +28,12 @@ open_stage(const std::string& scene, std::optional<std::uint64_t> seed) {
     stage->scene = *std::move(loaded);
     stage->schedule = make_world_schedule();
     start_world(stage->world);
+    for (const Assignment& assignment : assignments) {
+        const Status status = set_value(stage->world, assignment.path, assignment.value);
+        if (!status) {
+            return status.error();
+        }
+    }
     return stage;
 }
 

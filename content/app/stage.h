@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/app/command_values.h"
 #include "content/load/scene_load.h"
 #include "ecs/base/result.h"
 #include "ecs/schedule.h"
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace limn {
@@ -20,9 +22,11 @@ struct Stage {
     LoadedScene scene;
 };
 
-/// Fails with the loader's line.
-[[nodiscard]] Result<std::unique_ptr<Stage>>
-open_stage(const std::string& scene, std::optional<std::uint64_t> seed = std::nullopt);
+/// Fails with the loader's line, or that of the first assignment that cannot be made.
+[[nodiscard]] Result<std::unique_ptr<Stage>> open_stage(
+    const std::string& scene,
+    std::optional<std::uint64_t> seed = std::nullopt,
+    std::span<const Assignment> assignments = {});
 
 /// One step of the simulation.
 void step_stage(Stage& stage);
