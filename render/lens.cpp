@@ -60,6 +60,23 @@ TextureId apply_motion_blur(
     return radiance;
 }
 
+TextureId apply_glow(
+    FrameGraph& graph,
+    LensPasses& passes,
+    const Glow& glow,
+    const Gbuffer& gbuffer,
+    TextureId radiance) {
+    if (glow.strength > 0 && glow.kind == GlowKind::Lens) {
+        const auto* pass = passes.glow.get(*passes.device, create_glow_pass);
+        return pass == nullptr ? radiance : draw_glow(graph, *pass, glow, radiance);
+    }
+    if (glow.strength > 0 && glow.kind == GlowKind::Mask) {
+        const auto* pass = passes.glow_mask.get(*passes.device, create_glow_mask_pass);
+        return pass == nullptr ? radiance : draw_glow_mask(graph, *pass, glow, gbuffer, radiance);
+    }
+    return radiance;
+}
+
 }  // namespace
 
 LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
@@ -84,6 +101,10 @@ bool needs_velocity(const LensSettings& settings) {
            && settings.motion_blur.mode == MotionBlurMode::Reconstruct;
 }
 
+bool needs_attributes(const LensSettings& settings) {
+    return settings.glow.strength > 0 && settings.glow.kind == GlowKind::Mask;
+}
+
 TextureId apply_lens(
     FrameGraph& graph,
     LensPasses& passes,
@@ -92,12 +113,7 @@ TextureId apply_lens(
     const Gbuffer& gbuffer,
     TextureId radiance) {
     radiance = apply_motion_blur(graph, passes, settings.motion_blur, scene, gbuffer, radiance);
-    if (settings.glow.strength > 0) {
-        if (const GlowPass* pass = passes.glow.get(*passes.device, create_glow_pass)) {
-            radiance = draw_glow(graph, *pass, settings.glow, radiance);
-        }
-    }
-    return radiance;
+    return apply_glow(graph, passes, settings.glow, gbuffer, radiance);
 }
 
 }  // namespace limn

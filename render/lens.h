@@ -3,6 +3,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/motion_blur.h"
 #include "render/gbuffer.h"
+#include "render/passes/glow_mask_pass.h"
 #include "render/passes/glow_pass.h"
 #include "render/passes/motion_accumulate_pass.h"
 #include "render/passes/motion_blur_pass.h"
@@ -38,8 +39,9 @@ struct LensSettings {
 /// For a picture that is the mean of many, which sampled what the lens would else be made to do.
 [[nodiscard]] LensSettings lens_of_mean(const LensSettings& settings);
 
-/// Whether some effect wants to know what moves.
+/// Whether some effect wants to know what moves, or what the G-buffer says of surfaces.
 [[nodiscard]] bool needs_velocity(const LensSettings& settings);
+[[nodiscard]] bool needs_attributes(const LensSettings& settings);
 
 /// A pass that is made when it is first needed. If that fails, it is logged once and there is none.
 template <typename Pass>
@@ -63,6 +65,7 @@ struct LensPasses {
     OptionalPass<MotionAccumulatePass> motion_accumulate;
     OptionalPass<MotionCameraPass> motion_camera;
     OptionalPass<GlowPass> glow;
+    OptionalPass<GlowMaskPass> glow_mask;
 };
 
 /// Adds the passes to this frame; returns the radiance that reaches the film, or `radiance` itself

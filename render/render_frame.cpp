@@ -118,7 +118,7 @@ class Renderer {
     /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
     void prepare(const World& world, const RenderView& view, bool velocity, bool for_probe = false);
     /// The image, as a list.
-    FrameTextures draw_image(const FrameRequest& request, bool velocity);
+    FrameTextures draw_image(const FrameRequest& request, bool attributes, bool velocity);
     /// What lies where; `attributes`: also of what kind, which forward lighting has no need of.
     Gbuffer draw_surfaces(bool attributes, bool velocity);
     TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer);
@@ -441,9 +441,9 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
     return draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
 }
 
-FrameTextures Renderer::draw_image(const FrameRequest& request, bool velocity) {
+FrameTextures Renderer::draw_image(const FrameRequest& request, bool attributes, bool velocity) {
     FrameTextures made;
-    made.gbuffer = draw_surfaces(!request.aovs.empty() || velocity, velocity);
+    made.gbuffer = draw_surfaces(attributes || velocity || !request.aovs.empty(), velocity);
     const Gbuffer& gbuffer = made.gbuffer;
     made.radiance = draw_radiance(graph, gbuffer);
     for (int i = 0; i < kAovCount; ++i) {
@@ -583,7 +583,7 @@ FrameOutput render_frame(
     renderer.draw_probes(world, view);
     renderer.graph.begin_frame();
     renderer.prepare(world, view, velocity);
-    FrameTextures textures = renderer.draw_image(request, velocity);
+    FrameTextures textures = renderer.draw_image(request, needs_attributes(lens), velocity);
     renderer.develop_image(world, lens, textures);
     renderer.finish(renderer.graph);
     return renderer.output(textures);
@@ -629,7 +629,7 @@ FrameOutput render_accumulated(
     const LensSettings lens = lens_of_mean(lens_settings(world, view));
     const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
     renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
-    FrameTextures textures = renderer.draw_image(request, velocity);
+    FrameTextures textures = renderer.draw_image(request, needs_attributes(lens), velocity);
     textures.radiance = graph.import("accumulation", sum);
     renderer.develop_image(world, lens, textures);
     renderer.finish(graph);

@@ -1,18 +1,38 @@
-// The picture less what each pixel gives away, and what the lens makes of it. Definition ANY_SIZE of
-// lib/pyramid_up.glsl.
+// The picture less what each pixel gives away, and what the lens makes of that. Definition ANY_SIZE: the sizes are
+// not exactly 2 : 1.
 #version 450
-#include "lib/pyramid_up.glsl"
+#include "lib/pyramid.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D glow;  // alpha: share of its light that a texel took
 
 uniform float strength;
-uniform float gain;  // strength over the sum of all weights in `glow`
 
 layout(location = 0) out vec4 radiance;
 
+// The transpose of the step in glow_first.frag: the mean over the pixel of what bilinear interpolation gives.
+vec4 glow_at_pixel(ivec2 size) {
+    ivec2 glow_size = textureSize(glow, 0);
+#ifdef ANY_SIZE
+    vec2 ratio = vec2(size) / vec2(glow_size);
+    vec2 from = floor(gl_FragCoord.xy);
+    ivec2 begin = ivec2(floor(from / ratio - 0.5));
+    vec4 mean = vec4(0.0);
+    for (int y = 0; y < 3; ++y) {
+        float share_y = tent_share(from.y, from.y + 1.0, (float(begin.y + y) + 0.5) * ratio.y, ratio.y);
+        for (int x = 0; x < 3; ++x) {
+            float share_x = tent_share(from.x, from.x + 1.0, (float(begin.x + x) + 0.5) * ratio.x, ratio.x);
+            mean += share_x * share_y * texelFetch(glow, clamp(begin + ivec2(x, y), ivec2(0), glow_size - 1), 0);
+        }
+    }
+    return ratio.x * ratio.y * mean;
+#else
+    return texture(glow, 0.5 * gl_FragCoord.xy / vec2(glow_size));
+#endif
+}
+
 void main() {
     vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
-    vec4 scattered = enlarged(glow);
-    radiance = vec4(scene.rgb * (1.0 - strength * scattered.a) + gain * scattered.rgb, scene.a);
+    vec4 scattered = glow_at_pixel(textureSize(scene_radiance, 0));
+    radiance = vec4(scene.rgb * (1.0 - strength * scattered.a) + strength * scattered.rgb, scene.a);
 }

@@ -1,6 +1,7 @@
-// Steps between pictures of which one is about half as large as the other, and both show the same. A texel of the
-// smaller one stands for a tent over the larger one, twice as wide as the texel: neighbors overlap so that all tents
-// together weigh every point the same.
+// Steps between pictures of which one is about half as large as the other and both show the same. A texel of the
+// smaller one stands for a tent over the larger one, twice as wide as the texel. Neighbors overlap so that together
+// they weigh every point the same, whatever the sizes: what one loses another one gets. Beyond its border a picture
+// is mirrored.
 
 // Area of a tent of height 1 over -1 .. 1 that lies to the left of x.
 float tent_area(float x) {
@@ -12,4 +13,16 @@ float tent_area(float x) {
 // Share of the tent about `middle` of half-width `ratio` that lies in from .. to [pixels of the larger picture].
 float tent_share(float from, float to, float middle, float ratio) {
     return tent_area((to - middle) / ratio) - tent_area((from - middle) / ratio);
+}
+
+// The same of pixel `at` and, half as much, its two neighbors.
+float smooth_share(float at, float middle, float ratio) {
+    return 0.25
+           * (tent_share(at, at + 2.0, middle, ratio) + tent_share(at - 1.0, at + 1.0, middle, ratio));
+}
+
+int mirrored(int at, int size) {
+    at = at < 0 ? -1 - at : at;
+    at = at % (2 * size);
+    return at < size ? at : 2 * size - 1 - at;
 }

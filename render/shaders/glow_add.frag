@@ -1,0 +1,15 @@
+// Adds a mask of half the size to the picture.
+#version 450
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 1) uniform sampler2D mask;
+
+uniform float strength;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
+    vec3 glow = texture(mask, 0.5 * gl_FragCoord.xy / vec2(textureSize(mask, 0))).rgb;
+    radiance = vec4(scene.rgb + strength * glow, scene.a);
+}

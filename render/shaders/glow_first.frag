@@ -1,0 +1,82 @@
+// A picture's light at half its size, in which lone bright pixels count less. Alpha is the share of its light that a
+// texel passes on. Definition ANY_SIZE: the sizes are not exactly 2 : 1.
+#version 450
+#include "lib/pyramid.glsl"
+#include "lib/tone.glsl"
+#include "tone_gpu.h"
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+
+uniform ivec2 size;         // of the target
+uniform float per_firefly;  // 1 over the luminance of a firefly; 0: there are none
+
+layout(location = 0) out vec4 passed_on;
+
+// The means of the pixels left and right, below and above of the texel's middle.
+struct Quarters {
+    vec3 left_down;
+    vec3 right_down;
+    vec3 left_up;
+    vec3 right_up;
+};
+
+Quarters read_quarters() {
+    Quarters q;
+#ifdef ANY_SIZE
+    ivec2 last = textureSize(scene_radiance, 0) - 1;
+    vec2 ratio = vec2(last + 1) / vec2(size);
+    vec2 middle = gl_FragCoord.xy * ratio;
+    ivec2 begin = ivec2(floor(middle - ratio));
+    q = Quarters(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    for (int y = 0; y < 5; ++y) {
+        vec2 rows = vec2(begin.y + y, begin.y + y + 1);
+        vec2 below = min(rows, middle.y);
+        vec2 above = max(rows, middle.y);
+        float down = 2.0 * tent_share(below.x, below.y, middle.y, ratio.y);
+        float up = 2.0 * tent_share(above.x, above.y, middle.y, ratio.y);
+        for (int x = 0; x < 5; ++x) {
+            vec2 columns = vec2(begin.x + x, begin.x + x + 1);
+            vec2 before = min(columns, middle.x);
+            vec2 behind = max(columns, middle.x);
+            float left = 2.0 * tent_share(before.x, before.y, middle.x, ratio.x);
+            float right = 2.0 * tent_share(behind.x, behind.y, middle.x, ratio.x);
+            // Not more than one pixel beyond the border, where clamped is mirrored.
+            vec3 light = texelFetch(scene_radiance, clamp(begin + ivec2(x, y), ivec2(0), last), 0).rgb;
+            q.left_down += left * down * light;
+            q.right_down += right * down * light;
+            q.left_up += left * up * light;
+            q.right_up += right * up * light;
+        }
+    }
+#else
+    // Each reading weighs a pixel and its neighbor 3 : 1.
+    vec2 texel = 0.5 / vec2(size);
+    vec2 near = (2.0 * gl_FragCoord.xy - 0.75) * texel;
+    vec2 far = (2.0 * gl_FragCoord.xy + 0.75) * texel;
+    q.left_down = texture(scene_radiance, near).rgb;
+    q.right_down = texture(scene_radiance, vec2(far.x, near.y)).rgb;
+    q.left_up = texture(scene_radiance, vec2(near.x, far.y)).rgb;
+    q.right_up = texture(scene_radiance, far).rgb;
+#endif
+    return q;
+}
+
+void main() {
+    Quarters q = read_quarters();
+    vec3 mean = 0.25 * q.left_down + 0.25 * q.right_down + 0.25 * q.left_up + 0.25 * q.right_up;
+
+    // The mean of what is bright and what is not, weighed by 1 / (1 + luminance): Karis 2013.
+    vec4 light = vec4(
+        luminance(q.left_down), luminance(q.right_down), luminance(q.left_up), luminance(q.right_up));
+    light = max(light, 0.0);
+    vec4 weight = 1.0 / (1.0 + light * per_firefly);
+    float plain = dot(light, vec4(0.25));
+    float weighted = dot(weight, light) / dot(weight, vec4(1.0));
+    float passed = plain > 0.0 ? min(weighted / plain, 1.0) : 1.0;
+
+    float peak = max(mean.r, max(mean.g, mean.b));
+    passed = min(passed, kMostLight / max(peak, 1.0));
+    // Nothing of what is no number, nor of what shares a texel with it.
+    bool known = is_finite(mean) && is_finite(passed);
+    passed_on = known ? vec4(passed * mean, passed) : vec4(0.0);
+}

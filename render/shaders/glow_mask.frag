@@ -1,0 +1,21 @@
+// What surfaces emit, at half the size: the mean of four pixels, so that small lamps do not flicker.
+#version 450
+#include "lib/gbuffer.glsl"
+
+layout(binding = 0) uniform usampler2D gbuffer;
+layout(binding = 1) uniform sampler2D scene_depth;
+
+layout(location = 0) out vec4 mask;
+
+vec3 emission_at(ivec2 at) {
+    at = min(at, textureSize(scene_depth, 0) - 1);
+    vec3 emission = unpack_rgb9e5(texelFetch(gbuffer, at, 0).w);
+    return texelFetch(scene_depth, at, 0).r > 0.0 ? emission : vec3(0.0);
+}
+
+void main() {
+    ivec2 at = 2 * ivec2(gl_FragCoord.xy);
+    vec3 sum = emission_at(at) + emission_at(at + ivec2(1, 0)) + emission_at(at + ivec2(0, 1))
+               + emission_at(at + ivec2(1, 1));
+    mask = vec4(0.25 * sum, 1.0);
+}

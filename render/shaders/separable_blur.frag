@@ -1,0 +1,21 @@
+// One axis of a blur of 7 x 7 pixels. Edges are repeated.
+#version 450
+
+layout(binding = 0) uniform sampler2D source;
+
+uniform ivec2 axis;  // (1, 0) or (0, 1)
+uniform vec3 before;  // weights of the pixels -3, -2, -1
+uniform float middle;
+uniform vec3 behind;  // 1, 2, 3
+
+layout(location = 0) out vec4 blurred;
+
+vec4 fetch(int offset) {
+    ivec2 at = ivec2(gl_FragCoord.xy) + offset * axis;
+    return texelFetch(source, clamp(at, ivec2(0), textureSize(source, 0) - 1), 0);
+}
+
+void main() {
+    blurred = before.x * fetch(-3) + before.y * fetch(-2) + before.z * fetch(-1) + middle * fetch(0)
+              + behind.x * fetch(1) + behind.y * fetch(2) + behind.z * fetch(3);
+}
