@@ -1,5 +1,6 @@
 #include "content/app/quality.h"
 
+#include "content/app/quality_glow.h"
 #include "content/app/quality_lights.h"
 #include "content/app/quality_motion_blur.h"
 #include "content/app/quality_shadows.h"
@@ -25,6 +26,7 @@ std::span<const QualityEffect> quality_effects() {
         {"motion-blur",
          "the mean of 128 pictures of moments within the exposure",
          measure_motion_blur},
+        {"glow", "a convolution in double precision, and the laws of light", measure_glow},
     };
     return kEffects;
 }
