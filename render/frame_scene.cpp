@@ -79,7 +79,8 @@ gpu::PipelineState seen_sides(gpu::PipelineState state, const DrawRun& run) {
     return state;
 }
 
-/// Draws a run for its depth: `programs` get no more features than decide where there are holes.
+/// Draws a run for its depth: `programs` get no more features than decide where its points are and
+/// where there are holes.
 void draw_depth(
     gpu::Device& device,
     const FrameScene& scene,
@@ -324,6 +325,25 @@ void draw_casters(
     bind_instances(device, scene, casters);
     for (const DrawRun& run : casters.opaque) {
         draw_depth(device, scene, casters, run, programs, state);
+    }
+}
+
+void draw_motions(
+    gpu::Device& device,
+    const FrameScene& scene,
+    SurfacePrograms& programs,
+    const gpu::PipelineState& state,
+    const std::function<void(const gpu::Program&)>& set) {
+    bind_instances(device, scene, scene.instances);
+    for (const DrawRun& run : scene.instances.opaque) {
+        const gpu::Program* program =
+            programs.get((run.features & (kInflate | kDeformed)) | kVelocity, 0, {});
+        if (program == nullptr) {
+            continue;
+        }
+        device.use(gpu::Pipeline{program, seen_sides(state, run)});
+        set(*program);
+        draw_run(device, scene, scene.instances, run);
     }
 }
 

@@ -16,6 +16,7 @@
 #include "render/shadow/shadow_list.h"
 #include "render/shadow/volume_list.h"
 
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -186,5 +187,14 @@ void draw_casters(
     const InstanceList& casters,
     SurfacePrograms& programs,
     const gpu::PipelineState& state);
+
+/// Draws the opaque instances for where they are and were, without their materials, seen sides
+/// only; needs the velocity of instances. `set` gives each program what it wants.
+void draw_motions(
+    gpu::Device& device,
+    const FrameScene& scene,
+    SurfacePrograms& programs,
+    const gpu::PipelineState& state,
+    const std::function<void(const gpu::Program&)>& set);
 
 }  // namespace limn

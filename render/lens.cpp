@@ -29,6 +29,18 @@ bool opens_shutter(const MotionBlur& blur) {
     return blur.shutter > 0.0f && blur.longest > 0.0f;
 }
 
+/// Forgets the pictures that modes keep which are not in use: they are not the ones before.
+void forget_pictures(LensPasses& passes, bool open, MotionBlurMode mode) {
+    auto* accumulate = passes.motion_accumulate.made();
+    if (accumulate != nullptr && !(open && mode == MotionBlurMode::Accumulate)) {
+        forget_motion(*accumulate);
+    }
+    auto* stretch = passes.motion_stretch.made();
+    if (stretch != nullptr && !(open && mode == MotionBlurMode::Stretch)) {
+        forget_motion(*stretch);
+    }
+}
+
 TextureId apply_motion_blur(
     FrameGraph& graph,
     LensPasses& passes,
@@ -37,25 +49,38 @@ TextureId apply_motion_blur(
     const Gbuffer& gbuffer,
     TextureId radiance) {
     const bool open = opens_shutter(blur);
-    if (open && blur.mode == MotionBlurMode::Accumulate) {
-        auto* pass = passes.motion_accumulate.get(*passes.device, create_motion_accumulate_pass);
-        const int window = std::clamp(blur.window, 1, 16);
-        return pass == nullptr
-                   ? radiance
-                   : accumulate_motion(graph, *pass, window, !scene.since_last, radiance);
+    forget_pictures(passes, open, blur.mode);
+    if (!open) {
+        return radiance;
     }
-    if (auto* pass = passes.motion_accumulate.made()) {
-        forget_motion(*pass);
-    }
-    if (open && blur.mode == MotionBlurMode::Reconstruct) {
-        const auto* pass = passes.motion_blur.get(*passes.device, create_motion_blur_pass);
-        return pass == nullptr ? radiance
-                               : blur_motion(graph, *pass, blur, scene, gbuffer, radiance);
-    }
-    if (open && blur.mode == MotionBlurMode::Camera) {
-        const auto* pass = passes.motion_camera.get(*passes.device, create_motion_camera_pass);
-        return pass == nullptr ? radiance
-                               : blur_camera_motion(graph, *pass, blur, scene, gbuffer, radiance);
+    gpu::Device& device = *passes.device;
+    switch (blur.mode) {
+    case MotionBlurMode::Reconstruct:
+        if (const auto* pass = passes.motion_blur.get(device, create_motion_blur_pass)) {
+            return blur_motion(graph, *pass, blur, scene, gbuffer, radiance);
+        }
+        break;
+    case MotionBlurMode::Accumulate:
+        if (auto* pass = passes.motion_accumulate.get(device, create_motion_accumulate_pass)) {
+            const int window = std::clamp(blur.window, 1, 16);
+            return accumulate_motion(graph, *pass, window, !scene.since_last, radiance);
+        }
+        break;
+    case MotionBlurMode::Camera:
+        if (const auto* pass = passes.motion_camera.get(device, create_motion_camera_pass)) {
+            return blur_camera_motion(graph, *pass, blur, scene, gbuffer, radiance);
+        }
+        break;
+    case MotionBlurMode::Flow:
+        if (auto* pass = passes.motion_flow.get(device, create_motion_flow_pass)) {
+            return blur_along_flow(graph, *pass, blur, scene, gbuffer, radiance);
+        }
+        break;
+    case MotionBlurMode::Stretch:
+        if (auto* pass = passes.motion_stretch.get(device, create_motion_stretch_pass)) {
+            return stretch_motion(graph, *pass, blur, scene, gbuffer, radiance);
+        }
+        break;
     }
     return radiance;
 }
@@ -97,8 +122,10 @@ LensSettings lens_of_mean(const LensSettings& settings) {
 }
 
 bool needs_velocity(const LensSettings& settings) {
+    const MotionBlurMode mode = settings.motion_blur.mode;
     return opens_shutter(settings.motion_blur)
-           && settings.motion_blur.mode == MotionBlurMode::Reconstruct;
+           && (mode == MotionBlurMode::Reconstruct || mode == MotionBlurMode::Flow
+               || mode == MotionBlurMode::Stretch);
 }
 
 bool needs_attributes(const LensSettings& settings) {

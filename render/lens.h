@@ -8,6 +8,8 @@
 #include "render/passes/motion_accumulate_pass.h"
 #include "render/passes/motion_blur_pass.h"
 #include "render/passes/motion_camera_pass.h"
+#include "render/passes/motion_flow_pass.h"
+#include "render/passes/motion_stretch_pass.h"
 
 #include <optional>
 
@@ -64,6 +66,8 @@ struct LensPasses {
     OptionalPass<MotionBlurPass> motion_blur;
     OptionalPass<MotionAccumulatePass> motion_accumulate;
     OptionalPass<MotionCameraPass> motion_camera;
+    OptionalPass<MotionFlowPass> motion_flow;
+    OptionalPass<MotionStretchPass> motion_stretch;
     OptionalPass<GlowPass> glow;
     OptionalPass<GlowMaskPass> glow_mask;
 };

@@ -60,4 +60,17 @@ double bar_coverage(double x, double begin, double end, double way) {
     return std::max(high - low, 0.0) / way;
 }
 
+double stretch_coverage(double x, double begin, double end, double way, int samples, bool printed) {
+    const double sign = printed ? -1.0 : 1.0;
+    double sum = 0;
+    for (int i = 0; i < samples; ++i) {
+        const double gone = sign * way * i / (samples - 1);
+        const double before = x - gone;
+        const double now = x + gone;
+        sum += before >= begin && before <= end ? 1.0 : 0.0;
+        sum += now >= begin + way && now <= end + way ? 1.0 : 0.0;
+    }
+    return sum / (2 * samples);
+}
+
 }  // namespace limn::oracle

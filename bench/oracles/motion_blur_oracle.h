@@ -35,4 +35,9 @@ class MeanPicture {
 /// by `way` in all and half of it before the moment for which its place is given.
 [[nodiscard]] double bar_coverage(double x, double begin, double end, double way);
 
+/// post.motion-blur-stretch of a bar that was from `begin` to `end` and went `way`: what `samples`
+/// of either picture say of the point `x`. `printed`: with the signs of the listing.
+[[nodiscard]] double
+stretch_coverage(double x, double begin, double end, double way, int samples, bool printed = false);
+
 }  // namespace limn::oracle

@@ -11,6 +11,8 @@ enum class MotionBlurMode : std::uint8_t {
     Reconstruct,  ///< each pixel gathers what passes it, by depth and velocity: the one to use
     Accumulate,   ///< the mean of the last pictures (post.motion-blur-accumulation)
     Camera,       ///< the camera's motion alone (post.motion-blur-camera-psf)
+    Flow,         ///< objects warped along their motion (post.motion-blur-optic-flow)
+    Stretch,      ///< objects stretched between two pictures (post.motion-blur-stretch)
 };
 
 /// Resource: what moves while the shutter is open is smeared. Absent: as if the shutter opened for
@@ -19,9 +21,10 @@ enum class MotionBlurMode : std::uint8_t {
 struct MotionBlur {
     MotionBlurMode mode = MotionBlurMode::Reconstruct;
     float shutter = 180.0f;  ///< angle of a rotary shutter [deg], 0 = off, 360 = always open
-    int samples = 16;      ///< along a smear, 4 .. 64; what fast things do costs no more than that
+    int samples = 16;      ///< along a smear, 2 .. 64; what fast things do costs no more than that
     float longest = 0.2f;  ///< smear, as a share of the picture's height; longer ones are cut
     int window = 5;        ///< pictures of Accumulate, 1 .. 16; has no shutter
+    bool with_camera = false;  ///< Stretch: by the camera's motion, too
 };
 
 /// Half of the exposure, as a share of the time between two pictures.
@@ -35,7 +38,7 @@ void visit_fields(MotionBlur& blur, Visitor&& visit) {
         "mode",
         blur.mode,
         {.doc = "how a smear is made; all but reconstruct are older methods",
-         .values = "reconstruct accumulate camera"});
+         .values = "reconstruct accumulate camera flow stretch"});
     visit(
         "shutter",
         blur.shutter,
@@ -43,7 +46,7 @@ void visit_fields(MotionBlur& blur, Visitor&& visit) {
          .unit = "deg",
          .min = 0,
          .max = 1440});
-    visit("samples", blur.samples, {.doc = "along a smear", .min = 4, .max = 64});
+    visit("samples", blur.samples, {.doc = "along a smear", .min = 2, .max = 64});
     visit(
         "longest",
         blur.longest,
@@ -51,6 +54,7 @@ void visit_fields(MotionBlur& blur, Visitor&& visit) {
          .min = 0.01,
          .max = 1});
     visit("window", blur.window, {.doc = "pictures of accumulate", .min = 1, .max = 16});
+    visit("with_camera", blur.with_camera, {.doc = "stretch: by the camera's motion, too"});
 }
 
 }  // namespace limn

@@ -5,12 +5,8 @@
 //   OBJECT_LIGHTS  also the instance's place
 #version 450
 #include "lib/mesh_vertex.glsl"
+#include "lib/vertex_before.glsl"
 #include "lib/view.glsl"
-
-layout(location = 9) in vec4 before_row0;
-layout(location = 10) in vec4 before_row1;
-layout(location = 11) in vec4 before_row2;
-layout(location = 12) in vec3 position_before_ms;
 
 layout(location = 0) out vec3 normal_ws;   // not unit
 layout(location = 1) out vec4 tangent_ws;  // w: sign of the bitangent
@@ -38,12 +34,6 @@ void main() {
 #endif
 
 #ifdef VELOCITY
-#ifdef DEFORMED
-    vec4 p = vec4(moved_vertex(position_before_ms), 1.0);
-#else
-    vec4 p = vec4(vertex_ms(), 1.0);
-#endif
-    vec4 q = vec4(dot(before_row0, p), dot(before_row1, p), dot(before_row2, p), 1.0);
-    before = (view.previous_from_world * q).xyw;
+    before = (view.previous_from_world * vec4(vertex_before_ws(), 1.0)).xyw;
 #endif
 }

@@ -1,13 +1,42 @@
 #include "bench/oracles/motion_blur_oracle.h"
 #include "ecs/components/time.h"
+#include "tests/render/shader_eval.h"
 #include "tests/render/shutter_fixture.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
 namespace limn::test {
 namespace {
 
 constexpr int kSize = Shutter::kSize;
+
+/// A closed box from -1 to 1 along each axis, smooth at its corners: flat sides would tear apart.
+MeshData make_block() {
+    MeshData mesh;
+    mesh.name = "block";
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0f, 1.0f}) {
+            Vec3 normal(0);
+            Vec3 u(0);
+            normal[axis] = side;
+            u[(axis + 1) % 3] = 1;
+            const Vec3 v = glm::cross(normal, u);
+            const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+            for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)}) {
+                mesh.positions.push_back(normal + corner.x * u + corner.y * v);
+                mesh.normals.push_back(glm::normalize(mesh.positions.back()));
+            }
+            for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) {
+                mesh.indices.push_back(base + i);
+            }
+        }
+    }
+    mesh.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    return mesh;
+}
 
 /// The engine's own older methods of motion blur.
 class OldShutter : public Shutter {
@@ -184,6 +213,164 @@ TEST_CASE_FIXTURE(OldShutter, "motion camera: a roll about the view axis leaves 
     const gpu::FloatImage blurred = radiance(view);
     const gpu::FloatImage plain = sharp(view);
     CHECK(rgb_at(blurred, 32, 32) == rgb_at(plain, 32, 32));
+    CHECK(largest_difference(blurred, plain) > 0.2f);
+}
+
+// ---- along an optic flow
+
+TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of the surface") {
+    // y = flow_offset(x.xyz, (0, 0, -2)), then with a motion of 0.
+    const std::vector<Vec4> normals = {
+        {0, 0, -1, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0.6f, 0, -0.8f, 0}, {0, 1, 0, 1}};
+    const std::vector<Vec4> found = evaluate_shader(
+        "#include \"lib/motion.glsl\"\n",
+        "y.xyz = flow_offset(x.xyz, x.w > 0.5 ? vec3(0.0) : vec3(0.0, 0.0, -2.0));",
+        normals);
+    CHECK(Vec3(found[0]) == Vec3(0, 0, -2));                     // ahead: the motion
+    CHECK(Vec3(found[1]) == Vec3(0));                            // along: nothing
+    CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                      // behind: backward
+    CHECK(glm::length(Vec3(found[3])) == doctest::Approx(1.6));  // never more than the motion
+    CHECK(Vec3(found[4]) == Vec3(0));  // no motion, no number that is none
+}
+
+namespace {
+
+/// A plate whose normal goes half ahead, seen from the front, that moves by `way` [px].
+void tilted_bar(OldShutter& scene, float way) {
+    const Quat tilt = glm::angleAxis(radians(60.0f), Vec3(0, 1, 0));
+    const auto pose = [&](float x) { return affine_from({x, 0, 0}, tilt, {0.6f, 2, 1}); };
+    const Entity entity = scene.place(scene.square, scene.unlit({1, 1, 1}), pose(0));
+    scene.world.get<PreviousWorldTransform>(entity).world = pose(-way / Shutter::kPerMeter);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(OldShutter, "motion flow: what stands keeps its bits, one color keeps itself") {
+    world.insert_resource(Environment{});
+    tilted_bar(*this, 0);
+    set_mode(MotionBlurMode::Flow);
+    CHECK(picture().pixels == sharp().pixels);
+    world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
+    tilted_bar(*this, 14);
+    CHECK(largest_difference(picture(), sharp()) < 1e-3f);
+}
+
+TEST_CASE_FIXTURE(
+    OldShutter, "motion flow: the trailing edge smears farther than the leading one") {
+    tilted_bar(*this, 10);
+    set_mode(MotionBlurMode::Flow);
+    const std::vector<double> plain = row_of(sharp(), 32, 0);
+    const std::vector<double> blurred = row_of(picture(), 32, 0);
+    const auto is_bar = [](double v) { return v > 0.5; };
+    const auto first = std::find_if(plain.begin(), plain.end(), is_bar) - plain.begin();
+    const auto last =
+        kSize - 1 - (std::find_if(plain.rbegin(), plain.rend(), is_bar) - plain.rbegin());
+    REQUIRE(last - first > 12);
+    int trailing = 0;
+    int leading = 0;
+    for (int i = 0; i < (last - first) / 2; ++i) {
+        trailing += blurred[first + i] < 0.99 ? 1 : 0;
+        leading += blurred[last - i] < 0.99 ? 1 : 0;
+    }
+    CHECK(leading >= 1);
+    CHECK(trailing >= 2 * leading);
+    CHECK(blurred[first] < 0.6);
+}
+
+// ---- stretched geometry
+
+TEST_CASE("motion stretch: a bar covers its way in proportion, with the signs put right") {
+    // From 0 to 10, going 4.
+    for (const auto& [share, coverage] : {std::pair{0.5, 0.5}, std::pair{0.25, 0.3}}) {
+        CHECK(oracle::stretch_coverage(4 * share, 0, 10, 4, 10) == doctest::Approx(coverage));
+    }
+    for (int i = 1; i < 20; ++i) {
+        const double share = i / 20.0;
+        CHECK(std::abs(oracle::stretch_coverage(4 * share, 0, 10, 4, 10) - share) <= 0.1);
+        CHECK(
+            std::abs(oracle::stretch_coverage(10 + 4 * share, 0, 10, 4, 10) - (1 - share)) <= 0.1);
+        // As printed: two half bars wherever one looks.
+        CHECK(std::abs(oracle::stretch_coverage(4 * share, 0, 10, 4, 10, true) - 0.5) <= 0.1);
+    }
+}
+
+TEST_CASE_FIXTURE(OldShutter, "motion stretch: two pictures of a box make the ramp of the bar") {
+    const MeshId box = add(make_block());
+    const float way = 16;
+    const auto pose = [](float x) {
+        return affine_from({x, 0, 0}, {1, 0, 0, 0}, {12 / Shutter::kPerMeter, 1, 0.01f});
+    };
+    const Entity entity = place(box, unlit({1, 1, 1}), pose(-8 / Shutter::kPerMeter));
+    world.insert_resource(
+        MotionBlur{.mode = MotionBlurMode::Stretch, .shutter = 360, .samples = 10, .longest = 1});
+    static_cast<void>(picture());
+    world.get<PreviousWorldTransform>(entity).world = pose(-8 / Shutter::kPerMeter);
+    world.get<WorldTransform>(entity).world = pose(8 / Shutter::kPerMeter);
+    const std::vector<double> row = row_of(picture(), 32, 0);
+    // It was from 12 to 36 and is from 28 to 52.
+    for (int x = 0; x < kSize; ++x) {
+        CAPTURE(x);
+        const double want = oracle::stretch_coverage(x + 0.5, 12, 36, way, 10);
+        CHECK(std::abs(row[x] - want) <= 0.1);
+    }
+    CHECK(row[20] == doctest::Approx(0.5).epsilon(0.15));
+}
+
+TEST_CASE_FIXTURE(
+    OldShutter, "motion stretch: what stands keeps its bits, first pictures are sharp") {
+    world.insert_resource(Environment{});
+    bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
+    set_mode(MotionBlurMode::Stretch);
+    CHECK(picture().pixels == sharp().pixels);
+    CHECK(picture().pixels == sharp().pixels);
+}
+
+TEST_CASE_FIXTURE(OldShutter, "motion stretch: a ball becomes the hull of its two places") {
+    const MeshId ball = add(make_ball(32));
+    const auto pose = [](float x) { return affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.3f)); };
+    const Entity entity = place(ball, unlit({1, 1, 1}), pose(-0.2f));
+    // From far away: as good as parallel.
+    const Affine camera = look_at({0, 0, 30}, {0, 0, 0});
+    const RenderView view = make_render_view(
+        {.fov_y = 2 * std::atan(1.0f / 30)}, camera, camera, {.width = kSize, .height = kSize});
+    set_mode(MotionBlurMode::Stretch);
+    static_cast<void>(radiance(view));
+    world.get<PreviousWorldTransform>(entity).world = pose(-0.2f);
+    world.get<WorldTransform>(entity).world = pose(0.2f);
+    const gpu::FloatImage blurred = radiance(view);
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 0; x < kSize; ++x) {
+            const float px = (static_cast<float>(x) + 0.5f) / 32 - 1;
+            const float py = (static_cast<float>(y) + 0.5f) / 32 - 1;
+            const float beside = std::max(std::abs(px) - 0.2f, 0.0f);
+            const float outside = std::hypot(beside, py) - 0.3f;  // of the capsule [m]
+            CAPTURE(x);
+            CAPTURE(y);
+            if (outside > 0.045f) {
+                CHECK(blurred.at(x, y, 0) == 0.0f);
+            } else if (outside < -0.06f) {
+                CHECK(blurred.at(x, y, 0) > 0.02f);
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(OldShutter, "motion stretch: what stands before the layer stays as it is") {
+    const MeshId ball = add(make_ball(16));
+    const auto pose = [](float x) { return affine_from({x, 0, -1}, {1, 0, 0, 0}, Vec3(0.6f)); };
+    const Entity entity = place(ball, unlit({1, 1, 1}), pose(-0.5f));
+    bar(unlit({0.2f, 0.1f, 0.7f}), 24, 40, 0);
+    set_mode(MotionBlurMode::Stretch);
+    static_cast<void>(picture());
+    world.get<PreviousWorldTransform>(entity).world = pose(-0.5f);
+    world.get<WorldTransform>(entity).world = pose(0.5f);
+    const gpu::FloatImage blurred = picture();
+    const gpu::FloatImage plain = sharp();
+    for (int y = 0; y < kSize; ++y) {
+        for (int x = 24; x < 40; ++x) {
+            CHECK(rgb_at(blurred, x, y) == rgb_at(plain, x, y));
+        }
+    }
     CHECK(largest_difference(blurred, plain) > 0.2f);
 }
 

@@ -29,3 +29,11 @@ vec3 mean_along(sampler2D picture, vec2 pixel, vec2 motion, int most, float jitt
     }
     return sum / weights;
 }
+
+// By how much a point of a surface with this unit normal is taken along when the surface moves, in the space of both:
+// the motion where it goes ahead of its surface, backward where it follows, nothing where it slides along
+// (post.motion-blur-optic-flow).
+vec3 flow_offset(vec3 normal, vec3 motion) {
+    float len = length(motion);
+    return len > 1e-9 ? dot(normal, motion / len) * motion : vec3(0.0);
+}

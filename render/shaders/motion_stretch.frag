@@ -1,0 +1,37 @@
+// The layer of stretched objects: each pixel is the mean of the picture before, walked back along the motion, and of
+// this one, walked ahead. The listing has the signs the other way round, which shows two half objects side by side.
+#version 450
+#include "lib/motion.glsl"
+#include "lib/view.glsl"
+
+layout(binding = 0) uniform sampler2D radiance;         // of this picture
+layout(binding = 1) uniform sampler2D radiance_before;  // of the one before
+layout(binding = 2) uniform sampler2D depth_map;        // of this picture
+
+uniform int samples;     // >= 2
+uniform float exposure;  // share of the way
+uniform float longest;   // [px]
+
+noperspective layout(location = 0) in vec2 way;
+layout(location = 0) out vec4 blurred;
+
+const float kBehind = 1.02;  // times as far away: behind what the picture shows
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 per_pixel = view.size.zw;
+    float layer_distance = 1.0 / gl_FragCoord.w;
+    float depth = texelFetch(depth_map, pixel, 0).r;
+    blurred = texelFetch(radiance, pixel, 0);
+    if (depth > 0.0 && view_distance(depth) * kBehind < layer_distance) {
+        return;  // something stands before the layer
+    }
+    vec2 v = bounded_motion(way * exposure, longest);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < samples; ++i) {
+        float t = float(i) / float(samples - 1);
+        sum += textureLod(radiance_before, (gl_FragCoord.xy - t * v) * per_pixel, 0.0).rgb;
+        sum += textureLod(radiance, (gl_FragCoord.xy + t * v) * per_pixel, 0.0).rgb;
+    }
+    blurred.rgb = sum / float(2 * samples);
+}
