@@ -104,8 +104,9 @@ TextureId apply_glow(
 
 }  // namespace
 
-LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
+LensSettings lens_settings(const World& world, const RenderView& view) {
     LensSettings settings;
+    settings.depth_of_field = has_depth_of_field(view);
     if (const auto* glow = world.find_resource<Glow>()) {
         settings.glow = *glow;
     }
@@ -118,6 +119,7 @@ LensSettings lens_settings(const World& world, const RenderView& /*view*/) {
 LensSettings lens_of_mean(const LensSettings& settings) {
     LensSettings rest = settings;
     rest.motion_blur.shutter = 0;
+    rest.depth_of_field = false;
     return rest;
 }
 
@@ -140,6 +142,12 @@ TextureId apply_lens(
     const Gbuffer& gbuffer,
     TextureId radiance) {
     radiance = apply_motion_blur(graph, passes, settings.motion_blur, scene, gbuffer, radiance);
+    if (settings.depth_of_field) {
+        auto* pass = passes.depth_of_field.get(*passes.device, create_depth_of_field_pass);
+        if (pass != nullptr) {
+            radiance = draw_depth_of_field(graph, *pass, scene.view, radiance, gbuffer.depth);
+        }
+    }
     return apply_glow(graph, passes, settings.glow, gbuffer, radiance);
 }
 

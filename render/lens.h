@@ -3,6 +3,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/motion_blur.h"
 #include "render/gbuffer.h"
+#include "render/passes/depth_of_field_pass.h"
 #include "render/passes/glow_mask_pass.h"
 #include "render/passes/glow_pass.h"
 #include "render/passes/motion_accumulate_pass.h"
@@ -32,6 +33,7 @@ class Device;
 
 /// What the world and the camera ask of the lens, at the moment that a view shows.
 struct LensSettings {
+    bool depth_of_field = false;  ///< through the lens of the view
     Glow glow{.strength = 0};
     MotionBlur motion_blur{.shutter = 0};
 };
@@ -68,6 +70,7 @@ struct LensPasses {
     OptionalPass<MotionCameraPass> motion_camera;
     OptionalPass<MotionFlowPass> motion_flow;
     OptionalPass<MotionStretchPass> motion_stretch;
+    OptionalPass<DepthOfFieldPass> depth_of_field;
     OptionalPass<GlowPass> glow;
     OptionalPass<GlowMaskPass> glow_mask;
 };

@@ -14,6 +14,9 @@ struct uvec2 {
     uint x = 0, y = 0;
     bool operator==(const uvec2&) const = default;
 };
+struct ivec4 {
+    int x = 0, y = 0, z = 0, w = 0;
+};
 struct uvec4 {
     uint x = 0, y = 0, z = 0, w = 0;
 };

@@ -1,0 +1,38 @@
+// The disc of a highlight: as sharp as the picture has pixels, behind what hides it.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = 5) uniform sampler2D near_blurred;
+
+flat in vec3 light;
+flat in float radius;
+flat in vec2 middle;
+
+layout(location = 0) out vec4 color;
+
+// Share of the highlight that gets past what is seen here. The ray through the point of the aperture that lights this
+// pixel meets a nearer thing as far from here as that point's image there: what stands at that place decides.
+float gets_past(float own) {
+    float nearer = clamp(own / radius, 0.0, 1.0);
+    vec2 there = mix(gl_FragCoord.xy, middle, nearer);
+    float its = 0.5 * circle(texelFetch(scene_depth, ivec2(there), 0).r);
+    return clamp(8.0 * its / radius - 6.0, 0.0, 1.0);  // by eye: what is about as far away hides nothing
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec2 place = gl_FragCoord.xy - middle;
+    float visible = coarse_share(-radius);
+    if (radius > 0.0) {
+        float own = 0.5 * circle(texelFetch(scene_depth, here, 0).r);
+        float covered = texture(near_blurred, gl_FragCoord.xy * 0.5 / focus.size.zw).a;
+        visible = own > kFineRadius ? (1.0 - covered) * gets_past(own) : 0.0;
+    } else {
+        place = -place;
+    }
+    float wide = max(abs(radius), 1.0);
+    float inside = clamp(wide - aperture_radius(place) + 0.5, 0.0, 1.0);
+    float area = focus.aperture.z * (wide * wide + 1.0 / 12.0);
+    color = vec4(light * (visible * inside / area), 0.0);
+}

@@ -1,0 +1,48 @@
+// A point as large as the disc of each highlight that focus_rest.frag took off, first far and then near ones.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 0) uniform sampler2D far_light;
+layout(binding = 1) uniform sampler2D near_light;
+layout(binding = 3) uniform sampler2D far_rest;
+layout(binding = 4) uniform sampler2D near_rest;
+layout(binding = 6) uniform sampler2D scene_depth;
+layout(binding = 8) uniform sampler2D scene_radiance;
+
+uniform ivec2 texels;  // of a quarter of the picture
+
+flat out vec3 light;    // of the disc
+flat out float radius;  // [px], negative before the focus
+flat out vec2 middle;   // [px]
+
+// Where the light of a texel's 16 pixels is, and how wide its circle, signed [px].
+vec3 middle_of(ivec2 texel, float side, int pixels) {
+    ivec2 last = ivec2(focus.size.xy) - 1;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < pixels; ++i) {
+        ivec2 pixel = min(4 * texel + ivec2(i % 4, i / 4), last);
+        float its = side * circle(texelFetch(scene_depth, pixel, 0).r);
+        float shines = far_share(its) * luminance_of(finite_light(texelFetch(scene_radiance, pixel, 0)).rgb);
+        sum += shines * vec4(vec2(pixel) + 0.5, 0.5 * its, 1.0);
+    }
+    return sum.xyz / max(sum.w, 1e-20);
+}
+
+void main() {
+    int count = texels.x * texels.y;
+    bool is_near = gl_VertexID >= count;
+    int index = is_near ? gl_VertexID - count : gl_VertexID;
+    ivec2 texel = ivec2(index % texels.x, index / texels.x);
+    vec2 uv = 2.0 * (vec2(texel) + 0.5) / focus.size.zw;
+    vec4 all = is_near ? texture(near_light, uv) : texture(far_light, uv);
+    vec3 rest = (is_near ? texelFetch(near_rest, texel, 0) : texelFetch(far_rest, texel, 0)).rgb;
+    vec3 excess = all.rgb - rest;
+    bool shines = max(excess.r, max(excess.g, excess.b)) > 1e-5 * max(all.r, max(all.g, all.b));
+    float side = is_near ? -1.0 : 1.0;
+    vec3 its = middle_of(texel, side, shines ? 16 : 0);  // a loop is left early, a branch may not be
+    light = excess * 16.0;
+    middle = its.xy;
+    radius = side * its.z;
+    gl_Position = shines ? vec4(middle / focus.size.xy * 2.0 - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 0.0, 1.0);
+    gl_PointSize = 2.0 * its.z + 3.0;
+}

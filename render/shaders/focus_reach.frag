@@ -1,0 +1,24 @@
+// What is to be done in a tile: widest radius [px] of the near circles that reach it, fine and coarse; of its own far
+// ones; whether small circles matter, 1 of its own pixels and 2 of those around them.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 0) uniform sampler2D own_tiles;
+
+layout(location = 0) out vec4 tile;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    tile = texelFetch(own_tiles, here, 0);
+    int most = focus.tiles.z;
+    for (int y = -most; y <= most; ++y) {
+        for (int x = -most; x <= most; ++x) {
+            ivec2 there = clamp(here + ivec2(x, y), ivec2(0), focus.tiles.xy - 1);
+            vec4 other = texelFetch(own_tiles, there, 0);
+            float gap = length(vec2(max(abs(ivec2(x, y)) - 1, ivec2(0)) * kFocusTile));
+            tile.x = max(tile.x, other.x > gap ? other.x : 0.0);
+            tile.y = max(tile.y, other.y > gap ? other.y : 0.0);
+            tile.w = max(tile.w, max(abs(x), abs(y)) <= 1 && other.w > 1.0 ? 2.0 : 0.0);
+        }
+    }
+}
