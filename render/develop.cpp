@@ -1,17 +1,11 @@
 #include "render/develop.h"
 
-#include <glm/geometric.hpp>
+#include "render/render_view.h"
 
 namespace limn {
 namespace {
 
-constexpr double kLongestShot = 1.0;    // [s] between two pictures
-constexpr float kLeastCosine = 0.5f;    // of 60 degrees
-constexpr float kFarthestMove = 10.0f;  // [m]
-
-Vec3 column(const Affine& a, int c) {
-    return {a.row[0][c], a.row[1][c], a.row[2][c]};
-}
+constexpr double kLongestShot = 1.0;  // [s] between two pictures
 
 }  // namespace
 
@@ -61,9 +55,7 @@ std::optional<float>
 seconds_since_last(PictureClock& clock, std::uint64_t world, double time, const Affine& camera) {
     const double seconds = time - clock.time;
     const bool cut = !clock.running || clock.world != world || seconds < 0.0
-                     || seconds > kLongestShot
-                     || glm::dot(column(camera, 2), column(clock.camera, 2)) < kLeastCosine
-                     || glm::distance(column(camera, 3), column(clock.camera, 3)) > kFarthestMove;
+                     || seconds > kLongestShot || is_cut(clock.camera, camera);
     clock = {true, world, time, camera};
     return cut ? std::nullopt : std::optional(static_cast<float>(seconds));
 }

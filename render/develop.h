@@ -40,8 +40,7 @@ struct PictureClock {
 };
 
 /// Simulated seconds since the picture before. Nothing after a cut: another world, time that ran
-/// back or on by more than a second, or a camera that turned by more than 60 degrees or moved more
-/// than 10 m (by eye: no camera that films does).
+/// back or on by more than a second, or a camera that jumped (is_cut).
 [[nodiscard]] std::optional<float>
 seconds_since_last(PictureClock& clock, std::uint64_t world, double time, const Affine& camera);
 

@@ -89,6 +89,7 @@ struct FrameScene {
     RenderView view;
     std::optional<float> since_last;  ///< simulated time since the picture before [s]; none: a cut
     GLenum radiance_format = GL_RGBA16F;
+    GLenum velocity_format = GL_RG16F;
     gpu::RingSlice view_block;
     gpu::RingSlice environment_block;
     gpu::RingSlice probe_block;  ///< of no size: no probes

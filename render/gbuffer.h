@@ -10,7 +10,8 @@ struct Gbuffer {
     TextureId surface;  ///< RGBA32UI
     TextureId depth;    ///< D32F, reversed: 1 at the near plane, 0 where nothing is; with 8 bits of
                         ///< stencil, all 0, where needs_stencil()
-    TextureId velocity;  ///< RG16F, uv now - uv before; not valid() unless asked for
+    TextureId velocity;  ///< RG16F or RG32F, uv now - uv before, of the sky, too; not valid()
+                         ///< unless asked for
 };
 
 }  // namespace limn

@@ -187,8 +187,9 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     specular_albedo_.upload<Vec2>(table, GL_RG, GL_FLOAT);
     // A software OpenGL writes 32-bit floats faster than 16-bit ones, which it also cuts off
     // instead of rounding.
-    scene.radiance_format =
-        settings.full_float || gpu_device.caps().software ? GL_RGBA32F : GL_RGBA16F;
+    const bool full_float = settings.full_float || gpu_device.caps().software;
+    scene.radiance_format = full_float ? GL_RGBA32F : GL_RGBA16F;
+    scene.velocity_format = full_float ? GL_RG32F : GL_RG16F;
     scene.meshes = &meshes_;
     scene.materials = &materials_;
     scene.shapes = &shapes_;

@@ -13,6 +13,13 @@
 namespace limn {
 namespace {
 
+constexpr float kLeastCosine = 0.5f;    // of 60 degrees
+constexpr float kFarthestMove = 10.0f;  // [m]
+
+Vec3 column(const Affine& a, int c) {
+    return {a.row[0][c], a.row[1][c], a.row[2][c]};
+}
+
 /// Rotation and position alone, whatever the scale or shear.
 Affine without_scale(const Affine& a) {
     const Vec3 back = normalize_or({a.row[0].z, a.row[1].z, a.row[2].z}, {0, 0, 1});
@@ -40,12 +47,21 @@ Affine mix_affine(const Affine& previous, const Affine& current, float alpha) {
     return mixed;
 }
 
+bool is_cut(const Affine& before, const Affine& now) {
+    const Vec3 was = normalize_or(column(before, 2), {0, 0, 1});
+    const Vec3 is = normalize_or(column(now, 2), {0, 0, 1});
+    return glm::dot(was, is) < kLeastCosine
+           || glm::distance(column(before, 3), column(now, 3)) > kFarthestMove;
+}
+
 RenderView make_render_view(
     const Camera& camera,
     const Affine& world_from_camera,
-    const Affine& previous,
+    const Affine& its_previous,
     const ViewRequest& request) {
     LIMN_CHECK(request.width > 0 && request.height > 0);
+    const Affine& previous =
+        is_cut(its_previous, world_from_camera) ? world_from_camera : its_previous;
 
     const float tangent = std::tan(0.5f * camera.fov_y);
     const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);

@@ -48,7 +48,12 @@ struct ViewRequest {
     float alpha_before = 0.0f;  ///< see RenderView
 };
 
-/// From a camera that stands at `world_from_camera` (scale is dropped) and was at `previous`.
+/// Whether a camera jumped between two pictures: it turned by more than 60 degrees or moved by more
+/// than 10 m (by eye: no camera that films does).
+[[nodiscard]] bool is_cut(const Affine& before, const Affine& now);
+
+/// From a camera that stands at `world_from_camera` (scale is dropped) and was at `previous`, from
+/// where, after a cut, there is no motion.
 [[nodiscard]] RenderView make_render_view(
     const Camera& camera,
     const Affine& world_from_camera,

@@ -64,9 +64,12 @@ TextureId draw_aov(
             if (aov == kShadowTexelsAov && shadow_views == 0) {
                 return;
             }
-            gpu::PipelineState surfaces_only = gpu::kFullscreenState;
-            surfaces_only.depth = {.test = true, .write = false, .func = GL_LESS};
-            context.device().use(gpu::Pipeline{pass.programs[aov], surfaces_only});
+            // The sky moves, too; it has nothing else.
+            gpu::PipelineState state = gpu::kFullscreenState;
+            if (aov != kVelocityAov) {
+                state.depth = {.test = true, .write = false, .func = GL_LESS};
+            }
+            context.device().use(gpu::Pipeline{pass.programs[aov], state});
             bind_view(context.device(), scene);
             context.bind_texture(kGbufferUnit, gbuffer.surface);
             context.bind_texture(kDepthUnit, gbuffer.depth);

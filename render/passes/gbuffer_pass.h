@@ -11,10 +11,16 @@ namespace limn {
 // Reads    InstanceList
 // Writes   surface attributes (lib/gbuffer.glsl), depth, and velocity if asked for
 // Order    first of the image
-// Shaders  mesh.vert, gbuffer.frag, lib/material.glsl
+// Shaders  mesh.vert, gbuffer.frag, lib/material.glsl; sky_velocity.frag
+//
+// Velocity is that of the camera and of each vertex: as its instance moves, as joints and morph
+// targets move it. Where nothing is, it is that of the camera's turning. Blended surfaces have
+// none: a pixel moves as what is seen through them, as only one motion fits in a pixel and the
+// opaque one is the sharper. Numbers only, at most eight pictures long; jitter is no motion.
 
 struct GbufferPass {
     SurfacePrograms programs;
+    const gpu::Program* sky_velocity = nullptr;
 };
 
 [[nodiscard]] Result<GbufferPass> create_gbuffer_pass(gpu::Device& device);

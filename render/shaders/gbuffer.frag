@@ -6,6 +6,7 @@
 #include "lib/material.glsl"
 
 #ifdef VELOCITY
+#include "lib/velocity.glsl"
 layout(location = 5) in vec3 before;
 layout(location = 1) out vec2 velocity;
 #endif
@@ -21,6 +22,6 @@ void main() {
     surface = pack_surface(surface_sample(color.rgb));
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6));
+    velocity = velocity_from(now_ndc, before);
 #endif
 }

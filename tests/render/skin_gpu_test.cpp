@@ -194,6 +194,19 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: dual quaternions blend the short way round") {
+    Bend bend = make_bend({0, 1, 0}, radians(100.0f), 0.5f);
+    bend.pose.joints[0] =
+        affine_from(Vec3(0), rotation_about({0, 1, 0}, radians(-100.0f)), Vec3(1));
+    const Entity entity =
+        pose(add(bend.mesh), gray, add_skin(bend.skin), bend.pose, Skinning::DualQuaternion);
+    const std::vector<Vec3> got = read(entity).positions;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        const Vec3 rest = bend.mesh.positions[i];
+        CHECK(glm::distance(got[i], Vec3(-rest.x, rest.y, -rest.z)) <= 1e-5f);  // 180, not 0
+    }
+}
+
 TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a twist by half a turn leaves unit normals") {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Bend bend = make_bend({0, 1, 0}, kPi, 0.4f);
@@ -325,6 +338,23 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: no vertex leaves the box that culls it") 
         }
         CHECK((wild || glm::length(box.max - box.min) < 2 * size_of(got)));
         world.destroy(entity);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    SkinTest, "skin_gpu: a twist far from its axis stays in the box on its way round") {
+    Bend bend = make_bend({0, 1, 0}, radians(170.0f), 0.5f);
+    for (Vec3& p : bend.mesh.positions) {
+        p.x += 2;
+    }
+    bend.mesh.bounds = {};
+    const Entity entity =
+        pose(add(bend.mesh), gray, add_skin(bend.skin), bend.pose, Skinning::DualQuaternion);
+    const std::vector<Vec3> got = read(entity).positions;
+    const Bounds box = gpu.shapes()[gpu.shapes().find(entity)].bounds;
+    for (const Vec3& p : got) {
+        CHECK(p.z < -1);
+        CHECK(p.z >= box.min.z);
     }
 }
 

@@ -1,0 +1,101 @@
+#include "bench/oracles/velocity_oracle.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace limn::oracle {
+
+VelocityOracle::VelocityOracle(const CameraMotion& motion)
+    : motion_(motion), now_(eye_at(motion.alpha)), before_(eye_at(motion.alpha_before)) {}
+
+VelocityOracle::Eye VelocityOracle::eye_at(double alpha) const {
+    const auto column = [&](int c) {
+        glm::dvec3 mixed;
+        for (int r = 0; r < 3; ++r) {
+            const double from = motion_.previous.row[r][c];
+            mixed[r] = from + alpha * (double(motion_.current.row[r][c]) - from);
+        }
+        return mixed;
+    };
+    Eye eye;
+    eye.place = column(3);
+    eye.back = glm::normalize(column(2));
+    eye.right = glm::normalize(glm::cross(column(1), eye.back));
+    eye.up = glm::cross(eye.back, eye.right);
+    return eye;
+}
+
+glm::dvec3 VelocityOracle::ray(const Eye& eye, double x, double y) const {
+    const double half = std::tan(0.5 * double(motion_.camera.fov_y));
+    const double px = 2 * half / motion_.height;  // square pixels
+    const double right = (x - 0.5 * motion_.width) * px;
+    const double down = (y - 0.5 * motion_.height) * px;
+    return right * eye.right - down * eye.up - eye.back;
+}
+
+glm::dvec2 VelocityOracle::project(const Eye& eye, const glm::dvec3& way) const {
+    const double half = std::tan(0.5 * double(motion_.camera.fov_y));
+    const double scale = motion_.height / (2 * half * glm::dot(way, -eye.back));
+    return {scale * glm::dot(way, eye.right), -scale * glm::dot(way, eye.up)};
+}
+
+void VelocityOracle::add(const MovingTriangles& triangles) {
+    const auto at = [&](double alpha) {
+        std::vector<glm::dvec3> corners;
+        for (std::size_t i = 0; i < triangles.current.size(); ++i) {
+            corners.push_back(
+                triangles.previous[i] + alpha * (triangles.current[i] - triangles.previous[i]));
+        }
+        return corners;
+    };
+    add_corners(at(motion_.alpha_before), at(motion_.alpha), triangles.indices);
+}
+
+void VelocityOracle::add_corners(
+    const std::vector<glm::dvec3>& before,
+    const std::vector<glm::dvec3>& now,
+    const std::vector<std::uint32_t>& indices) {
+    for (const std::uint32_t i : indices) {
+        corners_now_.push_back(now[i]);
+        corners_before_.push_back(before[i]);
+    }
+}
+
+std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {
+    const glm::dvec3 way = ray(now_, x, y);
+    double nearest = std::numeric_limits<double>::infinity();
+    std::optional<PixelMotion> found;
+    for (std::size_t i = 0; i < corners_now_.size(); i += 3) {
+        const glm::dvec3 a = corners_now_[i] - now_.place;
+        const glm::dvec3 e1 = corners_now_[i + 1] - corners_now_[i];
+        const glm::dvec3 e2 = corners_now_[i + 2] - corners_now_[i];
+        // a + u e1 + v e2 = t way, by Cramer's rule.
+        const glm::dvec3 across = glm::cross(way, e2);
+        const double det = glm::dot(e1, across);
+        if (det == 0) {
+            continue;
+        }
+        const double u = glm::dot(-a, across) / det;
+        const glm::dvec3 q = glm::cross(-a, e1);
+        const double v = glm::dot(way, q) / det;
+        const double t = glm::dot(e2, q) / det;
+        if (u < 0 || v < 0 || u + v > 1 || t < double(motion_.camera.near) || t >= nearest) {
+            continue;
+        }
+        nearest = t;
+        const glm::dvec3 was = corners_before_[i]
+                               + u * (corners_before_[i + 1] - corners_before_[i])
+                               + v * (corners_before_[i + 2] - corners_before_[i]);
+        found = PixelMotion{t, project(now_, t * way) - project(before_, was - before_.place)};
+    }
+    return found;
+}
+
+glm::dvec2 VelocityOracle::sky(double x, double y) const {
+    const glm::dvec3 way = ray(now_, x, y);
+    return project(now_, way) - project(before_, way);
+}
+
+}  // namespace limn::oracle
