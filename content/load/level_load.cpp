@@ -497,11 +497,26 @@ Status load_picture(
     return Done{};
 }
 
+/// Skeleton and skin have the name of the mesh, clips begin with it: "fox.walk".
+void add_rig(Assets& assets, const std::string& name, MeshRig rig) {
+    rig.skeleton.name = name;
+    rig.skin.name = name;
+    assets.skeletons.push_back(std::move(rig.skeleton));
+    assets.skins.push_back(std::move(rig.skin));
+    for (ClipData& clip : rig.clips) {
+        clip.name = fmt::format("{}.{}", name, clip.name);
+        assets.clips.push_back(std::move(clip));
+    }
+}
+
 Status make_meshes(Level& level, const LevelLimits& limits) {
     std::uint64_t vertices = 0;
     for (const LevelMesh& mesh : level.meshes) {
         MeshData& data = level.assets.meshes.emplace_back(mesh.kind->make(mesh.parameters.data()));
         data.name = mesh.name;
+        if (mesh.kind->make_rig != nullptr) {
+            add_rig(level.assets, mesh.name, mesh.kind->make_rig(mesh.parameters.data()));
+        }
         vertices += data.positions.size();
         if (vertices > limits.max_vertices) {
             return fail(

@@ -17,7 +17,16 @@ MeshKind mesh_kind(const char* name, const char* doc) {
     const auto call = [](const void* parameters) {
         return make(*static_cast<const Shape*>(parameters));
     };
-    return {name, doc, &component_info<Shape>(), call};
+    return {name, doc, &component_info<Shape>(), call, nullptr};
+}
+
+MeshKind creature_kind() {
+    MeshKind kind = mesh_kind<CreatureShape, make_creature>(
+        "creature", "an animal on four legs that faces z, with skeleton, skin and clips");
+    kind.make_rig = [](const void* parameters) {
+        return make_creature_rig(*static_cast<const CreatureShape*>(parameters));
+    };
+    return kind;
 }
 
 }  // namespace
@@ -27,6 +36,7 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<ArchShape, make_arch>("arch", "a pointed rib or frame on two legs, facing z"),
         mesh_kind<BoxShape, make_box>("box", "a box, its edges rounded if asked"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
+        creature_kind(),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile turned around +y"),

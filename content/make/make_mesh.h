@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/make/creature.h"
 #include "ecs/components/surface.h"
 #include "ecs/reflect.h"
 
@@ -25,6 +26,7 @@ struct MeshKind {
     const char* doc;                  ///< one line
     const ComponentInfo* parameters;  ///< fields, defaults, how to construct and destroy
     MeshData (*make)(const void* parameters);
+    MeshRig (*make_rig)(const void* parameters) = nullptr;  ///< of a mesh that joints move
 };
 
 /// All kinds, by name.

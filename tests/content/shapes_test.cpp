@@ -27,8 +27,11 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 13);
+    REQUIRE(mesh_kinds().size() == 14);
     for (const MeshKind& kind : mesh_kinds()) {
+        if (kind.make_rig != nullptr) {
+            continue;  // creature_test.cpp
+        }
         INFO(std::string(kind.name));
         const MeshData mesh = make_default(kind);
         check_arrays(mesh);
