@@ -1,5 +1,6 @@
 #include "content/app/quality.h"
 
+#include "content/app/quality_dof.h"
 #include "content/app/quality_glow.h"
 #include "content/app/quality_lights.h"
 #include "content/app/quality_motion_blur.h"
@@ -26,6 +27,7 @@ std::span<const QualityEffect> quality_effects() {
         {"motion-blur",
          "the mean of 128 pictures of moments within the exposure",
          measure_motion_blur},
+        {"dof", "the mean of what 256 points of the lens see", measure_dof},
         {"glow", "a convolution in double precision, and the laws of light", measure_glow},
     };
     return kEffects;

@@ -123,10 +123,11 @@ void draw_tiles(
 void Drawing::find_tiles(TextureId depth) {
     const IVec2 count = {block_.tiles.x, block_.tiles.y};
     const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
+    const TextureId small = create("focus.own small", GL_RG16F, count);
     graph_.add_pass(
         "focus.tiles",
         {depth},
-        {discarded(own)},
+        {discarded(own), discarded(small)},
         [&pass = pass_, block = block_, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
             use_fullscreen(context, pass.tiles, pass.focus);
@@ -135,9 +136,13 @@ void Drawing::find_tiles(TextureId depth) {
         });
     made_.tiles = create("focus.tiles", GL_RGBA16F, count);
     graph_.add_pass(
-        "focus.reach", {own}, {discarded(made_.tiles)}, [&pass = pass_, own](PassContext& context) {
+        "focus.reach",
+        {own, small},
+        {discarded(made_.tiles)},
+        [&pass = pass_, own, small](PassContext& context) {
             use_fullscreen(context, pass.reach, pass.focus);
             context.bind_texture(0, own);
+            context.bind_texture(1, small);
             context.device().draw_fullscreen();
         });
 }
@@ -145,7 +150,7 @@ void Drawing::find_tiles(TextureId depth) {
 void Drawing::split(TextureId radiance, TextureId depth) {
     made_.far_light = create("focus.far", format_, made_.half);
     made_.near_light = create("focus.near", format_, made_.half);
-    made_.radii = create("focus.radii", pair_format(), made_.half);
+    made_.radii = create("focus.radii", format_, made_.half);
     made_.behind_near = create("focus.behind near", format_, made_.half);
     graph_.add_pass(
         "focus.split",
@@ -418,9 +423,9 @@ layout::FocusBlock make_focus_block(const RenderView& view) {
         const float turn = static_cast<float>(i) * kGolden;
         block.tap[i] = Vec4(rim(lens, turn - std::floor(turn)), 0, 0);
     }
-    std::array<IVec2, 25> around;
-    for (int i = 0; i < 25; ++i) {
-        around[i] = {i % 5 - 2, i / 5 - 2};
+    std::array<IVec2, 49> around;
+    for (int i = 0; i < 49; ++i) {
+        around[i] = {i % 7 - 3, i / 7 - 3};
     }
     std::stable_sort(around.begin(), around.end(), [](const IVec2& a, const IVec2& b) {
         return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
@@ -428,6 +433,14 @@ layout::FocusBlock make_focus_block(const RenderView& view) {
     for (int i = 0; i < layout::kSlightTaps; ++i) {
         block.tap[i].z = static_cast<float>(around[i].x);
         block.tap[i].w = static_cast<float>(around[i].y);
+    }
+    for (int i = 0; i < 52; ++i) {
+        float area = 0;
+        for (const IVec2& pixel : around) {
+            const float away = std::sqrt(static_cast<float>(pixel.x * pixel.x + pixel.y * pixel.y));
+            area += std::clamp(static_cast<float>(i) / 16 + 0.5f - away, 0.0f, 1.0f);
+        }
+        block.area[i / 4][i % 4] = area;
     }
     return block;
 }

@@ -20,7 +20,7 @@ struct FocusBlock;
 // Order    after all that draws into the scene and after motion blur, before glow
 // Shaders  focus_*; lib/focus.glsl, layout in focus_gpu.h
 //
-// Circles of up to 4 px are gathered from the picture itself. Wider ones are gathered at half its
+// Circles of up to 5 px are gathered from the picture itself. Wider ones are gathered at half its
 // size by 48 taps that fill the aperture, far and near ones apart: a tap asks a place whether its
 // circle comes as far as here, and takes its light by the area that it is spread over. What is
 // sharp therefore never leaks into what is not, and a near thing spreads over what is behind it;

@@ -15,14 +15,21 @@ flat out vec3 light;    // of the disc
 flat out float radius;  // [px], negative before the focus
 flat out vec2 middle;   // [px]
 
-// Where the light of a texel's 16 pixels is, and how wide its circle, signed [px].
+// Share of a texel's light that comes from a pixel in this column or row, by the tent of focus_split.frag.
+float tent(int i) {
+    return i == 0 || i == 5 ? 1.0 : i == 1 || i == 4 ? 3.0 : 4.0;
+}
+
+// Where the light of a texel is among the 6 x 6 pixels that it is of, and how wide its circle [px].
 vec3 middle_of(ivec2 texel, float side, int pixels) {
     ivec2 last = ivec2(focus.size.xy) - 1;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < pixels; ++i) {
-        ivec2 pixel = min(4 * texel + ivec2(i % 4, i / 4), last);
+        ivec2 place = ivec2(i % 6, i / 6);
+        ivec2 pixel = clamp(4 * texel - 1 + place, ivec2(0), last);
         float its = side * circle(texelFetch(scene_depth, pixel, 0).r);
-        float shines = far_share(its) * luminance_of(finite_light(texelFetch(scene_radiance, pixel, 0)).rgb);
+        vec3 its_light = finite_light(texelFetch(scene_radiance, pixel, 0)).rgb;
+        float shines = tent(place.x) * tent(place.y) * far_share(its) * luminance_of(its_light);
         sum += shines * vec4(vec2(pixel) + 0.5, 0.5 * its, 1.0);
     }
     return sum.xyz / max(sum.w, 1e-20);
@@ -39,7 +46,7 @@ void main() {
     vec3 excess = all.rgb - rest;
     bool shines = max(excess.r, max(excess.g, excess.b)) > 1e-5 * max(all.r, max(all.g, all.b));
     float side = is_near ? -1.0 : 1.0;
-    vec3 its = middle_of(texel, side, shines ? 16 : 0);  // a loop is left early, a branch may not be
+    vec3 its = middle_of(texel, side, shines ? 36 : 0);  // a loop is left early, a branch may not be
     light = excess * 16.0;
     middle = its.xy;
     radius = side * its.z;

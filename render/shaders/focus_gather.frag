@@ -35,16 +35,21 @@ int taps_for(float radius, float level) {
 
 // Behind the focus: the circle of the texel itself bounds what is behind it, or that would reach before it.
 vec4 gather_far(sampler2D layer, sampler2D radii, vec2 uv, float radius, float level, int first_level, int taps) {
-    vec2 stride = fitted_radius(radius, side_of(level)) * 0.5 / focus.size.zw;
+    float widest = fitted_radius(radius, side_of(level));
+    vec2 stride = widest * 0.5 / focus.size.zw;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < taps; ++i) {
         float through = sqrt((float(i) + 0.5) / float(taps));  // radius of the aperture
         vec2 there = uv - stride * through * focus.tap[i].xy;
         vec4 light = textureLod(layer, there, level - float(first_level));
         float its = textureLod(radii, there, level - float(first_level)).x / max(light.a, 1e-5);
-        float reached = clamp((its - through * radius) / kRim + 1.0, 0.0, 1.0);
-        float spread = clamp(its / max(radius, 1e-5), kNarrowest, 1.0);
-        sum += light * (reached / (spread * spread));
+        its = fitted_radius(min(its, radius), side_of(level));
+        // A rim is soft, but not that of the circle that the kernel is made for.
+        float as_wide = clamp(10.0 * its / max(widest, 1e-5) - 9.0, 0.0, 1.0);
+        float reached = clamp((its - through * widest) / kRim + 0.5 + 0.5 * as_wide, 0.0, 1.0);
+        its = max(its, kNarrowest * widest);
+        float area = its * its + (1.0 - as_wide) * kRim * kRim / 12.0;
+        sum += light * (reached * widest * widest / max(area, 1e-5));
     }
     return sum;
 }
@@ -73,7 +78,7 @@ void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
 
     float share = texelFetch(far_light, here, 0).a;
-    float radius = share > 0.0 ? texelFetch(light_radii, here, 0).x / share : 0.0;
+    float radius = share > 0.0 ? texelFetch(light_radii, here, 0).z / share : 0.0;
     bool coarse = radius > kFineRadius;
     float level = max(level_of(radius), 1.0);
     int fine_taps = share > 0.0 && !coarse ? taps_for(radius, 0.0) : 0;

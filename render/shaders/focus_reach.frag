@@ -1,15 +1,18 @@
 // What is to be done in a tile: widest radius [px] of the near circles that reach it, fine and coarse; of its own far
-// ones; whether small circles matter, 1 of its own pixels and 2 of those around them.
+// ones; of small ones that reach over others, or a little if there are some that do not.
 #version 450
 #include "lib/focus.glsl"
 
 layout(binding = 0) uniform sampler2D own_tiles;
+layout(binding = 1) uniform sampler2D own_small;
 
 layout(location = 0) out vec4 tile;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     tile = texelFetch(own_tiles, here, 0);
+    bool is_far = tile.z > 0.0;
+    tile.w = texelFetch(own_small, here, 0).y > 0.0 ? 0.25 : 0.0;
     int most = focus.tiles.z;
     for (int y = -most; y <= most; ++y) {
         for (int x = -most; x <= most; ++x) {
@@ -18,7 +21,8 @@ void main() {
             float gap = length(vec2(max(abs(ivec2(x, y)) - 1, ivec2(0)) * kFocusTile));
             tile.x = max(tile.x, other.x > gap ? other.x : 0.0);
             tile.y = max(tile.y, other.y > gap ? other.y : 0.0);
-            tile.w = max(tile.w, max(abs(x), abs(y)) <= 1 && other.w > 1.0 ? 2.0 : 0.0);
+            vec2 small = max(abs(x), abs(y)) <= 1 ? texelFetch(own_small, there, 0).xy : vec2(0.0);
+            tile.w = max(tile.w, max(small.x, is_far ? small.y : 0.0));
         }
     }
 }

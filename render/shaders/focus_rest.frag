@@ -18,12 +18,15 @@ const float kVisible = 0.06;  // of the light around, what a disc adds to it at 
 
 vec4 without_highlight(vec4 light, float radius, vec2 uv, int layer) {
     radius /= max(light.a, 1e-5);
-    float level = log2(max(0.5 * radius, 1.0));  // texels of 4 px across the disc
+    float level = log2(max(radius, 2.0));  // of texels of 4 px, two discs wide
     vec4 means = textureLod(mean_luminance, uv, level);
-    vec2 around = layer == 0 ? means.xy : means.zw;
+    float around = light.a * (layer == 0 ? means.x / max(means.y, 1e-5) : means.z / max(means.w, 1e-5));
     float texels = focus.aperture.z * radius * radius / 16.0;
-    float most = light.a * around.x / max(around.y, 1e-5) * max(2.0, kVisible * texels);
-    return vec4(light.rgb * min(1.0, most / max(luminance_of(light.rgb), 1e-20)), light.a);
+    float most = around * max(2.0, kVisible * texels);
+    float luminance = luminance_of(light.rgb);
+    // Nothing up to `most`; of what is twice as bright, all but what is around.
+    float rest = luminance > most ? max(2.0 * most - luminance, around) : luminance;
+    return vec4(light.rgb * (rest / max(luminance, 1e-20)), light.a);
 }
 
 void main() {

@@ -8,30 +8,37 @@ layout(binding = 1) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 far_light;
 layout(location = 1) out vec4 near_light;
-layout(location = 2) out vec2 radii;  // [px] of far and near circles
+layout(location = 2) out vec4 radii;  // [px] of far and near circles; z: of far ones, whatever they shine
 layout(location = 3) out vec4 behind_near;
 
+// Under a tent over 4 x 4 pixels: wherever in its texel a light is, its middle and its width stay what they were.
+
 void main() {
-    ivec2 first = 2 * ivec2(gl_FragCoord.xy);
+    ivec2 first = 2 * ivec2(gl_FragCoord.xy) - 1;
     ivec2 last = ivec2(focus.size.xy) - 1;
     far_light = vec4(0.0);
     near_light = vec4(0.0);
     vec2 sum = vec2(0.0);
     vec2 weights = vec2(1e-20);
+    float far_radius = 0.0;
     behind_near = vec4(0.0);
-    for (int i = 0; i < 4; ++i) {
-        ivec2 pixel = min(first + ivec2(i & 1, i >> 1), last);
-        vec4 light = finite_light(texelFetch(scene_radiance, pixel, 0));
-        float diameter = circle(texelFetch(scene_depth, pixel, 0).r);
-        float is_far = 0.25 * far_share(diameter);
-        float is_near = 0.25 * near_share(diameter);
-        far_light += is_far * light;
-        near_light += is_near * light;
-        behind_near += (0.25 - is_near) * light;
-        // Of what shines most, lest a lamp gets the circle of the sky around it.
-        vec2 shines = vec2(is_far, is_near) * (luminance_of(light.rgb) + 1e-6);
-        sum += 0.5 * abs(diameter) * shines;
-        weights += shines;
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 4; ++x) {
+            ivec2 pixel = clamp(first + ivec2(x, y), ivec2(0), last);
+            float tent = (x == 1 || x == 2 ? 0.375 : 0.125) * (y == 1 || y == 2 ? 0.375 : 0.125);
+            vec4 light = tent * finite_light(texelFetch(scene_radiance, pixel, 0));
+            float diameter = circle(texelFetch(scene_depth, pixel, 0).r);
+            float is_near = near_share(diameter);
+            vec2 shares = vec2(far_share(diameter), is_near);
+            far_light += shares.x * light;
+            near_light += shares.y * light;
+            behind_near += is_near > 0.0 ? vec4(0.0) : light;
+            // Of what shines most, lest a lamp gets the circle of the sky around it.
+            vec2 shines = shares * (luminance_of(light.rgb) + 1e-6 * tent);
+            sum += 0.5 * abs(diameter) * shines;
+            far_radius += 0.5 * abs(diameter) * shares.x * light.a;
+            weights += shines;
+        }
     }
-    radii = sum / weights * vec2(far_light.a, near_light.a);
+    radii = vec4(sum / weights * vec2(far_light.a, near_light.a), far_radius, 0.0);
 }

@@ -1,16 +1,17 @@
 // What of a tile is out of focus: widest radius [px] of its near circles that are gathered finely, and coarsely; of its
-// far ones; whether there are small ones, 1 behind and 2 before the focus.
+// far ones. Apart from that, of small circles before and behind the focus.
 #version 450
 #include "lib/focus.glsl"
 
 layout(binding = 1) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 tile;
+layout(location = 1) out vec2 small;
 
 void main() {
     vec2 first = vec2(ivec2(gl_FragCoord.xy) * kFocusTile + 1);
     vec3 widest = vec3(0.0);
-    float small = 0.0;
+    small = vec2(0.0);
     for (int y = 0; y < kFocusTile; y += 2) {
         for (int x = 0; x < kFocusTile; x += 2) {
             vec4 depths = textureGather(scene_depth, (first + vec2(x, y)) / focus.size.xy);
@@ -26,9 +27,9 @@ void main() {
                         is_large && is_near && coarse_share(radius) > 0.0 ? radius : 0.0,
                         is_large && !is_near ? radius : 0.0));
                 bool is_small = 2.0 * radius > kLeastCircle && 2.0 * radius < kBlurriest;
-                small = max(small, is_small ? (is_near ? 2.0 : 1.0) : 0.0);
+                small = max(small, is_small ? (is_near ? vec2(radius, 0.0) : vec2(0.0, radius)) : vec2(0.0));
             }
         }
     }
-    tile = vec4(widest, small);
+    tile = vec4(widest, 0.0);
 }

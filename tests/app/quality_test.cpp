@@ -169,6 +169,21 @@ TEST_CASE("quality: motion blur comes close to the mean of the moments of an exp
     }
 }
 
+TEST_CASE("quality: depth of field obeys the law of discs and does not leak") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "dof", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 12 + 5 + 2 + 2 * 3);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+    }
+}
+
 TEST_CASE("quality: glow keeps the light, is round, steady and the oracle's convolution") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(folder, {"quality", "glow", "--json", "q.json"});

@@ -45,7 +45,7 @@ float aperture_radius(vec2 place) {
 // Kernel whose disc, after what reading texels of side `texel` [px] and showing half as many pixels blur by
 // themselves, is as wide as one of `radius` [px]: variances add.
 float fitted_radius(float radius, float texel) {
-    float done = 0.25 * texel * texel + 2.0 / 3.0;
+    float done = 0.25 * texel * texel + 7.0 / 6.0;
     return sqrt(max(radius * radius - done / focus.aperture.w, 0.0));
 }
 
