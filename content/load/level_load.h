@@ -37,7 +37,8 @@ class World;
 //         "dull gold": {"like": "gold", "roughness": 0.6},      // a copy of an earlier one
 //         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all images of a made one
 //       },
-//       "meshes": {"pot": {"make": "teapot", "divisions": 12}},
+//       "meshes": {"pot": {"make": "teapot", "divisions": 12},
+//                  "fox": {"make": "creature"}},  // and skeleton and skin "fox", clip "fox.run" ...
 //       "prefabs": {"lamp": NODE},
 //       "entities": [NODE, ...],
 //       "events": [EVENT, ...]

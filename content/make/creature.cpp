@@ -4,6 +4,7 @@
 #include "content/make/creature_body.h"
 #include "content/make/creature_gait.h"
 #include "content/make/implicit_mesh.h"
+#include "content/make/simplify_mesh.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -376,6 +377,9 @@ MeshData make_creature(const CreatureShape& shape) {
     }
     mesh.morphs.push_back(std::move(blink));
     mesh.morphs.push_back(make_breath(mesh, body_vertices));
+    if (shape.triangles > 0) {
+        simplify_mesh(mesh, static_cast<std::size_t>(shape.triangles));
+    }
     generate_tangents(mesh);
     generate_morph_normals(mesh);
     generate_morph_tangents(mesh);

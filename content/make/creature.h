@@ -16,7 +16,8 @@ namespace limn {
 
 struct CreatureShape {
     float height = 0.45f;   ///< of the back [m], > 0
-    float detail = 0.009f;  ///< size of the triangles, as a share of 0.45 m of height [m]
+    float detail = 0.009f;  ///< size of the triangles of a creature of 0.45 m [m]
+    int triangles = 0;      ///< > 0: simplified to about so many
 };
 
 /// The joints, parents first; those of the left side (+x) before those of the right.
@@ -77,7 +78,11 @@ void visit_fields(CreatureShape& shape, Visitor&& visit) {
         {.doc = "size of the triangles of a creature of 0.45 m",
          .unit = "m",
          .min = 0.004,
-         .max = 0.03});
+         .max = 0.02});
+    visit(
+        "triangles",
+        shape.triangles,
+        {.doc = "if not 0: simplified to about so many", .min = 0, .max = 1000000});
 }
 
 }  // namespace limn

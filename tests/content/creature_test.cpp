@@ -319,7 +319,7 @@ TEST_CASE("creature: blink closes the lids and moves nothing else, breath widens
 }
 
 TEST_CASE("creature: twice as high is twice as large in all, and threads do not matter") {
-    const CreatureShape coarse = {.height = 0.45f, .detail = 0.02f};
+    const CreatureShape coarse = {.detail = 0.02f};
     const int before = thread_count();
     set_thread_count(1);
     const MeshData small = make_creature(coarse);
@@ -338,6 +338,21 @@ TEST_CASE("creature: twice as high is twice as large in all, and threads do not 
     CHECK(
         large_rig.clips[1].sheets[0].translations[5]
         == 2.0f * clip_named(large_rig.clips[1].name).sheets[0].translations[5]);
+}
+
+TEST_CASE("creature: simplified to a twentieth it is closed, and keeps its weights and targets") {
+    const MeshData mesh = make_creature({.detail = 0.012f, .triangles = 1400});
+    CHECK(mesh.indices.size() / 3 > 700);
+    CHECK(mesh.indices.size() / 3 < 1600);
+    CHECK(open_edges(mesh) == 0);
+    CHECK(signed_volume(mesh) == doctest::Approx(signed_volume(creature())).epsilon(0.06));
+    CHECK(mesh.skin.first.size() == mesh.positions.size() + 1);
+    CHECK(mesh.colors.size() == mesh.positions.size());
+    for (const MorphTarget& morph : mesh.morphs) {
+        CHECK(morph.vertices.size() > 10);
+        CHECK(morph.vertices.back() < mesh.positions.size());
+        CHECK(std::is_sorted(morph.vertices.begin(), morph.vertices.end()));
+    }
 }
 
 TEST_CASE("creature: a level makes one, and names its skeleton, skin and clips") {
