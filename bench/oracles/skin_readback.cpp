@@ -57,8 +57,9 @@ const DeformedList& SkinReadback::shapes() const {
     return machine_->shapes;
 }
 
-DeformedList& SkinReadback::shapes() {
-    return machine_->shapes;
+void SkinReadback::forget() {
+    machine_->shapes.forget();
+    machine_->meshes.clear();
 }
 
 std::vector<ReadSkin> SkinReadback::run(

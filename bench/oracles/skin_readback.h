@@ -41,9 +41,11 @@ class SkinReadback {
         bool before = true,
         int views = 1);
 
+    /// Another world follows.
+    void forget();
+
     /// What the list knows after the last frame.
     [[nodiscard]] const DeformedList& shapes() const;
-    [[nodiscard]] DeformedList& shapes();
 
   private:
     struct Machine;

@@ -1,11 +1,56 @@
 #include "bench/oracles/velocity_oracle.h"
 
+#include "bench/oracles/skin_oracle.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+
 #include <glm/geometric.hpp>
 
 #include <cmath>
 #include <limits>
 
 namespace limn::oracle {
+
+std::vector<glm::dvec3> corners_at(const World& world, Entity entity, double alpha) {
+    const auto& assets = world.resource<Assets>();
+    const auto* deformed = world.find<Deformed>(entity);
+    std::vector<glm::dmat4> matrices;
+    std::vector<float> weights;
+    if (deformed != nullptr && deformed->skin.index != kNoAsset) {
+        const auto& pose = world.get<Pose>(deformed->character);
+        const SkinData& skin = assets.skins[deformed->skin.index];
+        const std::vector<glm::dmat4> before = skin_matrices(skin, pose.previous);
+        matrices = skin_matrices(skin, pose.joints);
+        for (std::size_t j = 0; j < matrices.size(); ++j) {
+            matrices[j] = before[j] + alpha * (matrices[j] - before[j]);
+        }
+    }
+    const auto* morphs =
+        deformed != nullptr ? world.find<MorphWeights>(deformed->character) : nullptr;
+    for (std::size_t i = deformed != nullptr ? deformed->first_morph : 0;
+         morphs != nullptr && i < morphs->weights.size();
+         ++i) {
+        const double from = morphs->previous[i];
+        weights.push_back(static_cast<float>(from + alpha * (double(morphs->weights[i]) - from)));
+    }
+    const Affine& now = world.get<WorldTransform>(entity).world;
+    const auto* past = world.find<PreviousWorldTransform>(entity);
+    const Affine& before = past != nullptr ? past->world : now;
+    const Skinning skinning = deformed != nullptr ? deformed->skinning : Skinning::Linear;
+    const MeshData& mesh = assets.meshes[world.get<MeshInstance>(entity).mesh.index];
+    std::vector<glm::dvec3> corners;
+    for (const SkinnedVertex& vertex : skin_vertices(mesh, matrices, weights, skinning)) {
+        glm::dvec3& corner = corners.emplace_back();
+        for (int r = 0; r < 3; ++r) {
+            const glm::dvec4 from = before.row[r];
+            const glm::dvec4 row = from + alpha * (glm::dvec4(now.row[r]) - from);
+            corner[r] = glm::dot(row, glm::dvec4(vertex.position, 1));
+        }
+    }
+    return corners;
+}
 
 VelocityOracle::VelocityOracle(const CameraMotion& motion)
     : motion_(motion), now_(eye_at(motion.alpha)), before_(eye_at(motion.alpha_before)) {}
@@ -41,26 +86,16 @@ glm::dvec2 VelocityOracle::project(const Eye& eye, const glm::dvec3& way) const 
     return {scale * glm::dot(way, eye.right), -scale * glm::dot(way, eye.up)};
 }
 
-void VelocityOracle::add(const MovingTriangles& triangles) {
-    const auto at = [&](double alpha) {
-        std::vector<glm::dvec3> corners;
-        for (std::size_t i = 0; i < triangles.current.size(); ++i) {
-            corners.push_back(
-                triangles.previous[i] + alpha * (triangles.current[i] - triangles.previous[i]));
+void VelocityOracle::add(const World& world) {
+    const auto& meshes = world.resource<Assets>().meshes;
+    world.query<const MeshInstance>().each([&](Entity entity, const MeshInstance& instance) {
+        const std::vector<glm::dvec3> now = corners_at(world, entity, motion_.alpha);
+        const std::vector<glm::dvec3> before = corners_at(world, entity, motion_.alpha_before);
+        for (const std::uint32_t i : meshes[instance.mesh.index].indices) {
+            corners_now_.push_back(now[i]);
+            corners_before_.push_back(before[i]);
         }
-        return corners;
-    };
-    add_corners(at(motion_.alpha_before), at(motion_.alpha), triangles.indices);
-}
-
-void VelocityOracle::add_corners(
-    const std::vector<glm::dvec3>& before,
-    const std::vector<glm::dvec3>& now,
-    const std::vector<std::uint32_t>& indices) {
-    for (const std::uint32_t i : indices) {
-        corners_now_.push_back(now[i]);
-        corners_before_.push_back(before[i]);
-    }
+    });
 }
 
 std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {

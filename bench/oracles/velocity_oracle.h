@@ -2,13 +2,17 @@
 
 #include "ecs/base/math.h"
 #include "ecs/components/camera.h"
+#include "ecs/entity.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <cstdint>
 #include <optional>
 #include <vector>
+
+namespace limn {
+class World;
+}
 
 namespace limn::oracle {
 
@@ -27,30 +31,20 @@ struct CameraMotion {
     double alpha_before = 0;
 };
 
-/// Triangles whose corners move on straight lines from one step to the next.
-struct MovingTriangles {
-    std::vector<glm::dvec3> previous;  ///< world [m]
-    std::vector<glm::dvec3> current;
-    std::vector<std::uint32_t> indices;
-};
-
 struct PixelMotion {
     double distance = 0;  ///< along the view axis [m]
     glm::dvec2 velocity;  ///< [px], right and down
 };
 
+/// World positions of the vertices of a mesh instance, deformed or not, at the moment `alpha`.
+[[nodiscard]] std::vector<glm::dvec3> corners_at(const World& world, Entity entity, double alpha);
+
 class VelocityOracle {
   public:
     explicit VelocityOracle(const CameraMotion& motion);
 
-    /// Adds triangles at the two moments.
-    void add(const MovingTriangles& triangles);
-    /// The same with corners that are known at both moments.
-    void add_corners(
-        const std::vector<glm::dvec3>& before,
-        const std::vector<glm::dvec3>& now,
-        const std::vector<std::uint32_t>& indices);
-
+    /// Adds all that is drawn of the world; Pose and MorphWeights must have their `previous`.
+    void add(const World& world);
     /// Of the nearest triangle, front or back, at a point of the picture, from the top left [px];
     /// none where nothing is.
     [[nodiscard]] std::optional<PixelMotion> at(double x, double y) const;

@@ -5,8 +5,10 @@
 #include "content/app/quality_lights.h"
 #include "content/app/quality_motion_blur.h"
 #include "content/app/quality_shadows.h"
+#include "content/app/quality_skinning.h"
 #include "content/app/quality_surfaces.h"
 #include "content/app/quality_tone.h"
+#include "content/app/quality_velocity.h"
 
 namespace limn {
 
@@ -24,6 +26,10 @@ std::span<const QualityEffect> quality_effects() {
         {"tone",
          "statistics and tone operators in double precision, with true Gaussians",
          measure_tone},
+        {"skinning", "joints and morph targets in double precision", measure_skinning},
+        {"velocity",
+         "rays in double precision to triangles whose corners are known at both moments",
+         measure_velocity},
         {"motion-blur",
          "the mean of 128 pictures of moments within the exposure",
          measure_motion_blur},

@@ -85,6 +85,7 @@ class DeformedList {
 
     [[nodiscard]] const DeformWork& work() const { return work_; }
     [[nodiscard]] DeformedVertices& vertices() { return vertices_; }
+    [[nodiscard]] const DeformedVertices& vertices() const { return vertices_; }
     [[nodiscard]] const RestPool& rest() const { return rest_; }
 
   private:

@@ -445,7 +445,7 @@ TEST_CASE_FIXTURE(
     }
     world.clear();
     world.insert_resource(Assets{});
-    gpu.shapes().forget();
+    gpu.forget();
     CHECK(gpu.shapes().vertices().slots().used() == 0);
 }
 
@@ -456,7 +456,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
                 CHECK(read(entity).positions.empty());
             }
         });
-        gpu.shapes().forget();
+        gpu.forget();
         REQUIRE(messages.size() == 1);
         CHECK(messages[0].find("tube") != std::string::npos);
         CHECK(messages[0].find("at rest") != std::string::npos);

@@ -45,53 +45,10 @@ struct VelocityScene : SkinScene {
              .alpha = static_cast<float>(motion.alpha),
              .alpha_before = static_cast<float>(motion.alpha_before)});
     }
-    /// World positions of all corners at a moment.
-    std::vector<glm::dvec3> corners_at(Entity entity, double alpha) {
-        const MeshData& mesh = mesh_of(entity);
-        std::vector<glm::dmat4> matrices;
-        const auto* deformed = world.find<Deformed>(entity);
-        if (deformed != nullptr && deformed->skin.index != kNoAsset) {
-            const Pose& pose = world.get<Pose>(entity);
-            const SkinData& skin = world.resource<Assets>().skins[deformed->skin.index];
-            const auto ends = {
-                oracle::skin_matrices(skin, pose.previous),
-                oracle::skin_matrices(skin, pose.joints)};
-            for (std::size_t j = 0; j < skin.joints.size(); ++j) {
-                const glm::dmat4& from = ends.begin()[0][j];
-                matrices.push_back(from + alpha * (ends.begin()[1][j] - from));
-            }
-        }
-        std::vector<float> weights;
-        if (const auto* morphs = world.find<MorphWeights>(entity)) {
-            for (std::size_t i = 0; i < morphs->weights.size(); ++i) {
-                const double from = morphs->previous[i];
-                weights.push_back(
-                    static_cast<float>(from + alpha * (double(morphs->weights[i]) - from)));
-            }
-        }
-        const Affine& now = world.get<WorldTransform>(entity).world;
-        const Affine& before = world.get<PreviousWorldTransform>(entity).world;
-        const Skinning skinning = deformed != nullptr ? deformed->skinning : Skinning::Linear;
-        std::vector<glm::dvec3> corners;
-        for (const auto& vertex : oracle::skin_vertices(mesh, matrices, weights, skinning)) {
-            glm::dvec3& corner = corners.emplace_back();
-            for (int r = 0; r < 3; ++r) {
-                const glm::dvec4 from = before.row[r];
-                const glm::dvec4 row = from + alpha * (glm::dvec4(now.row[r]) - from);
-                corner[r] = glm::dot(row, glm::dvec4(vertex.position, 1));
-            }
-        }
-        return corners;
-    }
     /// Every third pixel of the picture against rays, at the moments and with the jitter given.
     Agreement agreement(const oracle::CameraMotion& motion, const Vec2& jitter = {0, 0}) {
         oracle::VelocityOracle rays(motion);
-        world.query<const MeshInstance>().each([&](Entity entity, const MeshInstance&) {
-            rays.add_corners(
-                corners_at(entity, motion.alpha_before),
-                corners_at(entity, motion.alpha),
-                mesh_of(entity).indices);
-        });
+        rays.add(world);
         const FrameOutput out = draw(view_of(motion, jitter), {.aovs = {"depth", "velocity"}});
         const gpu::FloatImage depth = gpu::read_floats(*out.aovs[0].texture);
         const gpu::FloatImage velocity = gpu::read_floats(*out.aovs[1].texture);
