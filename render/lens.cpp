@@ -85,6 +85,24 @@ TextureId apply_motion_blur(
     return radiance;
 }
 
+TextureId apply_antialiasing(
+    FrameGraph& graph,
+    LensPasses& passes,
+    Antialiasing antialiasing,
+    const FrameScene& scene,
+    const Gbuffer& gbuffer,
+    TextureId radiance) {
+    if (antialiasing == Antialiasing::Temporal) {
+        auto* pass = passes.temporal.get(*passes.device, create_temporal_pass);
+        return pass == nullptr ? radiance
+                               : resolve_temporally(graph, *pass, scene, gbuffer, radiance);
+    }
+    if (auto* pass = passes.temporal.made()) {
+        forget_pictures(*pass);
+    }
+    return radiance;
+}
+
 TextureId apply_glow(
     FrameGraph& graph,
     LensPasses& passes,
@@ -107,6 +125,9 @@ TextureId apply_glow(
 LensSettings lens_settings(const World& world, const RenderView& view) {
     LensSettings settings;
     settings.depth_of_field = has_depth_of_field(view);
+    if (const auto* rendering = world.find_resource<Rendering>()) {
+        settings.antialiasing = rendering->antialiasing;
+    }
     if (const auto* glow = world.find_resource<Glow>()) {
         settings.glow = *glow;
     }
@@ -118,6 +139,7 @@ LensSettings lens_settings(const World& world, const RenderView& view) {
 
 LensSettings lens_of_mean(const LensSettings& settings) {
     LensSettings rest = settings;
+    rest.antialiasing = Antialiasing::None;
     rest.motion_blur.shutter = 0;
     rest.depth_of_field = false;
     return rest;
@@ -125,13 +147,23 @@ LensSettings lens_of_mean(const LensSettings& settings) {
 
 bool needs_velocity(const LensSettings& settings) {
     const MotionBlurMode mode = settings.motion_blur.mode;
-    return opens_shutter(settings.motion_blur)
-           && (mode == MotionBlurMode::Reconstruct || mode == MotionBlurMode::Flow
-               || mode == MotionBlurMode::Stretch);
+    const bool smears = mode == MotionBlurMode::Reconstruct || mode == MotionBlurMode::Flow
+                        || mode == MotionBlurMode::Stretch;
+    return settings.antialiasing == Antialiasing::Temporal
+           || (opens_shutter(settings.motion_blur) && smears);
 }
 
 bool needs_attributes(const LensSettings& settings) {
     return settings.glow.strength > 0 && settings.glow.kind == GlowKind::Mask;
+}
+
+RenderView
+lens_view(LensPasses& passes, const LensSettings& settings, const RenderView& view, bool cut) {
+    passes.picture = cut ? 0 : passes.picture + 1;
+    if (settings.antialiasing != Antialiasing::Temporal) {
+        return view;
+    }
+    return with_jitter(view, sample_jitter(passes.picture % kTemporalSamples, kTemporalSamples));
 }
 
 TextureId apply_lens(
@@ -141,6 +173,7 @@ TextureId apply_lens(
     const FrameScene& scene,
     const Gbuffer& gbuffer,
     TextureId radiance) {
+    radiance = apply_antialiasing(graph, passes, settings.antialiasing, scene, gbuffer, radiance);
     radiance = apply_motion_blur(graph, passes, settings.motion_blur, scene, gbuffer, radiance);
     if (settings.depth_of_field) {
         auto* pass = passes.depth_of_field.get(*passes.device, create_depth_of_field_pass);

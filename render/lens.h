@@ -2,6 +2,7 @@
 
 #include "ecs/components/glow.h"
 #include "ecs/components/motion_blur.h"
+#include "ecs/components/rendering.h"
 #include "render/gbuffer.h"
 #include "render/passes/depth_of_field_pass.h"
 #include "render/passes/glow_mask_pass.h"
@@ -11,6 +12,7 @@
 #include "render/passes/motion_camera_pass.h"
 #include "render/passes/motion_flow_pass.h"
 #include "render/passes/motion_stretch_pass.h"
+#include "render/passes/temporal_pass.h"
 
 #include <optional>
 
@@ -26,7 +28,7 @@ class Device;
 
 // What happens to a picture's radiance in the lens and behind the shutter, before it is developed:
 //
-//     ripple -> motion blur -> depth of field -> glow
+//     temporal anti-aliasing -> ripple -> motion blur -> depth of field -> glow
 //
 // Each is a pass of its own that a resource or component of the world asks for; what nobody asks
 // for adds no pass. Programs are compiled when they are first needed.
@@ -34,6 +36,7 @@ class Device;
 /// What the world and the camera ask of the lens, at the moment that a view shows.
 struct LensSettings {
     bool depth_of_field = false;  ///< through the lens of the view
+    Antialiasing antialiasing = Antialiasing::None;
     Glow glow{.strength = 0};
     MotionBlur motion_blur{.shutter = 0};
 };
@@ -65,6 +68,8 @@ struct LensPasses {
     explicit LensPasses(gpu::Device& its_device) : device(&its_device) {}
 
     gpu::Device* device;
+    int picture = 0;  ///< since the last cut
+    OptionalPass<TemporalPass> temporal;
     OptionalPass<MotionBlurPass> motion_blur;
     OptionalPass<MotionAccumulatePass> motion_accumulate;
     OptionalPass<MotionCameraPass> motion_camera;
@@ -74,6 +79,11 @@ struct LensPasses {
     OptionalPass<GlowPass> glow;
     OptionalPass<GlowMaskPass> glow_mask;
 };
+
+/// The view that is to be drawn: if pictures are laid over each other, moved by another part of a
+/// pixel each time. Once a picture; `cut`: it does not follow the one before.
+[[nodiscard]] RenderView
+lens_view(LensPasses& passes, const LensSettings& settings, const RenderView& view, bool cut);
 
 /// Adds the passes to this frame; returns the radiance that reaches the film, or `radiance` itself
 /// if nothing is to be done. What is drawn into is always a texture of its own.

@@ -115,6 +115,8 @@ class Renderer {
 
     /// Draws what probes see, where that is due: before the image that shows it.
     void draw_probes(const World& world, const RenderView& view);
+    /// Tells whether this picture follows the one before. After draw_probes(), which knows Assets.
+    void follow(const World& world, const RenderView& view);
     /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
     void prepare(const World& world, const RenderView& view, bool velocity, bool for_probe = false);
     /// The image, as a list.
@@ -266,6 +268,11 @@ void Renderer::draw_probes(const World& world, const RenderView& view) {
             ++probe_faces_;
         }
     }
+}
+
+void Renderer::follow(const World& world, const RenderView& view) {
+    scene.since_last =
+        seconds_since_last(clock_, assets_, shown_time(world, view), view.world_from_camera);
 }
 
 void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha) {
@@ -461,8 +468,6 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool attributes,
 }
 
 void Renderer::develop_image(const World& world, const LensSettings& lens, FrameTextures& made) {
-    scene.since_last = seconds_since_last(
-        clock_, assets_, shown_time(world, scene.view), scene.view.world_from_camera);
     made.radiance = apply_lens(graph, passes.lens, lens, scene, made.gbuffer, made.radiance);
     graph.keep(made.radiance);
     made.display =
@@ -582,8 +587,10 @@ FrameOutput render_frame(
     const LensSettings lens = lens_settings(world, view);
     const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
     renderer.draw_probes(world, view);
+    renderer.follow(world, view);
     renderer.graph.begin_frame();
-    renderer.prepare(world, view, velocity);
+    const bool cut = !renderer.scene.since_last.has_value();
+    renderer.prepare(world, lens_view(renderer.passes.lens, lens, view, cut), velocity);
     FrameTextures textures = renderer.draw_image(request, needs_attributes(lens), velocity);
     renderer.develop_image(world, lens, textures);
     renderer.finish(renderer.graph);
@@ -603,6 +610,7 @@ FrameOutput render_accumulated(
     const gpu::Texture& sum = renderer.accumulation(view.width, view.height);
     FrameGraph& graph = renderer.graph;
     renderer.draw_probes(world, view);
+    renderer.follow(world, view);
     for (int i = 0; i < samples; ++i) {
         graph.begin_frame();
         renderer.prepare(world, with_jitter(view, sample_jitter(i, samples)), false);

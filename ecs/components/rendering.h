@@ -24,10 +24,17 @@ enum class ShadingRate : std::uint8_t {
     Vertex,  ///< lit at the vertices, colors in between (light.gouraud); as ObjectMajor does
 };
 
+/// How edges become smooth.
+enum class Antialiasing : std::uint8_t {
+    None,
+    Temporal,  ///< from picture to picture, following what moves
+};
+
 /// Resource: how pictures are made. Absent: the defaults.
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;
+    Antialiasing antialiasing = Antialiasing::None;
     bool infinite_viewer = false;  ///< shading sees the camera in the same direction everywhere
 };
 
@@ -40,6 +47,10 @@ void visit_fields(Rendering& rendering, Visitor&& visit) {
          .values = "clustered full_screen volumes object_major light_major"});
     visit(
         "shading", rendering.shading, {.doc = "where surfaces are lit", .values = "pixel vertex"});
+    visit(
+        "antialiasing",
+        rendering.antialiasing,
+        {.doc = "how edges become smooth", .values = "none temporal"});
     visit(
         "infinite_viewer",
         rendering.infinite_viewer,

@@ -1,0 +1,140 @@
+// One picture more, laid over those before it. See temporal_pass.h.
+#version 450
+#include "lib/view.glsl"
+
+layout(binding = 0) uniform sampler2D radiance;
+layout(binding = 1) uniform sampler2D history;
+layout(binding = 2) uniform sampler2D velocity_map;
+layout(binding = 3) uniform sampler2D depth_map;
+layout(binding = 4) uniform sampler2D moments;  // x: pictures in history, y: variance in time where nothing moves
+
+uniform int any_history;
+
+layout(location = 0) out vec4 resolved;
+layout(location = 1) out vec2 resolved_moments;
+
+const float kStill = 0.02;          // motion less than this [px] is rounding
+const float kMostStill = 32.0;      // pictures that count where nothing moves
+const float kMostMoving = 10.0;     // and where something does: reading between texels softens
+const float kSpread = 1.0;          // standard deviations that history may be off by where it moved
+const float kSpreadStill = 2.0;     // and where it did not, of the neighborhood's and its own in time, as thin
+                                    // things come and go with the jitter
+
+vec3 to_ycocg(vec3 c) {
+    return vec3(
+        0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * c.r - 0.5 * c.b, -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);
+}
+
+vec3 from_ycocg(vec3 c) {
+    float base = c.x - c.z;
+    return vec3(base + c.y, c.x + c.z, base - c.y);
+}
+
+vec3 clean(vec3 c) {
+    return mix(vec3(0.0), clamp(c, vec3(0.0), vec3(65504.0)), not(isnan(c)));
+}
+
+// Bicubic (Catmull-Rom), its corners left out: five reads between texels (Jimenez 2016).
+vec3 read_history(vec2 at) {
+    vec2 size = vec2(textureSize(history, 0));
+    vec2 center = floor(at - 0.5) + 0.5;
+    vec2 f = at - center;
+    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
+    vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
+    vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
+    vec2 w3 = f * f * (-0.5 + 0.5 * f);
+    vec2 w12 = w1 + w2;
+    vec2 near = (center - 1.0) / size;
+    vec2 middle = (center + w2 / w12) / size;
+    vec2 far = (center + 2.0) / size;
+    float up = w12.x * w0.y;
+    float left = w0.x * w12.y;
+    float inner = w12.x * w12.y;
+    float right = w3.x * w12.y;
+    float down = w12.x * w3.y;
+    vec3 sum = up * textureLod(history, vec2(middle.x, near.y), 0.0).rgb
+               + left * textureLod(history, vec2(near.x, middle.y), 0.0).rgb
+               + right * textureLod(history, vec2(far.x, middle.y), 0.0).rgb
+               + down * textureLod(history, vec2(middle.x, far.y), 0.0).rgb;
+    sum += inner * textureLod(history, middle, 0.0).rgb;
+    return max(sum / (up + left + inner + right + down), vec3(0.0));
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 last = textureSize(radiance, 0) - 1;
+
+    // What the picture says about this place: mean and spread of the neighborhood, and what is nearest in it, whose
+    // edge is smooth only if it takes its surroundings along.
+    vec3 center = vec3(0.0);
+    vec3 mean = vec3(0.0);
+    vec3 squares = vec3(0.0);
+    float nearest = -1.0;
+    ivec2 nearest_at = pixel;
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
+            vec3 color = to_ycocg(clean(texelFetch(radiance, at, 0).rgb));
+            mean += color;
+            squares += color * color;
+            if (x == 0 && y == 0) {
+                center = color;
+            }
+            float depth = texelFetch(depth_map, at, 0).r;
+            if (depth > nearest) {
+                nearest = depth;
+                nearest_at = at;
+            }
+        }
+    }
+    mean /= 9.0;
+    vec3 spread = sqrt(max(squares / 9.0 - mean * mean, vec3(0.0)));
+
+    vec2 velocity = texelFetch(velocity_map, nearest_at, 0).xy;
+    if (nearest == 0.0) {
+        // The sky goes with the camera's turning.
+        vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
+        vec3 before = (view.previous_from_world * vec4(view_ray(gl_FragCoord.xy), 0.0)).xyw;
+        velocity = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6));
+    }
+    vec2 moved = velocity * view.size.xy;
+    vec2 from = gl_FragCoord.xy - moved;
+    // NaN is outside, too.
+    bool inside = all(greaterThanEqual(from, vec2(0.0))) && all(lessThanEqual(from, view.size.xy));
+    if (any_history == 0 || !inside) {
+        resolved = vec4(from_ycocg(center), 1.0);
+        resolved_moments = vec2(1.0, 0.0);
+        return;
+    }
+
+    bool still = dot(moved, moved) < kStill * kStill;
+    vec3 past = still ? texelFetch(history, pixel, 0).rgb : read_history(from);
+    vec3 kept = to_ycocg(clean(past));
+    vec2 moment = texelFetch(moments, clamp(ivec2(from), ivec2(0), last), 0).xy;
+    float count = clamp(moment.x, 1.0, still ? kMostStill : kMostMoving);
+
+    float variance = still ? moment.y : 0.0;
+    vec3 apart = abs(center - kept);
+    float deviation = max(max(apart.x, apart.y), apart.z);
+
+    // History that the neighborhood knows nothing of is drawn toward its mean, as far as it has to be.
+    vec3 allowed = kSpread * spread;
+    if (still) {
+        allowed = kSpreadStill * (spread + sqrt(variance));
+    }
+    vec3 off = (kept - mean) / max(allowed, vec3(1e-4 * mean.x + 1e-6));
+    float most = max(max(abs(off.x), abs(off.y)), abs(off.z));
+    if (most > 1.0) {
+        kept = mean + (kept - mean) / most;
+        count = max(count / most, 1.0);
+    }
+
+    // Few pictures: bright ones count less, or they flicker; many are a mean.
+    float share = 1.0 / (count + 1.0);
+    float calm = 3.0 * share;
+    float weight_now = share / (1.0 + calm * center.x);
+    float weight_past = (1.0 - share) / (1.0 + calm * kept.x);
+    vec3 mixed = (weight_now * center + weight_past * kept) / (weight_now + weight_past);
+    resolved = vec4(max(from_ycocg(mixed), vec3(0.0)), 1.0);
+    resolved_moments = vec2(count + 1.0, mix(variance, deviation * deviation, still ? min(share, 0.1) : 0.0));
+}
