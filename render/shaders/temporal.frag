@@ -91,12 +91,6 @@ void main() {
     vec3 spread = sqrt(max(squares / 9.0 - mean * mean, vec3(0.0)));
 
     vec2 velocity = texelFetch(velocity_map, nearest_at, 0).xy;
-    if (nearest == 0.0) {
-        // The sky goes with the camera's turning.
-        vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-        vec3 before = (view.previous_from_world * vec4(view_ray(gl_FragCoord.xy), 0.0)).xyw;
-        velocity = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6));
-    }
     vec2 moved = velocity * view.size.xy;
     vec2 from = gl_FragCoord.xy - moved;
     // NaN is outside, too.
