@@ -38,7 +38,7 @@ class World;
 //         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all images of a made one
 //       },
 //       "meshes": {"pot": {"make": "teapot", "divisions": 12},
-//                  "fox": {"make": "creature"}},  // and skeleton and skin "fox", clip "fox.run" ...
+//                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
 //       "prefabs": {"lamp": NODE},
 //       "entities": [NODE, ...],
 //       "events": [EVENT, ...]

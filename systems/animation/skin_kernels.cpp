@@ -72,7 +72,7 @@ constexpr std::size_t kMostLanes = hn::MaxLanes(d);
 
 /// Vertices whose means are made before the first of them is moved: what is stored in fours and
 /// loaded in lanes must have left the store buffer, or the loads wait for it.
-constexpr std::size_t kBlock = 8;
+constexpr std::size_t kBlock = 4;
 
 /// Three vectors of four numbers for each vertex of a block, one list behind the other.
 struct Batch {
@@ -167,32 +167,61 @@ HWY_INLINE bool move_vertices(
     return true;
 }
 
+/// Where lists begin; kept apart from the lists, which every store of a vector might change for all
+/// that a compiler knows.
+template <typename Joint>
+struct Lists {
+    const std::uint32_t* first;
+    const std::uint16_t* joints;
+    const float* weights;
+    const Joint* palette;
+
+    Lists(const SkinWeights& skin, std::span<const Joint> matrices)
+        : first(skin.first.data()), joints(skin.joints.data()), weights(skin.weights.data()),
+          palette(matrices.data()) {}
+};
+
 /// The rows of the mean matrix of vertex `v` go to `place` of the batch.
-HWY_INLINE void store_mean_matrix(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    std::size_t v,
-    Batch& batch,
-    std::size_t place) {
-    std::uint32_t i = skin.first[v];
-    const std::uint32_t last = skin.first[v + 1];
-    auto x = hn::LoadU(four, skin::kUnmoved);
-    auto y = hn::LoadU(four, skin::kUnmoved + 4);
-    auto z = hn::LoadU(four, skin::kUnmoved + 8);
-    if (i < last) {
-        const float* row = &palette[skin.joints[i]].row[0].x;
-        auto weight = hn::Set(four, skin.weights[i]);
-        x = hn::Mul(weight, hn::LoadU(four, row));
-        y = hn::Mul(weight, hn::LoadU(four, row + 4));
-        z = hn::Mul(weight, hn::LoadU(four, row + 8));
-        for (++i; i < last; ++i) {
-            row = &palette[skin.joints[i]].row[0].x;
-            weight = hn::Set(four, skin.weights[i]);
-            x = hn::Add(x, hn::Mul(weight, hn::LoadU(four, row)));
-            y = hn::Add(y, hn::Mul(weight, hn::LoadU(four, row + 4)));
-            z = hn::Add(z, hn::Mul(weight, hn::LoadU(four, row + 8)));
+HWY_INLINE void
+store_mean_matrix(const Lists<Affine> lists, std::size_t v, Batch& batch, std::size_t place) {
+#if HWY_MAX_BYTES >= 32  // two rows are one vector
+    constexpr hn::FixedTag<float, 8> two;
+#endif
+    std::uint32_t i = lists.first[v];
+    const std::uint32_t last = lists.first[v + 1];
+    if (i == last) {
+        for (std::size_t row = 0; row < 3; ++row) {
+            const auto unmoved = hn::LoadU(four, skin::kUnmoved + 4 * row);
+            hn::Store(unmoved, four, batch.rows[row] + 4 * place);
         }
+        return;
     }
+    const float* row = &lists.palette[lists.joints[i]].row[0].x;
+#if HWY_MAX_BYTES >= 32
+    auto weight = hn::Set(two, lists.weights[i]);
+    auto xy = hn::Mul(weight, hn::LoadU(two, row));
+    auto z = hn::Mul(hn::LowerHalf(four, weight), hn::LoadU(four, row + 8));
+    for (++i; i < last; ++i) {
+        row = &lists.palette[lists.joints[i]].row[0].x;
+        weight = hn::Set(two, lists.weights[i]);
+        xy = hn::Add(xy, hn::Mul(weight, hn::LoadU(two, row)));
+        z = hn::Add(z, hn::Mul(hn::LowerHalf(four, weight), hn::LoadU(four, row + 8)));
+    }
+    const auto x = hn::LowerHalf(four, xy);
+    const auto y = hn::UpperHalf(four, xy);
+#else
+    auto weight = hn::Set(four, lists.weights[i]);
+    auto x = hn::Mul(weight, hn::LoadU(four, row));
+    auto y = hn::Mul(weight, hn::LoadU(four, row + 4));
+    auto z = hn::Mul(weight, hn::LoadU(four, row + 8));
+    for (++i; i < last; ++i) {
+        row = &lists.palette[lists.joints[i]].row[0].x;
+        weight = hn::Set(four, lists.weights[i]);
+        x = hn::Add(x, hn::Mul(weight, hn::LoadU(four, row)));
+        y = hn::Add(y, hn::Mul(weight, hn::LoadU(four, row + 4)));
+        z = hn::Add(z, hn::Mul(weight, hn::LoadU(four, row + 8)));
+    }
+#endif
     hn::Store(x, four, batch.rows[0] + 4 * place);
     hn::Store(y, four, batch.rows[1] + 4 * place);
     hn::Store(z, four, batch.rows[2] + 4 * place);
@@ -206,11 +235,12 @@ std::size_t skin_linear_vector(
     std::size_t begin,
     std::size_t end) {
     const std::size_t lanes = hn::Lanes(d);
+    const Lists<Affine> lists(skin, palette);
     Batch batch;
     while (begin + lanes <= end) {
         const std::size_t block = std::min(kBlock, (end - begin) / lanes) * lanes;
         for (std::size_t lane = 0; lane < block; ++lane) {
-            store_mean_matrix(skin, palette, begin + lane, batch, lane);
+            store_mean_matrix(lists, begin + lane, batch, lane);
         }
         for (std::size_t at = 0; at < block; at += lanes) {
             V xx;
@@ -248,25 +278,26 @@ std::size_t skin_dual_vector(
     const std::size_t lanes = hn::Lanes(d);
     const V one = hn::Set(d, 1.0f);
     const V two = hn::Set(d, 2.0f);
+    const Lists<DualQuaternion> lists(skin, palette);
     Batch batch;
     while (begin + lanes <= end) {
         const std::size_t block = std::min(kBlock, (end - begin) / lanes) * lanes;
         for (std::size_t lane = 0; lane < block; ++lane) {
-            std::uint32_t i = skin.first[begin + lane];
-            const std::uint32_t last = skin.first[begin + lane + 1];
+            std::uint32_t i = lists.first[begin + lane];
+            const std::uint32_t last = lists.first[begin + lane + 1];
             auto real = hn::LoadU(four, skin::kUnturned);
             auto dual = hn::Zero(four);
             if (i < last) {
-                const DualQuaternion& start = palette[skin.joints[i]];
-                real = hn::Mul(hn::Set(four, skin.weights[i]), hn::LoadU(four, &start.real.x));
-                dual = hn::Mul(hn::Set(four, skin.weights[i]), hn::LoadU(four, &start.dual.x));
+                const DualQuaternion& start = lists.palette[lists.joints[i]];
+                real = hn::Mul(hn::Set(four, lists.weights[i]), hn::LoadU(four, &start.real.x));
+                dual = hn::Mul(hn::Set(four, lists.weights[i]), hn::LoadU(four, &start.dual.x));
                 for (++i; i < last; ++i) {
-                    const DualQuaternion& next = palette[skin.joints[i]];
+                    const DualQuaternion& next = lists.palette[lists.joints[i]];
                     const Quat& p = next.real;
                     const Quat& q = start.real;
                     const float side = ((p.x * q.x + p.y * q.y) + p.z * q.z) + p.w * q.w;
                     const auto weight =
-                        hn::Set(four, side < 0.0f ? -skin.weights[i] : skin.weights[i]);
+                        hn::Set(four, side < 0.0f ? -lists.weights[i] : lists.weights[i]);
                     real = hn::Add(real, hn::Mul(weight, hn::LoadU(four, &next.real.x)));
                     dual = hn::Add(dual, hn::Mul(weight, hn::LoadU(four, &next.dual.x)));
                 }
