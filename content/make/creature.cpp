@@ -194,7 +194,7 @@ struct Eye {
 
 Eye make_eye(float side) {
     constexpr float kRadius = 0.0155f;
-    constexpr float kDepth = 0.0075f;  // of its middle below the face
+    constexpr float kDepth = 0.0092f;  // of its middle below the face
     const Vec3 from = creature_joint(CreatureJoint::Head) + Vec3(0, 0.03f, 0.03f);
     const Vec3 direction = glm::normalize(Vec3(side * 0.78f, 0.16f, 0.72f));
     float way = 0.02f;

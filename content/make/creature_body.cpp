@@ -260,12 +260,15 @@ Vec3 creature_color(const Vec3& p, const Vec3& normal) {
                        * from(0.268f, 0.29f, p.z + 0.35f * std::abs(p.x) + ragged);
     light = std::max(light, head * mask * from(0.675f, 0.65f, p.y));
     color = glm::mix(color, cream, light);
+    // From the corner of the eye down the muzzle.
+    const Vec3 side(std::abs(p.x), p.y, p.z);
+    const Part tear = {Head, {0.043f, 0.641f, 0.372f}, {0.021f, 0.616f, 0.437f}, 0.003f, 0.003f, 0};
+    color = glm::mix(color, sock, 0.65f * from(0.011f, 0.001f, part_distance(tear, side)));
     // Ears: dark behind toward the tip, lined inside.
-    const float ear = from(0.69f, 0.72f, p.y);
-    const float lining = ear * from(0.45f, 0.8f, normal.z + 0.3f * ragged)
-                         * from(0.292f, 0.284f, p.z - 0.12f * (p.y - 0.7f));
+    const float ear = from(0.7f, 0.735f, p.y);
+    const float lining = ear * from(0.3f, 0.65f, normal.z + 0.3f * ragged);
     color = glm::mix(color, sock, ear * from(0.745f, 0.775f, p.y + ragged));
-    color = glm::mix(color, Vec3(0.55f, 0.38f, 0.29f), lining);
+    color = glm::mix(color, Vec3(0.47f, 0.3f, 0.215f), lining);
     if (is_tail) {
         const float tip = from(-0.585f, -0.62f, p.z + 1.5f * ragged);
         color = glm::mix(glm::mix(color, back, 0.35f), cream, tip);

@@ -236,8 +236,8 @@ float yaw_at(const Gait& gait, CreatureJoint joint, float phase) {
 }
 
 float blink_at(const Gait& gait, float phase) {
-    const float when = gait.stride > 0 ? 0.5f : 0.31f;
-    const float width = 0.13f / gait.period;
+    const float when = (gait.stride > 0 ? 24.0f : 15.0f) / kKeys;  // at a key: it is short
+    const float width = 0.16f / gait.period;
     const bool is_seen = gait.period > 0.6f;  // a run is too short for one
     return is_seen ? std::max(1.0f - std::abs(phase - when) / width, 0.0f) : 0.0f;
 }

@@ -6,6 +6,7 @@
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/pose_system.h"
 #include "systems/update_world.h"
+#include "tests/ecs/allocation_count.h"
 #include "tests/systems/clip_fixture.h"
 
 #include <doctest/doctest.h>
@@ -247,6 +248,39 @@ TEST_CASE("pose system: what is attached to a joint stands where the joint is, i
         stage.step();
     }
     CHECK(stage.world.get<const Transform>(lost).position == Vec3(1, 2, 3));
+}
+
+TEST_CASE("pose system: a step allocates nothing once every character has had one") {
+    const int before = thread_count();
+    set_thread_count(1);
+    Stage stage;
+    for (int i = 0; i < 50; ++i) {
+        const Entity character = stage.world.create(
+            Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {1}}, MorphWeights{{0, 0}, {}});
+        stage.world.create(Transform{}, Parent{character}, JointAttachment{character, 3});
+    }
+    start_world(stage.world);
+    const auto step = [&] {
+        stage.world.run(advance_clips);
+        stage.world.run(update_poses);
+        stage.world.run(update_attachments);
+    };
+    // What running a system costs by itself, with nobody to update.
+    World empty;
+    empty.insert_resource(Assets{});
+    empty.insert_resource(FrameTime{});
+    const auto nothing = [&] {
+        empty.run(advance_clips);
+        empty.run(update_poses);
+        empty.run(update_attachments);
+    };
+    for (int i = 0; i < 3; ++i) {
+        step();
+        nothing();
+    }
+    const std::size_t bare = bytes_allocated_by(nothing);
+    CHECK(bytes_allocated_by(step) <= bare);
+    set_thread_count(before);
 }
 
 TEST_CASE("pose system: a crowd has the same bits on any number of threads") {
