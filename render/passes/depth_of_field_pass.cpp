@@ -123,7 +123,7 @@ void draw_tiles(
 void Drawing::find_tiles(TextureId depth) {
     const IVec2 count = {block_.tiles.x, block_.tiles.y};
     const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
-    const TextureId small = create("focus.own small", GL_RG16F, count);
+    const TextureId small = create("focus.own small", GL_RGBA16F, count);
     graph_.add_pass(
         "focus.tiles",
         {depth},
@@ -182,15 +182,16 @@ void Drawing::fill_levels(TextureId texture, int levels) {
 
 void Drawing::take_off_highlights() {
     const int luminance_levels = levels_of(made_.quarter, kLuminanceLevels);
-    const TextureId luminance = create("focus.luminance", format_, made_.quarter, luminance_levels);
+    const TextureId luminance =
+        create("focus.luminance", GL_RG32F, made_.quarter, luminance_levels);
     graph_.add_pass(
         "focus.light",
-        {made_.far_light, made_.near_light},
+        {made_.near_light, made_.behind_near},
         {target_level(discarded(luminance), 0)},
-        [&pass = pass_, far = made_.far_light, near = made_.near_light](PassContext& context) {
+        [&pass = pass_, near = made_.near_light, behind = made_.behind_near](PassContext& context) {
             use_fullscreen(context, pass.light, pass.focus);
-            context.bind_texture(0, far);
-            context.bind_texture(1, near);
+            context.bind_texture(0, near);
+            context.bind_texture(1, behind);
             context.device().draw_fullscreen();
         });
     fill_levels(luminance, luminance_levels);
@@ -276,6 +277,7 @@ void Drawing::draw_discs(TextureId picture, TextureId radiance, TextureId depth)
          depth,
          made_.far_light,
          made_.near_light,
+         made_.radii,
          made_.far_rest,
          made_.near_rest,
          made_.near_blurred},
@@ -289,6 +291,7 @@ void Drawing::draw_discs(TextureId picture, TextureId radiance, TextureId depth)
             pass.disc->set("texels", made.quarter);
             context.bind_texture(0, made.far_light);
             context.bind_texture(1, made.near_light);
+            context.bind_texture(2, made.radii);
             context.bind_texture(3, made.far_rest);
             context.bind_texture(4, made.near_rest);
             context.bind_texture(5, made.near_blurred);
@@ -304,9 +307,7 @@ TextureId Drawing::through_lens(TextureId radiance, TextureId depth) {
     take_off_highlights();
     gather();
     const TextureId picture = compose(radiance, depth);
-    if (block_.tiles.w > 0) {
-        draw_discs(picture, radiance, depth);
-    }
+    draw_discs(picture, radiance, depth);
     return picture;
 }
 
@@ -409,12 +410,12 @@ layout::FocusBlock make_focus_block(const RenderView& view) {
         round ? 0.25f : (2 + std::cos(slice)) / 12};
 
     const IVec2 tiles = (size + layout::kFocusTile - 1) / layout::kFocusTile;
-    const float coarse = std::max(0.5f * widest / layout::kFineRadius, 1.0f);
+    const float coarse = std::max(0.5f * widest / layout::kLevelRadius, 1.0f);
     block.tiles = {
         tiles.x,
         tiles.y,
         static_cast<int>(std::ceil(0.5f * widest / static_cast<float>(layout::kFocusTile))),
-        static_cast<int>(std::ceil(std::log2(coarse)))};
+        std::max(static_cast<int>(std::ceil(std::log2(coarse))), 1)};
     block.size = Vec4(size, half);
 
     // A sunflower: equal areas, no rows.

@@ -21,13 +21,14 @@ struct FocusBlock;
 // Shaders  focus_*; lib/focus.glsl, layout in focus_gpu.h
 //
 // Circles of up to 5 px are gathered from the picture itself. Wider ones are gathered at half its
-// size by 48 taps that fill the aperture, far and near ones apart: a tap asks a place whether its
-// circle comes as far as here, and takes its light by the area that it is spread over. What is
-// sharp therefore never leaks into what is not, and a near thing spreads over what is behind it;
-// what it hides there is guessed from around it. The wider the circles, the coarser the level that
-// the taps read, so that they leave no gaps. Highlights, which would show the pattern of the taps,
-// are taken off and drawn as discs of their own, at full size. A disc must add some percent to what
-// is around it to be worth one, which bounds how many lie over each other.
+// size by up to 48 taps that fill the aperture, far and near ones apart, and of both those of up to
+// 8 px radius apart from the rest: a tap asks a place whether its circle comes as far as here, and
+// takes its light by the area that it is spread over. What is sharp therefore never leaks into what
+// is not, and a near thing spreads over what is behind it; what it hides there is guessed from
+// around it. The wider the circles, the coarser the level that the taps read, so that they leave no
+// gaps. Highlights, which would show the pattern of the taps, are taken off and drawn as discs of
+// their own, at full size. A disc must add some percent to what is around it to be worth one, which
+// bounds how many lie over each other.
 //
 // Tiles of 16 px know what is to be done in them: where all is sharp, a copy. Blended surfaces are
 // as sharp as what is behind them. After Jimenez, "Next Generation Post Processing in Call of Duty:

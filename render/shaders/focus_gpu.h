@@ -12,7 +12,8 @@ const int kFocusTile = 16;        // side [px]
 const float kSharpest = 5.0f;     // diameter up to which circles are gathered from the picture itself [px]
 const float kBlurriest = 6.0f;    // diameter from which they are gathered from its half [px]
 const float kLeastCircle = 1.0f;  // diameter up to which a circle is no larger than its pixel [px]
-const float kFineRadius = 11.0f;  // up to which the taps lie dense in the half picture [px]
+const float kFineRadius = 8.0f;   // up to which the taps lie dense in the half picture [px]
+const float kLevelRadius = 11.0f;  // up to which they lie dense enough for all but highlights [px]
 
 struct FocusBlock {
     vec4 lens;      // circle of infinity focused at 1 m [px m]; 1 / focus; 1 / near plane [1/m]; largest circle [px]

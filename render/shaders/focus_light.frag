@@ -1,15 +1,14 @@
-// Luminance of a quarter of the picture, far and near, each with its share: what highlights are compared with.
+// Luminance of a quarter of the picture, with the share of it that is known: what highlights are compared with.
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D far_light;
-layout(binding = 1) uniform sampler2D near_light;
+layout(binding = 0) uniform sampler2D near_light;
+layout(binding = 1) uniform sampler2D behind_near;
 
-layout(location = 0) out vec4 luminance;
+layout(location = 0) out vec2 luminance;
 
 void main() {
     vec2 uv = 2.0 * gl_FragCoord.xy / focus.size.zw;
-    vec4 far = texture(far_light, uv);
-    vec4 near = texture(near_light, uv);
-    luminance = vec4(luminance_of(far.rgb), far.a, luminance_of(near.rgb), near.a);
+    vec4 all = texture(near_light, uv) + texture(behind_near, uv);
+    luminance = vec2(luminance_of(all.rgb), all.a);
 }

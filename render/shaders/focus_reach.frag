@@ -1,5 +1,5 @@
-// What is to be done in a tile: widest radius [px] of the near circles that reach it, fine and coarse; of its own far
-// ones; of small ones that reach over others, or a little if there are some that do not.
+// What is to be done in a tile: widest radius [px] of the near circles that reach it, fine and coarse; if anything is
+// far in it, of the fine far circles that reach it, or a little; of small ones that reach over others, likewise.
 #version 450
 #include "lib/focus.glsl"
 
@@ -12,6 +12,7 @@ void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     tile = texelFetch(own_tiles, here, 0);
     bool is_far = tile.z > 0.0;
+    tile.z = is_far ? 0.25 : 0.0;
     tile.w = texelFetch(own_small, here, 0).y > 0.0 ? 0.25 : 0.0;
     int most = focus.tiles.z;
     for (int y = -most; y <= most; ++y) {
@@ -21,7 +22,8 @@ void main() {
             float gap = length(vec2(max(abs(ivec2(x, y)) - 1, ivec2(0)) * kFocusTile));
             tile.x = max(tile.x, other.x > gap ? other.x : 0.0);
             tile.y = max(tile.y, other.y > gap ? other.y : 0.0);
-            vec2 small = max(abs(x), abs(y)) <= 1 ? texelFetch(own_small, there, 0).xy : vec2(0.0);
+            vec4 small = max(abs(x), abs(y)) <= 1 ? texelFetch(own_small, there, 0) : vec4(0.0);
+            tile.z = max(tile.z, is_far && small.z > gap ? small.z : 0.0);
             tile.w = max(tile.w, max(small.x, is_far ? small.y : 0.0));
         }
     }

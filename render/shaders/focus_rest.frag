@@ -1,4 +1,4 @@
-// A quarter of the picture without its highlights: texels so much brighter than the light around them that a few taps
+// A quarter of the picture, its coarse circles alone, without their highlights: texels so much brighter than the light around them that a few taps
 // could not make discs of them. What is taken off here is drawn by focus_disc.vert.
 #version 450
 #include "lib/focus.glsl"
@@ -16,23 +16,30 @@ layout(location = 3) out vec4 behind;
 
 const float kVisible = 0.06;  // of the light around, what a disc adds to it at least; by eye
 
-vec4 without_highlight(vec4 light, float radius, vec2 uv, int layer) {
-    radius /= max(light.a, 1e-5);
+vec4 without_highlight(vec4 light, inout float weighed_radius, vec2 uv) {
+    float radius = weighed_radius / max(radius_weight(light), 1e-20);
     float level = log2(max(radius, 2.0));  // of texels of 4 px, two discs wide
-    vec4 means = textureLod(mean_luminance, uv, level);
-    float around = light.a * (layer == 0 ? means.x / max(means.y, 1e-5) : means.z / max(means.w, 1e-5));
+    vec2 mean = textureLod(mean_luminance, uv, level).xy;
+    float around = light.a * mean.x / max(mean.y, 1e-5);
     float texels = focus.aperture.z * radius * radius / 16.0;
     float most = around * max(2.0, kVisible * texels);
     float luminance = luminance_of(light.rgb);
     // Nothing up to `most`; of what is twice as bright, all but what is around.
     float rest = luminance > most ? max(2.0 * most - luminance, around) : luminance;
-    return vec4(light.rgb * (rest / max(luminance, 1e-20)), light.a);
+    light.rgb *= rest / max(luminance, 1e-20);
+    weighed_radius = radius * radius_weight(light);
+    return light;
 }
 
 void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
     vec2 uv = 2.0 * gl_FragCoord.xy / focus.size.zw;
-    radii = texture(light_radii, uv).xy;
-    far_rest = without_highlight(texture(far_light, uv), radii.x, uv, 0);
-    near_rest = without_highlight(texture(near_light, uv), radii.y, uv, 1);
+    float far_radius;
+    float near_radius;
+    vec4 far = coarse_mean(far_light, light_radii, 0, here, far_radius);
+    vec4 near = coarse_mean(near_light, light_radii, 1, here, near_radius);
+    far_rest = without_highlight(far, far_radius, uv);
+    near_rest = without_highlight(near, near_radius, uv);
+    radii = vec2(far_radius, near_radius);
     behind = texture(behind_near, uv);
 }

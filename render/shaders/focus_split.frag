@@ -8,7 +8,7 @@ layout(binding = 1) uniform sampler2D scene_depth;
 
 layout(location = 0) out vec4 far_light;
 layout(location = 1) out vec4 near_light;
-layout(location = 2) out vec4 radii;  // [px] of far and near circles; z: of far ones, whatever they shine
+layout(location = 2) out vec4 radii;  // [px] of far and near circles, by radius_weight; z: of far ones, by their share
 layout(location = 3) out vec4 behind_near;
 
 // Under a tent over 4 x 4 pixels: wherever in its texel a light is, its middle and its width stay what they were.
@@ -19,7 +19,6 @@ void main() {
     far_light = vec4(0.0);
     near_light = vec4(0.0);
     vec2 sum = vec2(0.0);
-    vec2 weights = vec2(1e-20);
     float far_radius = 0.0;
     behind_near = vec4(0.0);
     for (int y = 0; y < 4; ++y) {
@@ -33,12 +32,9 @@ void main() {
             far_light += shares.x * light;
             near_light += shares.y * light;
             behind_near += is_near > 0.0 ? vec4(0.0) : light;
-            // Of what shines most, lest a lamp gets the circle of the sky around it.
-            vec2 shines = shares * (luminance_of(light.rgb) + 1e-6 * tent);
-            sum += 0.5 * abs(diameter) * shines;
+            sum += 0.5 * abs(diameter) * radius_weight(light) * shares;
             far_radius += 0.5 * abs(diameter) * shares.x * light.a;
-            weights += shines;
         }
     }
-    radii = vec4(sum / weights * vec2(far_light.a, near_light.a), far_radius, 0.0);
+    radii = vec4(sum, far_radius, 0.0);
 }

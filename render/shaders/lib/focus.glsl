@@ -28,7 +28,7 @@ float coarse_share(float radius) {
 
 // The level that taps through circles of `radius` [px] need to leave no gaps: 0 is the half picture.
 float level_of(float radius) {
-    return min(ceil(log2(max(radius / kFineRadius, 1.0))), float(focus.tiles.w));
+    return min(ceil(log2(max(radius / kLevelRadius, 1.0))), float(focus.tiles.w));
 }
 
 // Radius of the aperture that goes through `place`: 1 at the rim of the unit aperture, whatever its shape.
@@ -56,4 +56,27 @@ vec4 finite_light(vec4 light) {
 
 float luminance_of(vec3 light) {
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Radii are kept times this, so that of neighbors that are mixed the one that shines most decides: else a lamp before the
+// night gets circles of both.
+float radius_weight(vec4 light) {
+    return luminance_of(light.rgb) + 1e-6 * light.a;
+}
+
+// Mean of the 2 x 2 texels of a layer under one of half its size, of those whose circles are coarse; `mean_radius` as
+// radii are kept.
+vec4 coarse_mean(sampler2D layer, sampler2D radii, int component, ivec2 texel, out float mean_radius) {
+    ivec2 last = textureSize(layer, 0) - 1;
+    vec4 sum = vec4(0.0);
+    mean_radius = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 there = min(2 * texel + ivec2(i & 1, i >> 1), last);
+        vec4 light = texelFetch(layer, there, 0);
+        float radius = texelFetch(radii, there, 0)[component];
+        float share = 0.25 * coarse_share(radius / max(radius_weight(light), 1e-20));
+        sum += share * light;
+        mean_radius += share * radius;
+    }
+    return sum;
 }
