@@ -1,9 +1,11 @@
 #include "render/passes/deform_pass.h"
 
+#include "ecs/base/log.h"
 #include "render/gpu/shader_library.h"
 #include "render/mesh_pool.h"
 
 #include <algorithm>
+#include <string>
 
 namespace limn {
 namespace {
@@ -47,15 +49,33 @@ void run_batch(
     device.dispatch(wide, (batch.group_count + wide - 1) / wide);
 }
 
+Result<const gpu::Program*> load_program(gpu::Device& device, std::uint32_t flags) {
+    return device.shaders().load(
+        {.compute = "deform.comp", .defines = {{"DEFORM_FLAGS", std::to_string(flags)}}});
+}
+
+const gpu::Program* program_of(gpu::Device& device, DeformPass& pass, std::uint32_t flags) {
+    const auto [found, fresh] = pass.programs.try_emplace(flags, nullptr);
+    if (fresh) {
+        const Result<const gpu::Program*> program = load_program(device, flags);
+        if (program) {
+            found->second = *program;
+        } else {
+            log_error("{}", program.error().message);
+        }
+    }
+    return found->second;
+}
+
 }  // namespace
 
 Result<DeformPass> create_deform_pass(gpu::Device& device) {
-    const Result<const gpu::Program*> program = device.shaders().load({.compute = "deform.comp"});
-    if (!program) {
-        return program.error();
-    }
     DeformPass pass;
-    pass.program = *program;
+    const Result<const gpu::Program*> common =
+        load_program(device, layout::kDeformNow | layout::kDeformJoints);
+    if (!common) {
+        return common.error();
+    }
     return pass;
 }
 
@@ -71,14 +91,16 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
     pass.weights.set(work.weights);
     graph.add_pass("deform", {}, {}, [&pass, &shapes](PassContext& context) {
         gpu::Device& device = context.device();
-        device.use(*pass.program);
         pass.jobs.bind(device, kJobsUnit);
         pass.groups.bind(device, kGroupsUnit);
         pass.rest.bind(device, kRestUnit);
         pass.palettes.bind(device, kPalettesUnit);
         pass.weights.bind(device, kWeightsUnit);
         for (const DeformBatch& batch : shapes.work().batches) {
-            run_batch(device, *pass.program, shapes.vertices(), batch);
+            if (const gpu::Program* program = program_of(device, pass, batch.flags)) {
+                device.use(*program);
+                run_batch(device, *program, shapes.vertices(), batch);
+            }
         }
         // Vertex buffers are no resources of the graph.
         glMemoryBarrier(

@@ -4,6 +4,8 @@
 #include "render/graph/frame_graph.h"
 #include "render/skinning/deformed_list.h"
 
+#include <map>
+
 namespace limn {
 
 // Gives every instance whose shape changed its new vertices: morph targets, then joints, as linear
@@ -15,7 +17,8 @@ namespace limn {
 // Shaders  deform.comp, lib/skinning.glsl; layout in deform_gpu.h
 
 struct DeformPass {
-    const gpu::Program* program = nullptr;
+    /// By kDeform*; made when first needed. Null: it does not compile, and nothing is deformed.
+    std::map<std::uint32_t, const gpu::Program*> programs;
     BufferTexture jobs = BufferTexture("deform jobs", GL_RGBA32UI);
     BufferTexture groups = BufferTexture("deform groups", GL_R32UI);
     BufferTexture rest = BufferTexture("meshes at rest", GL_RGBA32UI);

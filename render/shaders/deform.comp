@@ -1,5 +1,6 @@
 // Meshes that change their shape, all instances in one dispatch: a thread a vertex adds what morph targets add and
-// goes where its joints take it (lib/skinning.glsl), now and the moment before.
+// goes where its joints take it (lib/skinning.glsl), now and the moment before. Definition:
+//   DEFORM_FLAGS  kDeform*
 #version 450
 #include "deform_gpu.h"
 #include "lib/skinning.glsl"
@@ -24,6 +25,7 @@ uniform uint first_group;
 uniform uint group_count;
 uniform uint first_vertex;  // that the three buffers show
 
+const uint kFlags = uint(DEFORM_FLAGS);
 const uint kVertexWords = 10u;
 
 struct Vertex {
@@ -47,10 +49,10 @@ vec3 unpack_turn(uint a, uint b, bool second) {
     return kLargestTurn * (second ? vec3(u.y, v) : vec3(u, v.x));
 }
 
-Vertex add_morphs(Vertex v, Lists lists, int first_weight, int weight_count) {
+Vertex add_morphs(Vertex v, Lists lists, int first_weight) {
     for (int i = lists.offset; i < lists.offset_end; i += int(kOffsetTexels)) {
         uvec4 move = texelFetch(rest, lists.texel + i);
-        float w = int(move.w) < weight_count ? texelFetch(weights, first_weight + int(move.w)).x : 0.0;
+        float w = texelFetch(weights, first_weight + int(move.w)).x;
         if (w != 0.0) {
             uvec4 turn = texelFetch(rest, lists.texel + i + 1);
             v.position += w * uintBitsToFloat(move.xyz);
@@ -68,18 +70,20 @@ Rows fetch_rows(int palette, uint joint) {
 
 Vertex move_by_rows(Vertex v, Lists lists, int palette) {
     Rows sum = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
-    uint strongest = 0u;
-    float most = -1.0;
+    Rows strongest = sum;
+    float most = 0.0;
     for (int i = lists.influence; i < lists.influence_end; ++i) {
         uvec4 two = texelFetch(rest, lists.texel + i);
         vec2 w = uintBitsToFloat(two.yw);
-        sum = add_rows(sum, w.x, fetch_rows(palette, two.x));
-        sum = add_rows(sum, w.y, fetch_rows(palette, two.z));
-        uint stronger = w.x >= w.y ? two.x : two.z;
-        strongest = max(w.x, w.y) > most ? stronger : strongest;
-        most = max(most, max(w.x, w.y));
+        Rows first = fetch_rows(palette, two.x);
+        Rows second = fetch_rows(palette, two.z);
+        sum = add_rows(add_rows(sum, w.x, first), w.y, second);
+        strongest = choose_rows(w.x > most, first, strongest);
+        most = max(most, w.x);
+        strongest = choose_rows(w.y > most, second, strongest);
+        most = max(most, w.y);
     }
-    vec3 normal = rows_normal(sum, fetch_rows(palette, strongest), v.normal);
+    vec3 normal = rows_normal(sum, strongest, v.normal);
     return Vertex(rows_point(sum, v.position), normal, rows_vector(sum, v.tangent));
 }
 
@@ -101,13 +105,15 @@ Vertex move_by_duals(Vertex v, Lists lists, int palette) {
     return Vertex(dual_point(d, v.position), dual_vector(d, v.normal), dual_vector(d, v.tangent));
 }
 
-Vertex deformed(Vertex v, Lists lists, uint flags, uint palette, uint first_weight, uint weight_count) {
-    v = add_morphs(v, lists, int(first_weight), int(weight_count));
-    if ((flags & kDeformJoints) == 0u || lists.influence == lists.influence_end) {
+Vertex deformed(Vertex v, Lists lists, uint palette, uint first_weight) {
+    if ((kFlags & kDeformMorphs) != 0u) {
+        v = add_morphs(v, lists, int(first_weight));
+    }
+    if ((kFlags & kDeformJoints) == 0u || lists.influence == lists.influence_end) {
         return v;
     }
-    return (flags & kDeformDual) != 0u ? move_by_duals(v, lists, int(palette))
-                                       : move_by_rows(v, lists, int(palette));
+    return (kFlags & kDeformDual) != 0u ? move_by_duals(v, lists, int(palette))
+                                        : move_by_rows(v, lists, int(palette));
 }
 
 void main() {
@@ -117,17 +123,15 @@ void main() {
     }
     group += first_group;
     int job = int(kDeformJobTexels * texelFetch(group_jobs, int(group)).x);
-    uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, flags
+    uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, first_group
     uvec4 job1 = texelFetch(jobs, job + 1);  // palette, palette_before, weights, weights_before
-    uvec4 job2 = texelFetch(jobs, job + 2);  // weight_count, first_group
-    uint number = (group - job2.y) * kDeformGroup + gl_LocalInvocationID.x;
+    uint number = (group - job0.w) * kDeformGroup + gl_LocalInvocationID.x;
     if (number >= job0.y) {
         return;
     }
-    uint flags = job0.w;
     uint place = job0.z + number - first_vertex;
 
-    if ((flags & kDeformCopyBefore) != 0u) {
+    if ((kFlags & kDeformCopyBefore) != 0u) {
         for (uint i = 0u; i < 3u; ++i) {
             before[3u * place + i] = positions[3u * place + i];
         }
@@ -143,14 +147,14 @@ void main() {
         int(texelFetch(rest, texel + int(kRestTexels)).w),
         int(b.w),
         int(texelFetch(rest, texel + int(kRestTexels) + 1).w));
-    if ((flags & kDeformBefore) != 0u) {
-        vec3 p = deformed(v, lists, flags, job1.y, job1.w, job2.x).position;
+    if ((kFlags & kDeformBefore) != 0u) {
+        vec3 p = deformed(v, lists, job1.y, job1.w).position;
         before[3u * place] = p.x;
         before[3u * place + 1u] = p.y;
         before[3u * place + 2u] = p.z;
     }
-    if ((flags & kDeformNow) != 0u) {
-        Vertex now = deformed(v, lists, flags, job1.x, job1.z, job2.x);
+    if ((kFlags & kDeformNow) != 0u) {
+        Vertex now = deformed(v, lists, job1.x, job1.z);
         positions[3u * place] = now.position.x;
         positions[3u * place + 1u] = now.position.y;
         positions[3u * place + 2u] = now.position.z;

@@ -264,7 +264,26 @@ std::int32_t DeformedList::request(std::uint32_t index, bool before) {
     return static_cast<std::int32_t>(entry.first_vertex);
 }
 
-void DeformedList::add_job(Entry& entry) {
+/// What is to be done for a shape; none of kDeformNow, Before and CopyBefore: nothing.
+std::uint32_t DeformedList::flags_of(const Entry& entry) {
+    std::uint32_t flags = 0;
+    if (entry.drawn != entry.shape) {
+        flags |= layout::kDeformNow;
+    }
+    if (entry.wanted_before && entry.drawn_before != entry.before) {
+        flags |= entry.drawn == entry.before ? layout::kDeformCopyBefore : layout::kDeformBefore;
+    }
+    if (!entry.wanted || flags == 0) {
+        return 0;
+    }
+    if (entry.skin != nullptr) {
+        flags |= layout::kDeformJoints;
+        flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
+    }
+    return flags | (entry.weights.empty() ? 0u : layout::kDeformMorphs);
+}
+
+void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
     const auto add_palette = [&](const std::vector<Affine>& palette) {
         const auto first = static_cast<std::uint32_t>(palette_texels_.size());
         append_texels(palette, entry.settings.skinning, palette_texels_);
@@ -279,33 +298,21 @@ void DeformedList::add_job(Entry& entry) {
     job.rest = entry.rest->first_texel;
     job.vertex_count = entry.vertex_count;
     job.slot = entry.first_vertex;
-    job.weight_count = static_cast<std::uint32_t>(entry.weights.size());
     job.first_group = static_cast<std::uint32_t>(groups_.size());
-    if (entry.skin != nullptr) {
-        job.flags |= layout::kDeformJoints;
-        job.flags |= entry.settings.skinning == Skinning::DualQuaternion ? layout::kDeformDual : 0u;
+    if ((flags & layout::kDeformBefore) != 0) {
+        const Deformed& settings = entry.settings;
+        std::vector<Affine> palette;
+        std::vector<float> weights;
+        make_palette(entry.skin, entry.pose, settings.skinning, alpha_before_, palette);
+        make_morph_weights(
+            entry.morphs, settings.first_morph, entry.weights.size(), alpha_before_, weights);
+        job.palette_before = add_palette(palette);
+        job.weights_before = add_weights(weights);
     }
-    if (entry.wanted_before && entry.drawn_before != entry.before) {
-        if (entry.drawn == entry.before) {
-            job.flags |= layout::kDeformCopyBefore;
-        } else {
-            job.flags |= layout::kDeformBefore;
-            std::vector<Affine> palette;
-            std::vector<float> weights;
-            make_palette(entry.skin, entry.pose, entry.settings.skinning, alpha_before_, palette);
-            make_morph_weights(
-                entry.morphs,
-                entry.settings.first_morph,
-                entry.weights.size(),
-                alpha_before_,
-                weights);
-            job.palette_before = add_palette(palette);
-            job.weights_before = add_weights(weights);
-        }
+    if ((flags & (layout::kDeformBefore | layout::kDeformCopyBefore)) != 0) {
         entry.drawn_before = entry.before;
     }
-    if (entry.drawn != entry.shape) {
-        job.flags |= layout::kDeformNow;
+    if ((flags & layout::kDeformNow) != 0) {
         job.palette = add_palette(entry.palette);
         job.weights = add_weights(entry.weights);
         entry.drawn = entry.shape;
@@ -318,9 +325,11 @@ void DeformedList::add_job(Entry& entry) {
     // As many as a storage block can show in one dispatch.
     const std::uint32_t end = job.slot + job.vertex_count;
     const auto most = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedVertex));
-    if (work_.batches.empty() || end - work_.batches.back().first_vertex > most) {
+    if (work_.batches.empty() || work_.batches.back().flags != flags
+        || end - work_.batches.back().first_vertex > most) {
         const std::uint32_t aligned = job.slot / layout::kDeformGroup * layout::kDeformGroup;
-        work_.batches.push_back({.first_group = job.first_group, .first_vertex = aligned});
+        work_.batches.push_back(
+            {.flags = flags, .first_group = job.first_group, .first_vertex = aligned});
     }
     DeformBatch& batch = work_.batches.back();
     batch.group_count += groups;
@@ -338,21 +347,18 @@ void DeformedList::write_jobs(gpu::RingBuffer& ring) {
         vertices_.use_indices_of(*meshes_);
     }
     for (const std::uint32_t i : active_) {
-        const Entry& entry = entries_[i];
-        const bool before = entry.wanted_before && entry.drawn_before != entry.before;
-        if (entry.wanted && (before || entry.drawn != entry.shape)) {
-            due_.push_back(i);
+        const std::uint32_t flags = flags_of(entries_[i]);
+        if (flags != 0) {
+            due_.push_back({flags, entries_[i].first_vertex, i});
         }
     }
     if (due_.empty()) {
         return;
     }
-    std::sort(due_.begin(), due_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return entries_[a].first_vertex < entries_[b].first_vertex;
-    });
-    for (const std::uint32_t i : due_) {
-        add_job(entries_[i]);
-        work_.vertices += entries_[i].vertex_count;
+    std::sort(due_.begin(), due_.end());
+    for (const Due& due : due_) {
+        add_job(entries_[due.entry], due.flags);
+        work_.vertices += entries_[due.entry].vertex_count;
     }
     work_.instances = static_cast<int>(due_.size());
     const auto push = [&](const auto& items) {

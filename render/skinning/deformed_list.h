@@ -8,6 +8,7 @@
 #include "render/skinning/deformed_vertices.h"
 #include "render/skinning/rest_pool.h"
 
+#include <compare>
 #include <set>
 #include <span>
 #include <string>
@@ -36,8 +37,10 @@ struct DeformedInstance {
     MeshId mesh;
 };
 
-/// Jobs that are one dispatch: their vertices lie within what a storage block can show.
+/// Jobs that are one dispatch: they are of one kind, and their vertices lie within what a storage
+/// block can show.
 struct DeformBatch {
+    std::uint32_t flags = 0;  ///< layout::kDeform*
     std::uint32_t first_group = 0;
     std::uint32_t group_count = 0;
     std::uint32_t first_vertex = 0;  ///< a multiple of 64
@@ -118,7 +121,8 @@ class DeformedList {
     void reckon(Entry& entry) const;
     void release(Entry& entry);
     void report(const std::string& fault);
-    void add_job(Entry& entry);
+    [[nodiscard]] static std::uint32_t flags_of(const Entry& entry);
+    void add_job(Entry& entry, std::uint32_t flags);
 
     std::size_t storage_bytes_;
     float alpha_ = 1;
@@ -133,7 +137,13 @@ class DeformedList {
     std::set<std::string> reported_;
     // Of write_jobs().
     DeformWork work_;
-    std::vector<std::uint32_t> due_;
+    struct Due {
+        std::uint32_t flags = 0;
+        std::uint32_t first_vertex = 0;
+        std::uint32_t entry = 0;
+        auto operator<=>(const Due&) const = default;
+    };
+    std::vector<Due> due_;
     std::vector<layout::DeformJob> jobs_;
     std::vector<std::uint32_t> groups_;
     std::vector<Vec4> palette_texels_;

@@ -12,6 +12,10 @@ Rows add_rows(Rows a, float weight, Rows b) {
     return Rows(a.x + weight * b.x, a.y + weight * b.y, a.z + weight * b.z);
 }
 
+Rows choose_rows(bool b, Rows yes, Rows no) {
+    return Rows(b ? yes.x : no.x, b ? yes.y : no.y, b ? yes.z : no.z);
+}
+
 vec3 rows_point(Rows m, vec3 p) {
     vec4 p1 = vec4(p, 1.0);
     return vec3(dot(m.x, p1), dot(m.y, p1), dot(m.z, p1));
