@@ -123,7 +123,7 @@ TextureId apply_glow(
 }  // namespace
 
 LensSettings lens_settings(const World& world, const RenderView& view) {
-    LensSettings settings;
+    LensSettings settings{.ripples = collect_ripples(world, view)};
     settings.depth_of_field = has_depth_of_field(view);
     if (const auto* rendering = world.find_resource<Rendering>()) {
         settings.antialiasing = rendering->antialiasing;
@@ -174,6 +174,11 @@ TextureId apply_lens(
     const Gbuffer& gbuffer,
     TextureId radiance) {
     radiance = apply_antialiasing(graph, passes, settings.antialiasing, scene, gbuffer, radiance);
+    if (!settings.ripples.empty()) {
+        if (const auto* pass = passes.ripple.get(*passes.device, create_ripple_pass)) {
+            radiance = draw_ripples(graph, *pass, settings.ripples, scene, gbuffer, radiance);
+        }
+    }
     radiance = apply_motion_blur(graph, passes, settings.motion_blur, scene, gbuffer, radiance);
     if (settings.depth_of_field) {
         auto* pass = passes.depth_of_field.get(*passes.device, create_depth_of_field_pass);

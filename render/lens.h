@@ -12,6 +12,7 @@
 #include "render/passes/motion_camera_pass.h"
 #include "render/passes/motion_flow_pass.h"
 #include "render/passes/motion_stretch_pass.h"
+#include "render/passes/ripple_pass.h"
 #include "render/passes/temporal_pass.h"
 
 #include <optional>
@@ -35,6 +36,7 @@ class Device;
 
 /// What the world and the camera ask of the lens, at the moment that a view shows.
 struct LensSettings {
+    RippleList ripples;
     bool depth_of_field = false;  ///< through the lens of the view
     Antialiasing antialiasing = Antialiasing::None;
     Glow glow{.strength = 0};
@@ -76,6 +78,7 @@ struct LensPasses {
     OptionalPass<MotionFlowPass> motion_flow;
     OptionalPass<MotionStretchPass> motion_stretch;
     OptionalPass<DepthOfFieldPass> depth_of_field;
+    OptionalPass<RipplePass> ripple;
     OptionalPass<GlowPass> glow;
     OptionalPass<GlowMaskPass> glow_mask;
 };

@@ -9,6 +9,7 @@
 #include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/orbit_camera_system.h"
+#include "systems/ripple_system.h"
 #include "systems/script_system.h"
 #include "systems/spin_system.h"
 #include "systems/sway_system.h"
@@ -25,6 +26,7 @@ Schedule make_world_schedule() {
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
+    schedule.add<update_ripples>();
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
     schedule.add<advance_clips>();

@@ -14,6 +14,7 @@
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
 #include "ecs/components/rendering.h"
+#include "ecs/components/ripple.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/surface.h"
@@ -50,6 +51,9 @@ void register_all_components() {
     register_component<ShadowVolume>();
     register_component<EnvProbe>();
     register_component<EnvProbeState>();
+    register_component<RippleRing>();
+    register_component<HeatHaze>();
+    register_component<ScreenRipple>();
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();
@@ -65,6 +69,7 @@ void register_all_components() {
     register_resource<Rendering>();
     register_resource<Exposure>();
     register_resource<Glow>();
+    register_resource<LensRain>();
     register_resource<MotionBlur>();
 }
 

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+namespace limn::oracle {
+
+// Where ripples look instead of a pixel, in double precision and by geometry: what the field of the
+// renderer is held against.
+
+/// A camera by its axes, which are unit and perpendicular.
+struct RippleCamera {
+    glm::dvec3 eye{0};
+    glm::dvec3 right{1, 0, 0};
+    glm::dvec3 up{0, 1, 0};
+    glm::dvec3 forward{0, 0, -1};
+    glm::dvec2 tangent{1};  ///< of half the field of view
+    glm::dvec2 size{1};     ///< [px]
+    double near = 0.05;     ///< [m]
+};
+
+/// Unit, from the eye through a place in the picture [px from the left and from below].
+[[nodiscard]] glm::dvec3 ray_through(const RippleCamera& camera, const glm::dvec2& pixel);
+/// The other way round; for directions that point forward.
+[[nodiscard]] glm::dvec2 pixel_of(const RippleCamera& camera, const glm::dvec3& direction);
+
+/// A shell of radius r and half-thickness l about `center`: a ray that misses the center by b turns
+/// away from it by a sin(2 pi s) (1 - s^2)^2, s = (b - r) / l; times 1 - d / z where what is seen
+/// is at distance z along the view axis and the center at d.
+struct RingWave {
+    glm::dvec3 center{0};
+    double radius = 0;
+    double wavelength = 1;
+    double amplitude = 0;  ///< a [rad]
+};
+[[nodiscard]] glm::dvec2 ring_shift(
+    const RippleCamera& camera, const RingWave& wave, const glm::dvec2& pixel, double distance);
+
+/// Hot air in the box (or ball) of half-extent 1 of a space.
+struct HotAir {
+    glm::dmat4 local_from_world{1};
+    bool ball = false;
+    double shift = 0;   ///< largest [px]
+    double scale = 1;   ///< [m]
+    double raised = 0;  ///< [eddies]
+    std::uint32_t seed = 0;
+};
+[[nodiscard]] glm::dvec2
+haze_shift(const RippleCamera& camera, const HotAir& air, const glm::dvec2& pixel, double distance);
+
+/// post.scene-ripple: w of a distance d from the center, as shares of the picture; and where uv
+/// looks instead, less uv.
+[[nodiscard]] double screen_wave(double distance, double radius, double amplitude);
+[[nodiscard]] glm::dvec2
+screen_shift(const glm::dvec2& uv, const glm::dvec2& center, double radius, double amplitude);
+
+}  // namespace limn::oracle

@@ -1,0 +1,9 @@
+// A rectangle of the picture: four corners of a strip, without vertex data.
+#version 450
+
+uniform vec4 rect;  // NDC: lower left, upper right corner
+
+void main() {
+    vec2 share = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    gl_Position = vec4(mix(rect.xy, rect.zw, share), 0.0, 1.0);
+}

@@ -1,0 +1,71 @@
+// Drops on the lens. Each is a small lens itself and shows the picture turned over; some run down and leave beads.
+// Everything by eye.
+#version 450
+#include "lib/noise.glsl"
+#include "lib/view.glsl"
+
+uniform float amount;
+uniform float size;  // of a cell, in heights of the picture
+uniform float speed;
+uniform float strength;
+uniform uint seed;
+uniform float time;
+
+layout(location = 0) out vec4 shift;  // [px]; alpha: the depth behind which it reads
+
+// What a round drop does to a place `from_middle` [radii]: nothing outside, and inside it turns the picture over.
+vec2 refract_drop(vec2 from_middle, float radius) {
+    float inside = 1.0 - min(dot(from_middle, from_middle), 1.0);
+    return -4.0 * strength * radius * from_middle * inside * (2.0 - inside);
+}
+
+float random_of(ivec2 cell, uint salt) {
+    return lattice_random(cell.x, cell.y, seed + salt);
+}
+
+// Drops that stay where they fell, until they dry up.
+vec2 resting_drops(vec2 at, float cell_size, uint salt) {
+    ivec2 cell = ivec2(floor(at / cell_size));
+    float life = time * mix(0.05, 0.2, random_of(cell, salt)) + random_of(cell, salt + 1u);
+    // Each life is lived at a place of its own.
+    uint turn = salt + 16u * uint(life);
+    bool wet = random_of(cell, turn + 2u) < amount;
+    float age = fract(life);
+    float radius = cell_size * mix(0.1, 0.32, random_of(cell, turn + 3u)) * smoothstep(0.0, 0.02, age) * (1.0 - age * age);
+    vec2 middle = vec2(random_of(cell, turn + 4u), random_of(cell, turn + 5u));
+    middle = (vec2(cell) + 0.34 + 0.32 * middle) * cell_size;
+    return wet ? refract_drop((at - middle) / max(radius, 1e-6), radius) : vec2(0.0);
+}
+
+// A column down which one drop after the other runs, faster and slower, with beads in its wake.
+vec2 running_drop(vec2 at, float width, uint salt) {
+    int column = int(floor(at.x / width));
+    float run = time * speed * mix(0.4, 1.0, random_of(ivec2(column, 0), salt)) + random_of(ivec2(column, 1), salt);
+    ivec2 which = ivec2(column, int(run));
+    float way = fract(run);
+    float halting = way - 0.9 * sin(way * 37.7) / 37.7;  // 2 pi 6: six stops
+    float head = 1.2 - 1.5 * halting;
+    bool wet = random_of(which, salt + 2u) < amount;
+
+    float radius = width * mix(0.16, 0.24, random_of(which, salt + 3u));
+    float middle = (float(column) + mix(0.35, 0.65, random_of(which, salt + 4u))) * width;
+    float wobble = 0.08 * width * sin(23.0 * at.y + 6.0 * random_of(which, salt + 5u));
+    vec2 from_head = vec2(at.x - middle - wobble, (at.y - head) * (at.y > head ? 0.55 : 1.0));
+    vec2 moved = refract_drop(from_head / radius, radius);
+
+    float row_height = 0.35 * width;
+    float row = (floor(at.y / row_height) + 0.5) * row_height;
+    float behind = row - head - 1.5 * radius;
+    float left = 0.5 * radius * (1.0 - smoothstep(0.0, 0.45, behind)) * step(0.0, behind);
+    vec2 from_bead = vec2(at.x - middle - wobble, at.y - row);
+    moved += left > 0.0 ? refract_drop(from_bead / left, left) : vec2(0.0);
+    return wet ? moved : vec2(0.0);
+}
+
+void main() {
+    vec2 at = gl_FragCoord.xy * view.size.w;  // heights of the picture
+    vec2 moved = running_drop(at, 2.0 * size, 100u);
+    moved = moved == vec2(0.0) ? resting_drops(at, size, 200u) : moved;
+    moved = moved == vec2(0.0) ? resting_drops(at + 0.37, 0.4 * size, 300u) : moved;
+    shift = vec4(moved * view.size.y, 0.0, 1.0);
+}

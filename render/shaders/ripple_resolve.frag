@@ -1,0 +1,32 @@
+// The picture at the shifted places. Of the four texels between which such a place lies, those in front of what
+// ripples do not count; where all are, and where nothing ripples, the pixel stays as it is, to the bit.
+#version 450
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 1) uniform sampler2D ripple_field;
+layout(binding = 6) uniform sampler2D scene_depth;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 last = textureSize(scene_radiance, 0) - 1;
+    vec4 field = texelFetch(ripple_field, pixel, 0);
+    bool moved = field.xy != vec2(0.0);
+    vec4 stays = texelFetch(scene_radiance, pixel, 0);
+
+    vec2 place = vec2(pixel) + field.xy;
+    vec2 corner = floor(place);
+    vec2 share = place - corner;
+    vec4 sum = vec4(0.0);
+    // A loop that no pixel of a group enters costs a software OpenGL nothing; a branch does.
+    for (int i = 0; i < (moved ? 4 : 0); ++i) {
+        ivec2 step = ivec2(i & 1, i >> 1);
+        ivec2 at = clamp(ivec2(corner) + step, ivec2(0), last);
+        vec2 weights = mix(1.0 - share, share, vec2(step));
+        float weight = weights.x * weights.y;
+        bool counts = weight > 0.0 && texelFetch(scene_depth, at, 0).r < field.w;
+        sum += counts ? weight * vec4(texelFetch(scene_radiance, at, 0).rgb, 1.0) : vec4(0.0);
+    }
+    radiance = sum.w > 0.0 ? vec4(sum.rgb / sum.w, stays.a) : stays;
+}
