@@ -26,6 +26,7 @@
 #include "render/passes/reflection_pass.h"
 #include "render/passes/shadow_pass.h"
 #include "render/passes/shadow_volume_pass.h"
+#include "render/passes/speed_line_pass.h"
 #include "render/shaders/view_gpu.h"
 
 #include <algorithm>
@@ -85,6 +86,7 @@ struct Passes {
     ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
+    SpeedLinePass speed_lines;
     LensPasses lens;
     const gpu::Program* accumulate = nullptr;
 };
@@ -169,6 +171,7 @@ class Renderer {
     bool dropped_reported_ = false;
     std::set<std::uint32_t> untangented_reported_;  // meshes
     PictureClock clock_;
+    std::vector<SpeedLine> speed_lines_;
 };
 
 void RendererDeleter::operator()(Renderer* renderer) const {
@@ -371,6 +374,12 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     light_records_.set(push(scene.lights.records));
     shadow_views_.set(push(scene.shadows.records));
     projector_records_.set(push(projectors_.records()));
+    collect_speed_lines(world, view, speed_lines_);
+    if (for_probe) {
+        speed_lines_.clear();
+    }
+    passes.speed_lines.count = static_cast<int>(speed_lines_.size());
+    passes.speed_lines.records.set(push(speed_lines_));
     passes.clusters.lights.set(push(scene.clusters.lights));
     passes.clusters.boxes.set(push(scene.clusters.boxes));
     if (is_forward(scene.method)) {
@@ -446,7 +455,10 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
         : is_forward(scene.method) ? draw_forward(into, passes.forward, scene, gbuffer.depth)
                                    : draw_each_light(into, passes.light_each, scene, gbuffer);
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
-    return draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
+    radiance =
+        draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
+    draw_speed_lines(into, device, passes.speed_lines, scene, radiance, gbuffer);
+    return radiance;
 }
 
 FrameTextures Renderer::draw_image(const FrameRequest& request, bool attributes, bool velocity) {
@@ -577,6 +589,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(probes),
         *std::move(shadows),
         *std::move(volumes),
+        SpeedLinePass{},
         LensPasses(device),
         *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));

@@ -3,14 +3,19 @@
 #include "bench/oracles/motion_blur_oracle.h"
 #include "content/app/quality_court.h"
 #include "content/app/quality_scene.h"
+#include "content/make/creature.h"
+#include "content/make/creature_gait.h"
 #include "content/make/shapes.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/motion_blur.h"
-#include "ecs/components/shadow.h"
+#include "systems/animation/clip_sampling.h"
+#include "systems/animation/pose_system.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -34,6 +39,7 @@ struct MovingScene : QualityScene {
         Path path;
     };
     std::vector<Mover> movers;
+    std::function<void(World& world, double moment)> deform;  ///< what moves in itself; may be none
     Path camera;
     float fov_y = radians(50.0f);
 
@@ -48,6 +54,9 @@ struct MovingScene : QualityScene {
         for (const Mover& mover : movers) {
             world.get<WorldTransform>(mover.entity).world = mover.path(moment);
             world.get<PreviousWorldTransform>(mover.entity).world = mover.path(moment - 1);
+        }
+        if (deform) {
+            deform(world, moment);
         }
     }
     [[nodiscard]] RenderView view_at(double moment) const {
@@ -192,6 +201,75 @@ void furnish_wheel(MovingScene& scene) {
     }
 }
 
+/// A creature gallops by; ten pictures a second.
+void furnish_gallop(MovingScene& scene) {
+    constexpr float kPicture = 1.0f / 10;  // [s]
+    constexpr float kShown = 0.13f;        // moment of the clip: both hind legs push [s]
+    light_up(scene);
+    add_wall(scene, still(posed({0, 1, -1.5f})));
+    const CreatureShape shape{.detail = 0.014f};
+    MeshRig rig = make_creature_rig(shape);
+    const auto run = std::find_if(rig.clips.begin(), rig.clips.end(), [](const ClipData& clip) {
+        return clip.name == "run";
+    });
+    const Gait& gait = creature_gaits().back();
+    auto& assets = scene.world.resource<Assets>();
+    assets.skins.push_back(rig.skin);
+    const Quat sideways = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0));
+    const Entity creature = scene.move(
+        scene.add(make_creature(shape)),
+        scene.add(Material{.base_color = {0.9f, 0.6f, 0.35f, 1}, .roughness = 0.8f}),
+        straight({0, 0, 0}, {gait_speed(gait) * kPicture, 0, 0}, sideways));
+    const std::size_t joints = rig.skeleton.parents.size();
+    scene.world.add(creature, Pose{std::vector<Affine>(joints), std::vector<Affine>(joints)});
+    scene.world.add(creature, Deformed{creature, {0}, 0, Skinning::Linear});
+    scene.deform = [skeleton = rig.skeleton, clip = *run, creature](World& world, double moment) {
+        auto& pose = world.get<Pose>(creature);
+        LocalPose scratch;
+        std::vector<float> weights(2);
+        const float time = kShown + kPicture * static_cast<float>(moment);
+        const auto at = [&](float t) { return clip_time(clip.duration, t, true); };
+        evaluate_pose(skeleton, &clip, at(time), scratch, pose.joints, weights);
+        evaluate_pose(skeleton, &clip, at(time - kPicture), scratch, pose.previous, weights);
+    };
+    watch_from(scene, {0.1f, 0.35f, 1.3f}, {0.1f, 0.25f, 0});
+}
+
+/// A ball swells, flattens and leans as two morph targets come and go.
+void furnish_morph(MovingScene& scene) {
+    light_up(scene);
+    add_wall(scene);
+    watch_from(scene, {0, 1, 4}, {0, 1, 0});
+    MeshData ball = make_sphere({.radius = 0.9f, .segments = 64, .rings = 32});
+    MorphTarget flat;
+    flat.name = "flat";
+    MorphTarget lean;
+    lean.name = "lean";
+    for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+        const Vec3 p = ball.positions[i];
+        flat.vertices.push_back(static_cast<std::uint32_t>(i));
+        flat.positions.push_back({0.5f * p.x, -0.5f * p.y, 0.2f * p.z});
+        lean.vertices.push_back(static_cast<std::uint32_t>(i));
+        lean.positions.push_back({0.6f * p.y, 0, 0});
+    }
+    ball.morphs = {std::move(flat), std::move(lean)};
+    const Entity entity = scene.move(
+        scene.add(std::move(ball)),
+        tiled(scene, {0.95f, 0.5f, 0.2f}, {0.35f, 0.1f, 0.1f}, 4),
+        still(posed({0, 1, 0})));
+    scene.world.add(entity, MorphWeights{});
+    scene.world.add(entity, Deformed{entity, {}, 0, Skinning::Linear});
+    scene.deform = [entity](World& world, double moment) {
+        const auto weights = [](double at) {
+            const auto t = static_cast<float>(at);
+            return std::vector<float>{0.4f + 1.2f * t, 1.5f * t};
+        };
+        auto& morphs = world.get<MorphWeights>(entity);
+        morphs.weights = weights(moment);
+        morphs.previous = weights(moment - 1);
+    };
+}
+
 /// The camera turns in the court.
 void furnish_pan(MovingScene& scene) {
     light_up(scene);
@@ -317,6 +395,8 @@ Result<QualityReport> measure_motion_blur(HeadlessRenderer& headless) {
           SceneToMeasure{"still posts before a moving wall", furnish_static_foreground},
           SceneToMeasure{"crossing boxes", furnish_crossing},
           SceneToMeasure{"a rolling wheel", furnish_wheel},
+          SceneToMeasure{"a creature that gallops", furnish_gallop},
+          SceneToMeasure{"a ball that changes shape", furnish_morph},
           SceneToMeasure{"a camera that turns", furnish_pan},
           SceneToMeasure{"a camera that runs", furnish_run}}) {
         measure_scene(headless, scene, report);

@@ -17,6 +17,7 @@
 #include "ecs/components/ripple.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
+#include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -35,6 +36,7 @@ void register_all_components() {
     register_component<Sway>();
     register_component<MeshInstance>();
     register_component<Inflate>();
+    register_component<SpeedLines>();
     register_component<Skeleton>();
     register_component<ClipPlayer>();
     register_component<Pose>();

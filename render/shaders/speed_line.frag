@@ -1,0 +1,9 @@
+// A streak of light over the picture.
+#version 450
+
+layout(location = 0) in vec4 color;
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    radiance = color;
+}
