@@ -26,10 +26,15 @@ float square(float x) {
     return x * x;
 }
 
-// Over how much a circle of `radius` ends among taps for the `widest` [px]: those lie too far apart to show a rim of 1 px
-// of a circle that is less.
-float rim_of(float radius, float widest) {
-    return mix(0.25 * widest, 1.0, clamp(10.0 * radius / max(widest, 1e-5) - 9.0, 0.0, 1.0));
+// Over how much a circle ends among taps for the `widest` [px]: those lie too far apart to show a rim of 1 px of one that
+// is less.
+float rim_of(float as_wide, float widest) {
+    return mix(max(0.25 * widest, 1.0), 1.0, as_wide);
+}
+
+// 1 for circles as wide as the widest, 0 for all that are clearly less.
+float is_as_wide(float radius, float widest) {
+    return clamp(1.0 - (widest - radius) / max(0.1 * widest, 1.0), 0.0, 1.0);
 }
 
 // Enough taps to miss no texel of a disc.
@@ -54,21 +59,22 @@ vec4 gather_over(
         float coarse = coarse_share(its);
         float meant = fine ? 1.0 - coarse : coarse;
         float spread = clamp(fitted_radius(its, side_of(level)) / reach, kNarrowest, 1.0);
-        float rim = rim_of(its, reach) / reach;
+        float rim = rim_of(is_as_wide(its, reach), reach) / reach;
         float reached = clamp((spread - through) / rim + 0.5, 0.0, 1.0);
         sum += light * (meant * reached / (spread * spread + rim * rim / 12.0));
     }
     return sum / float(max(taps, 1));
 }
 
-// How a circle of `radius` is spread over a place that a kernel of `widest` reads at `through`, against one as wide as that.
+// How a circle of `radius` is spread over a place that a kernel of `widest` reads at `through`, against one as wide.
 float spread_behind(float radius, float widest, float through) {
     // A rim is soft, but not that of the circle that the kernel is made for.
-    float as_wide = clamp(10.0 * radius / max(widest, 1e-5) - 9.0, 0.0, 1.0);
-    float rim = rim_of(radius, widest);
+    float as_wide = is_as_wide(radius, widest);
+    float rim = rim_of(as_wide, widest);
     float reached = clamp((radius - through * widest) / rim + 0.5 + 0.5 * as_wide, 0.0, 1.0);
     radius = max(radius, kNarrowest * widest);
-    return reached * widest * widest / max(radius * radius + (1.0 - as_wide) * rim * rim / 12.0, 1e-5);
+    float area = radius * radius + (1.0 - as_wide) * rim * rim / 12.0;
+    return reached * max(widest * widest, 0.25) / max(area, 0.25);
 }
 
 // What is behind all that: the circle of the texel itself bounds what lies behind it, or that would reach before it.

@@ -1,5 +1,5 @@
-// A quarter of the picture, its coarse circles alone, without their highlights: texels so much brighter than the light around them that a few taps
-// could not make discs of them. What is taken off here is drawn by focus_disc.vert.
+// A quarter of the picture, its coarse circles alone, without their highlights: texels so much brighter than the light
+// around them that a few taps could not make discs of them. What is taken off here is drawn by focus_disc.vert.
 #version 450
 #include "lib/focus.glsl"
 
