@@ -1,5 +1,6 @@
 #include "content/app/pick.h"
 
+#include "content/app/posed_mesh.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -10,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -57,11 +59,21 @@ std::optional<float> meet_triangle(
 struct Candidate {
     Entity entity;
     const MeshData* mesh = nullptr;
+    std::vector<Vec3> posed;  // its positions if it has a shape of its own
     float inflate = 0.0f;
     Vec3 origin;
     Vec3 direction;  // scaled so that distances stay those of the world
     float enter = 0.0f;
 };
+
+/// Box of the mesh as it is posed, in its own space.
+Bounds shape_bounds(const MeshData& mesh, const std::vector<Vec3>& posed) {
+    Bounds box = posed.empty() ? mesh.bounds : Bounds{};
+    for (const Vec3& p : posed) {
+        grow(box, p);
+    }
+    return box;
+}
 
 std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
     const MeshData& mesh = *candidate.mesh;
@@ -69,7 +81,9 @@ std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
         const std::uint32_t vertex = mesh.indices[i];
         const bool moves = candidate.inflate != 0.0f && vertex < mesh.normals.size();
         const Vec3 outward = moves ? normalize_or(mesh.normals[vertex], {0, 0, 0}) : Vec3(0);
-        return mesh.positions[vertex] + candidate.inflate * outward;
+        const Vec3& place =
+            candidate.posed.empty() ? mesh.positions[vertex] : candidate.posed[vertex];
+        return place + candidate.inflate * outward;
     };
     std::optional<float> hit;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -117,15 +131,16 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
             Candidate candidate{
                 .entity = entity,
                 .mesh = &mesh,
+                .posed = posed_positions(world, entity),
                 .inflate = inflate != nullptr ? inflate->distance : 0.0f,
                 .origin = transform_point(mesh_from_world, ray.origin),
                 .direction = transform_vector(mesh_from_world, ray.direction)};
             if (const auto enter = meet_box(
                     candidate.origin,
                     candidate.direction,
-                    inflated(mesh.bounds, {candidate.inflate}))) {
+                    inflated(shape_bounds(mesh, candidate.posed), {candidate.inflate}))) {
                 candidate.enter = *enter;
-                candidates.push_back(candidate);
+                candidates.push_back(std::move(candidate));
             }
         });
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -144,19 +159,23 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
     return nearest;
 }
 
-Bounds entity_bounds(const World& world, Entity entity) {
+Bounds local_bounds(const World& world, Entity entity) {
     const Assets* assets = world.find_resource<Assets>();
     const MeshInstance* instance = world.find<MeshInstance>(entity);
-    const WorldTransform* transform = world.find<WorldTransform>(entity);
-    if (assets == nullptr || instance == nullptr || transform == nullptr
-        || instance->mesh.index >= assets->meshes.size()) {
+    if (assets == nullptr || instance == nullptr || instance->mesh.index >= assets->meshes.size()) {
         return {};
     }
     const Inflate* inflate = world.find<Inflate>(entity);
-    const Bounds box = inflated(
-        assets->meshes[instance->mesh.index].bounds,
+    return inflated(
+        shape_bounds(assets->meshes[instance->mesh.index], posed_positions(world, entity)),
         inflate != nullptr ? *inflate : Inflate{.distance = 0});
-    return is_empty(box) ? Bounds{} : transform_bounds(transform->world, box);
+}
+
+Bounds entity_bounds(const World& world, Entity entity) {
+    const WorldTransform* transform = world.find<WorldTransform>(entity);
+    const Bounds box = local_bounds(world, entity);
+    return transform == nullptr || is_empty(box) ? Bounds{}
+                                                 : transform_bounds(transform->world, box);
 }
 
 std::optional<Vec3> entity_middle(const World& world, Entity entity) {

@@ -30,7 +30,11 @@ struct Hit {
 /// The nearest MeshInstance that the ray meets, front or back.
 [[nodiscard]] std::optional<Hit> pick_entity(const World& world, const Ray& ray);
 
-/// Box of what the entity draws, in world space; empty if it draws nothing.
+/// Box of what the entity draws, inflated and posed as it is, in its own space; empty if it draws
+/// nothing.
+[[nodiscard]] Bounds local_bounds(const World& world, Entity entity);
+
+/// The same in world space.
 [[nodiscard]] Bounds entity_bounds(const World& world, Entity entity);
 
 /// Where the entity is: the middle of its box, or its origin.

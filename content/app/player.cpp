@@ -428,11 +428,9 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
 
 void Player::draw_outline(const RenderView& view) const {
     const World& world = stage_->world;
-    const MeshInstance* instance = world.find<MeshInstance>(inspector_.selected());
+    const Bounds box = local_bounds(world, inspector_.selected());
     const WorldTransform* transform = world.find<WorldTransform>(inspector_.selected());
-    const Assets* assets = world.find_resource<Assets>();
-    if (instance == nullptr || transform == nullptr || assets == nullptr
-        || instance->mesh.index >= assets->meshes.size()) {
+    if (is_empty(box) || transform == nullptr) {
         return;
     }
     const PreviousWorldTransform* previous =
@@ -440,7 +438,7 @@ void Player::draw_outline(const RenderView& view) const {
     const Affine shown = previous != nullptr
                              ? mix_affine(previous->world, transform->world, view.alpha)
                              : transform->world;
-    draw_box_outline(view, shown, assets->meshes[instance->mesh.index].bounds);
+    draw_box_outline(view, shown, box);
 }
 
 Status Player::run() {

@@ -7,6 +7,7 @@
 #include "ecs/world.h"
 #include "render/buffer_texture.h"
 #include "render/mesh_pool.h"
+#include "render/skinning/deform_source.h"
 #include "render/skinning/skin_palette.h"
 
 #include <fmt/format.h>
@@ -92,58 +93,19 @@ void DeformedList::report(const std::string& fault) {
 
 bool DeformedList::resolve(
     const World& world, const Assets& assets, Entry& entry, std::string& fault) {
-    const std::string& name = assets.meshes[entry.mesh.index].name;
-    const Deformed& settings = entry.settings;
     entry.rest = &rest_.get(assets, entry.mesh);
     if (!entry.rest->fault.empty()) {
+        const std::string& name = assets.meshes[entry.mesh.index].name;
         fault = fmt::format("deformed mesh {} {}", name, entry.rest->fault);
         return false;
     }
-    const bool alive = !settings.character.is_null() && world.alive(settings.character);
-    entry.pose = alive ? world.find<Pose>(settings.character) : nullptr;
-    entry.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
-    if (entry.pose == nullptr && entry.morphs == nullptr) {
-        fault = fmt::format(
-            "deformed mesh {}: its character {}",
-            name,
-            alive ? "has neither Pose nor MorphWeights" : "is gone");
-        return false;
-    }
-    entry.skin = nullptr;
-    if (settings.skin.index == kNoAsset) {
-        return true;
-    }
-    if (settings.skin.index >= assets.skins.size()) {
-        fault = fmt::format(
-            "deformed mesh {}: skin {} of {}", name, settings.skin.index, assets.skins.size());
-        return false;
-    }
-    const SkinData& skin = assets.skins[settings.skin.index];
-    const std::size_t joints = entry.pose != nullptr ? entry.pose->joints.size() : 0;
-    const auto beyond = std::find_if(
-        skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
-    if (beyond != skin.joints.end()) {
-        fault = fmt::format(
-            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}",
-            name,
-            skin.name,
-            *beyond,
-            joints);
-        return false;
-    }
-    if (skin.joint_from_mesh.size() != skin.joints.size()
-        || skin.joints.size() < entry.rest->joint_count) {
-        fault = fmt::format(
-            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices",
-            name,
-            entry.rest->joint_count,
-            skin.name,
-            skin.joints.size(),
-            skin.joint_from_mesh.size());
-        return false;
-    }
-    entry.skin = entry.rest->joint_count > 0 ? &skin : nullptr;
-    return true;
+    DeformSource source =
+        find_deform_source(world, assets, entry.mesh, entry.rest->joint_count, entry.settings);
+    entry.skin = source.skin;
+    entry.pose = source.pose;
+    entry.morphs = source.morphs;
+    fault = std::move(source.fault);
+    return fault.empty();
 }
 
 void DeformedList::reckon(Entry& entry) const {

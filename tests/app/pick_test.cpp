@@ -1,4 +1,5 @@
 #include "content/app/pick.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -60,6 +61,40 @@ TEST_CASE("pick: an inflated mesh is met where it is drawn") {
     CHECK(hit->distance == doctest::Approx(2.0f));
     CHECK(entity_bounds(world, entity).max.z == doctest::Approx(-2.0f));
     CHECK(entity_bounds(world, entity).max.x == doctest::Approx(2.0f));
+}
+
+TEST_CASE("pick: a posed mesh is met where its joints take it") {
+    World world;
+    MeshData mesh = half_square();
+    mesh.skin = {.first = {0, 1, 2, 3}, .joints = {0, 0, 0}, .weights = {1, 1, 1}};
+    mesh.morphs = {
+        {.name = "out",
+         .vertices = {0, 1, 2},
+         .positions = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+         .normals = {},
+         .tangents = {}}};
+    auto& assets = world.insert_resource(Assets{});
+    assets.meshes.push_back(mesh);
+    assets.skins.push_back({.name = "one", .joints = {0}, .joint_from_mesh = {Affine{}}});
+    const Entity entity = place(world, {0, 0, -3});
+    const Affine aside = affine_from({5, 0, 0}, {1, 0, 0, 0}, Vec3(1));
+    world.add(entity, Pose{.joints = {aside}, .previous = {aside}});
+    world.add(entity, MorphWeights{.weights = {0.5f}, .previous = {0.5f}});
+    const Ray where_it_rests = {{-0.4f, 0.4f, 0}, {0, 0, -1}};
+    const Ray where_it_is = {{4.6f, 0.4f, 0}, {0, 0, -1}};
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        world.add(entity, Deformed{entity, {0}, 0, skinning});
+        CHECK_FALSE(pick_entity(world, where_it_rests));
+        const auto hit = pick_entity(world, where_it_is);
+        REQUIRE(hit);
+        CHECK(hit->distance == doctest::Approx(2.5f));
+        CHECK(entity_bounds(world, entity).min.x == doctest::Approx(4.5f));
+        world.remove<Deformed>(entity);
+    }
+    // What has lost its character is drawn, and met, at rest.
+    world.add(entity, Deformed{{}, {0}, 0, Skinning::Linear});
+    CHECK(pick_entity(world, where_it_rests));
+    CHECK_FALSE(pick_entity(world, where_it_is));
 }
 
 TEST_CASE("pick: nothing behind the eye, nothing without meshes") {

@@ -2,6 +2,7 @@
 #include "tests/render/skin_fixture.h"
 // clang-format on
 #include "render/skinning/deformed_list.h"
+#include "systems/animation/skin_kernels.h"
 #include "tests/support.h"
 
 #include <glm/geometric.hpp>
@@ -86,6 +87,35 @@ TEST_CASE_FIXTURE(
             }
             CHECK(worst_normal <= 2e-4);
             CHECK(worst_tangent <= 2e-4);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the kernels of the CPU give the same") {
+    for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
+        const Entity entity = snake(skinning, 11, 6, 2);
+        const oracle::ReadSkin got = read(entity);
+        const MeshData& mesh = mesh_of(entity);
+        const SkinId skin = world.get<Deformed>(entity).skin;
+        std::vector<Affine> palette(11);
+        find_palette(
+            world.resource<Assets>().skins[skin.index], world.get<Pose>(entity).joints, palette);
+        std::vector<DualQuaternion> duals(11);
+        find_dual_palette(palette, duals);
+        std::vector<Vec3> positions(mesh.positions.size());
+        std::vector<Vec3> normals(positions.size());
+        std::vector<Vec4> tangents(positions.size());
+        const RestVertices rest = {mesh.positions, mesh.normals, mesh.tangents};
+        const MovedVertices moved = {positions, normals, tangents};
+        if (skinning == Skinning::Linear) {
+            skin_linear(mesh.skin, palette, rest, moved, 0, positions.size());
+        } else {
+            skin_dual(mesh.skin, duals, rest, moved, 0, positions.size());
+        }
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            CHECK(glm::distance(got.positions[i], positions[i]) <= 1e-5f);
+            CHECK(glm::distance(got.normals[i], normals[i]) <= 2e-4f);
+            CHECK(glm::distance(got.tangents[i], tangents[i]) <= 2e-4f);
         }
     }
 }

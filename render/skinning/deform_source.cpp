@@ -1,0 +1,64 @@
+#include "render/skinning/deform_source.h"
+
+#include "ecs/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace limn {
+
+DeformSource find_deform_source(
+    const World& world,
+    const Assets& assets,
+    MeshId mesh,
+    std::uint32_t joint_count,
+    const Deformed& settings) {
+    const std::string& name = assets.meshes[mesh.index].name;
+    const bool alive = !settings.character.is_null() && world.alive(settings.character);
+    DeformSource source;
+    source.pose = alive ? world.find<Pose>(settings.character) : nullptr;
+    source.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
+    if (source.pose == nullptr && source.morphs == nullptr) {
+        source.fault = fmt::format(
+            "deformed mesh {}: its character {}",
+            name,
+            alive ? "has neither Pose nor MorphWeights" : "is gone");
+        return source;
+    }
+    if (settings.skin.index == kNoAsset) {
+        return source;
+    }
+    if (settings.skin.index >= assets.skins.size()) {
+        source.fault = fmt::format(
+            "deformed mesh {}: skin {} of {}", name, settings.skin.index, assets.skins.size());
+        return source;
+    }
+    const SkinData& skin = assets.skins[settings.skin.index];
+    const std::size_t joints = source.pose != nullptr ? source.pose->joints.size() : 0;
+    const auto beyond = std::find_if(
+        skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
+    if (beyond != skin.joints.end()) {
+        source.fault = fmt::format(
+            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}",
+            name,
+            skin.name,
+            *beyond,
+            joints);
+        return source;
+    }
+    if (skin.joint_from_mesh.size() != skin.joints.size() || skin.joints.size() < joint_count) {
+        source.fault = fmt::format(
+            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices",
+            name,
+            joint_count,
+            skin.name,
+            skin.joints.size(),
+            skin.joint_from_mesh.size());
+        return source;
+    }
+    source.skin = joint_count > 0 ? &skin : nullptr;
+    return source;
+}
+
+}  // namespace limn
