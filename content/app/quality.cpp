@@ -4,6 +4,7 @@
 #include "content/app/quality_glow.h"
 #include "content/app/quality_lights.h"
 #include "content/app/quality_motion_blur.h"
+#include "content/app/quality_ripple.h"
 #include "content/app/quality_shadows.h"
 #include "content/app/quality_skinning.h"
 #include "content/app/quality_surfaces.h"
@@ -35,6 +36,7 @@ std::span<const QualityEffect> quality_effects() {
          measure_motion_blur},
         {"dof", "the mean of what 256 points of the lens see", measure_dof},
         {"glow", "a convolution in double precision, and the laws of light", measure_glow},
+        {"ripple", "shifts by geometry in double precision", measure_ripple},
     };
     return kEffects;
 }

@@ -19,37 +19,38 @@ vec2 refract_drop(vec2 from_middle, float radius) {
     return -4.0 * strength * radius * from_middle * inside * (2.0 - inside);
 }
 
-float random_of(ivec2 cell, uint salt) {
-    return lattice_random(cell.x, cell.y, seed + salt);
+vec4 random_of(ivec2 cell, uint salt) {
+    return unpackUnorm4x8(lattice_hash(cell.x, cell.y, seed + salt));
 }
 
 // Drops that stay where they fell, until they dry up.
 vec2 resting_drops(vec2 at, float cell_size, uint salt) {
     ivec2 cell = ivec2(floor(at / cell_size));
-    float life = time * mix(0.05, 0.2, random_of(cell, salt)) + random_of(cell, salt + 1u);
+    vec4 random = random_of(cell, salt);
+    float life = time * mix(0.05, 0.2, random.x) + random.y;
     // Each life is lived at a place of its own.
-    uint turn = salt + 16u * uint(life);
-    bool wet = random_of(cell, turn + 2u) < amount;
+    vec4 now = random_of(cell, salt + 1u + uint(life));
+    bool wet = now.x < amount;
     float age = fract(life);
-    float radius = cell_size * mix(0.1, 0.32, random_of(cell, turn + 3u)) * smoothstep(0.0, 0.02, age) * (1.0 - age * age);
-    vec2 middle = vec2(random_of(cell, turn + 4u), random_of(cell, turn + 5u));
-    middle = (vec2(cell) + 0.34 + 0.32 * middle) * cell_size;
+    float radius = cell_size * mix(0.1, 0.32, now.y) * smoothstep(0.0, 0.02, age) * (1.0 - age * age);
+    vec2 middle = (vec2(cell) + 0.34 + 0.32 * now.zw) * cell_size;
     return wet ? refract_drop((at - middle) / max(radius, 1e-6), radius) : vec2(0.0);
 }
 
 // A column down which one drop after the other runs, faster and slower, with beads in its wake.
 vec2 running_drop(vec2 at, float width, uint salt) {
     int column = int(floor(at.x / width));
-    float run = time * speed * mix(0.4, 1.0, random_of(ivec2(column, 0), salt)) + random_of(ivec2(column, 1), salt);
-    ivec2 which = ivec2(column, int(run));
+    vec4 random = random_of(ivec2(column, 0), salt);
+    float run = time * speed * mix(0.4, 1.0, random.x) + random.y;
     float way = fract(run);
     float halting = way - 0.9 * sin(way * 37.7) / 37.7;  // 2 pi 6: six stops
     float head = 1.2 - 1.5 * halting;
-    bool wet = random_of(which, salt + 2u) < amount;
 
-    float radius = width * mix(0.16, 0.24, random_of(which, salt + 3u));
-    float middle = (float(column) + mix(0.35, 0.65, random_of(which, salt + 4u))) * width;
-    float wobble = 0.08 * width * sin(23.0 * at.y + 6.0 * random_of(which, salt + 5u));
+    vec4 now = random_of(ivec2(column, int(run)), salt + 1u);
+    bool wet = now.x < amount;
+    float radius = width * mix(0.16, 0.24, now.y);
+    float middle = (float(column) + mix(0.35, 0.65, now.z)) * width;
+    float wobble = 0.08 * width * sin(23.0 * at.y + 6.0 * now.w);
     vec2 from_head = vec2(at.x - middle - wobble, (at.y - head) * (at.y > head ? 0.55 : 1.0));
     vec2 moved = refract_drop(from_head / radius, radius);
 

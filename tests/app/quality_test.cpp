@@ -204,4 +204,19 @@ TEST_CASE("quality: glow keeps the light, is round, steady and the oracle's conv
     }
 }
 
+TEST_CASE("quality: ripples shift as geometry says and leave alone what stands before them") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "ripple", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 6 * 4 + 1);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+    }
+}
+
 }  // namespace limn
