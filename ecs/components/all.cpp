@@ -41,6 +41,7 @@ void register_all_components() {
     register_component<ClipPlayer>();
     register_component<Pose>();
     register_component<MorphWeights>();
+    register_component<MorphPlayer>();
     register_component<Deformed>();
     register_component<JointAttachment>();
     register_component<PointLight>();

@@ -40,6 +40,21 @@ struct MorphWeights {
     std::vector<float> previous;  ///< one step earlier; as long as `weights` after the first step
 };
 
+/// One of several that play at once.
+struct MorphAnimation {
+    ClipId clip;          ///< its morph weights alone
+    float time = 0.0f;    ///< in the clip [s]; grows with each step
+    float speed = 1.0f;   ///< 1: as recorded; negative: backward
+    float weight = 1.0f;  ///< of all it does
+    bool loop = true;     ///< otherwise it holds the last shape
+};
+
+/// Beside MorphWeights: animations of different regions of a face, added up (char.morph-anim). The
+/// targets that they name are theirs alone.
+struct MorphPlayer {
+    std::vector<MorphAnimation> animations;
+};
+
 enum class Skinning : std::uint8_t {
     Linear,          ///< blends matrices: any scale; twisted joints lose volume
     DualQuaternion,  ///< blends screw motions (Kavan 2007): twisted joints keep it; no scale
@@ -93,6 +108,23 @@ template <typename Visitor>
 void visit_fields(MorphWeights& morph, Visitor&& visit) {
     visit("weights", morph.weights, {.doc = "how far each morph target is on"});
     visit("previous", morph.previous, {.doc = "one step earlier"});
+}
+
+template <typename Visitor>
+void visit_fields(MorphAnimation& animation, Visitor&& visit) {
+    visit("clip", animation.clip, {.doc = "a clip of the level, by name; its morph weights alone"});
+    visit("time", animation.time, {.doc = "in the clip", .unit = "s", .min = 0});
+    visit(
+        "speed",
+        animation.speed,
+        {.doc = "1 as recorded; negative: backward", .min = -100, .max = 100});
+    visit("weight", animation.weight, {.doc = "of all it does", .min = -10, .max = 10});
+    visit("loop", animation.loop, {.doc = "otherwise it holds the last shape"});
+}
+
+template <typename Visitor>
+void visit_fields(MorphPlayer& player, Visitor&& visit) {
+    visit("animations", player.animations, {.doc = "that play at once and are added up"});
 }
 
 template <typename Visitor>

@@ -1,18 +1,22 @@
 #include "systems/animation/clip_player_system.h"
 
-#include "systems/animation/clip_sampling.h"
-
 namespace limn {
 
-float step_clip_time(const ClipPlayer& player, float duration, float step) {
-    return clip_time(duration, player.time + player.speed * step, player.loop);
-}
-
-void advance_clips(Query<ClipPlayer> players, Res<const Assets> assets, Res<const FrameTime> time) {
-    players.each([&](ClipPlayer& player) {
+void advance_clips(
+    Query<ClipPlayer> players,
+    Query<MorphPlayer> morph_players,
+    Res<const Assets> assets,
+    Res<const FrameTime> time) {
+    const auto advance = [&](auto& player) {
         if (player.clip.index < assets->clips.size()) {
             player.time =
                 step_clip_time(player, assets->clips[player.clip.index].duration, time->step);
+        }
+    };
+    players.each(advance);
+    morph_players.each([&](MorphPlayer& player) {
+        for (MorphAnimation& animation : player.animations) {
+            advance(animation);
         }
     });
 }

@@ -148,6 +148,20 @@ void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<fl
     }
 }
 
+void add_morph_weights(const ClipData& clip, float time, float weight, std::span<float> weights) {
+    for (const ClipSheet& sheet : clip.sheets) {
+        if (sheet.times.size() < 2) {
+            continue;
+        }
+        const SheetRows rows(sheet, time);
+        rows.each_value(sheet.weights, sheet.morphing.size(), [&](std::size_t i, float value) {
+            if (value > kLeastMorph) {
+                weights[sheet.morphing[i]] += weight * value;
+            }
+        });
+    }
+}
+
 void find_joint_matrices(
     const SkeletonData& skeleton, const LocalPose& pose, std::span<Affine> matrices) {
     LIMN_CHECK(pose.size() == skeleton.parents.size() && matrices.size() == pose.size());

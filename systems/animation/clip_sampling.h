@@ -29,6 +29,13 @@ struct KeyPlace {
 /// out with length 1.
 void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<float> weights);
 
+/// Below it a morph animation does nothing.
+inline constexpr float kLeastMorph = 1e-4f;
+
+/// Adds what the clip's morph weights are at `time` [s], times `weight`, where they are more than
+/// kLeastMorph (char.morph-anim). Curves of a single key do nothing.
+void add_morph_weights(const ClipData& clip, float time, float weight, std::span<float> weights);
+
 /// skeleton_from_joint of each joint: the product of all matrices from the root on
 /// (char.local-global). `matrices` has an entry a joint.
 void find_joint_matrices(

@@ -25,6 +25,12 @@ bool fits(const ClipData& clip, std::size_t joints, std::size_t weights) {
     });
 }
 
+bool has_weights(const ClipData& clip, std::size_t weights) {
+    return std::all_of(clip.sheets.begin(), clip.sheets.end(), [=](const ClipSheet& sheet) {
+        return is_below(sheet.morphing, weights);
+    });
+}
+
 /// Who jumps in this step: an entity with a Teleport, and everything below it.
 class Jumps {
   public:
@@ -62,6 +68,7 @@ void step_character(
     const Assets& assets,
     const SkeletonData& skeleton,
     const ClipPlayer* player,
+    const MorphPlayer* morph_player,
     bool jumps,
     Pose& pose,
     MorphWeights* morph) {
@@ -81,6 +88,9 @@ void step_character(
         player != nullptr ? find_asset(assets.clips, player->clip.index) : nullptr;
     const float time = player != nullptr ? player->time : 0.0f;
     evaluate_pose(skeleton, clip, time, scratch, pose.joints, weights);
+    if (morph_player != nullptr) {
+        add_morph_animations(*morph_player, assets.clips, weights);
+    }
     if (is_new || jumps) {
         pose.previous = pose.joints;
         if (morph != nullptr) {
@@ -90,13 +100,23 @@ void step_character(
 }
 
 /// The same for what has morph targets alone.
-void step_weights(const Assets& assets, const ClipPlayer& player, bool jumps, MorphWeights& morph) {
-    static const SkeletonData kNoJoints;
-    LocalPose none;
+void step_weights(
+    const Assets& assets,
+    const ClipPlayer* player,
+    const MorphPlayer* morph_player,
+    bool jumps,
+    MorphWeights& morph) {
     const bool is_new = morph.previous.size() != morph.weights.size();
     morph.previous = morph.weights;
-    const ClipData* const clip = find_asset(assets.clips, player.clip.index);
-    evaluate_pose(kNoJoints, clip, player.time, none, {}, morph.weights);
+    if (player != nullptr) {
+        static const SkeletonData kNoJoints;
+        LocalPose none;
+        const ClipData* const clip = find_asset(assets.clips, player->clip.index);
+        evaluate_pose(kNoJoints, clip, player->time, none, {}, morph.weights);
+    }
+    if (morph_player != nullptr) {
+        add_morph_animations(*morph_player, assets.clips, morph.weights);
+    }
     if (is_new || jumps) {
         morph.previous = morph.weights;
     }
@@ -130,8 +150,18 @@ void add_poses(
 }
 
 void update_poses(
-    Query<const Skeleton, Optional<const ClipPlayer>, Optional<MorphWeights>, Pose> characters,
-    Query<const ClipPlayer, MorphWeights, Without<Skeleton>> faces,
+    Query<
+        const Skeleton,
+        Optional<const ClipPlayer>,
+        Optional<const MorphPlayer>,
+        Optional<MorphWeights>,
+        Pose> characters,
+    Query<
+        MorphWeights,
+        Optional<const ClipPlayer>,
+        Optional<const MorphPlayer>,
+        AnyOf<ClipPlayer, MorphPlayer>,
+        Without<Skeleton>> faces,
     Query<const Transform, With<Teleport>> teleports,
     Query<const Parent> parents,
     Res<const Assets> assets) {
@@ -139,6 +169,7 @@ void update_poses(
     characters.chunks([&](ChunkView chunk,
                           std::span<const Skeleton> skeletons,
                           std::span<const ClipPlayer> players,
+                          std::span<const MorphPlayer> morph_players,
                           std::span<MorphWeights> morphs,
                           std::span<Pose> poses) {
         const std::span<const Entity> entities = chunk.entities();
@@ -151,6 +182,7 @@ void update_poses(
                         *assets,
                         *skeleton,
                         players.empty() ? nullptr : &players[i],
+                        morph_players.empty() ? nullptr : &morph_players[i],
                         jumps.has(entities[i]),
                         poses[i],
                         morphs.empty() ? nullptr : &morphs[i]);
@@ -158,8 +190,11 @@ void update_poses(
             }
         });
     });
-    faces.each([&](Entity entity, const ClipPlayer& player, MorphWeights& morph) {
-        step_weights(*assets, player, jumps.has(entity), morph);
+    faces.each([&](Entity entity,
+                   MorphWeights& morph,
+                   const ClipPlayer* player,
+                   const MorphPlayer* morph_player) {
+        step_weights(*assets, player, morph_player, jumps.has(entity), morph);
     });
 }
 
@@ -169,6 +204,28 @@ void update_attachments(Query<const JointAttachment, Transform> attached, Query<
         if (pose != nullptr && attachment.joint < pose->joints.size()) {
             transform = placement_of(pose->joints[attachment.joint]);
         }
+    });
+}
+
+void add_morph_animations(
+    const MorphPlayer& player, const std::vector<ClipData>& clips, std::span<float> weights) {
+    const auto each_clip = [&](auto&& visit) {
+        for (const MorphAnimation& animation : player.animations) {
+            const ClipData* const clip = find_asset(clips, animation.clip.index);
+            if (clip != nullptr && has_weights(*clip, weights.size())) {
+                visit(animation, *clip);
+            }
+        }
+    };
+    each_clip([&](const MorphAnimation&, const ClipData& clip) {
+        for (const ClipSheet& sheet : clip.sheets) {
+            for (const std::uint16_t target : sheet.morphing) {
+                weights[target] = 0.0f;
+            }
+        }
+    });
+    each_clip([&](const MorphAnimation& animation, const ClipData& clip) {
+        add_morph_weights(clip, animation.time, animation.weight, weights);
     });
 }
 

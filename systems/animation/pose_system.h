@@ -27,8 +27,18 @@ void add_poses(
 
 /// Samples the clips: writes Pose and MorphWeights. Allocates only when a character is new.
 void update_poses(
-    Query<const Skeleton, Optional<const ClipPlayer>, Optional<MorphWeights>, Pose> characters,
-    Query<const ClipPlayer, MorphWeights, Without<Skeleton>> faces,
+    Query<
+        const Skeleton,
+        Optional<const ClipPlayer>,
+        Optional<const MorphPlayer>,
+        Optional<MorphWeights>,
+        Pose> characters,
+    Query<
+        MorphWeights,
+        Optional<const ClipPlayer>,
+        Optional<const MorphPlayer>,
+        AnyOf<ClipPlayer, MorphPlayer>,
+        Without<Skeleton>> faces,
     Query<const Transform, With<Teleport>> teleports,
     Query<const Parent> parents,
     Res<const Assets> assets);
@@ -36,6 +46,10 @@ void update_poses(
 /// Writes the Transform of what is attached to a joint. Where the character has no such joint, it
 /// stays where it is.
 void update_attachments(Query<const JointAttachment, Transform> attached, Query<const Pose> poses);
+
+/// Gives the targets that the animations name the sum of what these make of them now.
+void add_morph_animations(
+    const MorphPlayer& player, const std::vector<ClipData>& clips, std::span<float> weights);
 
 /// The joints and weights of a skeleton in `clip` at `time` [s]; at rest without a clip or where it
 /// names joints or weights that are not there. `scratch` keeps its memory from call to call; there

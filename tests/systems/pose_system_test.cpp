@@ -92,7 +92,8 @@ std::vector<std::uint64_t> crowd_hashes(int threads, int steps) {
 
 TEST_CASE("clip player: loops, holds at both ends and never leaves the clip") {
     const auto at = [](float time, float speed, bool loop, float step) {
-        return step_clip_time({.clip = {}, .time = time, .speed = speed, .loop = loop}, 2.0f, step);
+        return step_clip_time(
+            ClipPlayer{.clip = {}, .time = time, .speed = speed, .loop = loop}, 2.0f, step);
     };
     CHECK(at(0.5f, 1, true, 0.25f) == 0.75f);
     CHECK(at(1.75f, 1, true, 0.5f) == doctest::Approx(0.25));
@@ -109,7 +110,7 @@ TEST_CASE("clip player: loops, holds at both ends and never leaves the clip") {
             CHECK(at(1, bad, loop, 0.1f) == 0.0f);
         }
     }
-    CHECK(step_clip_time({.clip = {}, .time = 1}, 0.0f, 0.1f) == 0.0f);  // a single key
+    CHECK(step_clip_time(ClipPlayer{.clip = {}, .time = 1}, 0.0f, 0.1f) == 0.0f);  // a single key
 }
 
 TEST_CASE("pose system: a character shows its clip at the moment of its player") {
@@ -231,6 +232,72 @@ TEST_CASE("pose system: morph weights move without a skeleton too") {
     stage.step();
     CHECK(stage.world.get<const MorphWeights>(face).previous == std::vector<float>{0.25f, 0.5f});
     CHECK(stage.world.get<const MorphWeights>(face).weights[1] > 0.5f);
+}
+
+namespace {
+
+/// A clip that moves morph weights along one curve.
+ClipData make_fade(
+    std::vector<std::uint16_t> targets, std::vector<float> times, std::vector<float> weights) {
+    ClipData fade;
+    fade.duration = times.back();
+    ClipSheet& sheet = fade.sheets.emplace_back();
+    sheet.morphing = std::move(targets);
+    sheet.times = std::move(times);
+    sheet.weights = std::move(weights);
+    return fade;
+}
+
+}  // namespace
+
+TEST_CASE("morph player: curves count times the weight of their animation, tiny ones not at all") {
+    std::vector<float> weights = {0, 0, 1};
+    const ClipData fade = make_fade({0, 1}, {0, 1}, {0.5f, 0.00005f, 0.5f, 0.00005f});
+    add_morph_weights(fade, 0.5f, 0.5f, weights);
+    CHECK(weights == std::vector<float>{0.25f, 0, 1});
+    add_morph_weights(fade, 0.5f, 0.5f, weights);
+    CHECK(weights[0] == 0.5f);  // added, not set
+    add_morph_weights(make_fade({1}, {0}, {1}), 0, 1, weights);
+    CHECK(weights[1] == 0);  // a single key does nothing
+    add_morph_weights(make_fade({1}, {0, 1}, {-1, -1}), 0.5f, 1, weights);
+    CHECK(weights[1] == 0);
+}
+
+TEST_CASE("morph player: animations of different regions are the sum of each alone, step by step") {
+    Stage stage;
+    Assets& assets = stage.world.resource<Assets>();
+    assets.clips.push_back(make_fade({0}, {0, 2}, {1, 1}));
+    assets.clips.push_back(make_fade({1, 0}, {0, 2}, {0.5f, 0.25f, 0.5f, 0.25f}));
+    assets.clips.push_back(make_fade({9}, {0, 1}, {1, 1}));
+    const MorphAnimation smile = {.clip = {3}, .weight = 0.5f};
+    const MorphAnimation frown = {.clip = {4}};
+    const MorphAnimation strange = {.clip = {5}};
+    const auto make = [&](std::vector<MorphAnimation> animations, bool with_body) {
+        const Entity face =
+            stage.world.create(MorphWeights{{0, 0, 0.75f}, {}}, MorphPlayer{std::move(animations)});
+        if (with_body) {
+            stage.world.add(face, Skeleton{{0}});
+        }
+        return face;
+    };
+    const Entity one = make({smile}, false);
+    const Entity other = make({frown}, true);
+    const Entity both = make({smile, frown, strange}, true);
+    const Entity nobody = make({MorphAnimation{.clip = {77}}}, false);
+    start_world(stage.world);
+    for (int i = 0; i < 4; ++i) {  // what was there is cleared, or each step would add to it
+        const auto weights = [&](Entity face) {
+            return stage.world.get<const MorphWeights>(face).weights;
+        };
+        CHECK(weights(one) == std::vector<float>{0.5f, 0, 0.75f});
+        CHECK(weights(other) == std::vector<float>{0.25f, 0.5f, 0.75f});
+        CHECK(weights(both) == std::vector<float>{0.75f, 0.5f, 0.75f});
+        CHECK(weights(nobody) == std::vector<float>{0, 0, 0.75f});
+        CHECK(stage.world.get<const MorphWeights>(both).previous == weights(both));
+        CHECK(stage.world.get<const MorphWeights>(one).previous == weights(one));
+        stage.step();
+    }
+    CHECK(stage.world.get<const MorphPlayer>(both).animations[1].time > 0.06f);
 }
 
 TEST_CASE("pose system: what is attached to a joint stands where the joint is, in the same step") {
