@@ -109,7 +109,7 @@ void main() {
     float other = length(neighbor.zw);
     bool crossing = other > kStill;
     int lines = (moves && !one_line ? 2 : 1) + (crossing ? 1 : 0);
-    int most = max(2 * samples / (lines + 1), 4);
+    int most = lines == 1 ? 2 * samples : samples;
     gather(found, here, main_way, longest, most, jitter, true, one_line);
     if (moves && !one_line) {
         gather(found, here, here.motion / here.speed, here.speed, most, jitter, false, true);
