@@ -128,6 +128,9 @@ LensSettings lens_settings(const World& world, const RenderView& view) {
     if (const auto* rendering = world.find_resource<Rendering>()) {
         settings.antialiasing = rendering->antialiasing;
     }
+    if (const auto* glare = world.find_resource<Glare>()) {
+        settings.glare = *glare;
+    }
     if (const auto* glow = world.find_resource<Glow>()) {
         settings.glow = *glow;
     }
@@ -184,6 +187,11 @@ TextureId apply_lens(
         auto* pass = passes.depth_of_field.get(*passes.device, create_depth_of_field_pass);
         if (pass != nullptr) {
             radiance = draw_depth_of_field(graph, *pass, scene.view, radiance, gbuffer.depth);
+        }
+    }
+    if (settings.glare.strength > 0) {
+        if (const auto* pass = passes.glare.get(*passes.device, create_glare_pass)) {
+            radiance = draw_glare(graph, *pass, settings.glare, radiance);
         }
     }
     return apply_glow(graph, passes, settings.glow, gbuffer, radiance);

@@ -5,6 +5,7 @@
 #include "ecs/components/rendering.h"
 #include "render/gbuffer.h"
 #include "render/passes/depth_of_field_pass.h"
+#include "render/passes/glare_pass.h"
 #include "render/passes/glow_mask_pass.h"
 #include "render/passes/glow_pass.h"
 #include "render/passes/motion_accumulate_pass.h"
@@ -29,7 +30,7 @@ class Device;
 
 // What happens to a picture's radiance in the lens and behind the shutter, before it is developed:
 //
-//     temporal anti-aliasing -> ripple -> motion blur -> depth of field -> glow
+//     temporal anti-aliasing -> ripple -> motion blur -> depth of field -> glare -> glow
 //
 // Each is a pass of its own that a resource or component of the world asks for; what nobody asks
 // for adds no pass. Programs are compiled when they are first needed.
@@ -39,6 +40,7 @@ struct LensSettings {
     RippleList ripples;
     bool depth_of_field = false;  ///< through the lens of the view
     Antialiasing antialiasing = Antialiasing::None;
+    Glare glare{.strength = 0};
     Glow glow{.strength = 0};
     MotionBlur motion_blur{.shutter = 0};
 };
@@ -79,6 +81,7 @@ struct LensPasses {
     OptionalPass<MotionStretchPass> motion_stretch;
     OptionalPass<DepthOfFieldPass> depth_of_field;
     OptionalPass<RipplePass> ripple;
+    OptionalPass<GlarePass> glare;
     OptionalPass<GlowPass> glow;
     OptionalPass<GlowMaskPass> glow_mask;
 };

@@ -6,6 +6,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
@@ -72,6 +73,7 @@ void register_all_components() {
     register_resource<Rendering>();
     register_resource<Exposure>();
     register_resource<Glow>();
+    register_resource<Glare>();
     register_resource<LensRain>();
     register_resource<MotionBlur>();
 }

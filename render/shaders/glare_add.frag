@@ -1,0 +1,17 @@
+// Adds a star of half the size to the picture, in the colors of diffraction: longer waves go farther.
+#version 450
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 1) uniform sampler2D star;
+
+uniform float strength;
+
+const vec3 kWavelengths = vec3(1.11, 1.0, 0.85);  // 610, 550 and 465 nm, of green's
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
+    vec3 glare = texture(star, 0.5 * gl_FragCoord.xy / vec2(textureSize(star, 0))).rgb;
+    radiance = vec4(scene.rgb + strength * kWavelengths * glare, scene.a);
+}
