@@ -40,9 +40,8 @@ struct RenderSettings {
 ///   depth     distance along the view axis [m]; kNoDepth where nothing is (1 channel)
 ///   normal    of the shaded surface, world space, unit; 0 where nothing is (3)
 ///   albedo    base color, linear (3)
-///   velocity  motion since the moment before [px], right and down, as image rows run; where
-///   nothing
-///             is, that of the camera's turning (2)
+///   velocity  motion since the moment before [px], right and down, as image rows run; of the sky,
+///             too (2)
 ///   emission  radiance of the surface's own light (3)
 ///   shadow_texels  of the finest shadow map that holds the point, under the pixel: if less than 1,
 ///                  they show (1)

@@ -119,6 +119,20 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    SkinPicture, "skin_draw: what is deformed swells along the normals that it has now") {
+    const Inflate more = {.distance = 0.08f};
+    const Entity entity = snake(0.5f, white);
+    const gpu::FloatImage thin = radiance(view);
+    world.add(entity, more);
+    const gpu::FloatImage got = radiance(view);
+    const Entity same = baked(entity);
+    world.add(same, more);
+    world.destroy(entity);
+    CHECK(different(got, radiance(view)) <= 12);
+    CHECK(different(got, thin) > 200);
+}
+
 TEST_CASE_FIXTURE(SkinPicture, "skin_draw: the shadow follows the pose, and waits while it rests") {
     const Entity entity = snake(0.4f, white);
     radiance(view);
