@@ -123,14 +123,13 @@ Vec2 widest_tangent(const RenderView& view) {
     return view.tangent * (1.0f + 2.0f * moved / Vec2(view.width, view.height));
 }
 
-namespace {
-
-LensView lens_view_of(const World& world, Entity camera) {
+LensView lens_view(const World& world, Entity camera) {
     const auto* lens = world.find<Lens>(camera);
-    if (lens == nullptr) {
+    const auto* its = world.find<Camera>(camera);
+    if (lens == nullptr || its == nullptr) {
         return {};
     }
-    const Result<LensView> made = make_lens_view(*lens, world.get<Camera>(camera));
+    const Result<LensView> made = make_lens_view(*lens, *its);
     if (!made) {
         static std::atomic<bool> told = false;
         if (!told.exchange(true)) {
@@ -141,8 +140,6 @@ LensView lens_view_of(const World& world, Entity camera) {
     return *made;
 }
 
-}  // namespace
-
 RenderView make_render_view(const World& world, Entity camera, const ViewRequest& request) {
     const Affine& current = world.get<WorldTransform>(camera).world;
     const auto* previous = world.find<PreviousWorldTransform>(camera);
@@ -151,7 +148,7 @@ RenderView make_render_view(const World& world, Entity camera, const ViewRequest
         current,
         previous != nullptr ? previous->world : current,
         request);
-    view.lens = lens_view_of(world, camera);
+    view.lens = lens_view(world, camera);
     return view;
 }
 

@@ -72,8 +72,11 @@ struct ViewRequest {
 /// Tangents that hold all of the picture, however far a jitter of more than half a pixel moved it.
 [[nodiscard]] Vec2 widest_tangent(const RenderView& view);
 
-/// From an entity with Camera and WorldTransform, and with what a Lens beside them asks for; one
-/// that is none is told of once, and is a pinhole.
+/// What a Lens beside a Camera asks for. Without one it is a pinhole; a lens that is none, too,
+/// which is told of once.
+[[nodiscard]] LensView lens_view(const World& world, Entity camera);
+
+/// From an entity with Camera and WorldTransform, and through the Lens beside them.
 [[nodiscard]] RenderView
 make_render_view(const World& world, Entity camera, const ViewRequest& request = {});
 

@@ -19,7 +19,7 @@ void update_autofocus(
     Res<const FrameTime> time) {
     cameras.each(
         [&](Entity entity, const Autofocus& autofocus, Lens& lens, const WorldTransform& camera) {
-            if (autofocus.target.is_null()) {
+            if (!autofocus.active || autofocus.target.is_null()) {
                 return;
             }
             const auto* body = bodies.find<const WorldTransform>(autofocus.target);

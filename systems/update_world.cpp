@@ -8,6 +8,7 @@
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
+#include "systems/lens_control_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
@@ -36,6 +37,7 @@ Schedule make_world_schedule() {
     schedule.add<update_env_probes>();   // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
     schedule.add<update_autofocus>();      // after all cameras stand where they are seen from
+    schedule.add<turn_lenses>();           // last: has the whole world
     return schedule;
 }
 

@@ -274,6 +274,11 @@ Input Player::read_input(const WindowEvents& events) {
             axis(GLFW_KEY_D, GLFW_KEY_A, GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
             axis(GLFW_KEY_E, GLFW_KEY_Q, GLFW_KEY_E, GLFW_KEY_Q),
             axis(GLFW_KEY_W, GLFW_KEY_S, GLFW_KEY_UP, GLFW_KEY_DOWN)};
+        const auto turn = [&axis](int plus, int minus) { return axis(plus, minus, plus, minus); };
+        input.lens = {
+            turn(GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT_BRACKET),
+            turn(GLFW_KEY_EQUAL, GLFW_KEY_MINUS),
+            turn(GLFW_KEY_0, GLFW_KEY_9)};
         input.fast =
             window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
     }
@@ -372,7 +377,9 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     } else {
         step_fly(camera_, input, dt);
     }
-    return make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
+    RenderView view = make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
+    view.lens = lens_view(stage_->world, level_camera);
+    return view;
 }
 
 void Player::draw_frame(float dt, const Input& input) {

@@ -30,6 +30,7 @@ struct Autofocus {
     Entity target{};          ///< null or gone: the focus stays where it is
     Vec3 offset = {0, 0, 0};  ///< of the point that is to be sharp, in the target's space [m]
     float response = 0.2f;    ///< time in which 63 % of the way is gone [s], >= 0; 0 = at once
+    bool active = true;       ///< turned off by a hand on the ring (Input::lens)
 };
 
 template <typename Visitor>
@@ -75,6 +76,7 @@ void visit_fields(Autofocus& autofocus, Visitor&& visit) {
          .unit = "s",
          .min = 0,
          .max = 60});
+    visit("active", autofocus.active, {.doc = "turned off by whoever pulls focus by hand"});
 }
 
 }  // namespace limn

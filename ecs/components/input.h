@@ -12,6 +12,8 @@ struct Input {
     Vec2 look = {0, 0};     ///< mouse motion [pixels]: x right, y down
     float zoom = 0.0f;      ///< wheel steps, > 0 = nearer
     bool fast = false;      ///< move faster
+    Vec3 lens = {0, 0, 0};  ///< wanted turn: focus farther, aperture wider, shutter open longer,
+                            ///< each -1 .. 1
 };
 
 template <typename Visitor>
@@ -20,6 +22,10 @@ void visit_fields(Input& input, Visitor&& visit) {
     visit("look", input.look, {.doc = "mouse motion", .unit = "pixels"});
     visit("zoom", input.zoom, {.doc = "wheel steps, > 0 = nearer"});
     visit("fast", input.fast, {.doc = "move faster"});
+    visit(
+        "lens",
+        input.lens,
+        {.doc = "wanted turn: focus farther, aperture wider, shutter longer", .min = -1, .max = 1});
 }
 
 }  // namespace limn
