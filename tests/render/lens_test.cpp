@@ -1,5 +1,7 @@
+#include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/motion_blur.h"
+#include "ecs/components/ripple.h"
 #include "render/graph/frame_graph.h"
 #include "tests/render/scene_fixture.h"
 
@@ -32,10 +34,14 @@ TEST_CASE_FIXTURE(Scene, "lens: what nobody asks for has neither a pass nor a ta
 TEST_CASE_FIXTURE(Scene, "lens: the shutter comes before the glow, and both before the tone map") {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     world.insert_resource(Glow{});
+    world.insert_resource(Glare{});
     world.insert_resource(MotionBlur{});
+    world.create(ScreenRipple{.age = 0.1f});
     static_cast<void>(draw(look({0, 0, 1}, {0, 0, 0}, 32, 24)));
-    CHECK(place_of("motion") > place_of("lights"));
-    CHECK(place_of("glow") > place_of("motion"));
+    CHECK(place_of("ripple") > place_of("lights"));
+    CHECK(place_of("motion") > place_of("ripple"));
+    CHECK(place_of("glare") > place_of("motion"));
+    CHECK(place_of("glow") > place_of("glare"));
     CHECK(place_of("tone map") > place_of("glow"));
 }
 
