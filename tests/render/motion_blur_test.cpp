@@ -1,4 +1,5 @@
 #include "bench/oracles/motion_blur_oracle.h"
+#include "ecs/components/rendering.h"
 #include "render/graph/frame_graph.h"
 #include "tests/render/shutter_fixture.h"
 
@@ -252,6 +253,17 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice gives the same bit
     open(360, 6);
     const gpu::FloatImage once = picture();
     CHECK(picture().pixels == once.pixels);
+}
+
+TEST_CASE_FIXTURE(Shutter, "motion blur: surfaces lit while they are drawn smear alike") {
+    bar(unlit({1, 0.4f, 0.1f}), 20, 40, 14);
+    bar(unlit({0.2f, 0.4f, 1}), 30, 60, -9, -1);
+    open(360);
+    const gpu::FloatImage deferred = picture();
+    for (const LightMethod method : {LightMethod::ObjectMajor, LightMethod::LightMajor}) {
+        world.insert_resource(Rendering{.lights = method});
+        CHECK(largest_difference(picture(), deferred) < 2e-3f);  // as albedo is stored
+    }
 }
 
 }  // namespace limn::test
