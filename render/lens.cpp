@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 #include "ecs/world.h"
 #include "render/frame_scene.h"
+#include "render/render_frame.h"
 
 #include <algorithm>
 #include <utility>
@@ -140,9 +141,26 @@ LensSettings lens_settings(const World& world, const RenderView& view) {
     return settings;
 }
 
+LensSettings lens_of_sample(const LensSettings& settings, SampleKind kind) {
+    LensSettings sample = settings;
+    sample.antialiasing = Antialiasing::None;
+    sample.glare.strength = 0;
+    if (sample.glow.kind != GlowKind::Mask) {
+        sample.glow.strength = 0;
+    }
+    if (kind == SampleKind::Instant || keeps_pictures(sample.motion_blur.mode)) {
+        sample.motion_blur.shutter = 0;
+    }
+    return sample;
+}
+
 LensSettings lens_of_mean(const LensSettings& settings) {
     LensSettings rest = settings;
+    rest.ripples = {};
     rest.antialiasing = Antialiasing::None;
+    if (rest.glow.kind == GlowKind::Mask) {
+        rest.glow.strength = 0;  // needs surfaces, which a mean has none of
+    }
     rest.motion_blur.shutter = 0;
     rest.depth_of_field = false;
     return rest;

@@ -16,11 +16,13 @@
 #include "render/passes/ripple_pass.h"
 #include "render/passes/temporal_pass.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace limn {
 
 class World;
+enum class SampleKind : std::uint8_t;
 struct FrameScene;
 struct RenderView;
 
@@ -47,7 +49,8 @@ struct LensSettings {
 
 [[nodiscard]] LensSettings lens_settings(const World& world, const RenderView& view);
 
-/// For a picture that is the mean of many, which sampled what the lens would else be made to do.
+/// Of a picture that becomes part of a mean, and of the mean: each is done once (render_frame.h).
+[[nodiscard]] LensSettings lens_of_sample(const LensSettings& settings, SampleKind kind);
 [[nodiscard]] LensSettings lens_of_mean(const LensSettings& settings);
 
 /// Whether some effect wants to know what moves, or what the G-buffer says of surfaces.

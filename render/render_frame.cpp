@@ -130,7 +130,14 @@ class Renderer {
     void develop_image(const World& world, const LensSettings& lens, FrameTextures& made);
     void finish(FrameGraph& drawn);
     FrameOutput output(const FrameTextures& textures) const;
-    const gpu::Texture& accumulation(int width, int height);
+    /// A sum of pictures, begun at 0.
+    void begin_sum(const IVec2& size, SampleKind kind);
+    void add_to_sum(const FrameTextures& made, const LensSettings& lens, float weight);
+    [[nodiscard]] const gpu::Texture& sum() const { return sum_; }
+    [[nodiscard]] SampleKind sample_kind() const { return sample_kind_; }
+    /// Copies what the graph drew, for the output of the sum.
+    void keep_aovs(const FrameTextures& textures);
+    [[nodiscard]] std::vector<AovOutput> kept_aovs() const;
 
     gpu::Device& device;
     FrameGraph graph;
@@ -163,7 +170,10 @@ class Renderer {
     BufferTexture projector_records_;
     ProjectorPool projectors_;
     gpu::Texture specular_albedo_;
-    gpu::Texture accumulation_;
+    gpu::Texture sum_;
+    bool sum_is_empty_ = true;
+    SampleKind sample_kind_ = SampleKind::Played;
+    std::vector<std::pair<int, gpu::Texture>> kept_aovs_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
     int probe_faces_ = 0;                     // drawn for this frame
     std::optional<Environment> environment_;  // that the reflection map shows
@@ -504,12 +514,50 @@ FrameOutput Renderer::output(const FrameTextures& textures) const {
     return out;
 }
 
-const gpu::Texture& Renderer::accumulation(int width, int height) {
-    if (!accumulation_ || accumulation_.width() != width || accumulation_.height() != height) {
-        accumulation_ =
-            gpu::Texture("accumulation", {.format = GL_RGBA32F, .width = width, .height = height});
+void Renderer::begin_sum(const IVec2& size, SampleKind kind) {
+    if (!sum_ || sum_.width() != size.x || sum_.height() != size.y) {
+        sum_ =
+            gpu::Texture("accumulation", {.format = GL_RGBA32F, .width = size.x, .height = size.y});
     }
-    return accumulation_;
+    sum_is_empty_ = true;
+    sample_kind_ = kind;
+    kept_aovs_.clear();
+}
+
+void Renderer::add_to_sum(const FrameTextures& made, const LensSettings& lens, float weight) {
+    const TextureId picture =
+        apply_lens(graph, passes.lens, lens, scene, made.gbuffer, made.radiance);
+    const TextureId target = graph.import("accumulation", sum_);
+    graph.add_pass(
+        "accumulate",
+        {picture},
+        {sum_is_empty_ ? cleared(target) : Use(target)},
+        [program = passes.accumulate, weight, picture](PassContext& context) {
+            gpu::PipelineState add = gpu::kFullscreenState;
+            add.blend = gpu::kBlendAdd;
+            context.device().use(gpu::Pipeline{program, add});
+            program->set("weight", weight);
+            context.bind_texture(0, picture);
+            context.device().draw_fullscreen();
+        });
+    sum_is_empty_ = false;
+}
+
+void Renderer::keep_aovs(const FrameTextures& textures) {
+    for (const auto& [index, id] : textures.aovs) {
+        const gpu::Texture& drawn = *graph.texture(id);
+        gpu::Texture copy(kAovs[index].name, drawn.desc());
+        copy.copy_from(drawn);
+        kept_aovs_.emplace_back(index, std::move(copy));
+    }
+}
+
+std::vector<AovOutput> Renderer::kept_aovs() const {
+    std::vector<AovOutput> aovs;
+    for (const auto& [index, texture] : kept_aovs_) {
+        aovs.push_back({std::string(kAovs[index].name), kAovs[index].channels, &texture});
+    }
+    return aovs;
 }
 
 Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& settings) {
@@ -610,6 +658,47 @@ FrameOutput render_frame(
     return renderer.output(textures);
 }
 
+void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind) {
+    renderer.begin_sum(size, kind);
+}
+
+void accumulate(Renderer& renderer, const World& world, const RenderView& view, float weight) {
+    const LensSettings lens = lens_of_sample(lens_settings(world, view), renderer.sample_kind());
+    const bool velocity = needs_velocity(lens);
+    renderer.draw_probes(world, view);
+    renderer.graph.begin_frame();
+    renderer.prepare(world, view, velocity);
+    renderer.add_to_sum(renderer.draw_image({}, needs_attributes(lens), velocity), lens, weight);
+    renderer.finish(renderer.graph);
+}
+
+void accumulate_aovs(
+    Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
+    if (request.aovs.empty()) {
+        return;
+    }
+    const bool velocity = asks_for_velocity(request);
+    renderer.draw_probes(world, view);
+    renderer.graph.begin_frame();
+    renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
+    const FrameTextures textures = renderer.draw_image(request, false, velocity);
+    renderer.finish(renderer.graph);
+    renderer.keep_aovs(textures);
+}
+
+FrameOutput finish_accumulation(Renderer& renderer, const World& world, const RenderView& view) {
+    renderer.follow(world, view);
+    renderer.graph.begin_frame();
+    renderer.scene.view = view;
+    FrameTextures textures;
+    textures.radiance = renderer.graph.import("accumulation", renderer.sum());
+    renderer.develop_image(world, lens_of_mean(lens_settings(world, view)), textures);
+    renderer.graph.execute();
+    FrameOutput out = renderer.output(textures);
+    out.aovs = renderer.kept_aovs();
+    return out;
+}
+
 FrameOutput render_accumulated(
     Renderer& renderer,
     const World& world,
@@ -620,42 +709,16 @@ FrameOutput render_accumulated(
     if (samples == 1) {
         return render_frame(renderer, world, with_jitter(view, {0, 0}), request);
     }
-    const gpu::Texture& sum = renderer.accumulation(view.width, view.height);
-    FrameGraph& graph = renderer.graph;
-    renderer.draw_probes(world, view);
-    renderer.follow(world, view);
+    begin_accumulation(renderer, {view.width, view.height}, SampleKind::Played);
     for (int i = 0; i < samples; ++i) {
-        graph.begin_frame();
-        renderer.prepare(world, with_jitter(view, sample_jitter(i, samples)), false);
-        const TextureId radiance =
-            renderer.draw_radiance(graph, renderer.draw_surfaces(false, false));
-        const TextureId target = graph.import("accumulation", sum);
-        graph.add_pass(
-            "accumulate",
-            {radiance},
-            {i == 0 ? cleared(target) : Use(target)},
-            [program = renderer.passes.accumulate, samples, radiance](PassContext& context) {
-                gpu::PipelineState add = gpu::kFullscreenState;
-                add.blend = gpu::kBlendAdd;
-                context.device().use(gpu::Pipeline{program, add});
-                program->set("weight", 1.0f / static_cast<float>(samples));
-                context.bind_texture(0, radiance);
-                context.device().draw_fullscreen();
-            });
-        renderer.finish(graph);
+        accumulate(
+            renderer,
+            world,
+            with_jitter(view, sample_jitter(i, samples)),
+            1.0f / static_cast<float>(samples));
     }
-
-    // Once more from the middle of the pixels, for what is no mean; then the mean takes the image's
-    // place.
-    graph.begin_frame();
-    const LensSettings lens = lens_of_mean(lens_settings(world, view));
-    const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
-    renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
-    FrameTextures textures = renderer.draw_image(request, needs_attributes(lens), velocity);
-    textures.radiance = graph.import("accumulation", sum);
-    renderer.develop_image(world, lens, textures);
-    renderer.finish(graph);
-    return renderer.output(textures);
+    accumulate_aovs(renderer, world, view, request);
+    return finish_accumulation(renderer, world, view);
 }
 
 const std::vector<std::string_view>& aov_names() {

@@ -102,14 +102,37 @@ FrameOutput render_frame(
     const FrameRequest& request = {});
 
 /// The mean radiance of `samples` >= 1 pictures whose pixels are shifted by sample_jitter: edges
-/// become smooth. Radiance is RGBA32F; AOVs and statistics are those of the picture in the middle.
-/// One sample is the picture of render_frame.
+/// become smooth. Radiance is RGBA32F; AOVs are those of the picture in the middle. One sample is
+/// the picture of render_frame.
 FrameOutput render_accumulated(
     Renderer& renderer,
     const World& world,
     const RenderView& view,
     int samples,
     const FrameRequest& request = {});
+
+// A picture that is the mean of others, of moments and places that the caller chooses; between them
+// the world may move on:
+//
+//     begin_accumulation(renderer, {1280, 720}, SampleKind::Instant);
+//     for (...) { accumulate(renderer, world, view, 1.0f / samples); }
+//     FrameOutput truth = finish_accumulation(renderer, world, view);
+
+/// What a picture shows that becomes part of a mean. Glow and glare, which are the same for the
+/// mean, are left to that; ways to blur motion that keep pictures (keeps_pictures) are left out.
+enum class SampleKind : std::uint8_t {
+    Played,   ///< a whole picture: moving things blurred, distant things out of focus
+    Instant,  ///< one moment, through one point of the lens: what the mean itself shall blur
+};
+
+void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind);
+/// Adds `weight` times the picture of `view`, which has the size that was begun with.
+void accumulate(Renderer& renderer, const World& world, const RenderView& view, float weight);
+/// Keeps what is asked for of this picture, from the middle of its pixels, for the output.
+void accumulate_aovs(
+    Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request);
+/// Develops the sum. `view` is that of the moment the picture stands for. Radiance is RGBA32F.
+FrameOutput finish_accumulation(Renderer& renderer, const World& world, const RenderView& view);
 
 /// Its passes and their times, for profiler and buffer viewer.
 [[nodiscard]] FrameGraph& frame_graph(Renderer& renderer);

@@ -189,8 +189,13 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_number(*app, "--fps", "frame n of --frames shows time n / fps", options.fps, 0.001, 10000)
         ->default_str("60");
     add_seed(*app, options.seed);
-    add_integer(*app, "--spp", "jittered samples a pixel", options.samples, 1, 65536)
-        ->default_str(std::to_string(options.samples));
+    add_integer(
+        *app,
+        "--spp",
+        "samples a pixel of lens and shutter, for finals; without it, as played",
+        options.samples,
+        1,
+        65536);
     add_parsed(*app, "--aov", "named layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
     add_assignments(*app, options.assignments);

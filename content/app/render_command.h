@@ -16,9 +16,9 @@ struct RenderOptions {
     double time = 0.0;                 ///< of a single picture [s]
     std::optional<FrameRange> frames;  ///< frame n shows time n / fps
     double fps = 60.0;
-    std::optional<std::uint64_t> seed;    ///< instead of the level's
-    int samples = 16;                     ///< jittered pictures averaged a frame
-    std::vector<std::string> aovs;        ///< further layers of an EXR
+    std::optional<std::uint64_t> seed;  ///< instead of the level's
+    int samples = 0;                ///< of pixel, lens and shutter; 0: as played, with smooth edges
+    std::vector<std::string> aovs;  ///< further layers of an EXR
     std::vector<Assignment> assignments;  ///< applied after loading, in order
     std::string camera;                   ///< by name; empty = the level's
 };

@@ -15,6 +15,11 @@ enum class MotionBlurMode : std::uint8_t {
     Stretch,      ///< objects stretched between two pictures (post.motion-blur-stretch)
 };
 
+/// Whether it needs the pictures before.
+[[nodiscard]] constexpr bool keeps_pictures(MotionBlurMode mode) {
+    return mode == MotionBlurMode::Accumulate || mode == MotionBlurMode::Stretch;
+}
+
 /// Resource: what moves while the shutter is open is smeared. Absent: as if the shutter opened for
 /// no time. The exposure is centered on the moment shown and lasts shutter / 360 of the time
 /// between two pictures.

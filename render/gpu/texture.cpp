@@ -266,6 +266,28 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int layer) {
     upload(pixels, info.pixel_format, info.pixel_type, level, layer);
 }
 
+void Texture::copy_from(const Texture& other) {
+    LIMN_CHECK(
+        other.desc_.format == desc_.format && other.width() == width() && other.height() == height()
+        && other.layers() == layers());
+    glCopyImageSubData(
+        other.id(),
+        other.target_,
+        0,
+        0,
+        0,
+        0,
+        id(),
+        target_,
+        0,
+        0,
+        0,
+        0,
+        width(),
+        height(),
+        layers());
+}
+
 void Texture::clear(const Vec4& value, int level) {
     const FormatInfo& info = format_info(desc_.format);
     LIMN_CHECK(!info.integer);

@@ -72,6 +72,9 @@ class Texture {
         upload(std::as_bytes(pixels), format, type, level, layer);
     }
 
+    /// Takes over level 0 of a texture of the same size, format and layers.
+    void copy_from(const Texture& other);
+
     /// Sets every texel of a level, converted as a shader would write it; not for integer formats.
     void clear(const Vec4& value, int level = 0);
 

@@ -45,10 +45,8 @@ HeadlessRenderer& shared_renderer() {
 gpu::ByteImage draw_level(Stage& stage) {
     const RenderView view =
         make_render_view(stage.world, stage.scene.camera, {.width = kWidth, .height = kHeight});
-    // A mean would sample the lens; four points of it are no picture.
-    const int samples = view.lens.aperture_radius > 0 ? 1 : kSamples;
     const FrameOutput frame =
-        render_accumulated(*shared_renderer().renderer, stage.world, view, samples);
+        render_accumulated(*shared_renderer().renderer, stage.world, view, kSamples);
     return gpu::read_bytes(*frame.display);
 }
 
