@@ -10,6 +10,8 @@
 #include "systems/fly_camera_system.h"
 #include "systems/lens_control_system.h"
 #include "systems/orbit_camera_system.h"
+#include "systems/path_system.h"
+#include "systems/racer_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
 #include "systems/spin_system.h"
@@ -28,6 +30,9 @@ Schedule make_world_schedule() {
     schedule.add<update_spins>();
     schedule.add<update_sways>();
     schedule.add<update_ripples>();
+    schedule.add<update_path_followers>();
+    schedule.add<update_racers>();
+    schedule.add<update_speed_views>();  // after racers: as fast as they are now
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
     schedule.add<advance_clips>();
@@ -57,6 +62,8 @@ void start_world(World& world) {
     resource_or_default<Input>(world);
     resource_or_default<Assets>(world);
     world.run(update_sways);
+    world.run(place_path_followers);
+    world.run(place_racers);
     world.run(update_camera_paths);
     world.run(add_poses);
     world.run(update_poses);

@@ -28,6 +28,7 @@ std::uint32_t AssetOffsets::of(std::string_view kind) const {
            : kind == asset_kind<SkeletonId> ? skeleton
            : kind == asset_kind<SkinId>     ? skin
            : kind == asset_kind<ClipId>     ? clip
+           : kind == asset_kind<PathId>     ? path
                                             : 0;
 }
 
@@ -39,7 +40,8 @@ AssetOffsets ends_of(const Assets& assets) {
         .material = size(assets.materials),
         .skeleton = size(assets.skeletons),
         .skin = size(assets.skins),
-        .clip = size(assets.clips)};
+        .clip = size(assets.clips),
+        .path = size(assets.paths)};
 }
 
 void shift_assets(const ComponentInfo& info, void* object, const AssetOffsets& offsets) {
@@ -61,6 +63,7 @@ AssetOffsets append_assets(Assets& target, Assets& source) {
     append(target.skeletons, source.skeletons);
     append(target.skins, source.skins);
     append(target.clips, source.clips);
+    append(target.paths, source.paths);
     return offsets;
 }
 

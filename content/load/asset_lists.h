@@ -26,6 +26,8 @@ void visit_asset_list(AssetsT& assets, std::string_view kind, Visit&& visit) {
         visit(assets.skins);
     } else if (kind == asset_kind<ClipId>) {
         visit(assets.clips);
+    } else if (kind == asset_kind<PathId>) {
+        visit(assets.paths);
     }
 }
 
@@ -38,6 +40,7 @@ struct AssetOffsets {
     std::uint32_t skeleton = 0;
     std::uint32_t skin = 0;
     std::uint32_t clip = 0;
+    std::uint32_t path = 0;
 
     [[nodiscard]] std::uint32_t of(std::string_view kind) const;
 };

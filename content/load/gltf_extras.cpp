@@ -32,8 +32,10 @@ void visit_names(const GltfScene& scene, std::string_view kind, Visit&& visit) {
         std::vector<SkeletonData> skeletons;
         const std::vector<SkinData>& skins;
         const std::vector<ClipData>& clips;
+        std::vector<PathData> paths;
     };
-    const Lists lists{scene.meshes, scene.materials, scene.images, {}, scene.skins, scene.clips};
+    const Lists lists{
+        scene.meshes, scene.materials, scene.images, {}, scene.skins, scene.clips, {}};
     visit_asset_list(lists, kind, [&](const auto& list) {
         for (const auto& asset : list) {
             visit(asset.name);

@@ -25,6 +25,7 @@ const std::vector<std::string_view> kLevelKeys = {
     "resources",
     "images",
     "materials",
+    "paths",
     "meshes",
     "prefabs",
     "entities",
@@ -66,6 +67,7 @@ class LevelParser {
     [[nodiscard]] Status read_material(const JsonMember& member, const JsonPlace& at);
     [[nodiscard]] Status
     read_pattern(const JsonValue& json, const JsonPlace& at, Material& material);
+    [[nodiscard]] Status read_path(const JsonMember& member, const JsonPlace& at);
     [[nodiscard]] Status read_mesh(const JsonMember& member, const JsonPlace& at);
     [[nodiscard]] Status read_entities();
     [[nodiscard]] Status read_events(LevelEntities& entities);
@@ -78,6 +80,7 @@ class LevelParser {
     Level level_;
     Names images_;
     Names materials_;
+    Names paths_;
     Names meshes_;
     Names patterns_;  // by the name of the section; the index is that of the first image
 };
@@ -87,6 +90,7 @@ Result<Level> LevelParser::parse() {
     const std::pair<const char*, ReadMember> sections[] = {
         {"images", &LevelParser::read_image},
         {"materials", &LevelParser::read_material},
+        {"paths", &LevelParser::read_path},
         {"meshes", &LevelParser::read_mesh},
         {"resources", &LevelParser::read_resource}};
     for (const auto& [section, read] : sections) {
@@ -296,6 +300,28 @@ Status LevelParser::read_material(const JsonMember& member, const JsonPlace& at)
     return status;
 }
 
+Status LevelParser::read_path(const JsonMember& member, const JsonPlace& at) {
+    const Result<AnyComponent> shape =
+        read_component(member.value, component_info<PathShape>(), at, {});
+    if (!shape) {
+        return shape.error();
+    }
+    Result<PathData> path = make_path(shape->as<PathShape>());
+    if (!path) {
+        return fail(
+            "{}:{}:{}: {}: {}",
+            at.file,
+            member.value.at.line,
+            member.value.at.column,
+            at.path,
+            path.error().message);
+    }
+    path->name = member.key;
+    paths_[member.key] = static_cast<std::uint32_t>(level_.assets.paths.size());
+    level_.assets.paths.push_back(*std::move(path));
+    return Done{};
+}
+
 Status LevelParser::read_mesh(const JsonMember& member, const JsonPlace& at) {
     const JsonValue* const make = member.value.find("make");
     if (make == nullptr) {
@@ -309,7 +335,7 @@ Status LevelParser::read_mesh(const JsonMember& member, const JsonPlace& at) {
             at, make->at, describe(*make), "a kind of mesh" + mesh_kind_suggestion(make->text));
     }
     Result<AnyComponent> parameters =
-        read_component(without(member.value, {"make"}), *mesh.kind->parameters, at, {});
+        read_component(without(member.value, {"make"}), *mesh.kind->parameters, at, asset_names());
     if (!parameters) {
         return parameters.error();
     }
@@ -324,6 +350,7 @@ FindNames LevelParser::asset_names() {
         return kind == asset_kind<MeshId>       ? &meshes_
                : kind == asset_kind<MaterialId> ? &materials_
                : kind == asset_kind<ImageId>    ? &images_
+               : kind == asset_kind<PathId>     ? &paths_
                                                 : nullptr;
     };
     FindNames names;
@@ -512,7 +539,8 @@ void add_rig(Assets& assets, const std::string& name, MeshRig rig) {
 Status make_meshes(Level& level, const LevelLimits& limits) {
     std::uint64_t vertices = 0;
     for (const LevelMesh& mesh : level.meshes) {
-        MeshData& data = level.assets.meshes.emplace_back(mesh.kind->make(mesh.parameters.data()));
+        MeshData& data =
+            level.assets.meshes.emplace_back(mesh.kind->make(mesh.parameters.data(), level.assets));
         data.name = mesh.name;
         if (mesh.kind->make_rig != nullptr) {
             add_rig(level.assets, mesh.name, mesh.kind->make_rig(mesh.parameters.data()));

@@ -294,6 +294,7 @@ JsonValue level_schema() {
          member("resources", schema_of_resources()),
          member("images", schema_of_images()),
          member("materials", schema_of_materials()),
+         member("paths", map_of(schema_of_fields(component_info<PathShape>().fields))),
          member("meshes", map_of(any_of(schemas_of_kinds(mesh_kinds())))),
          member("prefabs", map_of(reference("node"))),
          member("entities", array_of(reference("node"))),

@@ -1,21 +1,29 @@
 #include "content/make/make_mesh.h"
 
+#include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/shapes.h"
+#include "content/make/sweep.h"
 #include "content/make/teapot.h"
 #include "content/make/terrain.h"
 #include "ecs/base/type_name.h"
 
+#include <type_traits>
 #include <vector>
 
 namespace limn {
 
 namespace {
 
-template <typename Shape, MeshData (*make)(const Shape&)>
+template <typename Shape, auto make>
 MeshKind mesh_kind(const char* name, const char* doc) {
-    const auto call = [](const void* parameters) {
-        return make(*static_cast<const Shape*>(parameters));
+    const auto call = [](const void* parameters, const Assets& assets) {
+        const auto& shape = *static_cast<const Shape*>(parameters);
+        if constexpr (std::is_invocable_v<decltype(make), const Shape&, const Assets&>) {
+            return make(shape, assets);
+        } else {
+            return make(shape);
+        }
     };
     return {name, doc, &component_info<Shape>(), call, nullptr};
 }
@@ -39,9 +47,12 @@ std::span<const MeshKind> mesh_kinds() {
         creature_kind(),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<HovercraftShape, make_hovercraft>(
+            "hovercraft", "a racing craft that hovers, facing z"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile turned around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
         mesh_kind<SphereShape, make_sphere>("sphere", "a ball with longitude and latitude"),
+        mesh_kind<SweepShape, make_sweep>("sweep", "a profile drawn along a path of the level"),
         mesh_kind<TeapotShape, make_teapot>(
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),

@@ -17,7 +17,7 @@ namespace limn {
 //
 //     const MeshKind* kind = find_mesh_kind("teapot");
 //     TeapotShape shape;                        // or bytes of kind->parameters->size
-//     MeshData mesh = kind->make(&shape);
+//     MeshData mesh = kind->make(&shape, assets);
 //
 // From C++, call make_teapot(TeapotShape{...}) directly.
 
@@ -25,7 +25,8 @@ struct MeshKind {
     const char* name;                 ///< as a level writes it
     const char* doc;                  ///< one line
     const ComponentInfo* parameters;  ///< fields, defaults, how to construct and destroy
-    MeshData (*make)(const void* parameters);
+    /// What parameters name is looked up in `assets`.
+    MeshData (*make)(const void* parameters, const Assets& assets);
     MeshRig (*make_rig)(const void* parameters) = nullptr;  ///< of a mesh that joints move
 };
 

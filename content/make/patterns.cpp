@@ -1,5 +1,6 @@
 #include "content/make/patterns.h"
 
+#include "content/make/city_patterns.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -317,6 +318,7 @@ PatternKind pattern_kind(const char* name, const char* doc) {
 std::span<const PatternKind> pattern_kinds() {
     static const std::vector<PatternKind> kinds = {
         pattern_kind<AshlarPattern, make_ashlar>("ashlar", "blocks of dressed stone in courses"),
+        pattern_kind<AsphaltPattern, make_asphalt>("asphalt", "a road after rain"),
         pattern_kind<BricksPattern, make_bricks>("bricks", "a wall of rough bricks"),
         pattern_kind<BrushedMetalPattern, make_brushed_metal>(
             "brushed_metal", "metal with fine streaks along u"),
@@ -332,6 +334,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
+        pattern_kind<WindowsPattern, make_windows>(
+            "windows", "a tower's front at night; black where no light is on"),
         pattern_kind<WoodPattern, make_wood>("wood", "planks with rings, fibers and pores"),
     };
     return kinds;

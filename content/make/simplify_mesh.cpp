@@ -60,6 +60,9 @@ void gather_morph(MorphTarget& morph, const std::vector<std::uint32_t>& number) 
 }  // namespace
 
 void simplify_mesh(MeshData& mesh, std::size_t triangles) {
+    if (3 * triangles >= mesh.indices.size()) {
+        return;
+    }
     std::vector<std::uint32_t> indices(mesh.indices.size());
     indices.resize(meshopt_simplify(
         indices.data(),

@@ -12,8 +12,10 @@
 #include "ecs/components/light.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
+#include "ecs/components/path.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
+#include "ecs/components/racer.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
 #include "ecs/components/shadow.h"
@@ -45,6 +47,9 @@ void register_all_components() {
     register_component<MorphPlayer>();
     register_component<Deformed>();
     register_component<JointAttachment>();
+    register_component<PathFollower>();
+    register_component<Racer>();
+    register_component<SpeedView>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

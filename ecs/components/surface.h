@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/path.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/reflect.h"
 
@@ -144,6 +145,7 @@ struct Assets {
     std::vector<SkeletonData> skeletons;
     std::vector<SkinData> skins;
     std::vector<ClipData> clips;
+    std::vector<PathData> paths;
     std::uint64_t material_version = 1;  ///< raise after editing a material in place
     AssetsIdentity identity;
 };

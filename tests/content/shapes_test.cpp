@@ -18,7 +18,7 @@ constexpr double kPiD = 3.14159265358979323846;
 MeshData make_default(const MeshKind& kind) {
     std::vector<std::byte> bytes(kind.parameters->size);
     kind.parameters->ops.construct_copy(bytes.data(), kind.parameters->defaults, 1);
-    MeshData mesh = kind.make(bytes.data());
+    MeshData mesh = kind.make(bytes.data(), {});
     kind.parameters->ops.destroy(bytes.data(), 1);
     return mesh;
 }
@@ -27,10 +27,10 @@ MeshData make_default(const MeshKind& kind) {
 
 TEST_CASE(
     "shapes: every kind makes unit frames, exact bounds and triangles that face their normals") {
-    REQUIRE(mesh_kinds().size() == 14);
+    REQUIRE(mesh_kinds().size() == 16);
     for (const MeshKind& kind : mesh_kinds()) {
-        if (kind.make_rig != nullptr) {
-            continue;  // creature_test.cpp
+        if (kind.make_rig != nullptr || std::string(kind.name) == "hovercraft") {
+            continue;  // creature_test.cpp, hovercraft_test.cpp
         }
         INFO(std::string(kind.name));
         const MeshData mesh = make_default(kind);
