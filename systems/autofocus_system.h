@@ -16,8 +16,9 @@ namespace limn {
 // same pace, near or far, and the same share of the way is left after the same time, whatever the
 // step. It runs after everything that moves cameras, since it needs where they are now.
 
-/// Focuses every Lens that has an active Autofocus. At once in the first frame and when camera or target
-/// was teleported. Where the target is null, gone or not in front of the camera, the focus stays.
+/// Focuses every Lens that has an active Autofocus. At once in the first frame and when camera or
+/// target was teleported. Where the target is null, gone or not in front of the camera, the focus
+/// stays.
 void update_autofocus(
     Query<const Autofocus, Lens, const WorldTransform> cameras,
     Query<const WorldTransform> bodies,

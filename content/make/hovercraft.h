@@ -10,8 +10,8 @@ namespace limn {
 ///
 /// Its nozzles are at (+-0.86, 0.05, -2.28) for a length of 5 m, of radius 0.2 m, facing -z.
 struct HovercraftShape {
-    float length = 5.0f;   ///< from nozzle to nose [m], > 0
-    float detail = 0.04f;  ///< size of the triangles of a craft of 5 m [m]
+    float length = 5.0f;    ///< from nozzle to nose [m], > 0
+    float detail = 0.04f;   ///< size of the triangles of a craft of 5 m [m]
     int triangles = 14000;  ///< simplified to about so many; 0 = not at all
 };
 

@@ -22,7 +22,7 @@ struct Glow {
     float falloff = 2.4f;    ///< of a lens: light falls with this power of the distance, 1 .. 4
     float firefly = 100.0f;  ///< of a lens: luminance from which on lone pixels glow no more; 0 =
                              ///< no such limit
-    int passes = 1;  ///< of a mask: how often it is blurred, 1 .. 16
+    int passes = 1;          ///< of a mask: how often it is blurred, 1 .. 16
 
     bool operator==(const Glow&) const = default;
 };
