@@ -17,6 +17,7 @@
 #include "systems/spin_system.h"
 #include "systems/sway_system.h"
 #include "systems/transform_system.h"
+#include "systems/water/water_ripple_system.h"
 
 namespace limn {
 
@@ -26,6 +27,7 @@ Schedule make_world_schedule() {
     schedule.add<add_world_transforms>();
     schedule.add<add_env_probe_states>();
     schedule.add<add_poses>();
+    schedule.add<add_ripple_states>();
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
@@ -39,7 +41,8 @@ Schedule make_world_schedule() {
     schedule.add<update_poses>();        // after clips: shows their new moment
     schedule.add<update_attachments>();  // after poses: hangs on the joints
     schedule.add<update_transforms>();   // after all that move things: rendering reads the matrices
-    schedule.add<update_env_probes>();   // after transforms: looks around from where it is now
+    schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now
+    schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
     schedule.add<update_autofocus>();      // after all cameras stand where they are seen from
     schedule.add<turn_lenses>();           // last: has the whole world
@@ -71,6 +74,7 @@ void start_world(World& world) {
     world.run(add_world_transforms);
     world.run(update_transforms);
     world.run(add_env_probe_states);
+    world.run(add_ripple_states);
     world.run(update_env_probes);
     world.run(update_orbit_cameras);
     world.run(update_autofocus);

@@ -24,6 +24,8 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_ripples.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -63,6 +65,10 @@ void register_all_components() {
     register_component<RippleRing>();
     register_component<HeatHaze>();
     register_component<ScreenRipple>();
+    register_component<Water>();
+    register_component<WaterRipples>();
+    register_component<RippleState>();
+    register_component<WaterTouch>();
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();

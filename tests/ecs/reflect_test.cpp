@@ -190,6 +190,7 @@ TEST_CASE(
         "morph_animation",
         "path_knot",
         "path_shape",
+        "ripple_impulse",
         "texture_slot"};
     int described = 0;
     for (const auto& entry :

@@ -1,0 +1,147 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// Ripples of a body of water: a height field that obeys the wave equation, moved by impulses and by
+// what touches the water.
+
+enum class RippleBorder : std::uint8_t {
+    Reflecting,  ///< walls: the water stays in
+    Absorbing,   ///< open: waves leave, none come back
+};
+
+/// Beside a Water: simulates ripples on a grid over its rectangle, or over `window`.
+struct WaterRipples {
+    float cell = 0.05f;  ///< side of a square of the grid [m]; grows where there would be too many
+    float speed = 1.2f;  ///< of the waves [m/s]; at most half of a cell a sub-step
+    float damping = 0.4f;  ///< waves fade by exp(-damping t) [1/s]
+    RippleBorder border = RippleBorder::Reflecting;
+    Vec2 window = {0, 0};       ///< of water without end: what part about the entity ripples [m]
+    float rain = 0;             ///< drops that fall on it [1/(m^2 s)]
+    float rain_height = 0.01f;  ///< of the crest that a drop throws up [m]
+};
+
+/// Something falls in, or is pulled out: pushes the water down in a disc and up around it, so that
+/// none is made or lost.
+struct RippleImpulse {
+    Vec2 center = {0, 0};   ///< in the water's own space, x and z [m]
+    float radius = 0.2f;    ///< of the whole disturbance [m], > 0
+    float height = -0.05f;  ///< of the middle [m]; negative: down
+};
+
+/// Beside a WaterRipples, made and stepped by the systems. Rows run along x, one after another
+/// along z; around the grid lies a border of one cell, which is no water.
+struct RippleState {
+    IVec2 cells = {0, 0};       ///< of the grid, without its border
+    std::int32_t stride = 0;    ///< floats from row to row
+    float cell = 0;             ///< side of a square [m]
+    std::int32_t substeps = 0;  ///< in a step
+    float substep = 0;          ///< [s]
+    std::vector<float> height;  ///< above rest, (cells.y + 2) * stride [m]
+    std::vector<float> before;  ///< one sub-step earlier
+    std::vector<float> body;    ///< what bodies under water make of it; empty where there are none
+    std::vector<RippleImpulse> impulses;  ///< of the next step; others add to it
+    double level = 0;                     ///< mean of `body` [m]
+    std::uint32_t steps = 0;              ///< since it was made
+
+    /// Place of cell (x, z) in the arrays; -1 and `cells` are the border.
+    [[nodiscard]] std::size_t at(int x, int z) const {
+        return static_cast<std::size_t>(z + 1) * static_cast<std::size_t>(stride)
+               + static_cast<std::size_t>(x + 1);
+    }
+    /// Of the grid, which the water's own origin is the middle of [m].
+    [[nodiscard]] Vec2 size() const { return cell * Vec2(cells); }
+};
+
+enum class TouchShape : std::uint8_t { Ball, Box };
+
+/// An entity that pushes water aside where it is in it.
+struct WaterTouch {
+    TouchShape shape = TouchShape::Ball;
+    Vec3 half = {0.25f, 0.25f, 0.25f};  ///< half extents in its own space; of a ball x [m]
+    Vec3 offset = {0, 0, 0};            ///< of its middle in its own space [m]
+};
+
+/// A pool of a prefab begins at rest.
+template <>
+struct ComponentTraits<RippleState> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+template <typename Visitor>
+void visit_fields(WaterRipples& ripples, Visitor&& visit) {
+    visit(
+        "cell",
+        ripples.cell,
+        {.doc = "side of a square of the grid", .unit = "m", .min = 0.002, .max = 100});
+    visit("speed", ripples.speed, {.doc = "of the waves", .unit = "m/s", .min = 0, .max = 1000});
+    visit(
+        "damping",
+        ripples.damping,
+        {.doc = "how fast they fade", .unit = "1/s", .min = 0, .max = 100});
+    visit(
+        "border",
+        ripples.border,
+        {.doc = "walls, or open water", .values = "reflecting absorbing"});
+    visit(
+        "window",
+        ripples.window,
+        {.doc = "part that ripples of water without end", .unit = "m", .min = 0, .max = 10000});
+    visit(
+        "rain",
+        ripples.rain,
+        {.doc = "drops that fall on it", .unit = "1/(m^2 s)", .min = 0, .max = 10000});
+    visit(
+        "rain_height",
+        ripples.rain_height,
+        {.doc = "of the crest of a drop", .unit = "m", .min = 0, .max = 1});
+}
+
+template <typename Visitor>
+void visit_fields(RippleImpulse& impulse, Visitor&& visit) {
+    visit("center", impulse.center, {.doc = "x and z in the water's own space", .unit = "m"});
+    visit(
+        "radius",
+        impulse.radius,
+        {.doc = "of the whole disturbance", .unit = "m", .min = 0, .max = 1000});
+    visit(
+        "height",
+        impulse.height,
+        {.doc = "of the middle; negative: down", .unit = "m", .min = -100, .max = 100});
+}
+
+template <typename Visitor>
+void visit_fields(RippleState& state, Visitor&& visit) {
+    visit("cells", state.cells, {.doc = "of the grid"});
+    visit("stride", state.stride, {.doc = "floats from row to row"});
+    visit("cell", state.cell, {.doc = "side of a square", .unit = "m"});
+    visit("substeps", state.substeps, {.doc = "in a step"});
+    visit("substep", state.substep, {.doc = "how long each is", .unit = "s"});
+    visit("height", state.height, {.doc = "above rest", .unit = "m"});
+    visit("before", state.before, {.doc = "one sub-step earlier", .unit = "m"});
+    visit("body", state.body, {.doc = "what bodies under water make of it", .unit = "m"});
+    visit("impulses", state.impulses, {.doc = "of the next step"});
+    visit("level", state.level, {.doc = "mean height that bodies make", .unit = "m"});
+    visit("steps", state.steps, {.doc = "since it was made"});
+}
+
+template <typename Visitor>
+void visit_fields(WaterTouch& touch, Visitor&& visit) {
+    visit("shape", touch.shape, {.doc = "what pushes the water aside", .values = "ball box"});
+    visit(
+        "half",
+        touch.half,
+        {.doc = "half extents in its own space; of a ball x",
+         .unit = "m",
+         .min = 0.001,
+         .max = 10000});
+    visit("offset", touch.offset, {.doc = "of its middle in its own space", .unit = "m"});
+}
+
+}  // namespace limn

@@ -1,0 +1,379 @@
+#include "systems/water/water_ripple_field.h"
+
+#include "ecs/base/jobs.h"
+#include "systems/water/water_ripple_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 32;
+constexpr float kCourant = 0.7f;           ///< of a cell that a wave may go in a sub-step
+constexpr std::uint32_t kLevelEvery = 32;  ///< steps between corrections of rounding
+constexpr int kSpongeCells = 12;
+constexpr float kSponge = 0.12f;       ///< share that the outermost cell of a sponge takes
+constexpr float kLargestPush = 10.0f;  ///< [m]
+
+Vec2 extent_of(const Water& water, const WaterRipples& ripples) {
+    return {
+        water.size.x > 0 ? water.size.x : ripples.window.x,
+        water.size.y > 0 ? water.size.y : ripples.window.y};
+}
+
+struct Grid {
+    IVec2 cells = {0, 0};
+    float cell = 0;
+};
+
+Grid grid_of(const Water& water, const WaterRipples& ripples) {
+    const Vec2 extent = extent_of(water, ripples);
+    if (!(extent.x > 0 && extent.y > 0 && ripples.cell > 0)
+        || !std::isfinite(extent.x * extent.y)) {
+        return {};
+    }
+    Grid grid;
+    const float coarsest = std::max(extent.x, extent.y);
+    grid.cell = std::clamp(ripples.cell, coarsest / 16384, coarsest);
+    const auto count = [&](float length) {
+        return std::max(4, static_cast<int>(std::ceil(length / grid.cell - 1e-3f)));
+    };
+    while (static_cast<std::int64_t>(count(extent.x)) * count(extent.y) > kMaxRippleCells) {
+        grid.cell *= 1.25f;
+    }
+    grid.cells = {count(extent.x), count(extent.y)};
+    return grid;
+}
+
+/// The cells around an ellipse that lie on the grid.
+struct CellBox {
+    IVec2 first;
+    IVec2 last;  ///< exclusive
+};
+CellBox box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
+    const Vec2 middle = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
+    const Vec2 reach = radius / state.cell;
+    CellBox box;
+    for (int axis = 0; axis < 2; ++axis) {
+        const float cells = static_cast<float>(state.cells[axis]);
+        const float from = std::clamp(std::ceil(middle[axis] - reach[axis]), 0.0f, cells);
+        const float to = std::clamp(std::floor(middle[axis] + reach[axis]) + 1, 0.0f, cells);
+        box.first[axis] = static_cast<int>(from);
+        box.last[axis] = static_cast<int>(to);
+    }
+    return box;
+}
+
+Vec2 middle_of(const RippleState& state, int x, int z) {
+    return state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
+}
+
+bool is_over(const RippleState& state, const Vec2& at) {
+    const Vec2 half = 0.5f * state.size();
+    return std::abs(at.x) <= half.x && std::abs(at.y) <= half.y;
+}
+
+/// (1 - u^2)^2 with u the distance from the middle in radii; 0 outside.
+float bump(const Vec2& from_center, const Vec2& radius) {
+    const Vec2 u = from_center / radius;
+    const float rest = std::max(0.0f, 1.0f - (u.x * u.x + u.y * u.y));
+    return rest * rest;
+}
+
+/// The border repeats the outermost cells: no water goes through a wall.
+void close_border(RippleState& state, std::vector<float>& field) {
+    const IVec2 n = state.cells;
+    for (int z = 0; z < n.y; ++z) {
+        field[state.at(-1, z)] = field[state.at(0, z)];
+        field[state.at(n.x, z)] = field[state.at(n.x - 1, z)];
+    }
+    const auto row = [&](int z) {
+        return field.begin() + static_cast<std::ptrdiff_t>(state.at(-1, z));
+    };
+    std::copy_n(row(0), n.x + 2, row(-1));
+    std::copy_n(row(n.y - 1), n.x + 2, row(n.y));
+}
+
+/// The border carries waves on as they come (Mur 1981, first order): `next` is one sub-step after
+/// `now`, both have their inner cells.
+void open_border(
+    const RippleState& state,
+    const std::vector<float>& now,
+    std::vector<float>& next,
+    float courant) {
+    const float share = (courant - 1) / (courant + 1);
+    const auto carry = [&](std::size_t ghost, std::size_t inner) {
+        next[ghost] = now[inner] + share * (next[inner] - now[ghost]);
+    };
+    const IVec2 n = state.cells;
+    for (int z = 0; z < n.y; ++z) {
+        carry(state.at(-1, z), state.at(0, z));
+        carry(state.at(n.x, z), state.at(n.x - 1, z));
+    }
+    for (int x = -1; x <= n.x; ++x) {
+        carry(state.at(x, -1), state.at(x, 0));
+        carry(state.at(x, n.y), state.at(x, n.y - 1));
+    }
+}
+
+/// Share of their motion that cells of a row or column keep in a sub-step.
+void fill_keep(std::vector<float>& keep, int cells, float base, bool absorbing) {
+    keep.assign(static_cast<std::size_t>(cells), base);
+    const int width = std::min(kSpongeCells, cells / 4);
+    for (int i = 0; absorbing && i < width; ++i) {
+        const float depth = 1.0f - static_cast<float>(i) / static_cast<float>(width);
+        const float share = 1.0f - kSponge * depth * depth;
+        keep[static_cast<std::size_t>(i)] *= share;
+        keep[static_cast<std::size_t>(cells - 1 - i)] *= share;
+    }
+}
+
+double mean_of(const RippleState& state, const std::vector<float>& field) {
+    double sum = 0;
+    for (int z = 0; z < state.cells.y; ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            sum += static_cast<double>(field[state.at(x, z)]);
+        }
+    }
+    return sum / (static_cast<double>(state.cells.x) * state.cells.y);
+}
+
+/// Takes off what rounding has added.
+void keep_level(const RippleState& state, std::vector<float>& field) {
+    const auto drift = static_cast<float>(mean_of(state, field) - state.level);
+    for (float& h : field) {
+        h -= drift;
+    }
+}
+
+/// Slope of the field at a cell, by differences to both sides; a wall mirrors what is before it.
+Vec2 slope_at(const RippleState& state, int x, int z) {
+    const auto height = [&](int column, int row) {
+        return state.height[state.at(
+            std::clamp(column, 0, state.cells.x - 1), std::clamp(row, 0, state.cells.y - 1))];
+    };
+    return Vec2(height(x + 1, z) - height(x - 1, z), height(x, z + 1) - height(x, z - 1))
+           / (2 * state.cell);
+}
+
+}  // namespace
+
+RippleState make_ripples(const Water& water, const WaterRipples& ripples, float step) {
+    RippleState state;
+    const Grid grid = grid_of(water, ripples);
+    if (grid.cells.x == 0) {
+        return state;
+    }
+    state.cells = grid.cells;
+    state.cell = grid.cell;
+    state.stride = (grid.cells.x + 2 + 15) / 16 * 16;
+    const auto floats =
+        static_cast<std::size_t>(state.stride) * static_cast<std::size_t>(grid.cells.y + 2);
+    state.height.resize(floats);
+    state.before.resize(floats);
+    state.substep = step;
+    state.substeps = 1;
+    return state;
+}
+
+bool fits(const RippleState& state, const Water& water, const WaterRipples& ripples) {
+    const Grid grid = grid_of(water, ripples);
+    return state.cells == grid.cells && state.cell == grid.cell;
+}
+
+void push_ripples(RippleState& state, const RippleImpulse& impulse) {
+    const float check = impulse.center.x + impulse.center.y + impulse.radius + impulse.height;
+    if (state.cells.x == 0 || !std::isfinite(check) || !is_over(state, impulse.center)) {
+        return;
+    }
+    const Vec2 extent = state.size();
+    const Vec2 radius(std::clamp(
+        impulse.radius, 1.5f * state.cell, std::max(extent.x + extent.y, 1.5f * state.cell)));
+    const float height = std::clamp(impulse.height, -kLargestPush, kLargestPush);
+    const CellBox box = box_around(state, impulse.center, radius);
+    // A crater and its rim, (1 - u^2)^2 (1 - 4 u^2), have no volume; what the grid and the walls
+    // make of it is put right by more or less of (1 - u^2)^2.
+    double weights = 0;
+    double sum = 0;
+    const auto each = [&](auto&& body) {
+        for (int z = box.first.y; z < box.last.y; ++z) {
+            for (int x = box.first.x; x < box.last.x; ++x) {
+                const Vec2 from = middle_of(state, x, z) - impulse.center;
+                const float weight = bump(from, radius);
+                const float u2 = (from.x * from.x + from.y * from.y) / (radius.x * radius.x);
+                body(state.at(x, z), weight, weight * (1 - 4 * u2));
+            }
+        }
+    };
+    each([&](std::size_t, float weight, float crater) {
+        weights += static_cast<double>(weight);
+        sum += static_cast<double>(crater);
+    });
+    if (!(weights > 0)) {
+        return;
+    }
+    const auto excess = static_cast<float>(sum / weights);
+    each([&](std::size_t at, float weight, float crater) {
+        const float push = height * (crater - excess * weight);
+        state.height[at] += push;
+        state.before[at] += push;
+    });
+}
+
+void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
+    const bool any = std::any_of(bulges.begin(), bulges.end(), [&](const WaterBulge& bulge) {
+        return bulge.volume > 0 && is_over(state, bulge.center);
+    });
+    if (state.cells.x == 0 || (!any && state.body.empty())) {
+        return;
+    }
+    thread_local std::vector<float> now;  // keeps its memory from step to step
+    now.assign(state.height.size(), 0.0f);
+    const float area = state.cell * state.cell;
+    double volume = 0;
+    for (const WaterBulge& bulge : bulges) {
+        const float check =
+            bulge.volume + bulge.radius.x + bulge.radius.y + bulge.center.x + bulge.center.y;
+        if (!std::isfinite(check) || !(bulge.volume > 0) || !is_over(state, bulge.center)) {
+            continue;
+        }
+        const Vec2 radius = glm::max(bulge.radius, Vec2(1.5f * state.cell));
+        const CellBox box = box_around(state, bulge.center, radius);
+        double weights = 0;
+        for (int z = box.first.y; z < box.last.y; ++z) {
+            for (int x = box.first.x; x < box.last.x; ++x) {
+                weights += static_cast<double>(bump(middle_of(state, x, z) - bulge.center, radius));
+            }
+        }
+        if (!(weights > 0)) {
+            continue;
+        }
+        volume += static_cast<double>(bulge.volume);
+        const auto height = static_cast<float>(
+            static_cast<double>(bulge.volume) / (weights * static_cast<double>(area)));
+        for (int z = box.first.y; z < box.last.y; ++z) {
+            for (int x = box.first.x; x < box.last.x; ++x) {
+                now[state.at(x, z)] += height * bump(middle_of(state, x, z) - bulge.center, radius);
+            }
+        }
+    }
+    state.body.resize(state.height.size());
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const float risen = now[i] - state.body[i];
+        state.height[i] += risen;
+        state.before[i] += risen;
+    }
+    state.body.assign(now.begin(), now.end());
+    if (!any) {
+        state.body.clear();
+    }
+    state.level = volume
+                  / (static_cast<double>(area) * static_cast<double>(state.cells.x)
+                     * static_cast<double>(state.cells.y));
+}
+
+void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
+    if (state.cells.x == 0 || !(step > 0) || !std::isfinite(step)) {
+        return;
+    }
+    for (const RippleImpulse& impulse : state.impulses) {
+        push_ripples(state, impulse);
+    }
+    state.impulses.clear();
+
+    const bool absorbing = ripples.border == RippleBorder::Absorbing;
+    const float speed = std::isfinite(ripples.speed) ? std::max(ripples.speed, 0.0f) : 0.0f;
+    const float wanted = std::ceil(speed * step / (kCourant * state.cell));
+    const int substeps =
+        static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxRippleSubsteps)));
+    const float dt = step / static_cast<float>(substeps);
+    if (dt != state.substep) {  // heights one sub-step earlier, of the new length
+        const float ratio = state.substep > 0 ? dt / state.substep : 0.0f;
+        for (std::size_t i = 0; i < state.height.size(); ++i) {
+            state.before[i] = state.height[i] - (state.height[i] - state.before[i]) * ratio;
+        }
+    }
+    state.substeps = substeps;
+    state.substep = dt;
+
+    const float courant = std::min(speed * dt / state.cell, kCourant);
+    const float fade = std::clamp(ripples.damping * dt, 0.0f, 1.0f);
+    const float base = (1 - fade) / (1 + fade);  // of the motion: its root of the height
+    thread_local std::vector<float> keep_x;
+    thread_local std::vector<float> keep_z;
+    fill_keep(keep_x, state.cells.x, base, absorbing);
+    fill_keep(keep_z, state.cells.y, 1.0f, absorbing);
+    const float* const columns = keep_x.data();
+    const float* const row_keeps = keep_z.data();
+    const auto width = static_cast<std::size_t>(state.cells.x);
+    for (int i = 0; i < substeps; ++i) {
+        if (!absorbing) {
+            close_border(state, state.height);
+        }
+        parallel_for(
+            static_cast<std::size_t>(state.cells.y),
+            kRowGrain,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t z = begin; z < end; ++z) {
+                    const int row = static_cast<int>(z);
+                    const float* const heights = state.height.data();
+                    step_ripple_row(
+                        {heights + state.at(0, row - 1),
+                         heights + state.at(0, row),
+                         heights + state.at(0, row + 1)},
+                        {state.before.data() + state.at(0, row), width},
+                        columns,
+                        row_keeps[z],
+                        courant * courant);
+                }
+            });
+        if (absorbing) {
+            open_border(state, state.height, state.before, courant);
+        }
+        std::swap(state.height, state.before);
+    }
+    ++state.steps;
+    if (!absorbing && state.steps % kLevelEvery == 0) {
+        keep_level(state, state.height);
+        keep_level(state, state.before);
+    }
+}
+
+RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
+    if (state.cells.x == 0 || !is_over(state, at)) {
+        return {};
+    }
+    const Vec2 place = glm::clamp(
+        at / state.cell + 0.5f * Vec2(state.cells) - 0.5f, Vec2(0), Vec2(state.cells - 1));
+    const IVec2 corner = glm::min(IVec2(place), state.cells - 2);
+    const Vec2 u = place - Vec2(corner);
+    const std::size_t first = state.at(corner.x, corner.y);
+    const std::size_t below = first + static_cast<std::size_t>(state.stride);
+    const auto blend = [&](const std::vector<float>& field) {
+        return glm::mix(
+            glm::mix(field[first], field[first + 1], u.x),
+            glm::mix(field[below], field[below + 1], u.x),
+            u.y);
+    };
+    const std::vector<float>& h = state.height;
+    RipplePoint point;
+    point.height = blend(h);
+    point.velocity = (point.height - blend(state.before)) / state.substep;
+    point.slope = glm::mix(
+        glm::mix(slope_at(state, corner.x, corner.y), slope_at(state, corner.x + 1, corner.y), u.x),
+        glm::mix(
+            slope_at(state, corner.x, corner.y + 1),
+            slope_at(state, corner.x + 1, corner.y + 1),
+            u.x),
+        u.y);
+    return point;
+}
+
+double ripple_volume(const RippleState& state) {
+    const double area = static_cast<double>(state.cell) * static_cast<double>(state.cell);
+    return mean_of(state, state.height) * area * state.cells.x * state.cells.y;
+}
+
+}  // namespace limn

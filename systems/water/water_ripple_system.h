@@ -1,0 +1,28 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_ripples.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+namespace limn {
+
+/// Gives a RippleState at rest to every Water with WaterRipples that lacks one. Before
+/// update_water_ripples, with a sync point between.
+void add_ripple_states(
+    Query<const Water, const WaterRipples, Without<RippleState>> bare,
+    Res<const FrameTime> time,
+    Commands commands);
+
+/// Rain, what touches the water, then a step of the wave equation. A state whose grid no longer
+/// fits the settings begins anew, at rest.
+void update_water_ripples(
+    Query<const Water, const WaterRipples, const WorldTransform, RippleState> waters,
+    Query<const WaterTouch, const WorldTransform> bodies,
+    Res<const RandomSeed> seed,
+    Res<const FrameTime> time);
+
+}  // namespace limn

@@ -1,0 +1,372 @@
+#include "ecs/base/jobs.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "systems/update_world.h"
+#include "systems/water/water_ripple_field.h"
+#include "systems/water/water_ripple_kernels.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn {
+
+namespace {
+
+constexpr float kStep = 1.0f / 60;
+
+Water pool(float width, float length) {
+    return {.size = {width, length}, .depth = 2};
+}
+
+/// Largest height, up or down.
+float reach(const RippleState& state) {
+    float most = 0;
+    for (int z = 0; z < state.cells.y; ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            most = std::max(most, std::abs(state.height[state.at(x, z)]));
+        }
+    }
+    return most;
+}
+
+void run(RippleState& state, const WaterRipples& ripples, int steps) {
+    for (int i = 0; i < steps; ++i) {
+        step_ripples(state, ripples, kStep);
+    }
+}
+
+/// Height of the standing wave cos(pi (i + 1/2) / n) of walls, along x.
+void fill_standing_wave(RippleState& state, float amplitude) {
+    for (int z = 0; z < state.cells.y; ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            const float share = (static_cast<float>(x) + 0.5f) / static_cast<float>(state.cells.x);
+            const float h = amplitude * std::cos(kPi * share);
+            state.height[state.at(x, z)] = h;
+            state.before[state.at(x, z)] = h;
+        }
+    }
+}
+
+struct Pond {
+    explicit Pond(const WaterRipples& ripples = {}, const Water& water = pool(4, 3)) {
+        schedule = make_world_schedule();
+        entity = world.create(Transform{}, water, ripples);
+    }
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            step_world(world, schedule);
+        }
+    }
+    [[nodiscard]] const RippleState& state() const { return world.get<RippleState>(entity); }
+    World world;
+    Schedule schedule;
+    Entity entity;
+};
+
+}  // namespace
+
+TEST_CASE("water ripples: the grid covers the water, and stays within its limit") {
+    const RippleState state = make_ripples(pool(4, 3), {.cell = 0.07f}, kStep);
+    CHECK(state.cells == IVec2(58, 43));
+    CHECK(state.size().x >= 4);
+    CHECK(state.stride % 16 == 0);
+    const RippleState vast = make_ripples(pool(5000, 4000), {.cell = 0.01f}, kStep);
+    CHECK(vast.cells.x * vast.cells.y <= kMaxRippleCells);
+    CHECK(vast.size().x >= 5000);
+    CHECK(vast.size().y >= 4000);
+    // Water without end ripples in its window; without one, or without size, nowhere.
+    CHECK(make_ripples(pool(0, 0), {.window = {2, 2}}, kStep).cells == IVec2(40, 40));
+    for (const float none : {0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
+        RippleState empty = make_ripples(pool(none, 3), {}, kStep);
+        CHECK(empty.cells == IVec2(0, 0));
+        push_ripples(empty, {});
+        run(empty, {}, 2);
+        CHECK(sample_ripples(empty, {0, 0}).height == 0);
+    }
+}
+
+TEST_CASE("water ripples: vectors and plain code give the same bits") {
+    for (const std::size_t width : {1u, 7u, 16u, 61u, 128u}) {
+        std::vector<float> rows[3];
+        std::vector<float> keep(width);
+        for (int r = 0; r < 3; ++r) {
+            for (std::size_t x = 0; x < width + 2; ++x) {
+                rows[r].push_back(std::sin(static_cast<float>(x) * 1.7f + static_cast<float>(r)));
+            }
+        }
+        std::vector<float> vectors(width);
+        for (std::size_t x = 0; x < width; ++x) {
+            vectors[x] = std::cos(static_cast<float>(x));
+            keep[x] = 0.9f + 0.001f * static_cast<float>(x);
+        }
+        std::vector<float> plain = vectors;
+        const RippleRows three = {rows[0].data() + 1, rows[1].data() + 1, rows[2].data() + 1};
+        step_ripple_row(three, vectors, keep.data(), 0.97f, 0.4f);
+        step_ripple_row_scalar(three, plain, keep.data(), 0.97f, 0.4f);
+        CHECK(vectors == plain);
+    }
+}
+
+TEST_CASE("water ripples: what falls in makes no water and takes none, in corners neither") {
+    RippleState state = make_ripples(pool(4, 3), {}, kStep);
+    for (const Vec2 at : {Vec2(0, 0), Vec2(1.97f, -1.47f), Vec2(0.013f, 1.5f)}) {
+        push_ripples(state, {.center = at, .radius = 0.4f, .height = -0.1f});
+        CHECK(std::abs(ripple_volume(state)) < 1e-7);
+    }
+    CHECK(sample_ripples(state, {0, 0}).height == doctest::Approx(-0.1).epsilon(0.05));
+    CHECK(reach(state) < 0.2f);
+}
+
+TEST_CASE("water ripples: a step keeps the volume to a millionth of what is moved") {
+    RippleState state = make_ripples(pool(4, 3), {}, kStep);
+    push_ripples(state, {.center = {0.7f, -0.4f}, .radius = 0.5f, .height = 0.2f});
+    double moved = 0;
+    for (const float h : state.height) {
+        moved += static_cast<double>(std::abs(h) * state.cell * state.cell);
+    }
+    for (int i = 0; i < 600; ++i) {
+        const double before = ripple_volume(state);
+        run(state, {}, 1);
+        CHECK(std::abs(ripple_volume(state) - before) < 1e-6 * moved);
+    }
+    CHECK(std::abs(ripple_volume(state)) < 1e-5 * moved);
+}
+
+TEST_CASE("water ripples: a standing wave swings with the period of its length and speed") {
+    // Half a wave between the walls: period 2 L / c.
+    const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0};
+    RippleState state = make_ripples(pool(3, 0.5f), ripples, kStep);
+    fill_standing_wave(state, 0.1f);
+    const int half_period = 120;  // steps, at 3 m and 1.5 m/s
+    run(state, ripples, half_period);
+    CHECK(sample_ripples(state, {-1.4f, 0}).height == doctest::Approx(-0.0994).epsilon(0.01));
+    run(state, ripples, half_period);
+    CHECK(sample_ripples(state, {-1.4f, 0}).height == doctest::Approx(0.0994).epsilon(0.01));
+    // A quarter later it is level, and moves fastest: A w.
+    run(state, ripples, half_period / 2);
+    const RipplePoint level = sample_ripples(state, {-1.4f, 0});
+    CHECK(std::abs(level.height) < 0.004f);
+    CHECK(level.velocity == doctest::Approx(-0.0994 * kPi / 2).epsilon(0.02));
+}
+
+TEST_CASE("water ripples: they fade as their damping says") {
+    const WaterRipples ripples = {.cell = 0.05f, .speed = 1.5f, .damping = 0.5f};
+    RippleState state = make_ripples(pool(3, 0.5f), ripples, kStep);
+    fill_standing_wave(state, 0.1f);
+    run(state, ripples, 240);
+    CHECK(
+        sample_ripples(state, {-1.5f, 0}).height
+        == doctest::Approx(0.1 * std::exp(-0.5 * 4)).epsilon(0.02));
+}
+
+TEST_CASE("water ripples: rings are round, and go at their speed") {
+    const WaterRipples ripples = {.cell = 0.04f, .speed = 1, .damping = 0};
+    RippleState state = make_ripples(pool(6, 6), ripples, kStep);
+    // Of odd size: the middle of a cell.
+    state = make_ripples(pool(6.04f, 6.04f), ripples, kStep);
+    push_ripples(state, {.center = {0, 0}, .radius = 0.6f, .height = 0.1f});
+    run(state, ripples, 120);  // 2 s: the ring is 2 m out
+    float crest = 0;
+    float crest_at = 0;
+    float spread = 0;
+    for (int i = 30; i < 70; ++i) {
+        const float r = 0.04f * static_cast<float>(i);
+        const float along = sample_ripples(state, {r, 0}).height;
+        const float across = sample_ripples(state, {0, r}).height;
+        const float aslant = sample_ripples(state, Vec2(r) / std::sqrt(2.0f)).height;
+        CHECK(along == doctest::Approx(across).epsilon(1e-4));
+        spread = std::max(spread, std::abs(along - aslant));
+        if (std::abs(along) > crest) {
+            crest = std::abs(along);
+            crest_at = r;
+        }
+    }
+    CHECK(crest_at == doctest::Approx(2.0).epsilon(0.1));
+    CHECK(spread < 0.05f * crest);
+}
+
+TEST_CASE("water ripples: walls send waves back, open borders let them go") {
+    float left[2] = {};
+    for (const RippleBorder border : {RippleBorder::Reflecting, RippleBorder::Absorbing}) {
+        const WaterRipples ripples = {.speed = 1.5f, .damping = 0, .border = border};
+        RippleState state = make_ripples(pool(4, 4), ripples, kStep);
+        push_ripples(state, {.center = {0.5f, 0.3f}, .radius = 0.6f, .height = -0.1f});
+        run(state, ripples, 300);  // 5 s: the ring has long met every border
+        left[static_cast<int>(border)] = reach(state);
+    }
+    CHECK(left[0] > 0.01f);
+    CHECK(left[1] < 0.05f * left[0]);
+}
+
+TEST_CASE("water ripples: a stone on the ground raises the water by its volume over the area") {
+    Pond pond({.cell = 0.05f, .damping = 1});
+    pond.world.create(Transform{.position = {0.5f, -1, 0.2f}}, WaterTouch{.half = Vec3(0.3f)});
+    pond.run(1200);
+    const double volume = 4.0 / 3.0 * 3.14159265 * 0.027;
+    CHECK(ripple_volume(pond.state()) == doctest::Approx(volume).epsilon(1e-4));
+    const float level = static_cast<float>(volume / 12);
+    CHECK(sample_ripples(pond.state(), {-1.5f, -1}).height == doctest::Approx(level).epsilon(0.1));
+}
+
+TEST_CASE("water ripples: what leaves the water takes its room along, what ends does too") {
+    for (const bool ends : {false, true}) {
+        Pond pond({.damping = 1});
+        const Entity stone = pond.world.create(
+            Transform{.position = {0, -0.1f, 0}},
+            WaterTouch{.shape = TouchShape::Box, .half = {0.3f, 0.2f, 0.4f}});
+        pond.run(10);
+        // Three quarters of it are under water.
+        CHECK(ripple_volume(pond.state()) == doctest::Approx(0.192 * 0.75).epsilon(1e-4));
+        if (ends) {
+            pond.world.destroy(stone);
+        } else {
+            pond.world.get<Transform>(stone).position.y = 0.5f;
+        }
+        pond.run(2);
+        CHECK(std::abs(ripple_volume(pond.state())) < 1e-5);
+        CHECK(pond.state().body.empty());
+        CHECK(reach(pond.state()) > 0.01f);
+    }
+}
+
+TEST_CASE("water ripples: a body slower than its waves carries a hollow, a quicker one a hill") {
+    // h = U^2 / (U^2 - c^2) of what it pushes up, in one dimension (Lamb 1932, 175).
+    for (const bool quick : {false, true}) {
+        const float speed = quick ? 2.4f : 0.8f;
+        Pond pond({.speed = quick ? 1.2f : 2.4f, .damping = 0}, pool(12, 6));
+        const Entity boat =
+            pond.world.create(Transform{.position = {-2, 0, 0}}, WaterTouch{.half = Vec3(0.3f)});
+        for (int i = 0; i < 90; ++i) {
+            pond.world.get<Transform>(boat).position.x += speed / 60;
+            pond.run(1);
+        }
+        const float x = pond.world.get<Transform>(boat).position.x;
+        const auto level = static_cast<float>(pond.state().level);
+        const float height = sample_ripples(pond.state(), {x, 0}).height - level;
+        CHECK((quick ? height : -height) > 0.005f);
+        // What runs ahead is none of the quick one's.
+        CHECK((std::abs(sample_ripples(pond.state(), {x + 1, 0}).height) < 1e-5f) == quick);
+    }
+}
+
+TEST_CASE("water ripples: the water's heading and place are the body's frame") {
+    Pond pond({}, pool(4, 2));
+    pond.world.get<Transform>(pond.entity) = {
+        .position = {10, 5, -3}, .rotation = glm::angleAxis(radians(90), Vec3(0, 1, 0))};
+    // The water's +x is the world's -z now.
+    pond.world.create(Transform{.position = {10.2f, 4.5f, -4.5f}}, WaterTouch{.half = Vec3(0.2f)});
+    pond.run(1);
+    const RippleState& state = pond.state();
+    CHECK(state.level > 0);
+    const float* const most = &*std::max_element(state.body.begin(), state.body.end());
+    const auto place = static_cast<std::size_t>(most - state.body.data());
+    const auto stride = static_cast<std::size_t>(state.stride);
+    const Vec2 at =
+        state.cell * (Vec2(place % stride, place / stride) - 0.5f - 0.5f * Vec2(state.cells));
+    CHECK(at.x == doctest::Approx(1.5).epsilon(0.04));
+    CHECK(at.y == doctest::Approx(0.2).epsilon(0.2));
+}
+
+TEST_CASE("water ripples: rain falls as often as it should, the same for every number of threads") {
+    std::vector<float> first;
+    for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        Pond pond({.rain = 20, .rain_height = 0.02f});
+        pond.run(120);
+        CHECK(reach(pond.state()) > 0.002f);
+        CHECK(std::abs(ripple_volume(pond.state())) < 1e-5);
+        if (first.empty()) {
+            first = pond.state().height;
+        }
+        CHECK(pond.state().height == first);
+    }
+    set_thread_count(2);
+}
+
+TEST_CASE("water ripples: too quick, too many, too small, not a number: never NaN") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    // A step that no grid can take is taken in pieces; waves that are quicker still are slowed.
+    for (const float speed : {0.0f, 40.0f, 1000.0f, nan}) {
+        const WaterRipples ripples = {.cell = 0.02f, .speed = speed, .damping = 0};
+        RippleState state = make_ripples(pool(2, 2), ripples, kStep);
+        push_ripples(state, {.radius = 0.3f, .height = 0.5f});
+        run(state, ripples, 300);
+        CHECK(reach(state) < 2);
+        CHECK(state.substeps <= kMaxRippleSubsteps);
+    }
+    const WaterRipples calm;
+    RippleState state = make_ripples(pool(2, 2), calm, kStep);
+    for (const RippleImpulse& bad :
+         {RippleImpulse{.center = {nan, 0}},
+          RippleImpulse{.radius = nan},
+          RippleImpulse{.height = std::numeric_limits<float>::infinity()},
+          RippleImpulse{.center = {1e30f, 0}}}) {
+        push_ripples(state, bad);
+    }
+    CHECK(reach(state) == 0);
+    push_ripples(state, {.radius = -1, .height = 0.1f});
+    push_ripples(state, {.radius = 1e20f, .height = 0.1f});
+    push_ripples(state, {.radius = 0.2f, .height = 1e20f});
+    step_ripples(state, calm, nan);
+    step_ripples(state, calm, -1);
+    run(state, calm, 10);
+    CHECK(reach(state) < 100);
+    // A body of no size, or of any, does no harm.
+    displace_ripples(
+        state,
+        std::vector<WaterBulge>{
+            {.radius = {0, 0}, .volume = 0.1f},
+            {.radius = {nan, 1}, .volume = 1},
+            {.volume = nan}});
+    CHECK(std::isfinite(reach(state)));
+    // A hundred thousand impulses in one step.
+    for (int i = 0; i < 100000; ++i) {
+        const float a = static_cast<float>(i);
+        state.impulses.push_back(
+            {.center = {std::sin(a), std::cos(1.3f * a)}, .radius = 0.1f, .height = 1e-3f});
+    }
+    run(state, calm, 2);
+    CHECK(state.impulses.empty());
+    CHECK(reach(state) < 1000);
+}
+
+TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") {
+    RippleState state = make_ripples(pool(4, 3), {}, kStep);
+    const auto field = [](const Vec2& p) { return 0.02f * p.x - 0.05f * p.y + 0.01f; };
+    for (int z = 0; z < state.cells.y; ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            const Vec2 p = state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
+            state.height[state.at(x, z)] = field(p);
+            state.before[state.at(x, z)] = field(p) - 0.3f * kStep;
+        }
+    }
+    for (const Vec2 p : {Vec2(0, 0), Vec2(1.333f, -1.1f), Vec2(-0.777f, 0.123f)}) {
+        const RipplePoint found = sample_ripples(state, p);
+        CHECK(found.height == doctest::Approx(field(p)).epsilon(1e-4));
+        CHECK(found.velocity == doctest::Approx(0.3).epsilon(1e-3));
+        CHECK(found.slope.x == doctest::Approx(0.02).epsilon(1e-3));
+        CHECK(found.slope.y == doctest::Approx(-0.05).epsilon(1e-3));
+    }
+    CHECK(sample_ripples(state, {2.1f, 0}).height == 0);
+}
+
+TEST_CASE("water ripples: a hundred pools are stepped, each on its own grid") {
+    World world;
+    Schedule schedule = make_world_schedule();
+    for (int i = 0; i < 100; ++i) {
+        const float size = 0.5f + 0.03f * static_cast<float>(i);
+        world.create(Transform{}, pool(size, 2 * size), WaterRipples{.rain = 50});
+    }
+    for (int i = 0; i < 30; ++i) {
+        step_world(world, schedule);
+    }
+    int moved = 0;
+    world.query<const RippleState>().each(
+        [&](const RippleState& state) { moved += reach(state) > 0 ? 1 : 0; });
+    CHECK(moved == 100);
+}
+
+}  // namespace limn
