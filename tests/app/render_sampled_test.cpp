@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -162,6 +163,32 @@ TEST_CASE(
     CHECK(sum(blurred) == doctest::Approx(sum(still)).epsilon(0.01));
     CHECK(red(still, static_cast<int>(middle + 0.4 * width), kHeight / 2) == doctest::Approx(1));
     CHECK(red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2) == doctest::Approx(0));
+}
+
+TEST_CASE("render sampled: what goes less far than it is wide is a ramp at each edge") {
+    // As above with half the exposure: 8.1 px of way, 13.5 px of width.
+    const TemporaryFolder folder;
+    const std::string text = level(
+        R"json(, "motion_blur": {"shutter": 90}, "frame_time": {"step": 0.005})json",
+        R"json(, "transform": {"position": [0, 0, 0]},
+           "sway": {"amplitude": [24, 0, 0], "frequency": [0.1, 1, 1], "phase": [0, 0, 0]})json",
+        "");
+    const std::vector<std::string> words = {
+        "--frames", "2:2", "--fps", "2", "--set", "view.transform.position=[2.396,0,2]", "--spp"};
+    const auto with = [&](const std::string& samples) {
+        std::vector<std::string> more = words;
+        more.push_back(samples);
+        return render(folder, text, more);
+    };
+    const Picture blurred = with("256");
+    const double way = 24 * 0.1 * std::cos(0.1) * 0.125 * 27;  // [px]
+    const double half = 0.25 * 27;
+    for (int x = 8; x < kWidth - 8; ++x) {
+        CAPTURE(x);
+        const double from_edge = half + 0.5 * way - std::abs(x + 0.5 - 0.5 * kWidth);
+        const double covered = std::clamp(from_edge / way, 0.0, 1.0);
+        CHECK(std::abs(red(blurred, x, kHeight / 2) - covered) < 0.04);
+    }
 }
 
 TEST_CASE("render sampled: out of focus a small light is a disc of the circle of confusion") {

@@ -165,6 +165,14 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: right before the lens a point is a disc as wide as the widest") {
+    const RenderView view = lens_view(192, 192, kAll);  // 432 px wide by the law, 0.2 m away
+    const Moments m = moments_of(photograph(view, spark(0.2f, 96, 96)));
+    CHECK(std::abs(diameter_of(m) - 0.25 * 192) < 0.5);
+    CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+}
+
 TEST_CASE_FIXTURE(Darkroom, "depth_of_field: the sky is blurred as what is infinitely far away") {
     const RenderView view = lens_view(160, 160, 36);
     const Moments m = moments_of(photograph(view, spark(kInfinity, 80, 80)));

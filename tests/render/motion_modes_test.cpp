@@ -1,4 +1,5 @@
 #include "bench/oracles/motion_blur_oracle.h"
+#include "ecs/base/rng.h"
 #include "ecs/components/time.h"
 #include "tests/render/shader_eval.h"
 #include "tests/render/shutter_fixture.h"
@@ -97,6 +98,25 @@ TEST_CASE_FIXTURE(
     flash(false);
     CHECK(middle() == doctest::Approx(1.0 / 2));
     CHECK(middle() == doctest::Approx(1.0 / 3));
+}
+
+TEST_CASE_FIXTURE(
+    OldShutter, "motion accumulation: nothing is left of what was bright a thousand times over") {
+    // A sum that pictures are added to and taken from again would keep what it rounds off.
+    set_mode(MotionBlurMode::Accumulate);
+    const MaterialId dim = unlit({0.3f, 0.7f, 0.1f});
+    const Entity bright = bar(dim, 10, 40, 0);
+    auto& materials = world.resource<Assets>().materials;
+    for (int i = 0; i < 40; ++i) {
+        materials[dim.index].base_color.x = i % 3 == 0 ? 4e5f : 0.017f * static_cast<float>(i);
+        world.get<MeshInstance>(bright).material = dim;
+        static_cast<void>(picture());
+    }
+    materials[dim.index].base_color.x = 0.3f;
+    for (int i = 0; i < 5; ++i) {
+        static_cast<void>(picture());
+    }
+    CHECK(picture().pixels == sharp().pixels);
 }
 
 TEST_CASE_FIXTURE(
@@ -231,6 +251,18 @@ TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of
     CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                      // behind: backward
     CHECK(glm::length(Vec3(found[3])) == doctest::Approx(1.6));  // never more than the motion
     CHECK(Vec3(found[4]) == Vec3(0));  // no motion, no number that is none
+
+    Random random(4, 0, 0, 0);
+    std::vector<Vec4> any;
+    for (int i = 0; i < 500; ++i) {
+        any.emplace_back(random.direction(), random.uniform(1e-6f, 40.0f));
+    }
+    const std::vector<Vec4> offsets = evaluate_shader(
+        "#include \"lib/motion.glsl\"\n", "y.xyz = flow_offset(x.xyz, vec3(0.0, x.w, 0.0));", any);
+    for (std::size_t i = 0; i < any.size(); ++i) {
+        CHECK(glm::length(Vec3(offsets[i])) <= any[i].w * 1.000001f);
+        CHECK(offsets[i].y == doctest::Approx(any[i].y * any[i].w).epsilon(1e-5));
+    }
 }
 
 namespace {
@@ -323,6 +355,37 @@ TEST_CASE_FIXTURE(
     set_mode(MotionBlurMode::Stretch);
     CHECK(picture().pixels == sharp().pixels);
     CHECK(picture().pixels == sharp().pixels);
+}
+
+TEST_CASE_FIXTURE(
+    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both pictures") {
+    const auto pose = [](float z) { return affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(0.5f)); };
+    const Entity entity = place(add(make_ball(16)), unlit({1, 0.5f, 0}), pose(-1));
+    set_mode(MotionBlurMode::Stretch);
+    static_cast<void>(picture());
+    world.get<MeshInstance>(entity).material = unlit({0, 0.5f, 0.25f});
+    world.get<WorldTransform>(entity).world = pose(-0.9f);  // straight ahead
+    const gpu::FloatImage mixed = picture();
+    CHECK(glm::distance(rgb_at(mixed, 32, 32), Vec3(0.5f, 0.5f, 0.125f)) < 2e-3f);
+    CHECK(rgb_at(mixed, 2, 32) == Vec3(0));
+}
+
+TEST_CASE_FIXTURE(
+    OldShutter,
+    "motion stretch: the camera's motion counts when it is asked for, else it is none") {
+    place(add(make_ball(16)), unlit({1, 1, 1}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.4f)));
+    const auto row_with = [&](bool with_camera) {
+        set_mode(MotionBlurMode::Stretch);
+        world.resource<MotionBlur>().with_camera = with_camera;
+        static_cast<void>(radiance(stepped(12)));
+        return row_of(radiance(stepped(12)), 32, 0);
+    };
+    const std::vector<double> still = row_with(false);
+    const std::vector<double> moved = row_with(true);
+    const auto partly = [](const std::vector<double>& row) {
+        return std::count_if(row.begin(), row.end(), [](double v) { return v > 0.02 && v < 0.98; });
+    };
+    CHECK(partly(moved) > partly(still) + 8);
 }
 
 TEST_CASE_FIXTURE(OldShutter, "motion stretch: a ball becomes the hull of its two places") {

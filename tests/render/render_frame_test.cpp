@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace limn::test {
@@ -180,6 +181,33 @@ TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") 
     const RenderView b = make_render_view({}, scaled, scaled);
     for (int i = 0; i < 4; ++i) {
         CHECK(glm::length(a.clip_from_world[i] - b.clip_from_world[i]) < 1e-5f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "render frame: through a pinhole, in no time, any number of samples is the picture") {
+    place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.7f)));
+    shine(PointLight{.intensity = 7}, at({1, 1, 1}));
+    world.insert_resource(Environment{});
+    const RenderView view = look({0, 0, 1.5f}, {0, 0, 0}, 40, 32);
+    static_cast<void>(draw(view));
+    const gpu::FloatImage picture = radiance(view);
+    const gpu::ByteImage shown = gpu::read_bytes(*draw(view).display);
+    for (const int samples : {1, 4, 9, 16, 64}) {
+        CAPTURE(samples);
+        begin_accumulation(shared_renderer(), {40, 32}, SampleKind::Instant);
+        for (int i = 0; i < samples; ++i) {
+            const Vec2 lens = {std::cos(static_cast<float>(i)), std::sin(static_cast<float>(i))};
+            accumulate(
+                shared_renderer(),
+                world,
+                with_lens_sample(view, lens),
+                1.0f / static_cast<float>(samples));
+        }
+        const FrameOutput mean = finish_accumulation(shared_renderer(), world, view);
+        CHECK(gpu::read_bytes(*mean.display).pixels == shown.pixels);
+        // A sum of floats rounds: by a unit in the last place a sample.
+        CHECK(largest_difference(gpu::read_floats(*mean.radiance), picture) < 2e-6f);
     }
 }
 
