@@ -1,13 +1,12 @@
 #include "content/app/quality_glow.h"
 
 #include "bench/oracles/glow_oracle.h"
-#include "content/app/stage.h"
-#include "ecs/base/text.h"
+#include "content/app/quality_glare.h"
+#include "content/app/quality_light.h"
 #include "ecs/components/glow.h"
-#include "ecs/components/post.h"
-#include "render/develop.h"
-#include "render/gpu/readback.h"
+#include "ecs/world.h"
 #include "render/passes/glow_pass.h"
+#include "render/render_frame.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -26,30 +25,6 @@ using oracle::LightPicture;
 constexpr IVec2 kEven = {320, 180};
 constexpr IVec2 kOdd = {321, 179};
 
-LightPicture picture_of(const gpu::Texture& texture) {
-    const gpu::FloatImage image = gpu::read_floats(texture);
-    LightPicture picture = oracle::make_dark(image.width, image.height);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            picture.pixels[y * image.width + x] = {
-                image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
-        }
-    }
-    return picture;
-}
-
-/// A pixel's worth of light at `place`, spread over the pixels that it covers.
-LightPicture make_dot(const IVec2& size, const dvec2& place, double light) {
-    LightPicture picture = oracle::make_dark(size.x, size.y);
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const dvec2 share = glm::max(1.0 - glm::abs(dvec2(x, y) + 0.5 - place), 0.0);
-            picture.pixels[y * size.x + x] = dvec3(share.x * share.y * light);
-        }
-    }
-    return picture;
-}
-
 /// What the renderer makes of pictures that no scene shows.
 class Bench {
   public:
@@ -57,55 +32,23 @@ class Bench {
         : graph_(*headless.device), pass_(pass), developer_(std::move(developer)) {}
 
     LightPicture glowing(const LightPicture& picture, const Glow& glow) {
-        const gpu::Texture radiance = upload(picture);
+        const gpu::Texture radiance = upload_light(picture);
         graph_.begin_frame();
         const TextureId made = draw_glow(graph_, pass_, glow, graph_.import("radiance", radiance));
         graph_.keep(made);
         graph_.execute();
-        return picture_of(*graph_.texture(made));
+        return light_picture(*graph_.texture(made));
     }
 
-    /// As a screen shows it.
     ColorImage developed(const LightPicture& picture, const Exposure& exposure) {
-        const gpu::Texture radiance = upload(picture);
-        graph_.begin_frame();
-        const TextureId display = develop(
-            graph_, developer_, exposure, std::nullopt, graph_.import("radiance", radiance));
-        graph_.keep(display);
-        graph_.execute();
-        const gpu::ByteImage bytes = gpu::read_bytes(*graph_.texture(display));
-        ColorImage shown = {picture.width, picture.height, {}};
-        for (int y = 0; y < bytes.height; ++y) {
-            for (int x = 0; x < bytes.width; ++x) {
-                shown.pixels.push_back(
-                    Vec3(bytes.at(x, y, 0), bytes.at(x, y, 1), bytes.at(x, y, 2)) / 255.0f);
-            }
-        }
-        return shown;
+        return develop_light(graph_, developer_, picture, exposure);
     }
 
   private:
-    static gpu::Texture upload(const LightPicture& picture) {
-        std::vector<Vec4> texels;
-        for (int y = picture.height - 1; y >= 0; --y) {
-            for (int x = 0; x < picture.width; ++x) {
-                texels.emplace_back(Vec3(picture.at(x, y)), 1.0f);
-            }
-        }
-        gpu::Texture texture(
-            "radiance", {.format = GL_RGBA32F, .width = picture.width, .height = picture.height});
-        texture.upload<Vec4>(texels, GL_RGBA, GL_FLOAT);
-        return texture;
-    }
-
     FrameGraph graph_;
     GlowPass pass_;
     Developer developer_;
 };
-
-double percent_off(double found, double exact) {
-    return 100 * std::abs(found - exact) / exact;
-}
 
 /// The laws, by single points of light; `strength` 1, so that nothing hides what the glow does.
 void measure_points(Bench& bench, QualityReport& report) {
@@ -184,35 +127,25 @@ Status measure_level(
     HeadlessRenderer& headless, Bench& bench, const std::string& level, QualityReport& report) {
     // Fireflies are held back, which is no convolution: here they are let through.
     const Glow glow = {.strength = 0.5f, .firefly = 0};
-    Result<std::unique_ptr<Stage>> opened = open_stage(level);
+    Result<LevelView> opened = open_level_view(level, kEven);
     if (!opened) {
         return opened.error();
     }
-    Stage& stage = **opened;
-    static_cast<void>(advance_stage(stage, 1));
-    const std::optional<Entity> camera = find_camera(stage.world);
-    if (!camera) {
-        return fail("level {}: found no camera, expected one", level);
-    }
-    const RenderView view =
-        make_render_view(stage.world, *camera, {.width = kEven.x, .height = kEven.y});
-    stage.world.insert_resource(Glow{.strength = 0});
+    World& world = opened->stage->world;
+    world.insert_resource(Glow{.strength = 0});
     const LightPicture sharp =
-        picture_of(*render_frame(*headless.renderer, stage.world, view).radiance);
-    stage.world.insert_resource(glow);
+        light_picture(*render_frame(*headless.renderer, world, opened->view).radiance);
+    world.insert_resource(glow);
     const LightPicture made =
-        picture_of(*render_frame(*headless.renderer, stage.world, view).radiance);
+        light_picture(*render_frame(*headless.renderer, world, opened->view).radiance);
     const std::vector<float> weights = glow_weights(glow, kEven.x, kEven.y);
     const LightPicture exact =
         oracle::scatter(sharp, glow.strength, oracle::scattering_of_levels(weights));
 
-    const auto* exposure = stage.world.find_resource<Exposure>();
-    Exposure shown = exposure != nullptr ? *exposure : Exposure{};
-    shown.dither = false;
     QualityPicture picture = {
         fmt::format("{}, strength {}", level, glow.strength),
-        bench.developed(made, shown),
-        bench.developed(exact, shown)};
+        bench.developed(made, opened->exposure),
+        bench.developed(exact, opened->exposure)};
     const double off = percent_off(oracle::sum_of(made).y, oracle::sum_of(sharp).y);
     report.rows.push_back(
         {fmt::format("{}: light made or lost", level), off, QualityBound::AtMost, 0.5, "%"});
@@ -224,7 +157,7 @@ Status measure_level(
          "dB"});
     report.rows.push_back(
         {fmt::format("{}: the same without glow", level),
-         psnr(picture.oracle, bench.developed(sharp, shown)),
+         psnr(picture.oracle, bench.developed(sharp, opened->exposure)),
          QualityBound::None,
          0,
          "dB"});
@@ -252,6 +185,9 @@ Result<QualityReport> measure_glow(HeadlessRenderer& headless) {
         if (const Status status = measure_level(headless, bench, level, report); !status) {
             return status.error();
         }
+    }
+    if (const Status status = measure_glare(headless, report); !status) {
+        return status.error();
     }
     return report;
 }

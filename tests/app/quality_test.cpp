@@ -194,12 +194,48 @@ TEST_CASE("quality: glow keeps the light, is round, steady and the oracle's conv
     CHECK(run.exit_code == 0);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     const auto& rows = json["effects"][0]["rows"];
-    CHECK(rows.size() == 5 + 2 * 3);
+    CHECK(rows.size() == 5 + 2 * 3 + 4 + 3 * 2);
     for (const auto& row : rows) {
         CAPTURE(row.dump());
         CHECK(row["holds"] == true);
-        if (row["bound"] == "none") {  // the scene is worth it: glow changes it
+        if (row["bound"] == "none") {  // the scene is worth it: glow or glare changes it
             CHECK(row["found"] < 38);
+        }
+    }
+}
+
+TEST_CASE("quality: skinning is that of double precision, for many joints and morph targets") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "skinning", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 2 * 2 + 9);
+    int told = 0;
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        told += row["bound"] == "none" ? 1 : 0;
+    }
+    CHECK(told == 1);  // what linear blending loses, which is why the others are there
+}
+
+TEST_CASE("quality: velocity is that of rays, and none where nothing has moved") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "velocity", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 5 * 2 + 5);
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        if (row["bound"] == "none") {  // the scene is worth it: it moves
+            CHECK(row["found"] > 10);
         }
     }
 }

@@ -1,0 +1,136 @@
+#include "bench/oracles/glare_oracle.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+namespace limn::oracle {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr double kPi = 3.14159265358979323846;
+
+double cross(const dvec2& a, const dvec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// The Fourier transform of a polygon at the frequency `k` [rad per length] is a sum over its
+/// sides (S.-W. Lee and R. Mittra, "Fourier transform of a polygonal shape function", 1983).
+std::complex<double> transform_of(const std::vector<dvec2>& corners, const dvec2& k) {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const dvec2 side = corners[(i + 1) % corners.size()] - corners[i];
+        const dvec2 middle = corners[i] + 0.5 * side;
+        const double half = 0.5 * glm::dot(k, side);
+        const double sinc = std::abs(half) < 1e-9 ? 1.0 : std::sin(half) / half;
+        sum += cross(k, side) * sinc * std::polar(1.0, -glm::dot(k, middle));
+    }
+    return sum * std::complex<double>(0, 1) / glm::dot(k, k);
+}
+
+double luminance(const dvec3& light) {
+    return glm::dot(light, dvec3(0.27, 0.67, 0.06));
+}
+
+/// Adds `light` at `place` [px from the left and the top], shared by the four pixels about it;
+/// outside it is lost.
+void splat(LightPicture& picture, const dvec2& place, const dvec3& light) {
+    const dvec2 corner = glm::floor(place - 0.5);
+    const dvec2 share = place - 0.5 - corner;
+    for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i < 2; ++i) {
+            const int x = static_cast<int>(corner.x) + i;
+            const int y = static_cast<int>(corner.y) + j;
+            if (x >= 0 && y >= 0 && x < picture.width && y < picture.height) {
+                picture.pixels[y * picture.width + x] +=
+                    (i == 0 ? 1 - share.x : share.x) * (j == 0 ? 1 - share.y : share.y) * light;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<double> diffraction_angles(int blades, double rotation) {
+    std::vector<dvec2> corners;
+    for (int i = 0; i < blades; ++i) {
+        const double angle = rotation + kPi * (2 * i + 1) / blades;
+        corners.emplace_back(std::cos(angle), std::sin(angle));
+    }
+    constexpr int kAngles = 1440;
+    std::vector<double> light(kAngles);
+    for (int i = 0; i < kAngles; ++i) {
+        const double angle = 2 * kPi * i / kAngles;
+        for (double frequency = 60; frequency < 120; frequency += 0.37) {
+            const dvec2 k = frequency * dvec2(std::cos(angle), std::sin(angle));
+            light[i] += std::norm(transform_of(corners, k));
+        }
+    }
+    const double half = 0.5 * *std::max_element(light.begin(), light.end());
+    std::vector<double> angles;
+    for (int i = 0; i < kAngles; ++i) {
+        const double before = light[(i + kAngles - 1) % kAngles];
+        const double after = light[(i + 1) % kAngles];
+        if (light[i] > half && light[i] > before && light[i] >= after) {
+            angles.push_back(2 * kPi * i / kAngles);
+        }
+    }
+    return angles;
+}
+
+double line_density(double distance, double length) {
+    const int tents = std::max(static_cast<int>(std::ceil(std::log2(0.5 * length))), 1);
+    double density = 0;
+    for (int j = 0; j < tents; ++j) {
+        const double reach = std::ldexp(length, -j);
+        const double share = std::ldexp(1.0, j) / (std::ldexp(1.0, tents) - 1);
+        density += share * std::max(1 - std::abs(distance) / reach, 0.0) / reach;
+    }
+    return density;
+}
+
+LightPicture add_stars(const LightPicture& picture, const Star& star, double width) {
+    constexpr double kStep = 0.25;  // along a line [px]
+    std::vector<double> densities;
+    double whole = 0;
+    for (double s = 0.5 * kStep; s < star.length; s += kStep) {
+        densities.push_back(line_density(s, star.length));
+        whole += 2 * densities.back();
+    }
+    LightPicture stars = make_dark(picture.width, picture.height);
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            const double light = luminance(picture.at(x, y));
+            if (light <= star.threshold) {
+                continue;
+            }
+            const dvec3 source = picture.at(x, y) * (1 - star.threshold / light) * star.strength
+                                 / static_cast<double>(star.lines);
+            for (int line = 0; line < star.lines; ++line) {
+                const double angle = star.rotation + kPi * line / star.lines;
+                const dvec2 along(std::cos(angle), -std::sin(angle));  // rows go down
+                for (std::size_t i = 0; i < densities.size(); ++i) {
+                    const dvec2 way = (static_cast<double>(i) + 0.5) * kStep * along;
+                    const dvec3 part = densities[i] / whole * source;
+                    splat(stars, dvec2(x, y) + 0.5 + way, part);
+                    splat(stars, dvec2(x, y) + 0.5 - way, part);
+                }
+            }
+        }
+    }
+    const std::vector<Scattering> wide = {{1.0, width}};
+    stars = scatter(stars, 1, wide);
+    LightPicture sum = picture;
+    for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
+        sum.pixels[i] += dvec3(610.0, 550.0, 465.0) / 550.0 * stars.pixels[i];
+    }
+    return sum;
+}
+
+}  // namespace limn::oracle
