@@ -18,6 +18,7 @@
 #include "systems/sway_system.h"
 #include "systems/transform_system.h"
 #include "systems/water/water_ripple_system.h"
+#include "systems/water/water_wave_system.h"
 
 namespace limn {
 
@@ -28,12 +29,15 @@ Schedule make_world_schedule() {
     schedule.add<add_env_probe_states>();
     schedule.add<add_poses>();
     schedule.add<add_ripple_states>();
+    schedule.add<add_wave_tables>();
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
     schedule.add<update_ripples>();
     schedule.add<update_path_followers>();
     schedule.add<update_racers>();
+    schedule.add<age_wave_packets>();
+    schedule.add<fill_wave_tables>();  // after ages
     schedule.add<update_speed_views>();  // after racers: as fast as they are now
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
@@ -75,6 +79,8 @@ void start_world(World& world) {
     world.run(update_transforms);
     world.run(add_env_probe_states);
     world.run(add_ripple_states);
+    world.run(add_wave_tables);
+    world.run(fill_wave_tables);
     world.run(update_env_probes);
     world.run(update_orbit_cameras);
     world.run(update_autofocus);

@@ -26,6 +26,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -66,6 +67,7 @@ void register_all_components() {
     register_component<HeatHaze>();
     register_component<ScreenRipple>();
     register_component<Water>();
+    register_component<WaterWaves>();
     register_component<WaterRipples>();
     register_component<RippleState>();
     register_component<WaterTouch>();

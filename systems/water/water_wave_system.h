@@ -1,0 +1,24 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/time.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_waves.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+namespace limn {
+
+/// Gives a WaveTable to every Water with WaterWaves that lacks one. Before update_water_waves, with
+/// a sync point between.
+void add_wave_tables(
+    Query<const Water, const WaterWaves, Without<WaveTable>> bare, Commands commands);
+
+/// Ages packets, and takes away those that have ended.
+void age_wave_packets(Query<WaterWaves> waters, Res<const FrameTime> time);
+
+/// Fills the tables for the end of the step.
+void fill_wave_tables(
+    Query<const Water, const WaterWaves, WaveTable> waters, Res<const FrameTime> time);
+
+}  // namespace limn
