@@ -2,7 +2,7 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
-#include "systems/water/water_frame.h"
+#include "ecs/components/water_frame.h"
 #include "systems/water/water_ripple_field.h"
 
 #include <algorithm>
