@@ -1,0 +1,97 @@
+#pragma once
+
+#include "ecs/components/ocean.h"
+
+#include <cmath>
+#include <complex>
+#include <span>
+#include <vector>
+
+namespace limn::oracle {
+
+// Open water in double precision, by sums that need no transform to be fast. In a header, so that
+// tests of systems can use them without the renderer.
+
+using Complex = std::complex<double>;
+
+inline constexpr double kFullTurn = 6.283185307179586;
+
+/// to[x] = sum over n of from[n] e^(2 pi i n x / size), term by term.
+[[nodiscard]] inline std::vector<Complex> inverse_dft(std::span<const Complex> from) {
+    const std::size_t size = from.size();
+    std::vector<Complex> to(size);
+    for (std::size_t x = 0; x < size; ++x) {
+        for (std::size_t n = 0; n < size; ++n) {
+            const double turns = static_cast<double>(n * x % size) / static_cast<double>(size);
+            to[x] += from[n] * std::polar(1.0, kFullTurn * turns);
+        }
+    }
+    return to;
+}
+
+/// Along both axes: spectrum(n, m) at n * size + m becomes field(x, z) at z * size + x.
+[[nodiscard]] inline std::vector<Complex>
+inverse_dft_2d(std::span<const Complex> spectrum, std::size_t size) {
+    std::vector<Complex> half(size * size);  // (z, n) at z * size + n
+    for (std::size_t n = 0; n < size; ++n) {
+        const std::vector<Complex> line = inverse_dft(spectrum.subspan(n * size, size));
+        for (std::size_t z = 0; z < size; ++z) {
+            half[z * size + n] = line[z];
+        }
+    }
+    std::vector<Complex> field;
+    for (std::size_t z = 0; z < size; ++z) {
+        const std::vector<Complex> line =
+            inverse_dft(std::span<const Complex>(half).subspan(z * size, size));
+        field.insert(field.end(), line.begin(), line.end());
+    }
+    return field;
+}
+
+/// The water at one point, as the fields of OceanCascade.
+struct OceanPoint {
+    double height = 0;
+    double shift_x = 0;
+    double shift_z = 0;
+    double slope_x = 0;
+    double slope_z = 0;
+    double shift_xx = 0;
+    double shift_zz = 0;
+    double shift_xz = 0;
+};
+
+/// The sum of a cascade's waves 2 |h0| cos(k.q - omega t + arg h0), each of which runs along its k
+/// and carries the water toward its crests. What runs against them is not looked at.
+[[nodiscard]] inline OceanPoint
+ocean_at(const OceanCascade& cascade, double choppiness, double x, double z, double time) {
+    OceanPoint sum;
+    const int size = cascade.size;
+    for (int n = 0; n < size; ++n) {
+        for (int m = 0; m < size; ++m) {
+            const int at = n * size + m;
+            const Complex h0(cascade.ahead_re[at], cascade.ahead_im[at]);
+            if (h0 == 0.0) {
+                continue;
+            }
+            const double step = kFullTurn / static_cast<double>(cascade.patch);
+            const double kx = step * (n < size / 2 ? n : n - size);
+            const double kz = step * (m < size / 2 ? m : m - size);
+            const double k = std::hypot(kx, kz);
+            const double omega = cascade.frequency[at];
+            const double phase = kx * x + kz * z - omega * time + std::arg(h0);
+            const double up = 2.0 * std::abs(h0) * std::cos(phase);
+            const double ahead = -2.0 * std::abs(h0) * std::sin(phase);
+            sum.height += up;
+            sum.slope_x += kx * ahead;
+            sum.slope_z += kz * ahead;
+            sum.shift_x += choppiness * kx / k * ahead;
+            sum.shift_z += choppiness * kz / k * ahead;
+            sum.shift_xx -= choppiness * kx * kx / k * up;
+            sum.shift_zz -= choppiness * kz * kz / k * up;
+            sum.shift_xz -= choppiness * kx * kz / k * up;
+        }
+    }
+    return sum;
+}
+
+}  // namespace limn::oracle
