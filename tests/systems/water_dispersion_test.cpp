@@ -64,7 +64,7 @@ TEST_CASE("water_dispersion: the wave number of a frequency has that frequency")
             CAPTURE(depth);
             CAPTURE(omega);
             const double k = wave_number(omega, depth);
-            CHECK(wave_frequency(k, depth) == doctest::Approx(omega).epsilon(1e-12));
+            CHECK(std::abs(wave_frequency(k, depth) / omega - 1) < 1e-12);
         }
     }
 }
@@ -77,7 +77,7 @@ TEST_CASE("water_dispersion: the group speed is the slope of the frequency") {
             const double step = 1e-4 * k;
             const double slope =
                 (wave_frequency(k + step, depth) - wave_frequency(k - step, depth)) / (2 * step);
-            CHECK(group_speed(k, depth) == doctest::Approx(slope).epsilon(1e-6));
+            CHECK(std::abs(group_speed(k, depth) / slope - 1) < 1e-6);
         }
     }
 }
