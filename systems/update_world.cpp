@@ -17,6 +17,7 @@
 #include "systems/spin_system.h"
 #include "systems/sway_system.h"
 #include "systems/transform_system.h"
+#include "systems/water/ocean_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_wave_system.h"
 
@@ -30,6 +31,7 @@ Schedule make_world_schedule() {
     schedule.add<add_poses>();
     schedule.add<add_ripple_states>();
     schedule.add<add_wave_tables>();
+    schedule.add<add_ocean_states>();
     schedule.sync();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
@@ -38,6 +40,8 @@ Schedule make_world_schedule() {
     schedule.add<update_racers>();
     schedule.add<age_wave_packets>();
     schedule.add<fill_wave_tables>();  // after ages
+    schedule.add<update_oceans>();
+    schedule.add<update_ocean_foam>();   // after oceans: where they break now
     schedule.add<update_speed_views>();  // after racers: as fast as they are now
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
@@ -75,6 +79,8 @@ void start_world(World& world) {
     world.run(add_poses);
     world.run(update_poses);
     world.run(update_attachments);
+    world.run(add_ocean_states);
+    world.run(update_oceans);
     world.run(add_world_transforms);
     world.run(update_transforms);
     world.run(add_env_probe_states);

@@ -12,6 +12,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
+#include "ecs/components/ocean.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
@@ -63,6 +64,9 @@ void register_all_components() {
     register_component<ShadowVolume>();
     register_component<EnvProbe>();
     register_component<EnvProbeState>();
+    register_component<Ocean>();
+    register_component<OceanState>();
+    register_component<OceanFoam>();
     register_component<RippleRing>();
     register_component<HeatHaze>();
     register_component<ScreenRipple>();
