@@ -126,6 +126,7 @@ TEST_CASE("house: the ECS includes the standard library, the system and TBB, and
         "ecs/base/bezier.h",
         "ecs/base/gradient_noise.h",
         "ecs/base/math.h",
+        "ecs/base/optics.h",
         "ecs/base/rng.h",
         "ecs/base/rotation.h"};
     const std::regex include(R"re(^\s*#\s*include\s+([<"])([^>"]+)[>"])re");
