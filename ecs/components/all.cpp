@@ -65,7 +65,6 @@ void register_all_components() {
     register_component<EnvProbe>();
     register_component<EnvProbeState>();
     register_component<Ocean>();
-    register_component<OceanState>();
     register_component<OceanFoam>();
     register_component<RippleRing>();
     register_component<HeatHaze>();
