@@ -170,10 +170,10 @@ void measure_law(HeadlessRenderer& headless, QualityReport& report) {
         {"light that a disc gains or loses", 100 * wall.light, QualityBound::AtMost, 1, "%"},
         {"difference from the law, of lamps before the night",
          night.diameter,
-         QualityBound::None,
-         0,
+         QualityBound::AtMost,
+         0.5,
          "px"},
-        {"light that those gain or lose", 100 * night.light, QualityBound::None, 0, "%"}};
+        {"light that those gain or lose", 100 * night.light, QualityBound::AtMost, 2, "%"}};
     report.rows.insert(report.rows.end(), std::begin(rows), std::end(rows));
 }
 

@@ -1,19 +1,20 @@
 #include "render/passes/depth_of_field_pass.h"
 
 #include "render/gpu/shader_library.h"
+#include "render/passes/focus_block.h"
 #include "render/render_view.h"
 #include "render/shaders/focus_gpu.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <span>
+#include <vector>
 
 namespace limn {
 namespace {
 
 constexpr unsigned kFocusBinding = 2;
 constexpr unsigned kTilesUnit = 7;
+constexpr unsigned kSlightTilesUnit = 8;
 constexpr int kHiddenLevels = 5;
 constexpr int kLuminanceLevels = 6;
 
@@ -26,38 +27,31 @@ enum TileKind : int {
     kAnyBlurred = kBlurredTiles | kBlurredSlightTiles,
 };
 
-int widest_circle(const RenderView& view) {
-    return static_cast<int>(view.lens.largest_blur * static_cast<float>(view.height));
-}
-
-/// How `blades` sides share a turn: the place on the rim of the unit aperture at `turn` of it.
-Vec2 rim(const LensView& lens, float turn) {
-    if (lens.blades < 3) {
-        return {std::cos(2 * kPi * turn), std::sin(2 * kPi * turn)};
-    }
-    return point_on_aperture(lens, {turn, 1});
-}
-
-/// The textures between the passes; all but the tiles have the format of the radiance.
+/// The textures between the passes.
 struct FocusTextures {
     IVec2 half;
     IVec2 quarter;
     TextureId tiles;
+    TextureId slight_tiles;
+    TextureId near_reach;
+    TextureId seen;
     TextureId far_light;  ///< of half the size
     TextureId near_light;
-    TextureId radii;
+    TextureId far_kernels;
+    TextureId near_kernels;
+    TextureId far_wide;
+    TextureId near_wide;
+    TextureId wide_radii;
     TextureId behind_near;
     TextureId far_rest;  ///< of a quarter
     TextureId near_rest;
     TextureId rest_radii;
     TextureId behind;
+    TextureId far_coarse;
+    TextureId near_coarse;
     TextureId far_blurred;  ///< of half the size
     TextureId near_blurred;
 };
-
-IVec2 half_of(const IVec2& size) {
-    return (size + 1) / 2;
-}
 
 int levels_of(const IVec2& size, int most) {
     return std::min(gpu::full_level_count(size.x, size.y), most);
@@ -88,9 +82,10 @@ class Drawing {
     void split(TextureId radiance, TextureId depth);
     void take_off_highlights();
     void fill_levels(TextureId texture, int levels);
+    void gather_coarse();
     void gather();
-    TextureId compose(TextureId radiance, TextureId depth);
-    void draw_discs(TextureId picture, TextureId radiance, TextureId depth);
+    TextureId compose(TextureId radiance);
+    void draw_discs(TextureId picture, TextureId depth);
 
     FrameGraph& graph_;
     DepthOfFieldPass& pass_;
@@ -120,25 +115,54 @@ void draw_tiles(
     context.device().draw(GL_TRIANGLE_STRIP, 0, 4, tiles);
 }
 
+void bind_tiles(PassContext& context, const FocusTextures& made) {
+    context.bind_texture(kTilesUnit, made.tiles);
+    context.bind_texture(kSlightTilesUnit, made.slight_tiles);
+}
+
 void Drawing::find_tiles(TextureId depth) {
     const IVec2 count = {block_.tiles.x, block_.tiles.y};
-    const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
-    const TextureId small = create("focus.own small", GL_RGBA16F, count);
+    const IVec2 block_count = layout::kFocusTile / layout::kFocusBlock * count;
+    const TextureId blocks = create("focus.blocks", GL_RGBA16F, block_count);
+    const TextureId small_of_blocks = create("focus.small of blocks", GL_RG16F, block_count);
     graph_.add_pass(
-        "focus.tiles",
+        "focus.blocks",
         {depth},
-        {discarded(own), discarded(small)},
+        {discarded(blocks), discarded(small_of_blocks)},
         [&pass = pass_, block = block_, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
-            use_fullscreen(context, pass.tiles, pass.focus);
+            use_fullscreen(context, pass.blocks, pass.focus);
             context.bind_texture(1, depth);
             context.device().draw_fullscreen();
         });
+    made_.near_reach = create("focus.near reach", GL_R16F, block_count);
+    graph_.add_pass(
+        "focus.spread",
+        {small_of_blocks},
+        {discarded(made_.near_reach)},
+        [&pass = pass_, small_of_blocks](PassContext& context) {
+            use_fullscreen(context, pass.spread, pass.focus);
+            context.bind_texture(0, small_of_blocks);
+            context.device().draw_fullscreen();
+        });
+    const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
+    const TextureId small = create("focus.own small", GL_RG16F, count);
+    graph_.add_pass(
+        "focus.tiles",
+        {blocks, small_of_blocks},
+        {discarded(own), discarded(small)},
+        [&pass = pass_, blocks, small_of_blocks](PassContext& context) {
+            use_fullscreen(context, pass.tiles, pass.focus);
+            context.bind_texture(0, blocks);
+            context.bind_texture(1, small_of_blocks);
+            context.device().draw_fullscreen();
+        });
     made_.tiles = create("focus.tiles", GL_RGBA16F, count);
+    made_.slight_tiles = create("focus.slight tiles", GL_RG16F, count);
     graph_.add_pass(
         "focus.reach",
         {own, small},
-        {discarded(made_.tiles)},
+        {discarded(made_.tiles), discarded(made_.slight_tiles)},
         [&pass = pass_, own, small](PassContext& context) {
             use_fullscreen(context, pass.reach, pass.focus);
             context.bind_texture(0, own);
@@ -148,27 +172,40 @@ void Drawing::find_tiles(TextureId depth) {
 }
 
 void Drawing::split(TextureId radiance, TextureId depth) {
+    made_.seen = create("focus.seen", format_, size_);
+    graph_.add_pass(
+        "focus.pack",
+        {radiance, depth},
+        {discarded(made_.seen)},
+        [&pass = pass_, radiance, depth](PassContext& context) {
+            use_fullscreen(context, pass.pack, pass.focus);
+            context.bind_texture(0, radiance);
+            context.bind_texture(1, depth);
+            context.device().draw_fullscreen();
+        });
     made_.far_light = create("focus.far", format_, made_.half);
     made_.near_light = create("focus.near", format_, made_.half);
-    made_.radii = create("focus.radii", format_, made_.half);
+    made_.far_kernels = create("focus.far kernels", format_, made_.half);
+    made_.near_kernels = create("focus.near kernels", pair_format(), made_.half);
+    made_.far_wide = create("focus.far wide", format_, made_.half);
+    made_.near_wide = create("focus.near wide", format_, made_.half);
+    made_.wide_radii = create("focus.wide radii", pair_format(), made_.half);
     made_.behind_near = create("focus.behind near", format_, made_.half);
     graph_.add_pass(
         "focus.split",
-        {radiance, depth, made_.tiles},
+        {made_.seen, made_.tiles, made_.slight_tiles},
         {cleared(made_.far_light),
          cleared(made_.near_light),
-         cleared(made_.radii),
+         cleared(made_.far_kernels),
+         cleared(made_.near_kernels),
+         cleared(made_.far_wide),
+         cleared(made_.near_wide),
+         cleared(made_.wide_radii),
          cleared(made_.behind_near)},
-        [&pass = pass_,
-         radiance,
-         depth,
-         tiles = made_.tiles,
-         cover = 2 * made_.half,
-         count = tile_count()](PassContext& context) {
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, depth);
-            context.bind_texture(kTilesUnit, tiles);
-            draw_tiles(context, pass.split, pass.focus, kAnyBlurred, cover, count);
+        [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
+            context.bind_texture(0, made.seen);
+            bind_tiles(context, made);
+            draw_tiles(context, pass.split, pass.focus, kAnyBlurred, 2 * made.half, count);
         });
 }
 
@@ -186,12 +223,13 @@ void Drawing::take_off_highlights() {
         create("focus.luminance", GL_RG32F, made_.quarter, luminance_levels);
     graph_.add_pass(
         "focus.light",
-        {made_.near_light, made_.behind_near},
+        {made_.near_light, made_.near_wide, made_.behind_near},
         {target_level(discarded(luminance), 0)},
-        [&pass = pass_, near = made_.near_light, behind = made_.behind_near](PassContext& context) {
+        [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.light, pass.focus);
-            context.bind_texture(0, near);
-            context.bind_texture(1, behind);
+            context.bind_texture(0, made.near_light);
+            context.bind_texture(1, made.near_wide);
+            context.bind_texture(2, made.behind_near);
             context.device().draw_fullscreen();
         });
     fill_levels(luminance, luminance_levels);
@@ -204,16 +242,16 @@ void Drawing::take_off_highlights() {
     made_.behind = create("focus.behind", format_, made_.quarter, hidden_levels);
     graph_.add_pass(
         "focus.rest",
-        {made_.far_light, made_.near_light, made_.radii, made_.behind_near, luminance},
+        {made_.far_wide, made_.near_wide, made_.wide_radii, made_.behind_near, luminance},
         {target_level(discarded(made_.far_rest), 0),
          target_level(discarded(made_.near_rest), 0),
          target_level(discarded(made_.rest_radii), 0),
          target_level(discarded(made_.behind), 0)},
         [&pass = pass_, made = made_, luminance](PassContext& context) {
             use_fullscreen(context, pass.rest, pass.focus);
-            context.bind_texture(0, made.far_light);
-            context.bind_texture(1, made.near_light);
-            context.bind_texture(2, made.radii);
+            context.bind_texture(0, made.far_wide);
+            context.bind_texture(1, made.near_wide);
+            context.bind_texture(2, made.wide_radii);
             context.bind_texture(3, made.behind_near);
             context.bind_texture(4, luminance);
             context.device().draw_fullscreen();
@@ -224,6 +262,23 @@ void Drawing::take_off_highlights() {
     fill_levels(made_.behind, hidden_levels);
 }
 
+void Drawing::gather_coarse() {
+    made_.far_coarse = create("focus.far coarse", format_, made_.quarter);
+    made_.near_coarse = create("focus.near coarse", format_, made_.quarter);
+    graph_.add_pass(
+        "focus.coarse",
+        {made_.far_rest, made_.near_rest, made_.rest_radii, made_.tiles},
+        {discarded(made_.far_coarse), discarded(made_.near_coarse)},
+        [&pass = pass_, made = made_](PassContext& context) {
+            use_fullscreen(context, pass.coarse, pass.focus);
+            context.bind_texture(0, made.far_rest);
+            context.bind_texture(1, made.near_rest);
+            context.bind_texture(2, made.rest_radii);
+            context.bind_texture(kTilesUnit, made.tiles);
+            context.device().draw_fullscreen();
+        });
+}
+
 void Drawing::gather() {
     made_.far_blurred = create("focus.far blurred", format_, made_.half);
     made_.near_blurred = create("focus.near blurred", format_, made_.half);
@@ -231,38 +286,49 @@ void Drawing::gather() {
         "focus.gather",
         {made_.far_light,
          made_.near_light,
-         made_.radii,
-         made_.far_rest,
-         made_.near_rest,
-         made_.rest_radii,
-         made_.tiles},
+         made_.far_kernels,
+         made_.near_kernels,
+         made_.far_wide,
+         made_.far_coarse,
+         made_.near_coarse,
+         made_.tiles,
+         made_.slight_tiles},
         {cleared(made_.far_blurred), cleared(made_.near_blurred)},
         [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
             context.bind_texture(0, made.far_light);
             context.bind_texture(1, made.near_light);
-            context.bind_texture(2, made.radii);
-            context.bind_texture(3, made.far_rest);
-            context.bind_texture(4, made.near_rest);
-            context.bind_texture(5, made.rest_radii);
-            context.bind_texture(kTilesUnit, made.tiles);
+            context.bind_texture(2, made.far_kernels);
+            context.bind_texture(3, made.near_kernels);
+            context.bind_texture(4, made.far_wide);
+            context.bind_texture(5, made.far_coarse);
+            context.bind_texture(6, made.near_coarse);
+            bind_tiles(context, made);
             draw_tiles(context, pass.gather, pass.focus, kAnyBlurred, 2 * made.half, count);
         });
 }
 
-TextureId Drawing::compose(TextureId radiance, TextureId depth) {
+TextureId Drawing::compose(TextureId radiance) {
     const TextureId picture = create("radiance through lens", format_, size_);
     graph_.add_pass(
         "focus.compose",
-        {radiance, depth, made_.far_blurred, made_.near_blurred, made_.behind, made_.tiles},
+        {radiance,
+         made_.seen,
+         made_.far_blurred,
+         made_.near_blurred,
+         made_.behind,
+         made_.near_reach,
+         made_.tiles,
+         made_.slight_tiles},
         {discarded(picture)},
-        [&pass = pass_, made = made_, radiance, depth, size = size_, count = tile_count()](
+        [&pass = pass_, made = made_, radiance, size = size_, count = tile_count()](
             PassContext& context) {
             context.bind_texture(0, radiance);
-            context.bind_texture(1, depth);
+            context.bind_texture(1, made.seen);
             context.bind_texture(2, made.far_blurred);
             context.bind_texture(3, made.near_blurred);
             context.bind_texture(4, made.behind);
-            context.bind_texture(kTilesUnit, made.tiles);
+            context.bind_texture(5, made.near_reach);
+            bind_tiles(context, made);
             for (int i = 0; i < 4; ++i) {
                 draw_tiles(context, pass.compose[i], pass.focus, 1 << i, size, count);
             }
@@ -270,33 +336,31 @@ TextureId Drawing::compose(TextureId radiance, TextureId depth) {
     return picture;
 }
 
-void Drawing::draw_discs(TextureId picture, TextureId radiance, TextureId depth) {
+void Drawing::draw_discs(TextureId picture, TextureId depth) {
     graph_.add_pass(
         "focus.discs",
-        {radiance,
-         depth,
-         made_.far_light,
-         made_.near_light,
-         made_.radii,
+        {depth,
+         made_.seen,
+         made_.far_wide,
+         made_.near_wide,
          made_.far_rest,
          made_.near_rest,
          made_.near_blurred},
         {picture},
-        [&pass = pass_, made = made_, radiance, depth](PassContext& context) {
+        [&pass = pass_, made = made_, depth](PassContext& context) {
             gpu::PipelineState add = gpu::kFullscreenState;
             add.blend = gpu::kBlendAdd;
             add.color_mask = 0b0111;
             context.device().use(gpu::Pipeline{pass.disc, add});
             context.device().bind_uniforms(kFocusBinding, pass.focus);
             pass.disc->set("texels", made.quarter);
-            context.bind_texture(0, made.far_light);
-            context.bind_texture(1, made.near_light);
-            context.bind_texture(2, made.radii);
-            context.bind_texture(3, made.far_rest);
-            context.bind_texture(4, made.near_rest);
+            context.bind_texture(0, made.far_wide);
+            context.bind_texture(1, made.near_wide);
+            context.bind_texture(2, made.far_rest);
+            context.bind_texture(3, made.near_rest);
+            context.bind_texture(4, made.seen);
             context.bind_texture(5, made.near_blurred);
             context.bind_texture(6, depth);
-            context.bind_texture(8, radiance);
             context.device().draw(GL_POINTS, 0, 2 * made.quarter.x * made.quarter.y);
         });
 }
@@ -305,9 +369,10 @@ TextureId Drawing::through_lens(TextureId radiance, TextureId depth) {
     find_tiles(depth);
     split(radiance, depth);
     take_off_highlights();
+    gather_coarse();
     gather();
-    const TextureId picture = compose(radiance, depth);
-    draw_discs(picture, radiance, depth);
+    const TextureId picture = compose(radiance);
+    draw_discs(picture, depth);
     return picture;
 }
 
@@ -365,11 +430,15 @@ Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device) {
     const gpu::ShaderDefine slight = {"SLIGHT", "1"};
     const gpu::ShaderDefine blurred = {"BLURRED", "1"};
     const Wanted all[] = {
+        {pass.blocks, "fullscreen.vert", "focus_blocks.frag", {}},
+        {pass.spread, "fullscreen.vert", "focus_spread.frag", {}},
         {pass.tiles, "fullscreen.vert", "focus_tiles.frag", {}},
         {pass.reach, "fullscreen.vert", "focus_reach.frag", {}},
+        {pass.pack, "fullscreen.vert", "focus_pack.frag", {}},
         {pass.split, "focus_tile.vert", "focus_split.frag", {}},
         {pass.light, "fullscreen.vert", "focus_light.frag", {}},
         {pass.rest, "fullscreen.vert", "focus_rest.frag", {}},
+        {pass.coarse, "fullscreen.vert", "focus_coarse.frag", {}},
         {pass.gather, "focus_tile.vert", "focus_gather.frag", {}},
         {pass.compose[0], "focus_tile.vert", "focus_compose.frag", {}},
         {pass.compose[1], "focus_tile.vert", "focus_compose.frag", {slight}},
@@ -387,63 +456,6 @@ Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device) {
     }
     pass.focus = gpu::Buffer("focus", sizeof(layout::FocusBlock), gpu::BufferUse::Dynamic);
     return pass;
-}
-
-layout::FocusBlock make_focus_block(const RenderView& view) {
-    const LensView& lens = view.lens;
-    const IVec2 size = {view.width, view.height};
-    const IVec2 half = half_of(size);
-    const float widest = static_cast<float>(widest_circle(view));
-    layout::FocusBlock block{};
-    block.lens = {
-        circle_scale(lens, view.tangent.y, view.height),
-        1 / lens.focus_distance,
-        1 / view.near,
-        widest};
-
-    const bool round = lens.blades < 3;
-    const float slice = 2 * kPi / static_cast<float>(round ? 3 : lens.blades);
-    block.aperture = {
-        static_cast<float>(lens.blades),
-        lens.blade_rotation,
-        round ? kPi : kPi / slice * std::sin(slice),
-        round ? 0.25f : (2 + std::cos(slice)) / 12};
-
-    const IVec2 tiles = (size + layout::kFocusTile - 1) / layout::kFocusTile;
-    const float coarse = std::max(0.5f * widest / layout::kLevelRadius, 1.0f);
-    block.tiles = {
-        tiles.x,
-        tiles.y,
-        static_cast<int>(std::ceil(0.5f * widest / static_cast<float>(layout::kFocusTile))),
-        std::max(static_cast<int>(std::ceil(std::log2(coarse))), 1)};
-    block.size = Vec4(size, half);
-
-    // A sunflower: equal areas, no rows.
-    constexpr float kGolden = 0.61803399f;
-    for (int i = 0; i < layout::kFocusTaps; ++i) {
-        const float turn = static_cast<float>(i) * kGolden;
-        block.tap[i] = Vec4(rim(lens, turn - std::floor(turn)), 0, 0);
-    }
-    std::array<IVec2, 49> around;
-    for (int i = 0; i < 49; ++i) {
-        around[i] = {i % 7 - 3, i / 7 - 3};
-    }
-    std::stable_sort(around.begin(), around.end(), [](const IVec2& a, const IVec2& b) {
-        return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
-    });
-    for (int i = 0; i < layout::kSlightTaps; ++i) {
-        block.tap[i].z = static_cast<float>(around[i].x);
-        block.tap[i].w = static_cast<float>(around[i].y);
-    }
-    for (int i = 0; i < 52; ++i) {
-        float area = 0;
-        for (const IVec2& pixel : around) {
-            const float away = std::sqrt(static_cast<float>(pixel.x * pixel.x + pixel.y * pixel.y));
-            area += std::clamp(static_cast<float>(i) / 16 + 0.5f - away, 0.0f, 1.0f);
-        }
-        block.area[i / 4][i % 4] = area;
-    }
-    return block;
 }
 
 bool has_depth_of_field(const RenderView& view) {

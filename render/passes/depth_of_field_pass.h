@@ -6,12 +6,7 @@
 
 namespace limn {
 
-struct LensView;
 struct RenderView;
-
-namespace layout {
-struct FocusBlock;
-}
 
 // Depth of field: what is out of focus is spread over its circle of confusion (thin_lens.h).
 //
@@ -21,14 +16,15 @@ struct FocusBlock;
 // Shaders  focus_*; lib/focus.glsl, layout in focus_gpu.h
 //
 // Circles of up to 5 px are gathered from the picture itself. Wider ones are gathered at half its
-// size by up to 48 taps that fill the aperture, far and near ones apart, and of both those of up to
-// 8 px radius apart from the rest: a tap asks a place whether its circle comes as far as here, and
-// takes its light by the area that it is spread over. What is sharp therefore never leaks into what
-// is not, and a near thing spreads over what is behind it; what it hides there is guessed from
-// around it. The wider the circles, the coarser the level that the taps read, so that they leave no
-// gaps. Highlights, which would show the pattern of the taps, are taken off and drawn as discs of
-// their own, at full size. A disc must add some percent to what is around it to be worth one, which
-// bounds how many lie over each other.
+// size, far and near ones apart: up to 8 px of radius every texel around is asked whether its
+// circle comes as far as here, and its light is taken by the area that it is spread over. Of those
+// that are wider still, up to 48 taps ask that at a quarter of the size, on levels as coarse as
+// they need to leave no gaps. What is sharp therefore never leaks into what is not, and a near
+// thing spreads over what is behind it; what it hides there is guessed from around it. Behind the
+// focus, what has clearly narrower circles lies over the rest, what has about the same beside it.
+// Highlights of wide circles, which would show the pattern of the taps, are taken off and drawn as
+// discs of their own, at full size. A disc must add some percent to what is around it to be worth
+// one, which bounds how many lie over each other.
 //
 // Tiles of 16 px know what is to be done in them: where all is sharp, a copy. Blended surfaces are
 // as sharp as what is behind them. After Jimenez, "Next Generation Post Processing in Call of Duty:
@@ -38,16 +34,20 @@ struct FocusBlock;
 // ones keep their outline, discs are squares.
 
 struct DepthOfFieldPass {
+    const gpu::Program* blocks = nullptr;
+    const gpu::Program* spread = nullptr;
     const gpu::Program* tiles = nullptr;
     const gpu::Program* reach = nullptr;
+    const gpu::Program* pack = nullptr;
     const gpu::Program* split = nullptr;
     const gpu::Program* light = nullptr;
     const gpu::Program* rest = nullptr;
+    const gpu::Program* coarse = nullptr;
     const gpu::Program* gather = nullptr;
     const gpu::Program* compose[4] = {};  ///< [1]: with small circles, [2]: with large ones
     const gpu::Program* disc = nullptr;
     const gpu::Program* mip = nullptr;
-    gpu::Buffer focus;  ///< layout::FocusBlock
+    gpu::Buffer focus;  ///< layout::FocusBlock (focus_block.h)
 };
 
 [[nodiscard]] Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device);
@@ -62,8 +62,5 @@ struct DepthOfFieldPass {
     const RenderView& view,
     TextureId radiance,
     TextureId depth);
-
-/// What the shaders know of the lens.
-[[nodiscard]] layout::FocusBlock make_focus_block(const RenderView& view);
 
 }  // namespace limn

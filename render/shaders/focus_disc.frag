@@ -2,8 +2,8 @@
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 5) uniform sampler2D near_blurred;
+layout(binding = 6) uniform sampler2D scene_depth;
 
 flat in vec3 light;
 flat in float radius;

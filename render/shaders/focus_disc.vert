@@ -2,13 +2,11 @@
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D far_light;
-layout(binding = 1) uniform sampler2D near_light;
-layout(binding = 2) uniform sampler2D light_radii;
-layout(binding = 3) uniform sampler2D far_rest;
-layout(binding = 4) uniform sampler2D near_rest;
-layout(binding = 6) uniform sampler2D scene_depth;
-layout(binding = 8) uniform sampler2D scene_radiance;
+layout(binding = 0) uniform sampler2D far_wide;
+layout(binding = 1) uniform sampler2D near_wide;
+layout(binding = 2) uniform sampler2D far_rest;
+layout(binding = 3) uniform sampler2D near_rest;
+layout(binding = 4) uniform sampler2D seen_pixels;
 
 uniform ivec2 texels;  // of a quarter of the picture
 
@@ -28,10 +26,10 @@ vec3 middle_of(ivec2 texel, float side, int pixels) {
     for (int i = 0; i < pixels; ++i) {
         ivec2 place = ivec2(i % 6, i / 6);
         ivec2 pixel = clamp(4 * texel - 1 + place, ivec2(0), last);
-        float its = side * circle(texelFetch(scene_depth, pixel, 0).r);
-        vec3 its_light = finite_light(texelFetch(scene_radiance, pixel, 0)).rgb;
-        float shines = tent(place.x) * tent(place.y) * coarse_share(0.5 * its) * luminance_of(its_light);
-        sum += shines * vec4(vec2(pixel) + 0.5, 0.5 * its, 1.0);
+        vec4 seen = texelFetch(seen_pixels, pixel, 0);
+        float its = seen.a == kUnknown ? 0.0 : side * seen.a;
+        float shines = tent(place.x) * tent(place.y) * coarse_share(its) * luminance_of(seen.rgb);
+        sum += shines * vec4(vec2(pixel) + 0.5, its, 1.0);
     }
     return sum.xyz / max(sum.w, 1e-20);
 }
@@ -41,9 +39,8 @@ void main() {
     bool is_near = gl_VertexID >= count;
     int index = is_near ? gl_VertexID - count : gl_VertexID;
     ivec2 texel = ivec2(index % texels.x, index / texels.x);
-    float mean_radius;
-    vec4 all = is_near ? coarse_mean(near_light, light_radii, 1, texel, mean_radius)
-                       : coarse_mean(far_light, light_radii, 0, texel, mean_radius);
+    vec2 uv = 2.0 * (vec2(texel) + 0.5) / focus.size.zw;
+    vec4 all = is_near ? textureLod(near_wide, uv, 0.0) : textureLod(far_wide, uv, 0.0);
     vec3 rest = (is_near ? texelFetch(near_rest, texel, 0) : texelFetch(far_rest, texel, 0)).rgb;
     vec3 excess = all.rgb - rest;
     bool shines = max(excess.r, max(excess.g, excess.b)) > 1e-5 * max(all.r, max(all.g, all.b));

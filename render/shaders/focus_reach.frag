@@ -1,19 +1,23 @@
-// What is to be done in a tile: widest radius [px] of the near circles that reach it, fine and coarse; if anything is
-// far in it, of the fine far circles that reach it, or a little; of small ones that reach over others, likewise.
+// What is to be done in a tile, from what it and its neighbors show.
 #version 450
 #include "lib/focus.glsl"
 
 layout(binding = 0) uniform sampler2D own_tiles;
 layout(binding = 1) uniform sampler2D own_small;
 
+// Widest radius [px] of the near circles that reach the tile, fine and coarse; if anything is far in it, of the fine far
+// circles that reach it, or a little; of wide far circles in it or beside it.
 layout(location = 0) out vec4 tile;
+// Of small circles: of near ones that reach the tile; if anything is behind the focus here, of those that are.
+layout(location = 1) out vec2 slight;
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    tile = texelFetch(own_tiles, here, 0);
-    bool is_far = tile.z > 0.0;
-    tile.z = is_far ? 0.25 : 0.0;
-    tile.w = texelFetch(own_small, here, 0).y > 0.0 ? 0.25 : 0.0;
+    vec4 own = texelFetch(own_tiles, here, 0);
+    slight = texelFetch(own_small, here, 0).xy;
+    bool is_far = own.z > 0.0;
+    bool is_behind = is_far || slight.y > 0.0;
+    tile = vec4(own.xy, is_far ? 0.25 : 0.0, 0.0);
     int most = focus.tiles.z;
     for (int y = -most; y <= most; ++y) {
         for (int x = -most; x <= most; ++x) {
@@ -22,9 +26,13 @@ void main() {
             float gap = length(vec2(max(abs(ivec2(x, y)) - 1, ivec2(0)) * kFocusTile));
             tile.x = max(tile.x, other.x > gap ? other.x : 0.0);
             tile.y = max(tile.y, other.y > gap ? other.y : 0.0);
-            vec4 small = max(abs(x), abs(y)) <= 1 ? texelFetch(own_small, there, 0) : vec4(0.0);
-            tile.z = max(tile.z, is_far && small.z > gap ? small.z : 0.0);
-            tile.w = max(tile.w, max(small.x, is_far ? small.y : 0.0));
+            tile.z = max(tile.z, is_far && other.w > gap ? other.w : 0.0);
         }
+    }
+    for (int i = 0; i < 9; ++i) {
+        ivec2 there = clamp(here + ivec2(i % 3, i / 3) - 1, ivec2(0), focus.tiles.xy - 1);
+        float far = texelFetch(own_tiles, there, 0).z;
+        tile.w = max(tile.w, coarse_share(far) > 0.0 ? far : 0.0);
+        slight.y = max(slight.y, is_behind ? texelFetch(own_small, there, 0).y : 0.0);
     }
 }

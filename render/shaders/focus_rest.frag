@@ -3,9 +3,9 @@
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D far_light;
-layout(binding = 1) uniform sampler2D near_light;
-layout(binding = 2) uniform sampler2D light_radii;
+layout(binding = 0) uniform sampler2D far_wide;
+layout(binding = 1) uniform sampler2D near_wide;
+layout(binding = 2) uniform sampler2D wide_radii;
 layout(binding = 3) uniform sampler2D behind_near;
 layout(binding = 4) uniform sampler2D mean_luminance;
 
@@ -32,14 +32,9 @@ vec4 without_highlight(vec4 light, inout float weighed_radius, vec2 uv) {
 }
 
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    vec2 uv = 2.0 * gl_FragCoord.xy / focus.size.zw;
-    float far_radius;
-    float near_radius;
-    vec4 far = coarse_mean(far_light, light_radii, 0, here, far_radius);
-    vec4 near = coarse_mean(near_light, light_radii, 1, here, near_radius);
-    far_rest = without_highlight(far, far_radius, uv);
-    near_rest = without_highlight(near, near_radius, uv);
-    radii = vec2(far_radius, near_radius);
+    vec2 uv = 2.0 * gl_FragCoord.xy / focus.size.zw;  // between four texels
+    radii = texture(wide_radii, uv).xy;
+    far_rest = without_highlight(texture(far_wide, uv), radii.x, uv);
+    near_rest = without_highlight(texture(near_wide, uv), radii.y, uv);
     behind = texture(behind_near, uv);
 }

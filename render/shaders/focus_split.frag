@@ -1,15 +1,18 @@
-// Half the picture, sorted by where its pixels stand: far behind the focus, far before it, and all but the latter.
-// Colors come with their share of the texel, radii too, so that neighbors mix as what they are.
+// Half the picture, sorted by where its pixels stand: far behind the focus, far before it, and all but the latter; of
+// the first two, what has wide circles apart. Colors come with their share of the texel.
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = 0) uniform sampler2D seen_pixels;
 
-layout(location = 0) out vec4 far_light;
-layout(location = 1) out vec4 near_light;
-layout(location = 2) out vec4 radii;  // [px] of far and near circles, by radius_weight; z: of far ones, by their share
-layout(location = 3) out vec4 behind_near;
+layout(location = 0) out vec4 far_light;     // fine
+layout(location = 1) out vec4 near_light;    // fine
+layout(location = 2) out vec4 far_kernels;   // of what shines in the texel; of what it shows
+layout(location = 3) out vec2 near_kernels;  // of what shines
+layout(location = 4) out vec4 far_wide;      // coarse
+layout(location = 5) out vec4 near_wide;     // coarse
+layout(location = 6) out vec2 wide_radii;    // [px] of both, by radius_weight
+layout(location = 7) out vec4 behind_near;
 
 // Under a tent over 4 x 4 pixels: wherever in its texel a light is, its middle and its width stay what they were.
 
@@ -18,23 +21,30 @@ void main() {
     ivec2 last = ivec2(focus.size.xy) - 1;
     far_light = vec4(0.0);
     near_light = vec4(0.0);
-    vec2 sum = vec2(0.0);
-    float far_radius = 0.0;
+    far_wide = vec4(0.0);
+    near_wide = vec4(0.0);
     behind_near = vec4(0.0);
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 4; ++x) {
-            ivec2 pixel = clamp(first + ivec2(x, y), ivec2(0), last);
-            float tent = (x == 1 || x == 2 ? 0.375 : 0.125) * (y == 1 || y == 2 ? 0.375 : 0.125);
-            vec4 light = tent * finite_light(texelFetch(scene_radiance, pixel, 0));
-            float diameter = circle(texelFetch(scene_depth, pixel, 0).r);
-            float is_near = near_share(diameter);
-            vec2 shares = vec2(far_share(diameter), is_near);
-            far_light += shares.x * light;
-            near_light += shares.y * light;
-            behind_near += is_near > 0.0 ? vec4(0.0) : light;
-            sum += 0.5 * abs(diameter) * radius_weight(light) * shares;
-            far_radius += 0.5 * abs(diameter) * shares.x * light.a;
-        }
+    wide_radii = vec2(0.0);
+    vec3 radii = vec3(0.0);
+    for (int i = 0; i < 16; ++i) {
+        ivec2 place = ivec2(i & 3, i >> 2);
+        vec4 seen = texelFetch(seen_pixels, clamp(first + place, ivec2(0), last), 0);
+        vec2 tent = mix(vec2(0.375), vec2(0.125), notEqual(place - 1 & 2, ivec2(0)));
+        float part = seen.a == kUnknown ? 0.0 : tent.x * tent.y;
+        vec4 light = part * vec4(seen.rgb, 1.0);
+        vec2 layers = vec2(far_share(2.0 * seen.a), near_share(2.0 * seen.a));
+        vec2 wide = layers * coarse_share(abs(seen.a));
+        vec2 fine = layers - wide;
+        far_light += fine.x * light;
+        near_light += fine.y * light;
+        far_wide += wide.x * light;
+        near_wide += wide.y * light;
+        behind_near += layers.y > 0.0 ? vec4(0.0) : light;
+        float shines = radius_weight(light);
+        radii += abs(seen.a) * vec3(fine.x * shines, fine.x * part, fine.y * shines);
+        wide_radii += abs(seen.a) * shines * wide;
     }
-    radii = vec4(sum, far_radius, 0.0);
+    far_kernels.xy = kernel_of(radii.x / max(radius_weight(far_light), 1e-20));
+    far_kernels.zw = kernel_of(radii.y / max(far_light.a, 1e-20));
+    near_kernels = kernel_of(radii.z / max(radius_weight(near_light), 1e-20));
 }

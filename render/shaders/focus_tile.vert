@@ -3,6 +3,7 @@
 #include "lib/focus.glsl"
 
 layout(binding = 7) uniform sampler2D focus_tiles;
+layout(binding = 8) uniform sampler2D slight_tiles;
 
 uniform int kind;          // bits of the tiles that are drawn, see below
 uniform vec2 target_size;  // [px] of the picture: a little more than it, where its half is rounded up
@@ -18,8 +19,9 @@ void main() {
     ivec2 place = ivec2(gl_InstanceID % focus.tiles.x, gl_InstanceID / focus.tiles.x);
     tile = texelFetch(focus_tiles, place, 0);
     bool blurred = max(tile.x, max(tile.y, tile.z)) > 0.0;
-    bool slight = tile.w > 0.0;
-    int is = blurred ? (slight ? kBlurredSlight : kBlurred) : (slight ? kSlight : kSharp);
+    vec2 slight = texelFetch(slight_tiles, place, 0).xy;
+    bool has_slight = max(slight.x, slight.y) > 0.0;
+    int is = blurred ? (has_slight ? kBlurredSlight : kBlurred) : (has_slight ? kSlight : kSharp);
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
     vec2 ndc = (vec2(place) + corner) * float(kFocusTile) / target_size * 2.0 - 1.0;
     gl_Position = (is & kind) != 0 ? vec4(ndc, 0.0, 1.0) : vec4(2.0, 2.0, 0.0, 1.0);

@@ -1,37 +1,28 @@
-// What of a tile is out of focus: widest radius [px] of its near circles that are gathered finely, and coarsely; of its
-// far ones. Apart from that, of small circles before and behind the focus, and of far ones that are gathered finely.
+// The same of tiles as focus_blocks.frag has of blocks. Of small circles before the focus, those that reach into the tile;
+// of far ones also, a little, those beside it: past the rim of something in it they may be seen.
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 1) uniform sampler2D scene_depth;
+layout(binding = 0) uniform sampler2D blocks;
+layout(binding = 1) uniform sampler2D small_of_blocks;
 
 layout(location = 0) out vec4 tile;
-layout(location = 1) out vec4 small;
+layout(location = 1) out vec2 small;
+
+const int kSide = kFocusTile / kFocusBlock;
 
 void main() {
-    vec2 first = vec2(ivec2(gl_FragCoord.xy) * kFocusTile + 1);
-    vec3 widest = vec3(0.0);
-    small = vec4(0.0);
-    for (int y = 0; y < kFocusTile; y += 2) {
-        for (int x = 0; x < kFocusTile; x += 2) {
-            vec4 depths = textureGather(scene_depth, (first + vec2(x, y)) / focus.size.xy);
-            for (int i = 0; i < 4; ++i) {
-                float diameter = circle(depths[i]);
-                float radius = 0.5 * abs(diameter);
-                bool is_large = 2.0 * radius > kSharpest;
-                bool is_near = diameter < 0.0;
-                widest = max(
-                    widest,
-                    vec3(
-                        is_large && is_near && coarse_share(radius) < 1.0 ? radius : 0.0,
-                        is_large && is_near && coarse_share(radius) > 0.0 ? radius : 0.0,
-                        is_large && !is_near ? radius : 0.0));
-                bool is_small = 2.0 * radius > kLeastCircle && 2.0 * radius < kBlurriest;
-                float fine_far = is_large && !is_near && coarse_share(radius) < 1.0 ? radius : 0.0;
-                vec2 its_small = is_small ? (is_near ? vec2(radius, 0.0) : vec2(0.0, radius)) : vec2(0.0);
-                small = max(small, vec4(its_small, fine_far, 0.0));
-            }
-        }
+    ivec2 first = kSide * ivec2(gl_FragCoord.xy);
+    ivec2 last = textureSize(blocks, 0) - 1;
+    tile = vec4(0.0);
+    small = vec2(0.0);
+    for (int i = 0; i < (kSide + 2) * (kSide + 2); ++i) {
+        ivec2 place = ivec2(i % (kSide + 2), i / (kSide + 2)) - 1;
+        ivec2 there = clamp(first + place, ivec2(0), last);
+        bool inside = all(greaterThanEqual(place, ivec2(0))) && all(lessThan(place, ivec2(kSide)));
+        vec2 its = texelFetch(small_of_blocks, there, 0).xy;
+        small = max(small, inside ? its : vec2(its.x, 0.0));
+        vec4 block = texelFetch(blocks, there, 0);
+        tile = max(tile, inside ? block : vec4(0.0, 0.0, min(block.z, 0.25), 0.0));
     }
-    tile = vec4(widest, 0.0);
 }

@@ -2,6 +2,7 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/glow.h"
 #include "render/passes/depth_of_field_pass.h"
+#include "render/passes/focus_block.h"
 #include "render/shaders/focus_gpu.h"
 #include "render/window_depth.h"
 #include "tests/render/scene_fixture.h"
@@ -171,6 +172,65 @@ TEST_CASE_FIXTURE(
     const Moments m = moments_of(photograph(view, spark(0.2f, 96, 96)));
     CHECK(std::abs(diameter_of(m) - 0.25 * 192) < 0.5);
     CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: a lamp before the night keeps its light, whatever gathers it") {
+    const RenderView view = lens_view(96, 96, 11);
+    for (const float diameter :
+         {-9.0f, -6.0f, -5.5f, -5.0f, -4.5f, -4.0f, 4.0f, 4.5f, 5.0f, 5.5f, 6.0f, 7.5f, 9.0f}) {
+        CAPTURE(diameter);
+        const float distance = distance_of(diameter, 11);
+        const Moments m = moments_of(photograph(view, [&](int x, int y) {
+            const bool lamp = x / 2 == 24 && y / 2 == 25;
+            return lamp ? Seen{Vec3(250), distance} : Seen{Vec3(0), kInfinity};
+        }));
+        // Half of it gathered from the picture, half from its half: each hides some of the other.
+        const double most = std::abs(diameter) == 4.5f ? 0.05 : 0.02;
+        CHECK(m.sum == doctest::Approx(1000).epsilon(most));
+        const double own = 0.25;  // of 2 x 2 px
+        const double found = 4 * std::sqrt(m.variance - 1.0 / 12 - own);
+        CHECK(std::abs(found - std::abs(double(diameter))) < 0.75);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: past a slightly blurred rim the far is seen in every tile") {
+    const RenderView view = lens_view(96, 96, kAll);
+    // The outline slants through a border of tiles, at x = 48.
+    const auto is_card = [](int x, int y) { return 8 * x + y < 8 * 48 + 40; };
+    const gpu::FloatImage image = photograph(view, [&](int x, int y) {
+        return is_card(x, y) ? Seen{Vec3(0), distance_of(-3.5f, kAll)} : Seen{Vec3(1), kInfinity};
+    });
+    for (int y = 8; y < 88; ++y) {
+        CAPTURE(y);
+        float inside = 0;
+        for (int x = 40; x < 56; ++x) {
+            inside += is_card(x, y) ? light_at(image, x, y) : 0.0f;
+        }
+        CHECK(inside > 0.2f);
+        CHECK(inside < 0.8f);
+    }
+}
+
+TEST_CASE("depth_of_field: kernels of the half picture are as wide as circles less the tents") {
+    const layout::FocusBlock block = make_focus_block(lens_view(64, 64, 14));
+    for (int i = 3 * layout::kKernelStep; i < layout::kKernels; ++i) {
+        CAPTURE(i);
+        const float kernel = block.kernel[i / 2][2 * (i % 2)];
+        double area = 0;
+        double square_sum = 0;
+        for (const Vec4& texel : block.texel) {
+            const auto covered = std::clamp(double(kernel) + 0.5 - double(texel.z), 0.0, 1.0);
+            area += covered;
+            square_sum += covered * double(texel.x * texel.x + texel.y * texel.y);
+        }
+        CHECK(double(block.kernel[i / 2][2 * (i % 2) + 1]) == doctest::Approx(1 / area));
+        const double radius = static_cast<double>(i) / layout::kKernelStep;
+        const double tents = 1.5;  // [px^2]
+        const double disc = 4 * (0.5 * square_sum / area) + tents;
+        CHECK(std::abs(2 * std::sqrt(disc) - radius) < 0.1);
+    }
 }
 
 TEST_CASE_FIXTURE(Darkroom, "depth_of_field: the sky is blurred as what is infinitely far away") {

@@ -42,11 +42,23 @@ float aperture_radius(vec2 place) {
     return length(place) * cos(from_middle) / cos(0.5 * slice);
 }
 
-// Kernel whose disc, after what reading texels of side `texel` [px] and showing half as many pixels blur by
-// themselves, is as wide as one of `radius` [px]: variances add.
-float fitted_radius(float radius, float texel) {
-    float done = 0.25 * texel * texel + 7.0 / 6.0;
-    return sqrt(max(radius * radius - done / focus.aperture.w, 0.0));
+// Beside the light of a pixel that is not finite, in place of its circle: it is nobody's.
+const float kUnknown = 32768.0;
+
+// Kernel in the half picture [texels], and 1 / the texels that it covers, whose disc is as wide as one of `radius` [px]
+// once the tents of splitting and of showing half as many pixels have blurred it: variances add.
+vec2 kernel_of(float radius) {
+    float place = float(kKernelStep) * radius;
+    int i = clamp(int(place), 0, kKernels - 2);
+    vec4 low = focus.kernel[i >> 1];
+    vec4 high = focus.kernel[(i + 1) >> 1];
+    bool odd = (i & 1) != 0;
+    return mix(odd ? low.zw : low.xy, odd ? high.xy : high.zw, place - float(i));
+}
+
+// Share of what has a circle or kernel that lies clearly before what has `own`: over it, not beside it.
+float before(float circle, float own) {
+    return clamp((own - circle) / (0.1 * own + 0.1) - 1.0, 0.0, 1.0);  // by eye
 }
 
 // Light with a 1 beside it; NaN and infinity are nobody's light.
@@ -58,25 +70,8 @@ float luminance_of(vec3 light) {
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// Radii are kept times this, so that of neighbors that are mixed the one that shines most decides: else a lamp before the
-// night gets circles of both.
+// Of neighbors that are mixed the one that shines most decides about the circle: else a lamp before the night gets one
+// of both.
 float radius_weight(vec4 light) {
     return luminance_of(light.rgb) + 1e-6 * light.a;
-}
-
-// Mean of the 2 x 2 texels of a layer under one of half its size, of those whose circles are coarse; `mean_radius` as
-// radii are kept.
-vec4 coarse_mean(sampler2D layer, sampler2D radii, int component, ivec2 texel, out float mean_radius) {
-    ivec2 last = textureSize(layer, 0) - 1;
-    vec4 sum = vec4(0.0);
-    mean_radius = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 there = min(2 * texel + ivec2(i & 1, i >> 1), last);
-        vec4 light = texelFetch(layer, there, 0);
-        float radius = texelFetch(radii, there, 0)[component];
-        float share = 0.25 * coarse_share(radius / max(radius_weight(light), 1e-20));
-        sum += share * light;
-        mean_radius += share * radius;
-    }
-    return sum;
 }

@@ -1,0 +1,30 @@
+// What of a block is out of focus: widest radius [px] of its near circles that are gathered finely, and coarsely; of its
+// far ones, and of those of them that are gathered finely. Apart from that, of small circles before and behind the focus.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 1) uniform sampler2D scene_depth;
+
+layout(location = 0) out vec4 block;
+layout(location = 1) out vec2 small;
+
+void main() {
+    vec2 first = vec2(ivec2(gl_FragCoord.xy) * kFocusBlock + 1);
+    block = vec4(0.0);
+    small = vec2(0.0);
+    for (int quad = 0; quad < 4; ++quad) {
+        vec2 place = first + vec2(quad & 1, quad >> 1) * 2.0;
+        vec4 depths = textureGather(scene_depth, place / focus.size.xy);
+        for (int i = 0; i < 4; ++i) {
+            float diameter = circle(depths[i]);
+            float radius = 0.5 * abs(diameter);
+            vec2 side = diameter < 0.0 ? vec2(radius, 0.0) : vec2(0.0, radius);
+            float fine = coarse_share(radius) < 1.0 ? 1.0 : 0.0;
+            float coarse = coarse_share(radius) > 0.0 ? 1.0 : 0.0;
+            vec2 large = 2.0 * radius > kSharpest ? side : vec2(0.0);
+            block = max(block, vec4(large.x * fine, large.x * coarse, large.y, large.y * fine));
+            bool is_small = 2.0 * radius > kLeastCircle && 2.0 * radius < kBlurriest;
+            small = max(small, is_small ? side : vec2(0.0));
+        }
+    }
+}

@@ -1,0 +1,115 @@
+// What reaches a texel of a quarter of the picture, of coarse circles: taps that fill the aperture ask whether the circle
+// there comes as far as here. The wider the circles, the coarser the level that is read, so that they leave no gaps.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 0) uniform sampler2D far_rest;  // with levels
+layout(binding = 1) uniform sampler2D near_rest;
+layout(binding = 2) uniform sampler2D rest_radii;
+layout(binding = 7) uniform sampler2D focus_tiles;
+
+layout(location = 0) out vec4 far_coarse;   // with its share of the texel
+layout(location = 1) out vec4 near_coarse;  // with its coverage
+
+const int kCell = 4;           // side of a texel [px]
+const float kNarrowest = 0.2;  // circle that taps can tell, of the widest
+
+// Side of a texel of `level` [px].
+float side_of(float level) {
+    return exp2(level + 1.0);
+}
+
+float square(float x) {
+    return x * x;
+}
+
+// Over how much a circle ends among taps for the `widest` [px]: those lie too far apart to show a rim of 1 px of one that
+// is less.
+float rim_of(float as_wide, float widest) {
+    return mix(max(0.25 * widest, 1.0), 1.0, as_wide);
+}
+
+// 1 for circles as wide as the widest, 0 for all that are clearly less.
+float is_as_wide(float radius, float widest) {
+    return clamp(1.0 - (widest - radius) / max(0.1 * widest, 1.0), 0.0, 1.0);
+}
+
+// Enough taps to miss no texel of a disc.
+int taps_for(float radius, float level) {
+    float texels = 3.14159265 * square(radius / side_of(level));
+    return clamp(int(1.3 * texels), 8, kFocusTaps);
+}
+
+// As what they go through on the way to the picture widens discs: variances add. Texels are of side `texel` [px].
+float fitted_radius(float radius, float texel) {
+    float done = 0.25 * texel * texel + 25.0 / 6.0;
+    return sqrt(max(radius * radius - done / focus.aperture.w, 0.0));
+}
+
+// What of a layer lies over a place, by the area that its circles are spread over. The widest that may come here bounds
+// the search. Discs before the focus stand on their heads.
+vec4 gather_near(vec2 uv, float reach, float level, int taps) {
+    vec2 stride = 0.25 * reach / vec2(textureSize(near_rest, 0));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < taps; ++i) {
+        float through = sqrt((float(i) + 0.5) / float(taps));  // radius of the aperture
+        vec2 there = uv + stride * through * focus.tap[i].xy;
+        vec4 light = textureLod(near_rest, there, level - 1.0);
+        float its = textureLod(rest_radii, there, level - 1.0).y / max(radius_weight(light), 1e-20);
+        float spread = clamp(fitted_radius(its, side_of(level)) / reach, kNarrowest, 1.0);
+        float rim = rim_of(is_as_wide(its, reach), reach) / reach;
+        float reached = clamp((spread - through) / rim + 0.5, 0.0, 1.0);
+        sum += light * (reached / (spread * spread + rim * rim / 12.0));
+    }
+    return sum / float(max(taps, 1));
+}
+
+// How a circle of `radius` is spread over a place that a kernel of `widest` reads at `through`, against one as wide.
+float spread_behind(float radius, float widest, float through) {
+    // A rim is soft, but not that of the circle that the kernel is made for.
+    float as_wide = is_as_wide(radius, widest);
+    float rim = rim_of(as_wide, widest);
+    float reached = clamp((radius - through * widest) / rim + 0.5 + 0.5 * as_wide, 0.0, 1.0);
+    radius = max(radius, kNarrowest * widest);
+    float area = radius * radius + (1.0 - as_wide) * rim * rim / 12.0;
+    return reached * max(widest * widest, 0.25) / max(area, 0.25);
+}
+
+// What lies behind the focus. The circle of the texel itself bounds what is behind it, or would reach before it.
+vec4 gather_far(vec2 uv, float radius, float level, int taps) {
+    float side = side_of(level);
+    float widest = fitted_radius(radius, side);
+    vec2 stride = 0.25 * widest / vec2(textureSize(far_rest, 0));
+    vec4 front = vec4(0.0);
+    vec4 beside = vec4(0.0);
+    for (int i = 0; i < taps; ++i) {
+        float through = sqrt((float(i) + 0.5) / float(taps));
+        vec2 there = uv - stride * through * focus.tap[i].xy;
+        vec4 light = textureLod(far_rest, there, level - 1.0);
+        float its = textureLod(rest_radii, there, level - 1.0).x / max(radius_weight(light), 1e-20);
+        float over = before(its, radius);
+        light *= spread_behind(fitted_radius(min(its, radius), side), widest, through);
+        front += over * light;
+        beside += (1.0 - over) * light;
+    }
+    front /= max(front.a, float(max(taps, 1)));
+    return front + (1.0 - front.a) * beside / max(beside.a, 1e-5);
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(far_rest, 0));
+
+    vec4 tile = texelFetch(focus_tiles, min(kCell * here / kFocusTile, focus.tiles.xy - 1), 0);
+
+    // Beside what is far, what is seen past the rims of fine circles.
+    vec4 own = texelFetch(far_rest, here, 0);
+    float beside = tile.w > 0.0 ? kFineRadius : 0.0;
+    float radius = own.a > 0.0 ? texelFetch(rest_radii, here, 0).x / max(radius_weight(own), 1e-20) : beside;
+    float level = max(level_of(radius), 1.0);
+    vec4 far = gather_far(uv, radius, level, radius > 0.0 ? taps_for(radius, level) : 0);
+    far_coarse = far * (max(own.a, 0.01) / max(far.a, 1e-5));
+
+    level = max(level_of(tile.y), 1.0);
+    near_coarse = gather_near(uv, tile.y, level, tile.y > 0.0 ? taps_for(tile.y, level) : 0);
+}

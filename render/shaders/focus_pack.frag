@@ -1,0 +1,15 @@
+// The picture with the circle of every pixel beside its light, so that the passes that read many fetch once.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 1) uniform sampler2D scene_depth;
+
+layout(location = 0) out vec4 seen;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec4 light = finite_light(texelFetch(scene_radiance, here, 0));
+    float radius = 0.5 * circle(texelFetch(scene_depth, here, 0).r);
+    seen = vec4(light.rgb, light.a > 0.0 ? radius : kUnknown);
+}

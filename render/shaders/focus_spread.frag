@@ -1,0 +1,16 @@
+// Widest radius [px] of the small circles before the focus that reach a block.
+#version 450
+#include "lib/focus.glsl"
+
+layout(binding = 0) uniform sampler2D small_of_blocks;
+
+layout(location = 0) out float widest;
+
+void main() {
+    ivec2 last = textureSize(small_of_blocks, 0) - 1;
+    widest = 0.0;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 there = ivec2(gl_FragCoord.xy) + ivec2(i % 3, i / 3) - 1;
+        widest = max(widest, texelFetch(small_of_blocks, clamp(there, ivec2(0), last), 0).x);
+    }
+}
