@@ -461,6 +461,30 @@ TEST_CASE("ocean: foam fades by an e-th in its time, and grows where water is sq
     CHECK(foam.coverage[8] == 0);  // the trough
 }
 
+TEST_CASE("ocean: foam grows by how little area the determinant of the shift leaves") {
+    Ocean ocean = kSmall;
+    ocean.wind_speed = 20;
+    ocean.choppiness = 2;
+    ocean.foam_threshold = 0.9f;
+    const OceanState state = ocean_at_time(ocean, 3.0);
+    const OceanCascade& cascade = state.cascades[0];
+    OceanFoam foam;
+    foam.coverage.assign(3 * 32 * 32, 0.3f);
+    step_ocean_foam(ocean, state, 0.02f, foam);
+    double growing = 0;
+    for (std::size_t i = 0; i < 32 * 32; ++i) {
+        const double xx = cascade.shift_xx[i];
+        const double zz = cascade.shift_zz[i];
+        const double xz = cascade.shift_xz[i];
+        const double left = (1 + xx) * (1 + zz) - xz * xz;
+        const double growth = 60 * 0.02 * std::max(0.9 - left, 0.0);
+        const double expected = (0.3 + growth) / (1 + growth) * std::exp(-0.02 / 4);
+        CHECK(std::abs(foam.coverage[i] - expected) < 1e-6);
+        growing += left < 0.9 && std::abs(xz) > 0.05 ? 1 : 0;
+    }
+    CHECK(growing > 20);
+}
+
 TEST_CASE("ocean: foam stays between 0 and 1 for steps of any length") {
     Ocean ocean = kSmall;
     ocean.choppiness = 4;
