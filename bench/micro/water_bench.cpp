@@ -25,9 +25,10 @@ std::size_t size_of(const benchmark::State& state) {
 }
 
 void per_point(benchmark::State& state, std::size_t points) {
-    state.counters["ns_per_point"] = benchmark::Counter(
-        static_cast<double>(points) * 1e-9,
-        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.counters["per_point"] = benchmark::Counter(
+        static_cast<double>(points),
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert,
+        benchmark::Counter::kIs1000);
 }
 
 struct Spectrum {
