@@ -1,0 +1,26 @@
+// The second half of the ocean's transform, over the numbers along x: a work group a row of one cascade. Writes what
+// OceanFields describes.
+#version 450
+#include "lib/fft_line.glsl"
+
+layout(std430, binding = 2) readonly buffer Lines {
+    Quad lines[];
+};
+layout(binding = 0, rgba32f) writeonly uniform image2DArray displacement;
+layout(binding = 1, rgba32f) writeonly uniform image2DArray derivatives;
+
+void main() {
+    uint cascade = gl_WorkGroupID.y;
+    uint z = gl_WorkGroupID.x;
+    for (uint n = gl_LocalInvocationID.x; n < SIZE; n += kLineGroup) {
+        store_line(n, lines[(cascade * SIZE + z) * SIZE + n]);
+    }
+    transform_line();
+    for (uint x = gl_LocalInvocationID.x; x < SIZE; x += kLineGroup) {
+        // height, shift_x, shift_xx, slope_x; shift_zz, slope_z, shift_xz, shift_z
+        Quad field = load_line(x);
+        ivec3 at = ivec3(x, z, cascade);
+        imageStore(displacement, at, vec4(field.ab.y, field.ab.x, field.cd.w, field.cd.z));
+        imageStore(derivatives, at, vec4(field.ab.w, field.cd.y, field.ab.z, field.cd.x));
+    }
+}

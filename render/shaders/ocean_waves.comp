@@ -1,0 +1,58 @@
+// Waves at this moment and the first half of their transform, over the numbers along z (water.fft-synthesis): a work
+// group a line of one cascade. Spectra of two real fields a and b are one complex line a + i b; the pairs are those of
+// systems/water/ocean_kernels.h.
+#version 450
+#include "lib/fft_line.glsl"
+
+// Wave (n, m) of cascade c, with n waves across the patch along x and m along z, is at (c * SIZE + n) * SIZE + m; the
+// numbers from SIZE / 2 on are those from -SIZE / 2 on.
+layout(std430, binding = 0) readonly buffer Waves {
+    vec4 waves[];  // height ahead.xy e^(-i omega t) + behind.zw e^(i omega t) [m]
+};
+layout(std430, binding = 1) readonly buffer Frequencies {
+    float frequencies[];  // omega [rad/s]
+};
+// Point z of line n is at (c * SIZE + z) * SIZE + n, for the second half.
+layout(std430, binding = 2) writeonly buffer Lines {
+    Quad lines[];
+};
+
+uniform vec4 patches;         // sides of the cascades [m]
+uniform float choppiness;
+uniform vec2 time_in_turns;   // t / 2 pi [s/rad]: a float and what it lacks
+
+float signed_number(uint place) {
+    return float(int(place) - (place < SIZE / 2u ? 0 : int(SIZE)));
+}
+
+/// Sine and cosine of omega t, whose turns are counted in double precision.
+vec2 phase_of(float frequency) {
+    double turns = double(frequency) * (double(time_in_turns.x) + double(time_in_turns.y));
+    float angle = kFullTurn * float(turns - floor(turns));
+    return vec2(sin(angle), cos(angle));
+}
+
+Quad spectra_of(uint wave, vec2 k) {
+    vec4 h0 = waves[wave];
+    vec2 phase = phase_of(frequencies[wave]);
+    vec2 h = (h0.xy + h0.zw) * phase.y + vec2(h0.y - h0.w, h0.z - h0.x) * phase.x;
+    float number = length(k);
+    vec2 push = number > 0.0 ? choppiness * k / number : vec2(0.0);
+    return Quad(
+        vec4((1.0 - push.x) * h, -(k.x * push.x + k.x) * h),
+        vec4(-(k.y * push.y + k.y) * h, -(k.x * push.y + push.y) * h));
+}
+
+void main() {
+    uint cascade = gl_WorkGroupID.y;
+    uint n = gl_WorkGroupID.x;
+    float step = kFullTurn / patches[cascade];
+    for (uint m = gl_LocalInvocationID.x; m < SIZE; m += kLineGroup) {
+        vec2 k = step * vec2(signed_number(n), signed_number(m));
+        store_line(m, spectra_of((cascade * SIZE + n) * SIZE + m, k));
+    }
+    transform_line();
+    for (uint z = gl_LocalInvocationID.x; z < SIZE; z += kLineGroup) {
+        lines[(cascade * SIZE + z) * SIZE + n] = load_line(z);
+    }
+}
