@@ -6,6 +6,9 @@
 #include "render/render_frame.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace limn {
@@ -25,6 +28,20 @@ Pass* OptionalPass<Pass>::get(gpu::Device& device, Result<Pass> (*create)(gpu::D
 }
 
 namespace {
+
+/// Numbers that code wrote, brought to where a file may have them; what is none counts as 0.
+template <typename Setting>
+Setting within_ranges(Setting setting) {
+    visit_fields(setting, [](std::string_view, auto& field, const FieldMeta& meta = {}) {
+        if constexpr (std::is_same_v<decltype(field), float&>) {
+            constexpr double kMost = 1e6;  // of what has no range
+            const double number = std::isnan(field) ? 0.0 : static_cast<double>(field);
+            field = static_cast<float>(
+                std::clamp(number, std::max(meta.min, -kMost), std::min(meta.max, kMost)));
+        }
+    });
+    return setting;
+}
 
 bool opens_shutter(const MotionBlur& blur) {
     return blur.shutter > 0.0f && blur.longest > 0.0f;
@@ -130,10 +147,10 @@ LensSettings lens_settings(const World& world, const RenderView& view) {
         settings.antialiasing = rendering->antialiasing;
     }
     if (const auto* glare = world.find_resource<Glare>()) {
-        settings.glare = *glare;
+        settings.glare = within_ranges(*glare);
     }
     if (const auto* glow = world.find_resource<Glow>()) {
-        settings.glow = *glow;
+        settings.glow = within_ranges(*glow);
     }
     if (const auto* blur = world.find_resource<MotionBlur>()) {
         settings.motion_blur = *blur;

@@ -10,6 +10,20 @@
 #include <cstdint>
 
 namespace limn {
+namespace {
+
+/// Light and opacity that can be reckoned with; what is no number is none.
+Vec4 sound_color(const Vec4& color) {
+    constexpr float kMostLight = 65504.0f;
+    const auto within = [](float x, float most) { return x > 0.0f ? std::min(x, most) : 0.0f; };
+    return {
+        within(color.x, kMostLight),
+        within(color.y, kMostLight),
+        within(color.z, kMostLight),
+        within(color.w, 1.0f)};
+}
+
+}  // namespace
 
 void append_speed_lines(
     const MeshData& mesh,
@@ -28,6 +42,7 @@ void append_speed_lines(
         glm::cross(linear[2], linear[0]),
         glm::cross(linear[0], linear[1]));
     const float side = glm::determinant(linear) < 0.0f ? -1.0f : 1.0f;
+    const Vec4 color = sound_color(settings.color);
     for (std::int64_t i = 0; i < count && seconds > 0.0f; ++i) {
         const auto vertex = static_cast<std::size_t>(i * vertices / count);
         const Vec3 head = transform_point(now, mesh.positions[vertex]);
@@ -40,7 +55,7 @@ void append_speed_lines(
                 {.head = head,
                  .width = settings.width,
                  .tail = head - settings.length_scale * velocity,
-                 .color = settings.color});
+                 .color = color});
         }
     }
 }

@@ -1,3 +1,4 @@
+#include "ecs/components/camera_lens.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/motion_blur.h"
@@ -6,6 +7,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
+#include "render/thin_lens.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -141,12 +143,104 @@ std::vector<LensEffect> lens_effects() {
     return effects;
 }
 
+void set_to(float& field, float number) {
+    field = number;
+}
+void set_to(Vec2& field, float number) {
+    field = Vec2(number);
+}
+void set_to(Vec4& field, float number) {
+    field = Vec4(number);
+}
+void set_to(int& field, float number) {
+    if (!std::isnan(number)) {
+        field = static_cast<int>(std::clamp(number, -2e9f, 2e9f));
+    }
+}
+template <typename Other>
+void set_to(Other& /*field*/, float /*number*/) {}
+
 bool is_finite_everywhere(const gpu::FloatImage& image) {
     return std::all_of(
         image.pixels.begin(), image.pixels.end(), [](float v) { return std::isfinite(v); });
 }
 
+/// Sets each field of `setting` to each of many numbers, and draws what `use` makes of it;
+/// an entity that it makes is gone afterwards.
+template <typename Setting, typename Use>
+void try_numbers(const std::string& name, const Setting& setting, const Use& use) {
+    Moving scene;
+    int fields = 0;
+    Setting counted = setting;
+    visit_fields(counted, [&](std::string_view, auto&, const FieldMeta& = {}) { ++fields; });
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < fields; ++i) {
+        for (const float number :
+             {std::numeric_limits<float>::quiet_NaN(), kInfinity, 0.0f, -1.0f, 1e30f}) {
+            Setting broken = setting;
+            std::string field;
+            int at = 0;
+            visit_fields(
+                broken, [&](std::string_view its_name, auto& value, const FieldMeta& = {}) {
+                    if (at++ == i) {
+                        field = its_name;
+                        set_to(value, number);
+                    }
+                });
+            CAPTURE(name);
+            CAPTURE(field);
+            CAPTURE(number);
+            RenderView view = scene.seen(24, 16);
+            const Entity made = use(scene, view, broken);
+            CHECK(is_finite_everywhere(scene.radiance(view)));
+            if (made != Entity{}) {
+                scene.world.destroy(made);
+            }
+        }
+    }
+}
+
 }  // namespace
+
+TEST_CASE("lens: whatever number any setting has, the picture is one of numbers") {
+    const auto resource = [](Moving& scene, RenderView&, const auto& setting) {
+        scene.world.insert_resource(setting);
+        return Entity{};
+    };
+    const auto component = [](Moving& scene, RenderView&, const auto& setting) {
+        return scene.world.create(setting, WorldTransform{at({0, 0, -0.5f})});
+    };
+    try_numbers("glow", Glow{}, resource);
+    try_numbers("glow by a mask", Glow{.kind = GlowKind::Mask}, resource);
+    try_numbers("glare", Glare{.strength = 1}, resource);
+    try_numbers("rain", LensRain{.amount = 1}, resource);
+    try_numbers("shock ring", RippleRing{.age = 0.1f, .amplitude = 0.1f}, component);
+    try_numbers("hot air", HeatHaze{.strength = 0.1f}, component);
+    try_numbers("screen ripple", ScreenRipple{.age = 0.25f}, component);
+    for (const MotionBlurMode mode : kMotionBlurModes) {
+        try_numbers(
+            "motion blur " + std::to_string(static_cast<int>(mode)),
+            MotionBlur{.mode = mode},
+            resource);
+    }
+    try_numbers(
+        "speed lines",
+        SpeedLines{.count = 10, .min_speed = 1},
+        [](Moving& scene, RenderView&, const SpeedLines& lines) {
+            scene.world.add(scene.mover, lines);
+            return Entity{};
+        });
+    for (const FocusMethod method : {FocusMethod::Gather, FocusMethod::Mip}) {
+        try_numbers(
+            "lens",
+            Lens{.f_number = 0.05f, .focus_distance = 0.5f, .method = method},
+            [](Moving&, RenderView& view, const Lens& lens) {
+                const Result<LensView> made = make_lens_view(lens, Camera{});
+                view.lens = made ? *made : LensView{};
+                return Entity{};
+            });
+    }
+}
 
 TEST_CASE("lens: each effect that is turned off adds no pass and changes no bit of the display") {
     Moving plain;
