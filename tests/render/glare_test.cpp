@@ -11,13 +11,14 @@ namespace {
 
 constexpr int kSide = 128;
 
-/// What the pass adds to black with one pixel of green light in the middle of four that are one
+/// What the pass adds to black with one pixel of light in the middle of four that are one
 /// texel of half the size; `second` is the light of another one in a corner.
-gpu::FloatImage glare_of(float light, const Glare& glare, float second = 0) {
+gpu::FloatImage
+glare_of(float light, const Glare& glare, float second = 0, const Vec3& color = {0, 1, 0}) {
     static const GlarePass pass = *create_glare_pass(shared_device());
     static FrameGraph graph(shared_device());
     std::vector<Vec4> texels(kSide * kSide, Vec4(0, 0, 0, 1));
-    texels[kSide / 2 * kSide + kSide / 2].y = light;
+    texels[kSide / 2 * kSide + kSide / 2] = Vec4(light * color, 1);
     texels[3 * kSide + 3].y = second;
     gpu::Texture radiance("radiance", {.format = GL_RGBA32F, .width = kSide, .height = kSide});
     radiance.upload<Vec4>(texels, GL_RGBA, GL_FLOAT);
@@ -81,6 +82,24 @@ TEST_CASE_FIXTURE(RenderTest, "glare: six blades make six streaks, five make ten
         CHECK(rises == streaks);
         CHECK(2 * glare_lines({.blades = blades}) == streaks);
     }
+}
+
+TEST_CASE_FIXTURE(
+    RenderTest, "glare: of white light, red goes farther than green, and blue less far") {
+    const gpu::FloatImage made =
+        glare_of(1000, {.strength = 1, .blades = 4, .length = 0.8f}, 0, Vec3(1));
+    double sums[3] = {};
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                // Of the lamp's own pixel glare_of() takes off green.
+                const bool lamp = made.at(x, y, 0) > 500;
+                sums[c] += lamp ? 0.0 : static_cast<double>(made.at(x, y, c));
+            }
+        }
+    }
+    CHECK(sums[0] / sums[1] == doctest::Approx(610.0 / 550).epsilon(0.01));
+    CHECK(sums[2] / sums[1] == doctest::Approx(465.0 / 550).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(RenderTest, "glare: what is no number never spreads") {

@@ -167,6 +167,34 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(Shutter, "motion blur: of two things that cross, each smears along its own way") {
+    // Squares of 12 px side by side; the left one goes 16 px to the right, the other 12 px up.
+    const auto move = [&](const Vec2& middle, const Vec2& way) {
+        const auto pose = [](const Vec2& pixel) {
+            return affine_from(
+                Vec3((pixel - 0.5f * kSize) / kPerMeter, 0),
+                {1, 0, 0, 0},
+                {6 / kPerMeter, 6 / kPerMeter, 1});
+        };
+        const Entity entity = place(square, unlit({1, 1, 1}), pose(middle));
+        world.get<PreviousWorldTransform>(entity).world = pose(middle - way);
+    };
+    move({20, 32}, {16, 0});
+    move({46, 32}, {0, 12});
+    open(360);
+    const gpu::FloatImage blurred = picture();
+    for (int y = 16; y < 48; ++y) {
+        CAPTURE(y);
+        const double want = oracle::bar_coverage(y + 0.5, 26, 38, 12);
+        CHECK(std::abs(blurred.at(46, y, 0) - want) < 0.12);
+    }
+    for (int x = 4; x < 36; ++x) {
+        CAPTURE(x);
+        const double want = oracle::bar_coverage(x + 0.5, 14, 26, 16);
+        CHECK(std::abs(blurred.at(x, 32, 0) - want) < 0.12);
+    }
+}
+
 TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
     world.insert_resource(Environment{
         .sky = SkyKind::Gradient,

@@ -307,6 +307,7 @@ TEST_CASE_FIXTURE(
     CHECK(leading >= 1);
     CHECK(trailing >= 2 * leading);
     CHECK(blurred[first] < 0.6);
+    CHECK(blurred[last] < 0.8);  // what comes from ahead of it is dark
 }
 
 // ---- stretched geometry

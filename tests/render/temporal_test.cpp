@@ -106,6 +106,40 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what appears from behind something keeps 
     CHECK(gone.at(40, 32, 0) == doctest::Approx(1).epsilon(0.01));
 }
 
+TEST_CASE_FIXTURE(Temporal, "temporal: what goes by and darkens leaves no light behind") {
+    // Faint stripes, so that a neighborhood has some variance.
+    std::vector<Entity> stripes;
+    std::vector<MaterialId> colors;
+    for (int i = 0; i < 60; ++i) {
+        colors.push_back(unlit({5, 5, 5}));
+        const auto begin = static_cast<float>(-40 + 2 * i);
+        stripes.push_back(bar(colors.back(), begin, begin + 2, 1.5f));
+    }
+    const auto step = [&] {
+        for (const Entity entity : stripes) {
+            auto& pose = world.get<WorldTransform>(entity).world;
+            world.get<PreviousWorldTransform>(entity).world = pose;
+            pose.row[0].w += 1.5f / Shutter::kPerMeter;
+        }
+        return picture();
+    };
+    smooth(true);
+    for (int i = 0; i < 8; ++i) {
+        static_cast<void>(step());
+    }
+    std::vector<MaterialId> dark;
+    for (std::size_t i = 0; i < stripes.size(); ++i) {
+        dark.push_back(unlit(Vec3(i % 2 == 0 ? 0.45f : 0.55f)));
+        world.get<MeshInstance>(stripes[i]).material = dark.back();
+    }
+    const gpu::FloatImage now = step();
+    for (int x = 20; x < 44; ++x) {
+        CAPTURE(x);
+        CHECK(now.at(x, 32, 0) < 0.65f);
+        CHECK(now.at(x, 32, 0) > 0.4f);
+    }
+}
+
 TEST_CASE_FIXTURE(Temporal, "temporal: a picture that goes by stays where it is and smooth") {
     std::vector<Entity> bars;
     for (int i = 0; i < 12; ++i) {
