@@ -10,8 +10,6 @@
 namespace limn::test {
 namespace {
 
-constexpr int kSize = Shutter::kSize;
-
 bool all_finite(const gpu::FloatImage& image) {
     return std::all_of(
         image.pixels.begin(), image.pixels.end(), [](float v) { return std::isfinite(v); });
