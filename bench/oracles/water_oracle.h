@@ -94,4 +94,62 @@ ocean_at(const OceanCascade& cascade, double choppiness, double x, double z, dou
     return sum;
 }
 
+/// The fields of OceanPoint on the cascade's own grid, each a plane as OceanCascade's: by a Fourier
+/// sum of each, from the waves that run ahead alone.
+struct OceanPlanes {
+    std::vector<double> height;
+    std::vector<double> shift_x;
+    std::vector<double> shift_z;
+    std::vector<double> slope_x;
+    std::vector<double> slope_z;
+    std::vector<double> shift_xx;
+    std::vector<double> shift_zz;
+    std::vector<double> shift_xz;
+};
+
+[[nodiscard]] inline OceanPlanes
+ocean_planes(const OceanCascade& cascade, double choppiness, double time) {
+    const int size = cascade.size;
+    const double step = kFullTurn / static_cast<double>(cascade.patch);
+    std::vector<Complex> h(cascade.ahead_re.size());
+    for (int n = 0; n < size; ++n) {
+        for (int m = 0; m < size; ++m) {
+            const int at = n * size + m;
+            const int mirrored = (size - n) % size * size + (size - m) % size;
+            const double turn = -static_cast<double>(cascade.frequency[at]) * time;
+            const Complex wave =
+                Complex(cascade.ahead_re[at], cascade.ahead_im[at]) * std::polar(1.0, turn);
+            h[at] += wave;
+            h[mirrored] += std::conj(wave);
+        }
+    }
+    const auto plane = [&](auto&& factor) {
+        std::vector<Complex> spectrum(h.size());
+        for (int at = 0; at < size * size; ++at) {
+            const int n = at / size;
+            const int m = at % size;
+            const double kx = step * (n < size / 2 ? n : n - size);
+            const double kz = step * (m < size / 2 ? m : m - size);
+            const double k = std::hypot(kx, kz);
+            spectrum[at] = k > 0 ? h[at] * factor(kx, kz, k) : Complex(0);
+        }
+        std::vector<double> field;
+        for (const Complex& value : inverse_dft_2d(spectrum, static_cast<std::size_t>(size))) {
+            field.push_back(value.real());
+        }
+        return field;
+    };
+    const Complex i(0, 1);
+    const double c = choppiness;
+    return {
+        plane([](double, double, double) { return Complex(1); }),
+        plane([=](double kx, double, double k) { return i * c * kx / k; }),
+        plane([=](double, double kz, double k) { return i * c * kz / k; }),
+        plane([=](double kx, double, double) { return i * kx; }),
+        plane([=](double, double kz, double) { return i * kz; }),
+        plane([=](double kx, double, double k) { return Complex(-c * kx * kx / k); }),
+        plane([=](double, double kz, double k) { return Complex(-c * kz * kz / k); }),
+        plane([=](double kx, double kz, double k) { return Complex(-c * kx * kz / k); })};
+}
+
 }  // namespace limn::oracle

@@ -10,6 +10,7 @@
 #include "content/app/quality_surfaces.h"
 #include "content/app/quality_tone.h"
 #include "content/app/quality_velocity.h"
+#include "content/app/quality_water.h"
 
 namespace limn {
 
@@ -37,6 +38,9 @@ std::span<const QualityEffect> quality_effects() {
         {"dof", "the mean of what 256 points of the lens see", measure_dof},
         {"glow", "a convolution in double precision, and the laws of light", measure_glow},
         {"ripple", "shifts by geometry in double precision", measure_ripple},
+        {"water",
+         "Fourier sums term by term in double precision, the dispersion relation",
+         measure_water},
     };
     return kEffects;
 }

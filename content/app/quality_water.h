@@ -1,0 +1,11 @@
+#pragma once
+
+#include "content/app/quality.h"
+
+namespace limn {
+
+/// Open water beside sums of all its waves, heights and speeds beside the laws; ripples that keep
+/// the water.
+[[nodiscard]] Result<QualityReport> measure_water(HeadlessRenderer& headless);
+
+}  // namespace limn
