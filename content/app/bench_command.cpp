@@ -1,5 +1,6 @@
 #include "content/app/bench_command.h"
 
+#include "content/app/bench_lens.h"
 #include "content/app/bench_lights.h"
 #include "content/app/bench_report.h"
 #include "content/app/headless.h"
@@ -21,6 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLightsScene = "lights";  ///< measured by numbers of lights and methods
+constexpr const char* kLensName = "lens";       ///< no scene: the effects of the lens, one by one
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -47,6 +49,30 @@ Status write_results(
     }
     const Status written = write_report(options.json, json);
     return written ? write_report(options.csv, csv) : written;
+}
+
+/// Fails if it cannot draw pictures of that size.
+Result<HeadlessRenderer> create_renderer_for(const IVec2& size) {
+    Result<HeadlessRenderer> headless = create_headless_renderer();
+    if (headless) {
+        if (const Status fits = check_picture_size(*headless->device, size); !fits) {
+            return fits.error();
+        }
+    }
+    return headless;
+}
+
+Status run_lens_bench(const BenchOptions& options) {
+    Result<HeadlessRenderer> headless = create_renderer_for(options.size);
+    if (!headless) {
+        return headless.error();
+    }
+    const Result<LensBench> bench = measure_lens(options, *headless);
+    if (!bench) {
+        return bench.error();
+    }
+    return write_results(
+        options, lens_bench_table(*bench), lens_bench_json(*bench), lens_bench_csv(*bench));
 }
 
 }  // namespace
@@ -98,18 +124,18 @@ machine_report(const Stage& stage, const HeadlessRenderer& headless, const Bench
 }
 
 Status run_bench(const BenchOptions& options) {
+    if (options.scene == kLensName) {
+        return run_lens_bench(options);
+    }
     Result<std::unique_ptr<Stage>> opened =
         open_stage(options.scene, std::nullopt, options.assignments);
     if (!opened) {
         return opened.error();
     }
     Stage& stage = **opened;
-    Result<HeadlessRenderer> headless = create_headless_renderer();
+    Result<HeadlessRenderer> headless = create_renderer_for(options.size);
     if (!headless) {
         return headless.error();
-    }
-    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
-        return fits.error();
     }
     if (stage.scene.name == kLightsScene) {
         const Result<LightsBench> bench = measure_lights(stage, *headless, options);
