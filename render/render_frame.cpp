@@ -27,6 +27,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/shadow_volume_pass.h"
 #include "render/passes/speed_line_pass.h"
+#include "render/passes/water_pass.h"
 #include "render/shaders/view_gpu.h"
 
 #include <algorithm>
@@ -86,6 +87,7 @@ struct Passes {
     ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
+    WaterPass water;
     SpeedLinePass speed_lines;
     LensPasses lens;
     const gpu::Program* accumulate = nullptr;
@@ -390,6 +392,21 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     }
     passes.speed_lines.count = static_cast<int>(speed_lines_.size());
     passes.speed_lines.records.set(push(speed_lines_));
+    WaterPass& water = passes.water;
+    collect_waters(
+        world,
+        view,
+        velocity,
+        device.caps().max_texture_size,
+        water.ripples,
+        water.seas,
+        water.list);
+    if (!water.list.empty()) {
+        water.bodies.set(push(water.list.bodies));
+        water.lines.set(push(water.list.lines));
+        water.rings.set(push(water.list.rings));
+        water.patches.set(push(water.list.patches));
+    }
     passes.clusters.lights.set(push(scene.clusters.lights));
     passes.clusters.boxes.set(push(scene.clusters.boxes));
     if (is_forward(scene.method)) {
@@ -465,6 +482,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
         : is_forward(scene.method) ? draw_forward(into, passes.forward, scene, gbuffer.depth)
                                    : draw_each_light(into, passes.light_each, scene, gbuffer);
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
+    radiance = draw_water(into, passes.water, scene, radiance, gbuffer);
     radiance =
         draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
     draw_speed_lines(into, device, passes.speed_lines, scene, radiance, gbuffer);
@@ -617,6 +635,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!volumes) {
         return volumes.error();
     }
+    Result<WaterPass> water = create_water_pass(device);
+    if (!water) {
+        return water.error();
+    }
     const Result<const gpu::Program*> accumulate =
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
     if (!accumulate) {
@@ -637,6 +659,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(probes),
         *std::move(shadows),
         *std::move(volumes),
+        *std::move(water),
         SpeedLinePass{},
         LensPasses(device),
         *accumulate};

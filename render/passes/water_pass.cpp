@@ -1,0 +1,151 @@
+#include "render/passes/water_pass.h"
+
+#include "render/gpu/shader_library.h"
+
+#include <array>
+
+namespace limn {
+
+namespace {
+
+constexpr unsigned kPatchesUnit = 0;
+constexpr unsigned kWatersUnit = 1;
+constexpr unsigned kWaveLinesUnit = 2;
+constexpr unsigned kWaveRingsUnit = 3;
+constexpr unsigned kRipplesUnit = 4;
+constexpr unsigned kBehindUnit = 5;
+constexpr unsigned kOceanShiftUnit = 6;
+constexpr unsigned kOceanShiftBeforeUnit = 13;
+constexpr unsigned kOceanSlopeUnit = 14;
+constexpr unsigned kOceanFoamUnit = 17;
+constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
+constexpr std::uint32_t kOceanKey = 1u << 30;
+constexpr int kSide = kWaterGrid + 1;
+constexpr int kIndices = 6 * kWaterGrid * kWaterGrid;
+
+/// Two triangles a cell, their diagonals in turn so that vertices that slide onto their neighbors
+/// leave whole squares.
+std::array<std::uint16_t, kIndices> grid_indices() {
+    std::array<std::uint16_t, kIndices> indices{};
+    std::size_t next = 0;
+    for (int z = 0; z < kWaterGrid; ++z) {
+        for (int x = 0; x < kWaterGrid; ++x) {
+            const int a = z * kSide + x;
+            const int corners[4] = {a, a + 1, a + kSide, a + kSide + 1};
+            const bool turned = (x + z) % 2 != 0;
+            const int order[2][6] = {{0, 2, 3, 0, 3, 1}, {0, 2, 1, 1, 2, 3}};
+            for (const int corner : order[turned ? 1 : 0]) {
+                indices[next++] = static_cast<std::uint16_t>(corners[corner]);
+            }
+        }
+    }
+    return indices;
+}
+
+/// The scene as the water sees it: radiance and distance.
+TextureId copy_behind(
+    FrameGraph& graph,
+    const WaterPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    const Gbuffer& gbuffer) {
+    const TextureId behind = graph.create(
+        {.name = "behind water",
+         .format = GL_RGBA32F,
+         .width = scene.view.width,
+         .height = scene.view.height});
+    graph.add_pass(
+        "behind water",
+        {radiance, gbuffer.depth},
+        {discarded(behind)},
+        [&pass, &scene, radiance, gbuffer](PassContext& context) {
+            context.device().use(gpu::Pipeline{pass.behind, gpu::kFullscreenState});
+            bind_view(context.device(), scene);
+            context.bind_texture(0, radiance);
+            context.bind_texture(1, gbuffer.depth);
+            context.device().draw_fullscreen();
+        });
+    return behind;
+}
+
+}  // namespace
+
+Result<WaterPass> create_water_pass(gpu::Device& device) {
+    WaterPass pass = {.surface = SurfacePrograms(device, "water.vert", "water.frag")};
+    const Result<const gpu::Program*> behind =
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"});
+    if (!behind) {
+        return behind.error();
+    }
+    pass.behind = *behind;
+    const std::array<std::uint16_t, kIndices> indices = grid_indices();
+    pass.indices = gpu::Buffer::of("water grid", std::span<const std::uint16_t>(indices));
+    pass.grid = gpu::VertexArray("water grid");
+    pass.grid.set_indices(pass.indices);
+    return pass;
+}
+
+TextureId draw_water(
+    FrameGraph& graph,
+    WaterPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    const Gbuffer& gbuffer) {
+    if (pass.list.empty()) {
+        return radiance;
+    }
+    const TextureId behind = copy_behind(graph, pass, scene, radiance, gbuffer);
+    const bool velocity = gbuffer.velocity.valid();
+    const std::vector<Use> reads = lighting_reads(scene, {behind});
+    std::vector<Use> writes = {radiance, gbuffer.depth};
+    if (velocity) {
+        writes.emplace_back(gbuffer.velocity);
+    }
+    graph.add_pass(
+        "water",
+        std::span<const Use>(reads),
+        std::span<const Use>(writes),
+        [&pass, &scene, behind, velocity](PassContext& context) {
+            std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
+            if (velocity) {
+                defines.push_back({"VELOCITY"});
+            }
+            const bool ocean = !pass.seas.empty();
+            if (ocean) {
+                defines.push_back({"OCEAN"});
+            }
+            const gpu::Program* program = pass.surface.get(
+                0,
+                lighting_key(scene) | (velocity ? kVelocityKey : 0) | (ocean ? kOceanKey : 0),
+                defines);
+            if (program == nullptr) {
+                return;
+            }
+            gpu::Device& device = context.device();
+            device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
+            bind_lighting(device, scene);
+            pass.patches.bind(device, kPatchesUnit);
+            pass.bodies.bind(device, kWatersUnit);
+            pass.lines.bind(device, kWaveLinesUnit);
+            pass.rings.bind(device, kWaveRingsUnit);
+            device.bind_texture(kRipplesUnit, pass.ripples.texture());
+            if (ocean) {
+                device.bind_texture(kOceanShiftUnit, pass.seas.shift());
+                device.bind_texture(kOceanShiftBeforeUnit, pass.seas.shift_before());
+                device.bind_texture(kOceanSlopeUnit, pass.seas.slope());
+                device.bind_texture(kOceanFoamUnit, pass.seas.foam());
+            }
+            context.bind_texture(kBehindUnit, behind);
+            device.bind_vertex_array(pass.grid);
+            device.draw_indexed(
+                GL_TRIANGLES,
+                kIndices,
+                GL_UNSIGNED_SHORT,
+                0,
+                0,
+                static_cast<int>(pass.list.patches.size()));
+        });
+    return radiance;
+}
+
+}  // namespace limn

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "render/frame_scene.h"
+#include "render/gbuffer.h"
+#include "render/gpu/vertex_array.h"
+#include "render/water/ripple_atlas.h"
+#include "render/water/water_list.h"
+
+namespace limn {
+
+// Draws bodies of water over the lit scene: all of them with one draw.
+//
+// Reads    WaterList, radiance, depth, light clusters, environment
+// Writes   radiance, depth and velocity of what is water now
+// Order    after lights and sky, before blended surfaces
+// Shaders  water_behind.frag, water.vert, water.frag, lib/water_surface.glsl
+//
+// What lies behind is copied first: the water bends and mirrors it. It therefore sees neither
+// itself nor blended surfaces.
+
+struct WaterPass {
+    SurfacePrograms surface;
+    const gpu::Program* behind = nullptr;
+    gpu::VertexArray grid{};
+    gpu::Buffer indices{};
+    RippleAtlas ripples{};
+    OceanTextures seas{};
+    WaterList list{};
+    BufferTexture patches = BufferTexture("water patches", GL_RGBA32F);
+    BufferTexture bodies = BufferTexture("waters", GL_RGBA32F);
+    BufferTexture lines = BufferTexture("wave lines", GL_RGBA32F);
+    BufferTexture rings = BufferTexture("wave rings", GL_RGBA32F);
+};
+
+[[nodiscard]] Result<WaterPass> create_water_pass(gpu::Device& device);
+
+/// Radiance with the water; the same where there is none. The G-buffer's depth and velocity become
+/// those of the water.
+[[nodiscard]] TextureId draw_water(
+    FrameGraph& graph,
+    WaterPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    const Gbuffer& gbuffer);
+
+}  // namespace limn

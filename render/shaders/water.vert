@@ -1,0 +1,45 @@
+// A body of water as patches of its rest surface (water_patches.h), displaced. Definition VELOCITY.
+#version 450
+#include "lib/view.glsl"
+const float kPi = 3.14159265358979;
+#include "lib/water_surface.glsl"
+
+layout(binding = 0) uniform samplerBuffer patches;  // WaterPatch
+
+layout(location = 0) out vec2 rest;           // x and z at rest, in the water's own space
+layout(location = 1) flat out int body;
+#ifdef VELOCITY
+layout(location = 2) out vec3 clip_before;    // x, y, w
+#endif
+
+const float kGrid = 16.0;  // kWaterGrid
+
+vec3 surface_ws(WaterRecord water, vec2 q, float spacing, bool before) {
+    return water.origin.xyz + water_to_world(water, vec3(q.x, 0.0, q.y) + water_offset(water, q, spacing, before));
+}
+
+void main() {
+    vec4 square = texelFetch(patches, 2 * gl_InstanceID);
+    vec2 morph = texelFetch(patches, 2 * gl_InstanceID + 1).xy;
+    vec2 grid = vec2(gl_VertexID % 17, gl_VertexID / 17);
+    body = int(square.w);
+    WaterRecord water = water_record(body);
+
+    vec2 half_size = water.shape.yz;
+    vec2 bounds = mix(vec2(1e9), half_size, greaterThan(half_size, vec2(0.0)));
+    float cell = square.z / kGrid;
+    vec2 q = square.xy + grid * cell;
+    vec3 eye = world_to_water(water, view.camera_ws.xyz - water.origin.xyz);
+    float away = distance(eye, vec3(q.x, 0.0, q.y));
+    float slid = clamp((away - morph.x) / (morph.y - morph.x), 0.0, 1.0);
+    q -= fract(grid * 0.5) * 2.0 * cell * slid;
+    q = clamp(q, -bounds, bounds);
+
+    rest = q;
+    float spacing = cell * (1.0 + slid);
+    gl_Position = view.clip_from_world * vec4(surface_ws(water, q, spacing, false), 1.0);
+#ifdef VELOCITY
+    vec4 before = view.previous_from_world * vec4(surface_ws(water, q, spacing, true), 1.0);
+    clip_before = before.xyw;
+#endif
+}

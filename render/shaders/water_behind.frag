@@ -1,0 +1,14 @@
+// The scene before the water: its radiance and, in w, its distance along the view axis [m], 0 where nothing is.
+#version 450
+#include "lib/view.glsl"
+
+layout(binding = 0) uniform sampler2D radiance;
+layout(binding = 1) uniform sampler2D depth;
+
+layout(location = 0) out vec4 scene;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float d = texelFetch(depth, pixel, 0).r;
+    scene = vec4(texelFetch(radiance, pixel, 0).rgb, d > 0.0 ? view_distance(d) : 0.0);
+}

@@ -1,0 +1,191 @@
+#include "render/water/ocean_textures.h"
+
+#include "ecs/base/jobs.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kRowGrain = 32;
+
+/// Reads a plane of `from` points a side as one of `to`, a multiple of it.
+class PlaneReader {
+  public:
+    PlaneReader(const std::vector<float>& plane, int from, int to)
+        : plane_(plane), from_(from), ratio_(to / std::max(from, 1)) {}
+
+    [[nodiscard]] float at(int x, int z) const {
+        if (ratio_ == 1) {
+            return plane_[index(x, z)];
+        }
+        const int i = x / ratio_;
+        const int j = z / ratio_;
+        const float u = static_cast<float>(x % ratio_) / static_cast<float>(ratio_);
+        const float v = static_cast<float>(z % ratio_) / static_cast<float>(ratio_);
+        const int right = (i + 1) % from_;
+        const int below = (j + 1) % from_;
+        return glm::mix(
+            glm::mix(plane_[index(i, j)], plane_[index(right, j)], u),
+            glm::mix(plane_[index(i, below)], plane_[index(right, below)], u),
+            v);
+    }
+
+  private:
+    [[nodiscard]] std::size_t index(int x, int z) const {
+        return static_cast<std::size_t>(z) * static_cast<std::size_t>(from_)
+               + static_cast<std::size_t>(x);
+    }
+    const std::vector<float>& plane_;
+    int from_;
+    int ratio_;
+};
+
+/// Writes texel(x, z) of a square of this side, rows on all threads.
+template <typename Texel, typename T>
+void fill(int size, std::vector<T>& texels, Texel&& texel) {
+    const auto side = static_cast<std::size_t>(size);
+    texels.resize(side * side);
+    parallel_for(side, kRowGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t z = begin; z < end; ++z) {
+            for (std::size_t x = 0; x < side; ++x) {
+                texels[z * side + x] = texel(static_cast<int>(x), static_cast<int>(z));
+            }
+        }
+    });
+}
+
+void make_array(
+    gpu::Texture& texture, const char* label, GLenum format, int size, int layers, int levels) {
+    if (texture && texture.width() == size && texture.layers() == layers) {
+        return;
+    }
+    texture = gpu::Texture(
+        label,
+        {.format = format,
+         .width = size,
+         .height = size,
+         .depth = layers,
+         .levels = levels,
+         .target = GL_TEXTURE_2D_ARRAY});
+    texture.set_wrap(GL_REPEAT);
+}
+
+/// shift_x, height, shift_z at `share` of the way from the step before to the last.
+void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>& texels) {
+    const PlaneReader now[3] = {
+        {c.shift_x, c.size, size}, {c.height, c.size, size}, {c.shift_z, c.size, size}};
+    const PlaneReader last[3] = {
+        {c.last_shift_x, c.size, size},
+        {c.last_height, c.size, size},
+        {c.last_shift_z, c.size, size}};
+    if (share == 1.0f) {
+        fill(size, texels, [&](int x, int z) {
+            return Vec4(now[0].at(x, z), now[1].at(x, z), now[2].at(x, z), 0);
+        });
+        return;
+    }
+    fill(size, texels, [&](int x, int z) {
+        Vec4 texel(0);
+        for (int i = 0; i < 3; ++i) {
+            texel[i] = glm::mix(last[i].at(x, z), now[i].at(x, z), share);
+        }
+        return texel;
+    });
+}
+
+Vec3 reach_of(const OceanCascade& c) {
+    const auto most = [](const std::vector<float>& plane) {
+        float largest = 0;
+        for (const float v : plane) {
+            largest = std::max(largest, std::abs(v));
+        }
+        return largest;
+    };
+    return {most(c.shift_x), most(c.height), most(c.shift_z)};
+}
+
+float slope_variance(const OceanCascade& c) {
+    double sum = 0;
+    for (std::size_t i = 0; i < c.slope_x.size(); ++i) {
+        sum += static_cast<double>(c.slope_x[i] * c.slope_x[i] + c.slope_z[i] * c.slope_z[i]);
+    }
+    return static_cast<float>(sum / std::max<double>(static_cast<double>(c.slope_x.size()), 1));
+}
+
+}  // namespace
+
+void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) {
+    places_.assign(seas.size(), {});
+    size_ = 0;
+    layers_ = 0;
+    for (std::size_t i = 0; i < seas.size(); ++i) {
+        if (seas[i].state == nullptr) {
+            continue;
+        }
+        places_[i].first_layer = layers_;
+        places_[i].patches = static_cast<int>(seas[i].state->cascades.size());
+        layers_ += places_[i].patches;
+        for (const OceanCascade& cascade : seas[i].state->cascades) {
+            size_ = std::max(size_, cascade.size);
+        }
+    }
+    if (layers_ == 0) {
+        return;
+    }
+    make_array(shift_, "ocean shift", GL_RGBA32F, size_, layers_, 0);
+    make_array(slope_, "ocean slope", GL_RGBA32F, size_, layers_, 0);
+    make_array(foam_, "ocean foam", GL_RG32F, size_, layers_, 0);
+    if (with_before) {
+        make_array(shift_before_, "ocean shift before", GL_RGBA32F, size_, layers_, 0);
+    }
+    for (std::size_t i = 0; i < seas.size(); ++i) {
+        const OceanSource& sea = seas[i];
+        for (int p = 0; p < places_[i].patches; ++p) {
+            const OceanCascade& c = sea.state->cascades[static_cast<std::size_t>(p)];
+            const int layer = places_[i].first_layer + p;
+            const float step = sea.state->step;
+            const auto share = [&](float seconds) { return step > 0 ? 1 + seconds / step : 1.0f; };
+            fill_shift(c, size_, share(sea.now), texels_);
+            shift_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+            if (with_before) {
+                fill_shift(c, size_, share(sea.before), texels_);
+                shift_before_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+            }
+            const PlaneReader planes[5] = {
+                {c.slope_x, c.size, size_},
+                {c.slope_z, c.size, size_},
+                {c.shift_xx, c.size, size_},
+                {c.shift_zz, c.size, size_},
+                {c.shift_xz, c.size, size_}};
+            fill(size_, texels_, [&](int x, int z) {
+                return Vec4(
+                    planes[0].at(x, z), planes[1].at(x, z), planes[2].at(x, z), planes[3].at(x, z));
+            });
+            slope_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+            const auto points = static_cast<std::size_t>(c.size) * static_cast<std::size_t>(c.size);
+            const std::size_t first = static_cast<std::size_t>(p) * points;
+            const bool foams = sea.foam != nullptr && sea.foam->coverage.size() >= first + points;
+            const float* const cover = foams ? sea.foam->coverage.data() + first : nullptr;
+            const int ratio = size_ / std::max(c.size, 1);
+            fill(size_, pairs_, [&](int x, int z) {
+                const auto at =
+                    static_cast<std::size_t>(z / ratio) * static_cast<std::size_t>(c.size)
+                    + static_cast<std::size_t>(x / ratio);
+                return Vec2(planes[4].at(x, z), cover != nullptr ? cover[at] : 0.0f);
+            });
+            foam_.upload<Vec2>(pairs_, GL_RG, GL_FLOAT, 0, layer);
+            places_[i].reach += reach_of(c);
+            places_[i].variance[p] = slope_variance(c);
+        }
+    }
+    shift_.generate_mipmaps();
+    if (with_before) {
+        shift_before_.generate_mipmaps();
+    }
+    slope_.generate_mipmaps();
+    foam_.generate_mipmaps();
+}
+
+}  // namespace limn

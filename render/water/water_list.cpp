@@ -1,0 +1,236 @@
+#include "render/water/water_list.h"
+
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_frame.h"
+#include "ecs/components/water_waves.h"
+#include "ecs/world.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+constexpr float kRippleReach =
+    0.5f;  ///< of ripples up and down, at most [m]; higher ones may be cut
+constexpr float kCellsPerWave = 16.0f;  ///< that the finest grid has for the shortest wave
+constexpr float kFinest = 0.25f;        ///< side of a patch [m]
+
+/// Seconds from the end of the last step to the moments of a view.
+struct Moments {
+    float now = 0;
+    float before = 0;
+};
+
+Moments moments_of(const World& world, const RenderView& view) {
+    const auto* const time = world.find_resource<FrameTime>();
+    const float step = time != nullptr ? time->step : 0.0f;
+    return {(view.alpha - 1) * step, (view.alpha_before - 1) * step};
+}
+
+void add_waves(const WaveTable& table, const Moments& at, WaterList& list) {
+    for (const WaveLine& line : table.lines) {
+        list.lines.push_back(
+            {.run = Vec4(line.k, line.side),
+             .phase = {
+                 line.phase - line.frequency * at.now,
+                 line.phase - line.frequency * at.before,
+                 line.amplitude,
+                 line.lean}});
+    }
+    for (const WaveRing& ring : table.rings) {
+        const float front = ring.front_speed * at.now;
+        list.rings.push_back(
+            {.place = {ring.center.x, ring.center.y, ring.first + front, ring.last + front},
+             .phase =
+                 {ring.phase + ring.frequency * at.now,
+                  ring.phase + ring.frequency * at.before,
+                  ring.k,
+                  ring.amplitude},
+             .fade = {
+                 ring.full,
+                 ring.smooth ? 1.0f : 0.0f,
+                 ring.front_speed * (at.before - at.now),
+                 0}});
+    }
+}
+
+/// How far waves may move the surface, up, down and sideways [m].
+Vec3 reach_of(const WaveTable* table) {
+    Vec3 reach(0);
+    if (table != nullptr) {
+        for (const WaveLine& line : table->lines) {
+            reach += Vec3(std::abs(line.side.x), line.amplitude, std::abs(line.side.y));
+        }
+        for (const WaveRing& ring : table->rings) {
+            reach.y += ring.amplitude;
+        }
+    }
+    return reach;
+}
+
+/// Side of the smallest patch that shows all there is.
+float finest_of(const WaveTable* table, const RippleState* ripples, const OceanState* sea) {
+    float cell = 1e9f;
+    if (sea != nullptr) {
+        for (const OceanCascade& cascade : sea->cascades) {
+            cell = std::min(cell, cascade.patch / static_cast<float>(cascade.size));
+        }
+    }
+    if (table != nullptr && !table->lines.empty()) {
+        const float k = glm::length(table->lines.back().k);
+        cell = std::min(cell, 2 * kPi / (std::max(k, 1e-6f) * kCellsPerWave));
+    }
+    if (table != nullptr) {
+        for (const WaveRing& ring : table->rings) {
+            cell = std::min(cell, 2 * kPi / (std::max(ring.k, 1e-6f) * kCellsPerWave));
+        }
+    }
+    if (ripples != nullptr && ripples->cells.x > 0) {
+        cell = std::min(cell, ripples->cell);
+    }
+    return std::max(kFinest, cell * static_cast<float>(kWaterGrid));
+}
+
+Mat4 matrix_of(const WaterFrame& frame) {
+    Mat4 m(1.0f);
+    m[0] = Vec4(frame.turned_out({1, 0, 0}), 0);
+    m[2] = Vec4(frame.turned_out({0, 0, 1}), 0);
+    m[3] = Vec4(frame.origin, 1);
+    return m;
+}
+
+void place_ripples(const RippleAtlas& atlas, WaterList& list) {
+    for (std::size_t i = 0; i < list.bodies.size(); ++i) {
+        const AtlasPlace& place = atlas.places()[i];
+        if (!place.fits) {
+            continue;
+        }
+        const RippleState& state = *list.ripples[i];
+        const Vec2 sheet(atlas.texture().width(), atlas.texture().height());
+        const Vec2 scale = 1.0f / (state.cell * sheet);
+        const Vec2 middle = (Vec2(place.corner) + 0.5f * Vec2(state.cells)) / sheet;
+        list.bodies[i].ripples = Vec4(scale, middle);
+        const Vec2 half = 0.5f * state.size();
+        list.bodies[i].rippling.x = half.x;
+        list.bodies[i].rippling.y = half.y;
+    }
+}
+
+void place_sea(
+    const OceanTextures& textures,
+    const OceanSource& sea,
+    const OceanPlace& place,
+    layout::WaterRecord& body) {
+    body.ocean = {
+        static_cast<float>(place.first_layer),
+        static_cast<float>(place.patches),
+        static_cast<float>(textures.size()),
+        0};
+    for (int i = 0; i < place.patches; ++i) {
+        body.patches[i] = 1.0f / sea.state->cascades[static_cast<std::size_t>(i)].patch;
+    }
+    body.variance = place.variance;
+}
+
+struct Body {
+    const Water* water = nullptr;
+    const WaveTable* table = nullptr;
+    WaterFrame frame;
+};
+
+void add_body(
+    const Body& body,
+    const Moments& at,
+    const Vec3& reach,
+    const RenderView& view,
+    WaterList& list) {
+    const Water& water = *body.water;
+    const Affine& pose = view.world_from_camera;
+    const RippleState* const ripples = list.ripples[list.bodies.size()];
+    const OceanState* const sea = list.seas[list.bodies.size()].state;
+    PatchSource source;
+    source.half = 0.5f * water.size;
+    source.camera = body.frame.local({pose.row[0].w, pose.row[1].w, pose.row[2].w});
+    source.margin = reach + reach_of(body.table);
+    source.margin.y += ripples != nullptr ? kRippleReach : 0.0f;
+    source.frustum = make_frustum(view.clip_from_world * matrix_of(body.frame));
+    source.finest = finest_of(body.table, ripples, sea);
+    source.body = static_cast<float>(list.bodies.size());
+    append_water_patches(source, list.patches);
+
+    const auto first_line = static_cast<float>(list.lines.size());
+    const auto first_ring = static_cast<float>(list.rings.size());
+    if (body.table != nullptr) {
+        add_waves(*body.table, at, list);
+    }
+    list.bodies.push_back(
+        {.origin = Vec4(body.frame.origin, body.frame.along_x.x),
+         .shape = Vec4(body.frame.along_x.y, source.half, water.refractive_index),
+         .absorption = Vec4(water.absorption, water.depth),
+         .scattering = Vec4(water.scattering, 0),
+         .waves =
+             {first_line,
+              static_cast<float>(list.lines.size()) - first_line,
+              first_ring,
+              static_cast<float>(list.rings.size()) - first_ring},
+         .ripples = Vec4(0),
+         .rippling = {0, 0, at.now, at.before},
+         .ocean = Vec4(0),
+         .patches = Vec4(0),
+         .variance = Vec4(0)});
+}
+
+}  // namespace
+
+void collect_waters(
+    const World& world,
+    const RenderView& view,
+    bool velocity,
+    int max_texture_size,
+    RippleAtlas& ripples,
+    OceanTextures& seas,
+    WaterList& list) {
+    list.bodies.clear();
+    list.lines.clear();
+    list.rings.clear();
+    list.patches.clear();
+    list.ripples.clear();
+    list.seas.clear();
+    const Moments at = moments_of(world, view);
+    std::vector<Body> bodies;
+    world
+        .query<
+            const Water,
+            const WorldTransform,
+            Optional<const WaveTable>,
+            Optional<const RippleState>,
+            Optional<const OceanState>,
+            Optional<const OceanFoam>>()
+        .each([&](const Water& water,
+                  const WorldTransform& place,
+                  const WaveTable* table,
+                  const RippleState* rippling,
+                  const OceanState* sea,
+                  const OceanFoam* foam) {
+            bodies.push_back({&water, table, water_frame(place.world)});
+            list.ripples.push_back(rippling);
+            list.seas.push_back({sea, foam, at.now, at.before});
+        });
+    if (bodies.empty()) {
+        return;
+    }
+    ripples.update(list.ripples, max_texture_size);
+    seas.update(list.seas, velocity);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        add_body(bodies[i], at, seas.places()[i].reach, view, list);
+        if (seas.places()[i].patches > 0) {
+            place_sea(seas, list.seas[i], seas.places()[i], list.bodies[i]);
+        }
+    }
+    place_ripples(ripples, list);
+}
+
+}  // namespace limn

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "render/render_view.h"
+#include "render/shaders/water_gpu.h"
+#include "render/water/ocean_textures.h"
+#include "render/water/ripple_atlas.h"
+#include "render/water/water_patches.h"
+
+#include <vector>
+
+namespace limn {
+
+// All bodies of water at the moment that a view shows, ready to be drawn.
+
+struct WaterList {
+    std::vector<layout::WaterRecord> bodies;  ///< in world order
+    std::vector<layout::WaveLineRecord> lines;
+    std::vector<layout::WaveRingRecord> rings;
+    std::vector<WaterPatch> patches;
+    std::vector<const RippleState*> ripples;  ///< of each body, or null
+    std::vector<OceanSource> seas;            ///< of each body, in the same order
+
+    [[nodiscard]] bool empty() const { return patches.empty(); }
+};
+
+/// Everything at the moment that `view` shows; keeps the memory of `list`. The textures get the
+/// ripples and patches of all bodies; `velocity`: also of the moment before.
+void collect_waters(
+    const World& world,
+    const RenderView& view,
+    bool velocity,
+    int max_texture_size,
+    RippleAtlas& ripples,
+    OceanTextures& seas,
+    WaterList& list);
+
+}  // namespace limn

@@ -1,0 +1,70 @@
+#include "render/water/water_patches.h"
+
+#include <algorithm>
+
+namespace limn {
+
+namespace {
+
+constexpr auto kMost = static_cast<std::size_t>(kMaxWaterPatches);
+
+float distance_to(const Bounds& box, const Vec3& point) {
+    return glm::length(glm::max(glm::max(box.min - point, point - box.max), Vec3(0)));
+}
+
+/// Whether low .. high lies wholly outside -half .. half.
+bool is_beyond(float half, float low, float high) {
+    return half > 0 && (low >= half || high <= -half);
+}
+
+bool is_seen(const Frustum& frustum, const Bounds& box) {
+    const Vec3 middle = center(box);
+    const Vec3 half = half_extent(box);
+    return std::all_of(
+        std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
+            const Vec3 normal(plane);
+            return glm::dot(normal, middle) + glm::dot(glm::abs(normal), half) + plane.w >= 0;
+        });
+}
+
+void walk(
+    const PatchSource& source, const Vec2& corner, float size, std::vector<WaterPatch>& patches) {
+    const Vec2 end = corner + size;
+    const Bounds box = {
+        Vec3(corner.x, 0, corner.y) - source.margin, Vec3(end.x, 0, end.y) + source.margin};
+    if (is_beyond(source.half.x, corner.x, end.x) || is_beyond(source.half.y, corner.y, end.y)
+        || !is_seen(source.frustum, box)) {
+        return;
+    }
+    const bool near = distance_to(box, source.camera) < source.detail * size;
+    if (near && size > source.finest && patches.size() + 4 < kMost) {
+        for (int i = 0; i < 4; ++i) {
+            walk(source, corner + 0.5f * size * Vec2(i % 2, i / 2), 0.5f * size, patches);
+        }
+    } else if (patches.size() < kMost) {
+        patches.push_back(
+            {.corner = corner,
+             .size = size,
+             .body = source.body,
+             .morph_begin = 1.6f * source.detail * size,
+             .morph_end = 2.0f * source.detail * size});
+    }
+}
+
+}  // namespace
+
+void append_water_patches(const PatchSource& source, std::vector<WaterPatch>& patches) {
+    if (source.half.x > 0 && source.half.y > 0) {
+        const float half = std::max(source.half.x, source.half.y);
+        walk(source, Vec2(-half), 2 * half, patches);
+        return;
+    }
+    // Four squares of a fixed lattice around the camera.
+    const Vec2 middle =
+        glm::floor(Vec2(source.camera.x, source.camera.z) / kWaterReach + 0.5f) * kWaterReach;
+    for (int i = 0; i < 4; ++i) {
+        walk(source, middle - kWaterReach * Vec2(1 - i % 2, 1 - i / 2), kWaterReach, patches);
+    }
+}
+
+}  // namespace limn
