@@ -17,6 +17,7 @@
 #include "systems/spin_system.h"
 #include "systems/sway_system.h"
 #include "systems/transform_system.h"
+#include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_wave_system.h"
@@ -46,9 +47,10 @@ Schedule make_world_schedule() {
     schedule.add<update_camera_paths>();
     schedule.add<update_fly_cameras>();
     schedule.add<advance_clips>();
-    schedule.add<update_poses>();        // after clips: shows their new moment
-    schedule.add<update_attachments>();  // after poses: hangs on the joints
-    schedule.add<update_transforms>();   // after all that move things: rendering reads the matrices
+    schedule.add<update_poses>();            // after clips: shows their new moment
+    schedule.add<update_attachments>();      // after poses: hangs on the joints
+    schedule.add<update_floating_bodies>();  // after all that moves water
+    schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
     schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now
     schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
     schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now

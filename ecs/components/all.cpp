@@ -1,6 +1,7 @@
 #include "ecs/components/all.h"
 
 #include "ecs/components/animation.h"
+#include "ecs/components/buoyancy.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
@@ -74,6 +75,7 @@ void register_all_components() {
     register_component<WaterRipples>();
     register_component<RippleState>();
     register_component<WaterTouch>();
+    register_component<Floating>();
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();

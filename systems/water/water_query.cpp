@@ -98,11 +98,13 @@ WavePoint displace_water(const WaterSurface& surface, const Vec2& rest) {
     WavePoint sum;
     if (surface.ocean != nullptr) {
         for (const OceanCascade& cascade : surface.ocean->cascades) {
-            sum += evaluate_cascade(cascade, surface.ocean->step, rest);
+            if (cascade.band_low * surface.shortest <= 2 * kPi) {
+                sum += evaluate_cascade(cascade, surface.ocean->step, rest);
+            }
         }
     }
     if (surface.waves != nullptr) {
-        sum += evaluate_waves(*surface.waves, rest);
+        sum += evaluate_waves(*surface.waves, rest, surface.shortest);
     }
     if (surface.ripples != nullptr) {
         const RipplePoint ripples = sample_ripples(*surface.ripples, rest);

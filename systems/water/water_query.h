@@ -27,6 +27,8 @@ struct WaterSurface {
     const OceanState* ocean = nullptr;
     const WaveTable* waves = nullptr;
     const RippleState* ripples = nullptr;
+    float shortest =
+        0;  ///< waves shorter than this are left out, for what is too large for them [m]
 };
 
 struct WaterPoint {

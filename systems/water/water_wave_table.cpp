@@ -206,13 +206,19 @@ void fill_wave_table(const Water& water, const WaterWaves& waves, double time, W
     }
 }
 
-WavePoint evaluate_waves(const WaveTable& table, const Vec2& at) {
+WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest) {
+    const auto too_short = [&](float k) { return k * shortest > 2 * kPi; };
     WavePoint sum;
     for (const WaveLine& line : table.lines) {
+        if (too_short(glm::length(line.k))) {
+            break;  // as are all that follow
+        }
         sum += evaluate_line(line, at);
     }
     for (const WaveRing& ring : table.rings) {
-        sum += evaluate_ring(ring, at);
+        if (!too_short(ring.k)) {
+            sum += evaluate_ring(ring, at);
+        }
     }
     return sum;
 }

@@ -28,7 +28,7 @@ struct WavePoint {
 /// memory.
 void fill_wave_table(const Water& water, const WaterWaves& waves, double time, WaveTable& table);
 
-/// Of all waves at (x, z) in the water's own space.
-[[nodiscard]] WavePoint evaluate_waves(const WaveTable& table, const Vec2& at);
+/// Of all waves of at least the length `shortest` [m] at (x, z) in the water's own space.
+[[nodiscard]] WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest = 0);
 
 }  // namespace limn

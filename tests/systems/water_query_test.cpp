@@ -352,8 +352,28 @@ TEST_CASE("water query: a point is in the water whose surface is nearest above i
     REQUIRE(in_low);
     CHECK(in_low->index == 0);
     CHECK(in_low->depth == doctest::Approx(100));
+    const WaterSurface higher = {.frame = {.origin = {0, 9, 0}}, .water = {}};
+    const WaterSurface three[] = {higher, low, high};
+    CHECK(find_water(three, {1, 4.5f, 1})->index == 2);
+    CHECK(find_water(three, {1, -1, 1})->index == 1);
+    CHECK(find_water(three, {1, 3, 1})->index == 0);
     CHECK(water_bottom(high) == 4);
     CHECK(water_bottom(low) < -1e30f);
+}
+
+TEST_CASE("water query: what is too large for short waves may leave them out") {
+    Sea sea;
+    sea.surface.shortest = 6;
+    const WaveTable all = sea.waves;
+    sea.waves.rings.clear();
+    sea.waves.lines.resize(1);  // that of 9 m
+    const Vec3 alone = evaluate_waves(sea.waves, {1, 2}).offset;
+    sea.waves = all;
+    CHECK(displace_water(sea.surface, {1, 2}).offset == alone);
+    sea.surface.shortest = 10;
+    CHECK(displace_water(sea.surface, {1, 2}).offset == Vec3(0));
+    sea.surface.shortest = 0;
+    CHECK(displace_water(sea.surface, {1, 2}).offset == evaluate_waves(all, {1, 2}).offset);
 }
 
 TEST_CASE("water query: a ray meets the water where both are") {
