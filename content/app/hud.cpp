@@ -30,9 +30,9 @@ struct KeyHelp {
 
 constexpr std::array kKeys = {
     KeyHelp{nullptr, "Move"},
-    KeyHelp{"W A S D", "forward, left, back, right"},
+    KeyHelp{"W A S D", "forward, left, back, right; or drive"},
     KeyHelp{"Q  E", "down, up"},
-    KeyHelp{"Shift", "faster"},
+    KeyHelp{"Shift", "faster; or boost"},
     KeyHelp{"Drag", "look around, or circle the target"},
     KeyHelp{"Wheel", "speed when flying, distance when circling"},
     KeyHelp{"C", "camera: level, fly, orbit"},

@@ -6,6 +6,7 @@
 #include "content/load/image_write.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
+#include "ecs/components/racer.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "render/gpu/shader_library.h"
@@ -51,6 +52,13 @@ std::vector<std::uint8_t> read_window(const IVec2& size) {
             pixels.end() - static_cast<std::ptrdiff_t>(row) * (y + 1));
     }
     return pixels;
+}
+
+/// Whether somebody in the level is driven by the keys that otherwise move the camera.
+bool has_driver(World& world) {
+    bool any = false;
+    world.query<const Racer>().each([&](const Racer& racer) { any = any || racer.player; });
+    return any;
 }
 
 }  // namespace
@@ -283,7 +291,8 @@ Input Player::read_input(const WindowEvents& events) {
             window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
     }
     // The level's camera gives way to whoever takes hold of it.
-    const bool moved = input.move != Vec3(0) || input.look != Vec2(0);
+    const bool moved =
+        input.look != Vec2(0) || (input.move != Vec3(0) && !has_driver(stage_->world));
     if (camera_.mode == CameraMode::Level && camera_.started && moved) {
         start_fly(camera_, camera_.pose);
     }
@@ -326,6 +335,10 @@ void Player::simulate(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
     if (Input* resource = stage_->world.find_resource<Input>()) {
         *resource = input;
+        if (camera_.mode != CameraMode::Level && has_driver(stage_->world)) {
+            resource->move = Vec3(0);  // the camera has them
+            resource->fast = false;
+        }
     }
     const double step = stage_step(*stage_);
     int steps = 0;

@@ -35,10 +35,24 @@ constexpr const char* kLevel = R"({
   ]
 })";
 
+/// Somebody to drive, seen by a camera that stays where it is.
+constexpr const char* kRace = R"({
+  "title": "A box to drive",
+  "resources": {"environment": {"sky": "gradient"}},
+  "paths": {"way": {"knots": [{"position": [-50, 0, 0]}, {"position": [50, 0, 0]}]}},
+  "materials": {"red": {"base_color": [0.8, 0.1, 0.05], "roughness": 0.4}},
+  "meshes": {"box": {"make": "box", "size": [1, 1, 1]}},
+  "entities": [
+    {"name": "car", "transform": {}, "mesh_instance": {"mesh": "box", "material": "red"},
+      "racer": {"track": "way", "distance": 48, "player": true, "speed": 0}},
+    {"name": "eye", "transform": {"position": [0, 0.6, 5]}, "camera": {}}
+  ]
+})";
+
 /// The level in a window that fills the display.
 struct PlaySession : test::DisplaySession {
-    void start() {
-        test::write_text(folder.file("toy.level.json"), kLevel);
+    void start(const char* level = kLevel) {
+        test::write_text(folder.file("toy.level.json"), level);
         DisplaySession::start({"play", "toy.level.json"});
     }
 };
@@ -79,6 +93,24 @@ TEST_CASE("play: keys move the camera and open the inspector, and F9 saves what 
     xdotool("key Escape");
     CHECK(wait_for([&] { return !session.program->running(); }));
     CHECK(session.program->wait().exit_code == 0);
+}
+
+TEST_CASE("play: who drives does not fly: the keys move the car, and not the camera") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    session.start(kRace);
+    xdotool("key F8 key space");
+    const Pixels start = session.wait_until_still();
+    // While time stands, nothing moves; a camera would fly.
+    xdotool("keydown w sleep 0.5 keyup w");
+    CHECK(count_different(session.wait_until_still(), start) == 0);
+    // C hands the keys to the camera.
+    xdotool("key c keydown w sleep 0.5 keyup w");
+    CHECK(session.changes_from(start, 2000));
+    xdotool("key Escape");
+    CHECK(wait_for([&] { return !session.program->running(); }));
 }
 
 TEST_CASE("play: a drag looks around, and the level comes back with R") {
