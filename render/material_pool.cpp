@@ -70,6 +70,7 @@ layout::MaterialRecord make_record(const Material& m) {
     record.emission = Vec4(m.emission, m.normal_scale);
     record.factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff};
     record.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f));
+    record.skin = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f);
     for (int i = 0; i < kMaterialTextures; ++i) {
         const TextureSlot& slot = uv_slot(m, i);
         // Counter-clockwise as the viewer of the Khronos Group has it; v runs down the image.
@@ -237,7 +238,8 @@ void MaterialPool::add_material(const Material& material) {
     records_.push_back(make_record(material));
     models_.push_back(stored_model(material.shading));
     has_classic_ = has_classic_ || material.shading == ShadingModel::Blinn
-                   || material.shading == ShadingModel::Phong;
+                   || material.shading == ShadingModel::Phong
+                   || material.shading == ShadingModel::Skin;
 }
 
 std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {

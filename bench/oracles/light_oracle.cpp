@@ -94,6 +94,22 @@ DVec3 blinn(
     return color;
 }
 
+DVec3 skin(
+    const ClassicMaterial& material,
+    const DVec3& skin_color,
+    bool wide,
+    std::span<const Arriving> lights,
+    const DVec3& normal,
+    const DVec3& to_camera) {
+    DVec3 color = blinn(material, DVec3(0), lights, normal, to_camera);
+    const double n_v = std::clamp(glm::dot(normal, to_camera), 0.0, 1.0);
+    const double rim = wide ? 1 - n_v * n_v : (1 - n_v) * (1 - n_v);
+    for (const Arriving& light : lights) {
+        color += light.color * material.diffuse * (rim * skin_color);
+    }
+    return color;
+}
+
 Arriving arrive(
     const PointLight& light,
     const DVec3& light_position,

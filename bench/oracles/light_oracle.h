@@ -63,6 +63,15 @@ struct Arriving {
     const DVec3& normal,
     const DVec3& to_camera);
 
+/// char.skin-shade: blinn() and sum Ii kd s skin, s = (1 - n.v)^2, or 1 - (n.v)^2 where it is wide.
+[[nodiscard]] DVec3 skin(
+    const ClassicMaterial& material,
+    const DVec3& skin_color,
+    bool wide,
+    std::span<const Arriving> lights,
+    const DVec3& normal,
+    const DVec3& to_camera);
+
 /// light.interface: what each type sends to `position`. `axis`: unit, where the light shines.
 [[nodiscard]] Arriving arrive(
     const PointLight& light,

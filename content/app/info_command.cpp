@@ -72,7 +72,7 @@ void print_assets(const Assets& assets) {
     }
     print_rest(assets.meshes.size());
 
-    static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit"};
+    static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit", "skin"};
     fmt::print("{} materials\n", assets.materials.size());
     for (std::size_t i = 0; i < std::min(assets.materials.size(), kMostLines); ++i) {
         const Material& material = assets.materials[i];

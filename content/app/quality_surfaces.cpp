@@ -33,7 +33,7 @@ struct Plate {
     Material material;
 };
 
-std::array<Plate, 4> plates() {
+std::array<Plate, 6> plates() {
     return {{
         {"matte",
          {.shading = ShadingModel::Blinn,
@@ -49,6 +49,17 @@ std::array<Plate, 4> plates() {
           .base_color = {0.5f, 0.3f, 0.4f, 1},
           .specular = {0.4f, 0.4f, 0.4f},
           .shininess = 40}},
+        {"skin",
+         {.shading = ShadingModel::Skin,
+          .base_color = {0.7f, 0.45f, 0.35f, 1},
+          .specular = {0.2f, 0.2f, 0.2f},
+          .shininess = 20}},
+        {"skin, wide rim",
+         {.shading = ShadingModel::Skin,
+          .base_color = {0.7f, 0.45f, 0.35f, 1},
+          .specular = {0.2f, 0.2f, 0.2f},
+          .shininess = 20,
+          .wide_rim = true}},
         {"metal, roughness 0.35",
          {.base_color = {0.95f, 0.7f, 0.4f, 1}, .metalness = 1, .roughness = 0.35f}},
     }};
@@ -66,6 +77,15 @@ DVec3 classic(const Material& material, const DVec3& point) {
     const DVec3 to_camera = glm::normalize(kEye - point);
     if (material.shading == ShadingModel::Phong) {
         return oracle::phong(coefficients, DVec3(0), lights, kNormal, to_camera);
+    }
+    if (material.shading == ShadingModel::Skin) {
+        return oracle::skin(
+            coefficients,
+            DVec3(material.skin_color),
+            material.wide_rim,
+            lights,
+            kNormal,
+            to_camera);
     }
     return oracle::blinn(coefficients, DVec3(0), lights, kNormal, to_camera);
 }

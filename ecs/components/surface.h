@@ -86,6 +86,8 @@ enum class ShadingModel : std::uint8_t {
     Phong,  ///< the same with the mirrored vector (light.phong-model)
     Unlit,  ///< base color as it is, or what it mirrors: (1 - m) color + m surroundings, m =
             ///< metalness
+    Skin,   ///< Blinn, and a glow toward the rim that soft skin has on every side of a light
+            ///< (char.skin-shade)
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -96,12 +98,14 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::Opaque;
     bool double_sided = false;
     float alpha_cutoff = 0.5f;                ///< Mask only
-    Vec4 base_color = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGB, opacity; kd of Blinn and Phong
+    Vec4 base_color = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGB, opacity; kd but of Pbr
     float metalness = 0.0f;                   ///< share that is metal, or mirrors, 0 .. 1
     float roughness = 0.5f;                   ///< perceptual, 0 .. 1
     Vec3 emission = {0, 0, 0};                ///< radiance, linear [W/(sr m^2)], >= 0
-    Vec3 specular = {0.04f, 0.04f, 0.04f};    ///< ks of Blinn and Phong
-    float shininess = 50.0f;                  ///< n of Blinn and Phong, > 0
+    Vec3 specular = {0.04f, 0.04f, 0.04f};    ///< ks of Blinn, Phong and Skin
+    float shininess = 50.0f;                  ///< n of Blinn, Phong and Skin, > 0
+    Vec3 skin_color = {0.6f, 0.2f, 0.1f};     ///< of Skin's rim, linear RGB, of the base color
+    bool wide_rim = false;                    ///< Skin: 1 - (n.v)^2 instead of (1 - n.v)^2
     float normal_scale = 1.0f;
     float occlusion_strength = 1.0f;       ///< 0 .. 1
     TextureSlot base_color_texture = {};   ///< sRGB, alpha = opacity
@@ -209,7 +213,10 @@ void visit_fields(TextureSlot& slot, Visitor&& visit) {
 
 template <typename Visitor>
 void visit_fields(Material& material, Visitor&& visit) {
-    visit("shading", material.shading, {.doc = "shading model", .values = "pbr blinn phong unlit"});
+    visit(
+        "shading",
+        material.shading,
+        {.doc = "shading model", .values = "pbr blinn phong unlit skin"});
     visit(
         "alpha_mode",
         material.alpha_mode,
@@ -239,8 +246,16 @@ void visit_fields(Material& material, Visitor&& visit) {
     visit(
         "specular",
         material.specular,
-        {.doc = "ks of blinn and phong", .min = 0, .max = 1, .color = true});
-    visit("shininess", material.shininess, {.doc = "n of blinn and phong", .min = 1, .max = 10000});
+        {.doc = "ks of blinn, phong and skin", .min = 0, .max = 1, .color = true});
+    visit(
+        "shininess",
+        material.shininess,
+        {.doc = "n of blinn, phong and skin", .min = 1, .max = 10000});
+    visit(
+        "skin_color",
+        material.skin_color,
+        {.doc = "of the rim of skin, times the base color", .min = 0, .max = 1, .color = true});
+    visit("wide_rim", material.wide_rim, {.doc = "skin: the rim reaches far into the face"});
     visit(
         "normal_scale",
         material.normal_scale,

@@ -106,7 +106,7 @@ TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none i
     CHECK(run.out.find("DOES NOT HOLD") == std::string::npos);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     CHECK(json["effects"].size() == 1);
-    CHECK(json["effects"][0]["rows"].size() == 4);
+    CHECK(json["effects"][0]["rows"].size() == 6);
     CHECK(read_text(folder.file("q.html")).ends_with("</html>\n"));
 
     const ProgramRun wrong = run_limn(folder, {"quality", "surfacs"});

@@ -10,6 +10,13 @@ vec4 lit(float n_l, float n_h, float shininess) {
     return vec4(1.0, diffuse, specular, 1.0);
 }
 
+// How much skin glows toward its rim, for the cosine to the viewer (char.skin-shade): the listing's form, or the text's,
+// which reaches farther into the face.
+float skin_rim(float n_v, bool wide) {
+    float away = 1.0 - clamp(n_v, 0.0, 1.0);
+    return wide ? away * (2.0 - away) : away * away;
+}
+
 // Half vector of two unit vectors by their cosine alone: |l + v| = sqrt(2 + 2 l.v). Returns (n.h, v.h); both
 // 0 where l = -v.
 vec2 half_cosines(float n_l, float n_v, float l_v) {

@@ -7,7 +7,7 @@
 //     z   albedo b 12,  roughness 10, metalness 7 - or material 17 -,  shading model 3
 //     w   emission, shared exponent         9 + 9 + 9 + 5
 //
-// Blinn and Phong find their coefficients in the material, so the word that others fill with roughness and
+// Blinn, Phong and Skin find their coefficients in the material, so the word that others fill with roughness and
 // metalness holds its index. Of Unlit the albedo is the share that mirrors; its color is emission. All zero means:
 // no surface here.
 
@@ -19,6 +19,12 @@ const uint kModelPbr = 1u;
 const uint kModelBlinn = 2u;
 const uint kModelPhong = 3u;
 const uint kModelUnlit = 4u;
+const uint kModelSkin = 5u;
+
+// Whether coefficients are in the material.
+bool is_classic(uint model) {
+    return model == kModelBlinn || model == kModelPhong || model == kModelSkin;
+}
 
 struct SurfaceSample {
     vec3 normal_ws;   // unit
@@ -27,7 +33,7 @@ struct SurfaceSample {
     float occlusion;  // 0 hidden .. 1 open
     float roughness;  // perceptual, 0 .. 1
     float metalness;  // 0 .. 1
-    uint material;    // index; kept for Blinn and Phong alone
+    uint material;    // index; kept where is_classic() alone
     uint model;       // kModel*
 };
 
@@ -61,8 +67,7 @@ uvec4 pack_surface(SurfaceSample s) {
     uvec3 a = uvec3(sqrt(clamp(s.albedo, 0.0, 1.0)) * 4095.0 + 0.5);
     uint ao = uint(clamp(s.occlusion, 0.0, 1.0) * 255.0 + 0.5);
     uint pbr = uint(clamp(s.roughness, 0.0, 1.0) * 1023.0 + 0.5) | uint(clamp(s.metalness, 0.0, 1.0) * 127.0 + 0.5) << 10;
-    bool classic = s.model == kModelBlinn || s.model == kModelPhong;
-    uint word = classic ? s.material & 0x1ffffu : pbr;
+    uint word = is_classic(s.model) ? s.material & 0x1ffffu : pbr;
     return uvec4(n.x | n.y << 16, a.r | a.g << 12 | ao << 24, a.b | word << 12 | s.model << 29, pack_rgb9e5(s.emission));
 }
 

@@ -1,5 +1,5 @@
 // What a surface makes of light that arrives. Lights answer one question - from where and how much - and nothing
-// here asks what they are (light.interface). Definition CLASSIC_MODELS: some surface is Blinn or Phong; it only
+// here asks what they are (light.interface). Definition CLASSIC_MODELS: some surface is Blinn, Phong or Skin; it only
 // spares a software OpenGL work that nobody needs.
 
 #include "lib/brdf.glsl"
@@ -28,8 +28,9 @@ struct Reflector {
     vec3 specular_0;   // reflectance head on, with what single scattering lost; ks of the classic models
     vec3 specular_90;  // the same at grazing angles
     vec3 mirror;       // share of uniform surroundings that the specular part returns
-    float classic;     // 0: Pbr, 1: Blinn, 2: Phong
+    float classic;     // 0: Pbr, 1: Blinn and Skin, 2: Phong
     float shininess;
+    vec3 rim;          // of Skin: what it returns of a light, wherever that is, beside n.l
 };
 
 Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
@@ -62,14 +63,19 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     }
     r.classic = 0.0;
     r.shininess = 1.0;
+    r.rim = vec3(0.0);
 #ifdef CLASSIC_MODELS
-    if (s.model == kModelBlinn || s.model == kModelPhong) {
+    if (is_classic(s.model)) {
         vec4 specular = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 3);
-        r.classic = s.model == kModelBlinn ? 1.0 : 2.0;
+        r.classic = s.model == kModelPhong ? 2.0 : 1.0;
         r.specular_0 = specular.rgb;
         r.shininess = specular.a;
         r.mirror = vec3(0.0);
         r.diffuse = s.albedo;
+        if (s.model == kModelSkin) {
+            vec4 skin = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 14);
+            r.rim = skin_rim(dot(s.normal_ws, to_camera), skin.w > 0.5) * skin.rgb;
+        }
     }
 #endif
     return r;
@@ -93,8 +99,10 @@ void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float classic = lit(n_l, r.classic > 1.5 ? r_v : h.x, r.shininess).z / kPi;
     lobe = r.classic > 0.5 ? classic : lobe;
     p = r.classic > 0.5 ? 0.0 : p;
-#endif
+    sum.diffuse += light.irradiance * (n_l + r.rim);
+#else
     sum.diffuse += light.irradiance * n_l;
+#endif
     sum.specular += light.irradiance * lobe;
     sum.fresnel += light.irradiance * (lobe * p);
 }
