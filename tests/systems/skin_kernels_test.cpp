@@ -393,6 +393,24 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("skin: weights that sum to a half pull a vertex half way to the origin") {
+    // Which is why what is loaded is scaled to a sum of 1.
+    Puppet puppet = make_puppet(5, 60, 3);
+    puppet.pose(random_pose(puppet.skeleton, 0.7f));
+    puppet.linear();
+    const MeshData whole = puppet.moved;
+    for (float& weight : puppet.mesh.skin.weights) {
+        weight *= 0.5f;
+    }
+    puppet.linear();
+    for (std::size_t v = 0; v < whole.positions.size(); ++v) {
+        if (puppet.mesh.skin.first[v] != puppet.mesh.skin.first[v + 1]) {
+            CHECK(glm::distance(puppet.moved.positions[v], 0.5f * whole.positions[v]) < 1e-5f);
+            CHECK(glm::distance(puppet.moved.normals[v], whole.normals[v]) < 1e-5f);
+        }
+    }
+}
+
 TEST_CASE("skin: the largest influences are kept and sum to 1 again") {
     SkinWeights skin;
     skin.first = {0, 4, 5};
