@@ -1,15 +1,17 @@
 #include "systems/animation/skin_kernels.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/rotation.h"
+#include "systems/animation/skin_scalar.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/animation/skin_kernels.cpp"
 #include <hwy/foreach_target.h>
 // after foreach_target
+#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
 // Quaternions are read as x y z w, a dual one as two of them, a matrix as three rows of four.
@@ -21,15 +23,25 @@ static_assert(sizeof(limn::Affine) == 12 * sizeof(float));
 #define LIMN_SKIN_CONSTANTS
 namespace limn::skin {
 
-/// Squared length, as a share of what the matrix does to volumes: below, there is no normal.
-inline constexpr float kFlat = 1e-12f;
-/// Squared length of a vector without a direction.
-inline constexpr float kNoLength = 1e-30f;
-/// The rows of a matrix, and a quaternion, that change nothing.
-inline constexpr float kUnmoved[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-inline constexpr float kUnturned[4] = {0, 0, 0, 1};
-/// Squared length of a mean of screw motions that cancel each other.
-inline constexpr float kNoMotion = 1e-12f;
+/// Numbers of a joint in the kernels' own palettes: a matrix is filled up to a cache line.
+template <typename Joint>
+inline constexpr std::size_t kStride = std::is_same_v<Joint, Affine> ? 16 : 8;
+
+/// Of joints that change nothing.
+template <typename Joint>
+inline constexpr float kNothing[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
+template <>
+inline constexpr float kNothing<DualQuaternion>[] = {0, 0, 0, 1, 0, 0, 0, 0};
+
+/// What there is to do.
+template <typename Joint>
+struct Work {
+    const SkinWeights& skin;
+    std::span<const Joint> joints;
+    const float* palette;  ///< the same, kStride numbers a joint
+    const RestVertices& rest;
+    const MovedVertices& moved;
+};
 
 }  // namespace limn::skin
 #endif
@@ -39,24 +51,12 @@ namespace limn::HWY_NAMESPACE {
 
 // Both return the first vertex that they have not done; the rest is for the scalar version.
 
-#if HWY_TARGET == HWY_SCALAR  // no vectors here
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE  // no vectors, or none that a struct can hold
 
-std::size_t skin_linear_vector(
-    const SkinWeights&,
-    std::span<const Affine>,
-    const RestVertices&,
-    const MovedVertices&,
-    std::size_t begin,
-    std::size_t) {
+std::size_t skin_linear_vector(const skin::Work<Affine>&, std::size_t begin, std::size_t) {
     return begin;
 }
-std::size_t skin_dual_vector(
-    const SkinWeights&,
-    std::span<const DualQuaternion>,
-    const RestVertices&,
-    const MovedVertices&,
-    std::size_t begin,
-    std::size_t) {
+std::size_t skin_dual_vector(const skin::Work<DualQuaternion>&, std::size_t begin, std::size_t) {
     return begin;
 }
 
@@ -66,18 +66,414 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using V = hn::Vec<Floats>;
 constexpr Floats d;
-using Four = hn::FixedTag<float, 4>;
-constexpr Four four;
-constexpr std::size_t kMostLanes = hn::MaxLanes(d);
+constexpr hn::Rebind<std::uint32_t, Floats> words;
+constexpr hn::Rebind<std::uint16_t, Floats> shorts;
+constexpr hn::FixedTag<float, 4> four;
 
-/// Vertices whose means are made before the first of them is moved: what is stored in fours and
-/// loaded in lanes must have left the store buffer, or the loads wait for it.
-constexpr std::size_t kBlock = 4;
+/// Vertices that are moved at a time: a batch.
+constexpr std::size_t kLanes = hn::MaxLanes(d);
 
-/// Three vectors of four numbers for each vertex of a block, one list behind the other.
-struct Batch {
-    HWY_ALIGN float rows[3][4 * kMostLanes * kBlock];
+// ---- lists of three or four numbers an entry, to and from a lane an entry -----------------------
+
+#if HWY_TARGET <= HWY_AVX3  // any 16 of the 32 lanes of two vectors are one instruction
+
+struct Places {
+    alignas(64) std::int32_t of[kLanes];
 };
+
+HWY_INLINE V pick(V a, V b, const Places& places) {
+    return V{_mm512_permutex2var_ps(a.raw, _mm512_load_si512(places.of), b.raw)};
+}
+
+/// place(lane) for each lane.
+template <typename Place>
+constexpr Places make_places(Place place) {
+    Places places = {};
+    for (int lane = 0; lane < 16; ++lane) {
+        places.of[lane] = place(lane);
+    }
+    return places;
+}
+
+/// Entry `lane` of the first two of three vectors, number `axis`; any if in the third.
+template <int kAxis>
+inline constexpr Places kFromTwo = make_places([](int lane) { return (3 * lane + kAxis) % 32; });
+/// The same where it is known of those before, and the third vector is the second table.
+template <int kAxis>
+inline constexpr Places kFromThird = make_places([](int lane) {
+    return 3 * lane + kAxis < 32 ? lane : 3 * lane + kAxis - 16;
+});
+
+HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z) {
+    const V a = hn::LoadU(d, from);
+    const V b = hn::LoadU(d, from + kLanes);
+    const V c = hn::LoadU(d, from + 2 * kLanes);
+    x = pick(pick(a, b, kFromTwo<0>), c, kFromThird<0>);
+    y = pick(pick(a, b, kFromTwo<1>), c, kFromThird<1>);
+    z = pick(pick(a, b, kFromTwo<2>), c, kFromThird<2>);
+}
+
+/// x and y of vector `kVector` of three; any for z.
+template <int kVector>
+inline constexpr Places kXy = make_places([](int lane) {
+    const int number = 16 * kVector + lane;
+    return number % 3 == 2 ? 0 : number / 3 + 16 * (number % 3);
+});
+template <int kVector>
+inline constexpr Places kXyAndZ = make_places([](int lane) {
+    const int number = 16 * kVector + lane;
+    return number % 3 == 2 ? 16 + number / 3 : lane;
+});
+
+HWY_INLINE void store_entries(V x, V y, V z, float* to) {
+    hn::StoreU(pick(pick(x, y, kXy<0>), z, kXyAndZ<0>), d, to);
+    hn::StoreU(pick(pick(x, y, kXy<1>), z, kXyAndZ<1>), d, to + kLanes);
+    hn::StoreU(pick(pick(x, y, kXy<2>), z, kXyAndZ<2>), d, to + 2 * kLanes);
+}
+
+/// Of two vectors of four entries each: eight numbers x, then eight y; or z and w.
+template <int kPair>
+inline constexpr Places kEights = make_places([](int lane) {
+    return 4 * (lane % 8) + 2 * kPair + lane / 8;
+});
+/// Lower or upper halves of two vectors.
+template <int kHalf>
+inline constexpr Places kHalves = make_places([](int lane) {
+    return lane % 8 + 8 * kHalf + 16 * (lane / 8);
+});
+
+HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z, V& w) {
+    const V a = hn::LoadU(d, from);
+    const V b = hn::LoadU(d, from + kLanes);
+    const V c = hn::LoadU(d, from + 2 * kLanes);
+    const V e = hn::LoadU(d, from + 3 * kLanes);
+    const V xy_ab = pick(a, b, kEights<0>);
+    const V xy_ce = pick(c, e, kEights<0>);
+    const V zw_ab = pick(a, b, kEights<1>);
+    const V zw_ce = pick(c, e, kEights<1>);
+    x = hn::ConcatLowerLower(d, xy_ce, xy_ab);
+    y = hn::ConcatUpperUpper(d, xy_ce, xy_ab);
+    z = hn::ConcatLowerLower(d, zw_ce, zw_ab);
+    w = hn::ConcatUpperUpper(d, zw_ce, zw_ab);
+}
+
+/// Of a and b: a0 b0 a1 b1 ..., the lower or upper eight.
+template <int kHalf>
+inline constexpr Places kZipped = make_places([](int lane) {
+    return 8 * kHalf + lane / 2 + 16 * (lane % 2);
+});
+/// The same with pairs.
+template <int kHalf>
+inline constexpr Places kZippedPairs = make_places([](int lane) {
+    return 8 * kHalf + lane / 4 * 2 + lane % 2 + 16 * (lane / 2 % 2);
+});
+
+HWY_INLINE void store_entries(V x, V y, V z, V w, float* to) {
+    const V xy0 = pick(x, y, kZipped<0>);
+    const V xy1 = pick(x, y, kZipped<1>);
+    const V zw0 = pick(z, w, kZipped<0>);
+    const V zw1 = pick(z, w, kZipped<1>);
+    hn::StoreU(pick(xy0, zw0, kZippedPairs<0>), d, to);
+    hn::StoreU(pick(xy0, zw0, kZippedPairs<1>), d, to + kLanes);
+    hn::StoreU(pick(xy1, zw1, kZippedPairs<0>), d, to + 2 * kLanes);
+    hn::StoreU(pick(xy1, zw1, kZippedPairs<1>), d, to + 3 * kLanes);
+}
+
+#else
+
+HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z) {
+    hn::LoadInterleaved3(d, from, x, y, z);
+}
+HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z, V& w) {
+    hn::LoadInterleaved4(d, from, x, y, z, w);
+}
+HWY_INLINE void store_entries(V x, V y, V z, float* to) {
+    hn::StoreInterleaved3(x, y, z, d, to);
+}
+HWY_INLINE void store_entries(V x, V y, V z, V w, float* to) {
+    hn::StoreInterleaved4(x, y, z, w, d, to);
+}
+
+#endif
+
+// ---- what joints a batch follows ----------------------------------------------------------------
+
+struct Influences {
+    const std::uint32_t* first;   ///< of the vertices of the batch, and one past them
+    const std::uint16_t* joints;  ///< of the first vertex
+    const float* weights;
+    std::uint32_t count;    ///< of every vertex, 1 .. 4; 0: they differ, or there are more
+    bool together = false;  ///< all vertices follow the same joints
+};
+
+HWY_INLINE Influences find_influences(const SkinWeights& skin, std::size_t at) {
+    const std::uint32_t* first = skin.first.data() + at;
+    const std::uint16_t* joints = skin.joints.data() + first[0];
+    const std::uint32_t count = first[1] - first[0];
+    Influences by = {first, joints, skin.weights.data() + first[0], count};
+    const auto regular =
+        hn::Add(hn::Set(words, first[0]), hn::Mul(hn::Set(words, count), hn::Iota(words, 1u)));
+    if (count > 4 || !hn::AllTrue(words, hn::Eq(hn::LoadU(words, first + 1), regular))) {
+        by.count = 0;
+    } else if (count == 1) {
+        const auto one = hn::Set(shorts, joints[0]);
+        by.together = hn::AllTrue(shorts, hn::Eq(hn::LoadU(shorts, joints), one));
+    } else if (count > 1) {
+        // Each entry is that of the vertex before; the last vectors overlap.
+        auto same = hn::Eq(hn::LoadU(shorts, joints), hn::LoadU(shorts, joints + count));
+        const std::uint16_t* last = joints + count * (kLanes - 1) - kLanes;
+        for (std::uint32_t i = 1; i < count; ++i) {
+            const std::uint16_t* some = std::min(joints + i * kLanes, last);
+            same = hn::And(same, hn::Eq(hn::LoadU(shorts, some), hn::LoadU(shorts, some + count)));
+        }
+        by.together = hn::AllTrue(shorts, same);
+    }
+    return by;
+}
+
+// ---- means over a batch that goes together: a lane a vertex, joints are constants ---------------
+
+/// Calling it with a number's place in a joint gives the mean of that number.
+template <std::size_t kCount>
+struct Common {
+    const float* joint[4] = {};
+    V weight[4];
+
+    template <typename Joint>
+    HWY_INLINE Common(const skin::Work<Joint>& work, const Influences& by) {
+        for (std::size_t i = 0; i < kCount; ++i) {
+            joint[i] = work.palette + skin::kStride<Joint> * by.joints[i];
+        }
+        if constexpr (kCount == 1) {
+            weight[0] = hn::LoadU(d, by.weights);
+        } else if constexpr (kCount == 2) {
+            hn::LoadInterleaved2(d, by.weights, weight[0], weight[1]);
+        } else if constexpr (kCount == 3) {
+            load_entries(by.weights, weight[0], weight[1], weight[2]);
+        } else {
+            load_entries(by.weights, weight[0], weight[1], weight[2], weight[3]);
+        }
+        if constexpr (std::is_same_v<Joint, DualQuaternion>) {
+            for (std::size_t i = 1; i < kCount; ++i) {
+                if (skin::turns_away(
+                        work.joints[by.joints[0]].real, work.joints[by.joints[i]].real)) {
+                    weight[i] = hn::Neg(weight[i]);
+                }
+            }
+        }
+    }
+    template <std::size_t kLast = kCount - 1>
+    HWY_INLINE V operator()(std::size_t place) const {
+        const V part = hn::Mul(weight[kLast], hn::Set(d, joint[kLast][place]));
+        if constexpr (kLast == 0) {
+            return part;
+        } else {
+            return hn::Add(operator()<kLast - 1>(place), part);
+        }
+    }
+};
+
+// ---- means of other batches: a vertex at a time, then turned around -----------------------------
+
+/// Numbers of a joint that are blended at a time.
+template <typename Joint>
+using Some = hn::CappedTag<float, skin::kStride<Joint>>;
+template <typename Joint>
+using SomeV = hn::Vec<Some<Joint>>;
+
+HWY_INLINE SomeV<Affine> weight_of(const skin::Work<Affine>&, const Influences& by, std::size_t i) {
+    return hn::Set(Some<Affine>(), by.weights[i]);
+}
+/// Negative if its joint turns away from the first.
+HWY_INLINE SomeV<DualQuaternion>
+weight_of(const skin::Work<DualQuaternion>& work, const Influences& by, std::size_t i) {
+    const auto p = hn::LoadU(four, work.palette + skin::kStride<DualQuaternion> * by.joints[0]);
+    const auto q = hn::LoadU(four, work.palette + skin::kStride<DualQuaternion> * by.joints[i]);
+    auto side = hn::Mul(p, q);
+    side = hn::Add(side, hn::Shuffle1032(side));
+    side = hn::Add(side, hn::Shuffle2301(side));
+    const auto weight = hn::Set(four, by.weights[i]);
+    const auto near = hn::IfThenElse(hn::Lt(side, hn::Zero(four)), hn::Neg(weight), weight);
+#if HWY_MAX_BYTES >= 32
+    return hn::Combine(Some<DualQuaternion>(), near, near);
+#else
+    return near;
+#endif
+}
+
+template <typename Joint>
+HWY_INLINE SomeV<Joint>
+weighted(const skin::Work<Joint>& work, const Influences& by, std::size_t i, std::size_t at) {
+    const auto weight = i == 0 ? hn::Set(Some<Joint>(), by.weights[0]) : weight_of(work, by, i);
+    const float* joint = work.palette + skin::kStride<Joint> * by.joints[i];
+    return hn::Mul(weight, hn::LoadU(Some<Joint>(), joint + at));
+}
+/// The mean of the first kCount influences.
+template <std::size_t kCount, typename Joint>
+HWY_INLINE SomeV<Joint>
+mean_of(const skin::Work<Joint>& work, const Influences& by, std::size_t at) {
+    if constexpr (kCount == 1) {
+        return weighted(work, by, 0, at);
+    } else {
+        return hn::Add(mean_of<kCount - 1>(work, by, at), weighted(work, by, kCount - 1, at));
+    }
+}
+
+/// The means of a batch, a joint's numbers for each vertex.
+template <typename Joint>
+struct Rows {
+    HWY_ALIGN float of[skin::kStride<Joint> * kLanes];
+};
+
+template <std::size_t kCount, typename Joint>
+HWY_INLINE void find_rows(const skin::Work<Joint>& work, Influences by, Rows<Joint>& rows) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        for (std::size_t at = 0; at < skin::kStride<Joint>; at += hn::MaxLanes(Some<Joint>())) {
+            hn::Store(
+                mean_of<kCount>(work, by, at),
+                Some<Joint>(),
+                rows.of + skin::kStride<Joint> * lane + at);
+        }
+        by.joints += kCount;
+        by.weights += kCount;
+    }
+}
+/// Any number of influences a vertex, none included.
+template <typename Joint>
+HWY_INLINE void find_any_rows(const skin::Work<Joint>& work, Influences by, Rows<Joint>& rows) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t count = by.first[lane + 1] - by.first[lane];
+        for (std::size_t at = 0; at < skin::kStride<Joint>; at += hn::MaxLanes(Some<Joint>())) {
+            auto sum = hn::LoadU(Some<Joint>(), skin::kNothing<Joint> + at);
+            if (count > 0) {
+                sum = weighted(work, by, 0, at);
+                for (std::uint32_t i = 1; i < count; ++i) {
+                    sum = hn::Add(sum, weighted(work, by, i, at));
+                }
+            }
+            hn::Store(sum, Some<Joint>(), rows.of + skin::kStride<Joint> * lane + at);
+        }
+        by.joints += count;
+        by.weights += count;
+    }
+}
+template <typename Joint>
+HWY_INLINE void find_rows(const skin::Work<Joint>& work, const Influences& by, Rows<Joint>& rows) {
+    switch (by.count) {
+    case 1:
+        return find_rows<1>(work, by, rows);
+    case 2:
+        return find_rows<2>(work, by, rows);
+    case 3:
+        return find_rows<3>(work, by, rows);
+    case 4:
+        return find_rows<4>(work, by, rows);
+    default:
+        return find_any_rows(work, by, rows);
+    }
+}
+
+/// Four numbers of each vertex, from number `at` on: a lane a vertex.
+template <typename Joint>
+HWY_INLINE void load_four(const Rows<Joint>& rows, std::size_t at, V& x, V& y, V& z, V& w) {
+    constexpr std::size_t stride = skin::kStride<Joint>;
+    // Vertices i, i + 4, i + 8 ... : each four of lanes has one of four neighbors then.
+    const auto quad = [&](std::size_t i) HWY_ATTR {
+        const float* from = rows.of + i * stride + at;
+#if HWY_MAX_BYTES >= 64
+        constexpr hn::Half<Floats> half;
+        return hn::Combine(
+            d,
+            hn::Combine(
+                half, hn::Load(four, from + 12 * stride), hn::Load(four, from + 8 * stride)),
+            hn::Combine(half, hn::Load(four, from + 4 * stride), hn::Load(four, from)));
+#elif HWY_MAX_BYTES >= 32
+        return hn::Combine(d, hn::Load(four, from + 4 * stride), hn::Load(four, from));
+#else
+        return hn::Load(four, from);
+#endif
+    };
+    const V a = quad(0);
+    const V b = quad(1);
+    const V c = quad(2);
+    const V e = quad(3);
+    constexpr hn::RepartitionToWide<Floats> pairs;
+    const auto xy_ab = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+    const auto xy_ce = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
+    const auto zw_ab = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+    const auto zw_ce = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+    x = hn::BitCast(d, hn::InterleaveLower(pairs, xy_ab, xy_ce));
+    y = hn::BitCast(d, hn::InterleaveUpper(pairs, xy_ab, xy_ce));
+    z = hn::BitCast(d, hn::InterleaveLower(pairs, zw_ab, zw_ce));
+    w = hn::BitCast(d, hn::InterleaveUpper(pairs, zw_ab, zw_ce));
+}
+
+// ---- the mean of each vertex of a batch ---------------------------------------------------------
+
+/// A matrix a lane.
+struct Matrices {
+    V xx, xy, xz, xt;
+    V yx, yy, yz, yt;
+    V zx, zy, zz, zt;
+};
+
+template <std::size_t kCount>
+HWY_INLINE void find_common(const skin::Work<Affine>& work, const Influences& by, Matrices& m) {
+    const Common<kCount> mean(work, by);
+    m.xx = mean(0);
+    m.xy = mean(1);
+    m.xz = mean(2);
+    m.xt = mean(3);
+    m.yx = mean(4);
+    m.yy = mean(5);
+    m.yz = mean(6);
+    m.yt = mean(7);
+    m.zx = mean(8);
+    m.zy = mean(9);
+    m.zz = mean(10);
+    m.zt = mean(11);
+}
+
+HWY_INLINE void
+find_means(const skin::Work<Affine>& work, const Influences& by, std::size_t, Matrices& m) {
+    switch (by.together ? by.count : 0) {
+    case 1:
+        return find_common<1>(work, by, m);
+    case 2:
+        return find_common<2>(work, by, m);
+    case 3:
+        return find_common<3>(work, by, m);
+    case 4:
+        return find_common<4>(work, by, m);
+    default:
+        break;
+    }
+    Rows<Affine> rows;
+    find_rows(work, by, rows);
+    load_four(rows, 0, m.xx, m.xy, m.xz, m.xt);
+    load_four(rows, 4, m.yx, m.yy, m.yz, m.yt);
+    load_four(rows, 8, m.zx, m.zy, m.zz, m.zt);
+}
+
+/// A screw motion a lane, of any length.
+struct Motions {
+    V x, y, z, w;
+    V dx, dy, dz, dw;
+};
+
+template <std::size_t kCount>
+HWY_INLINE void
+find_common(const skin::Work<DualQuaternion>& work, const Influences& by, Motions& q) {
+    const Common<kCount> mean(work, by);
+    q.x = mean(0);
+    q.y = mean(1);
+    q.z = mean(2);
+    q.w = mean(3);
+    q.dx = mean(4);
+    q.dy = mean(5);
+    q.dz = mean(6);
+    q.dw = mean(7);
+}
 
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
     return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
@@ -86,278 +482,162 @@ HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
 HWY_INLINE V cross_part(V a, V b, V c, V e) {
     return hn::Sub(hn::Mul(a, b), hn::Mul(c, e));
 }
+HWY_INLINE V squared_length(const Motions& q) {
+    return hn::Add(dot3(q.x, q.y, q.z, q.x, q.y, q.z), hn::Mul(q.w, q.w));
+}
 
-/// Moves the vertices from `at` on by a matrix each; false: one of them is for the scalar version,
-/// and nothing is done.
-HWY_INLINE bool move_vertices(
-    V xx,
-    V xy,
-    V xz,
-    V xt,
-    V yx,
-    V yy,
-    V yz,
-    V yt,
-    V zx,
-    V zy,
-    V zz,
-    V zt,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t at) {
+HWY_INLINE void
+find_motions(const skin::Work<DualQuaternion>& work, const Influences& by, Motions& q) {
+    switch (by.together ? by.count : 0) {
+    case 1:
+        return find_common<1>(work, by, q);
+    case 2:
+        return find_common<2>(work, by, q);
+    case 3:
+        return find_common<3>(work, by, q);
+    case 4:
+        return find_common<4>(work, by, q);
+    default:
+        break;
+    }
+    Rows<DualQuaternion> rows;
+    find_rows(work, by, rows);
+    load_four(rows, 0, q.x, q.y, q.z, q.w);
+    load_four(rows, 4, q.dx, q.dy, q.dz, q.dw);
+}
+
+/// The same by the scalar version, which knows what to do where they cancel each other.
+HWY_INLINE void
+find_motions_again(const skin::Work<DualQuaternion>& work, std::size_t at, Motions& q) {
+    Rows<DualQuaternion> rows;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const DualQuaternion mean = skin::mean_motion(work.skin, work.joints, at + lane);
+        std::memcpy(rows.of + skin::kStride<DualQuaternion> * lane, &mean, sizeof mean);
+    }
+    load_four(rows, 0, q.x, q.y, q.z, q.w);
+    load_four(rows, 4, q.dx, q.dy, q.dz, q.dw);
+}
+
+HWY_INLINE void find_means(
+    const skin::Work<DualQuaternion>& work, const Influences& by, std::size_t at, Matrices& m) {
+    Motions q;
+    find_motions(work, by, q);
+    const V least = hn::Set(d, skin::kNoMotion);
+    if (!hn::AllTrue(d, hn::Gt(squared_length(q), least))) {
+        find_motions_again(work, at, q);
+    }
+    // 2 / |real|^2 takes the length out of all products.
+    const V s = hn::Div(hn::Set(d, 2.0f), squared_length(q));
+    const V xx = hn::Mul(s, hn::Mul(q.x, q.x));
+    const V yy = hn::Mul(s, hn::Mul(q.y, q.y));
+    const V zz = hn::Mul(s, hn::Mul(q.z, q.z));
+    const V xy = hn::Mul(s, hn::Mul(q.x, q.y));
+    const V xz = hn::Mul(s, hn::Mul(q.x, q.z));
+    const V yz = hn::Mul(s, hn::Mul(q.y, q.z));
+    const V wx = hn::Mul(s, hn::Mul(q.w, q.x));
+    const V wy = hn::Mul(s, hn::Mul(q.w, q.y));
+    const V wz = hn::Mul(s, hn::Mul(q.w, q.z));
+    const V tx = hn::Add(cross_part(q.w, q.dx, q.dw, q.x), cross_part(q.y, q.dz, q.z, q.dy));
+    const V ty = hn::Add(cross_part(q.w, q.dy, q.dw, q.y), cross_part(q.z, q.dx, q.x, q.dz));
+    const V tz = hn::Add(cross_part(q.w, q.dz, q.dw, q.z), cross_part(q.x, q.dy, q.y, q.dx));
+    const V one = hn::Set(d, 1.0f);
+    m.xx = hn::Sub(one, hn::Add(yy, zz));
+    m.xy = hn::Sub(xy, wz);
+    m.xz = hn::Add(xz, wy);
+    m.xt = hn::Mul(s, tx);
+    m.yx = hn::Add(xy, wz);
+    m.yy = hn::Sub(one, hn::Add(xx, zz));
+    m.yz = hn::Sub(yz, wx);
+    m.yt = hn::Mul(s, ty);
+    m.zx = hn::Sub(xz, wy);
+    m.zy = hn::Add(yz, wx);
+    m.zz = hn::Sub(one, hn::Add(xx, yy));
+    m.zt = hn::Mul(s, tz);
+}
+
+// ---- where a batch's vertices go ----------------------------------------------------------------
+
+template <typename Joint>
+HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std::size_t at) {
+    const V one = hn::Set(d, 1.0f);
     V x;
     V y;
     V z;
     V w;
+
     // Normals: cofactors, then the sign of the determinant.
-    const V ax = cross_part(yy, zz, yz, zy);
-    const V ay = cross_part(yz, zx, yx, zz);
-    const V az = cross_part(yx, zy, yy, zx);
-    const V bx = cross_part(zy, xz, zz, xy);
-    const V by = cross_part(zz, xx, zx, xz);
-    const V bz = cross_part(zx, xy, zy, xx);
-    const V cx = cross_part(xy, yz, xz, yy);
-    const V cy = cross_part(xz, yx, xx, yz);
-    const V cz = cross_part(xx, yy, xy, yx);
-    hn::LoadInterleaved3(d, &rest.normals[at].x, x, y, z);
-    const V nx = dot3(ax, ay, az, x, y, z);
-    const V ny = dot3(bx, by, bz, x, y, z);
-    const V nz = dot3(cx, cy, cz, x, y, z);
+    const V ax = cross_part(m.yy, m.zz, m.yz, m.zy);
+    const V ay = cross_part(m.yz, m.zx, m.yx, m.zz);
+    const V az = cross_part(m.yx, m.zy, m.yy, m.zx);
+    const V bx = cross_part(m.zy, m.xz, m.zz, m.xy);
+    const V by = cross_part(m.zz, m.xx, m.zx, m.xz);
+    const V bz = cross_part(m.zx, m.xy, m.zy, m.xx);
+    const V cx = cross_part(m.xy, m.yz, m.xz, m.yy);
+    const V cy = cross_part(m.xz, m.yx, m.xx, m.yz);
+    const V cz = cross_part(m.xx, m.yy, m.xy, m.yx);
+    load_entries(&work.rest.normals[at].x, x, y, z);
+    V nx = dot3(ax, ay, az, x, y, z);
+    V ny = dot3(bx, by, bz, x, y, z);
+    V nz = dot3(cx, cy, cz, x, y, z);
     const V normal2 = dot3(nx, ny, nz, nx, ny, nz);
     const V size = hn::Add(
-        hn::Add(dot3(xx, xy, xz, xx, xy, xz), dot3(yx, yy, yz, yx, yy, yz)),
-        dot3(zx, zy, zz, zx, zy, zz));
-    const V least = hn::Mul(hn::Set(d, skin::kFlat), hn::Mul(size, size));
-
-    hn::LoadInterleaved4(d, &rest.tangents[at].x, x, y, z, w);
-    const V tx = dot3(xx, xy, xz, x, y, z);
-    const V ty = dot3(yx, yy, yz, x, y, z);
-    const V tz = dot3(zx, zy, zz, x, y, z);
-    const V tangent2 = dot3(tx, ty, tz, tx, ty, tz);
-    const auto bad = hn::Or(
-        hn::Not(hn::Gt(normal2, least)), hn::Not(hn::Gt(tangent2, hn::Set(d, skin::kNoLength))));
-    if (!hn::AllFalse(d, bad)) {
-        return false;
-    }
-
-    const V one = hn::Set(d, 1.0f);
-    const V side = dot3(xx, xy, xz, ax, ay, az);
+        hn::Add(dot3(m.xx, m.xy, m.xz, m.xx, m.xy, m.xz), dot3(m.yx, m.yy, m.yz, m.yx, m.yy, m.yz)),
+        dot3(m.zx, m.zy, m.zz, m.zx, m.zy, m.zz));
+    const V flat = hn::Mul(hn::Set(d, skin::kFlat), hn::Mul(size, size));
+    const V side = dot3(m.xx, m.xy, m.xz, ax, ay, az);
     const V normal_unit = hn::CopySign(hn::Div(one, hn::Sqrt(normal2)), side);
+    nx = hn::Mul(nx, normal_unit);
+    ny = hn::Mul(ny, normal_unit);
+    nz = hn::Mul(nz, normal_unit);
+    if (HWY_UNLIKELY(!hn::AllTrue(d, hn::Gt(normal2, flat)))) {
+        Vec3 normals[kLanes];
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            normals[lane] =
+                skin::moved_normal(work.skin, work.joints, work.rest.normals[at + lane], at + lane);
+        }
+        hn::LoadInterleaved3(d, &normals[0].x, nx, ny, nz);
+    }
+    store_entries(nx, ny, nz, &work.moved.normals[at].x);
+
+    load_entries(&work.rest.tangents[at].x, x, y, z, w);
+    const V tx = dot3(m.xx, m.xy, m.xz, x, y, z);
+    const V ty = dot3(m.yx, m.yy, m.yz, x, y, z);
+    const V tz = dot3(m.zx, m.zy, m.zz, x, y, z);
+    const V tangent2 = dot3(tx, ty, tz, tx, ty, tz);
     const V tangent_unit = hn::Div(one, hn::Sqrt(tangent2));
-    hn::StoreInterleaved4(
-        hn::Mul(tx, tangent_unit),
-        hn::Mul(ty, tangent_unit),
-        hn::Mul(tz, tangent_unit),
+    const auto turned = hn::Gt(tangent2, hn::Set(d, skin::kNoLength));
+    store_entries(
+        hn::IfThenElse(turned, hn::Mul(tx, tangent_unit), x),
+        hn::IfThenElse(turned, hn::Mul(ty, tangent_unit), y),
+        hn::IfThenElse(turned, hn::Mul(tz, tangent_unit), z),
         w,
-        d,
-        &moved.tangents[at].x);
-    hn::StoreInterleaved3(
-        hn::Mul(nx, normal_unit),
-        hn::Mul(ny, normal_unit),
-        hn::Mul(nz, normal_unit),
-        d,
-        &moved.normals[at].x);
-    hn::LoadInterleaved3(d, &rest.positions[at].x, x, y, z);
-    hn::StoreInterleaved3(
-        hn::Add(dot3(xx, xy, xz, x, y, z), xt),
-        hn::Add(dot3(yx, yy, yz, x, y, z), yt),
-        hn::Add(dot3(zx, zy, zz, x, y, z), zt),
-        d,
-        &moved.positions[at].x);
-    return true;
+        &work.moved.tangents[at].x);
+
+    load_entries(&work.rest.positions[at].x, x, y, z);
+    store_entries(
+        hn::Add(dot3(m.xx, m.xy, m.xz, x, y, z), m.xt),
+        hn::Add(dot3(m.yx, m.yy, m.yz, x, y, z), m.yt),
+        hn::Add(dot3(m.zx, m.zy, m.zz, x, y, z), m.zt),
+        &work.moved.positions[at].x);
 }
 
-/// Where lists begin; kept apart from the lists, which every store of a vector might change for all
-/// that a compiler knows.
 template <typename Joint>
-struct Lists {
-    const std::uint32_t* first;
-    const std::uint16_t* joints;
-    const float* weights;
-    const Joint* palette;
-
-    Lists(const SkinWeights& skin, std::span<const Joint> matrices)
-        : first(skin.first.data()), joints(skin.joints.data()), weights(skin.weights.data()),
-          palette(matrices.data()) {}
-};
-
-/// The rows of the mean matrix of vertex `v` go to `place` of the batch.
-HWY_INLINE void
-store_mean_matrix(const Lists<Affine> lists, std::size_t v, Batch& batch, std::size_t place) {
-#if HWY_MAX_BYTES >= 32  // two rows are one vector
-    constexpr hn::FixedTag<float, 8> two;
-#endif
-    std::uint32_t i = lists.first[v];
-    const std::uint32_t last = lists.first[v + 1];
-    if (i == last) {
-        for (std::size_t row = 0; row < 3; ++row) {
-            const auto unmoved = hn::LoadU(four, skin::kUnmoved + 4 * row);
-            hn::Store(unmoved, four, batch.rows[row] + 4 * place);
-        }
-        return;
-    }
-    const float* row = &lists.palette[lists.joints[i]].row[0].x;
-#if HWY_MAX_BYTES >= 32
-    auto weight = hn::Set(two, lists.weights[i]);
-    auto xy = hn::Mul(weight, hn::LoadU(two, row));
-    auto z = hn::Mul(hn::LowerHalf(four, weight), hn::LoadU(four, row + 8));
-    for (++i; i < last; ++i) {
-        row = &lists.palette[lists.joints[i]].row[0].x;
-        weight = hn::Set(two, lists.weights[i]);
-        xy = hn::Add(xy, hn::Mul(weight, hn::LoadU(two, row)));
-        z = hn::Add(z, hn::Mul(hn::LowerHalf(four, weight), hn::LoadU(four, row + 8)));
-    }
-    const auto x = hn::LowerHalf(four, xy);
-    const auto y = hn::UpperHalf(four, xy);
-#else
-    auto weight = hn::Set(four, lists.weights[i]);
-    auto x = hn::Mul(weight, hn::LoadU(four, row));
-    auto y = hn::Mul(weight, hn::LoadU(four, row + 4));
-    auto z = hn::Mul(weight, hn::LoadU(four, row + 8));
-    for (++i; i < last; ++i) {
-        row = &lists.palette[lists.joints[i]].row[0].x;
-        weight = hn::Set(four, lists.weights[i]);
-        x = hn::Add(x, hn::Mul(weight, hn::LoadU(four, row)));
-        y = hn::Add(y, hn::Mul(weight, hn::LoadU(four, row + 4)));
-        z = hn::Add(z, hn::Mul(weight, hn::LoadU(four, row + 8)));
-    }
-#endif
-    hn::Store(x, four, batch.rows[0] + 4 * place);
-    hn::Store(y, four, batch.rows[1] + 4 * place);
-    hn::Store(z, four, batch.rows[2] + 4 * place);
-}
-
-std::size_t skin_linear_vector(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
-    const std::size_t lanes = hn::Lanes(d);
-    const Lists<Affine> lists(skin, palette);
-    Batch batch;
-    while (begin + lanes <= end) {
-        const std::size_t block = std::min(kBlock, (end - begin) / lanes) * lanes;
-        for (std::size_t lane = 0; lane < block; ++lane) {
-            store_mean_matrix(lists, begin + lane, batch, lane);
-        }
-        for (std::size_t at = 0; at < block; at += lanes) {
-            V xx;
-            V xy;
-            V xz;
-            V xt;
-            V yx;
-            V yy;
-            V yz;
-            V yt;
-            V zx;
-            V zy;
-            V zz;
-            V zt;
-            hn::LoadInterleaved4(d, batch.rows[0] + 4 * at, xx, xy, xz, xt);
-            hn::LoadInterleaved4(d, batch.rows[1] + 4 * at, yx, yy, yz, yt);
-            hn::LoadInterleaved4(d, batch.rows[2] + 4 * at, zx, zy, zz, zt);
-            if (!move_vertices(
-                    xx, xy, xz, xt, yx, yy, yz, yt, zx, zy, zz, zt, rest, moved, begin + at)) {
-                skin_linear_scalar(skin, palette, rest, moved, begin + at, begin + at + lanes);
-            }
-        }
-        begin += block;
+HWY_INLINE std::size_t
+move_batches(const skin::Work<Joint>& work, std::size_t begin, std::size_t end) {
+    for (; begin + kLanes <= end; begin += kLanes) {
+        Matrices means;
+        find_means(work, find_influences(work.skin, begin), begin, means);
+        move_batch(work, means, begin);
     }
     return begin;
 }
 
-std::size_t skin_dual_vector(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
-    const std::size_t lanes = hn::Lanes(d);
-    const V one = hn::Set(d, 1.0f);
-    const V two = hn::Set(d, 2.0f);
-    const Lists<DualQuaternion> lists(skin, palette);
-    Batch batch;
-    while (begin + lanes <= end) {
-        const std::size_t block = std::min(kBlock, (end - begin) / lanes) * lanes;
-        for (std::size_t lane = 0; lane < block; ++lane) {
-            std::uint32_t i = lists.first[begin + lane];
-            const std::uint32_t last = lists.first[begin + lane + 1];
-            auto real = hn::LoadU(four, skin::kUnturned);
-            auto dual = hn::Zero(four);
-            if (i < last) {
-                const DualQuaternion& start = lists.palette[lists.joints[i]];
-                real = hn::Mul(hn::Set(four, lists.weights[i]), hn::LoadU(four, &start.real.x));
-                dual = hn::Mul(hn::Set(four, lists.weights[i]), hn::LoadU(four, &start.dual.x));
-                for (++i; i < last; ++i) {
-                    const DualQuaternion& next = lists.palette[lists.joints[i]];
-                    const Quat& p = next.real;
-                    const Quat& q = start.real;
-                    const float side = ((p.x * q.x + p.y * q.y) + p.z * q.z) + p.w * q.w;
-                    const auto weight =
-                        hn::Set(four, side < 0.0f ? -lists.weights[i] : lists.weights[i]);
-                    real = hn::Add(real, hn::Mul(weight, hn::LoadU(four, &next.real.x)));
-                    dual = hn::Add(dual, hn::Mul(weight, hn::LoadU(four, &next.dual.x)));
-                }
-            }
-            hn::Store(real, four, batch.rows[0] + 4 * lane);
-            hn::Store(dual, four, batch.rows[1] + 4 * lane);
-        }
-        for (std::size_t lane = 0; lane < block; lane += lanes) {
-            const std::size_t at = begin + lane;
-            V x;
-            V y;
-            V z;
-            V w;
-            V dx;
-            V dy;
-            V dz;
-            V dw;
-            hn::LoadInterleaved4(d, batch.rows[0] + 4 * lane, x, y, z, w);
-            hn::LoadInterleaved4(d, batch.rows[1] + 4 * lane, dx, dy, dz, dw);
-            const V length2 = hn::Add(dot3(x, y, z, x, y, z), hn::Mul(w, w));
-            if (!hn::AllTrue(d, hn::Gt(length2, hn::Set(d, skin::kNoMotion)))) {
-                skin_dual_scalar(skin, palette, rest, moved, at, at + lanes);
-                continue;
-            }
-            // 2 / |real|^2 takes the length out of all products.
-            const V s = hn::Div(two, length2);
-            const V xx = hn::Mul(s, hn::Mul(x, x));
-            const V yy = hn::Mul(s, hn::Mul(y, y));
-            const V zz = hn::Mul(s, hn::Mul(z, z));
-            const V xy = hn::Mul(s, hn::Mul(x, y));
-            const V xz = hn::Mul(s, hn::Mul(x, z));
-            const V yz = hn::Mul(s, hn::Mul(y, z));
-            const V wx = hn::Mul(s, hn::Mul(w, x));
-            const V wy = hn::Mul(s, hn::Mul(w, y));
-            const V wz = hn::Mul(s, hn::Mul(w, z));
-            const V tx = hn::Add(cross_part(w, dx, dw, x), cross_part(y, dz, z, dy));
-            const V ty = hn::Add(cross_part(w, dy, dw, y), cross_part(z, dx, x, dz));
-            const V tz = hn::Add(cross_part(w, dz, dw, z), cross_part(x, dy, y, dx));
-            if (!move_vertices(
-                    hn::Sub(one, hn::Add(yy, zz)),
-                    hn::Sub(xy, wz),
-                    hn::Add(xz, wy),
-                    hn::Mul(s, tx),
-                    hn::Add(xy, wz),
-                    hn::Sub(one, hn::Add(xx, zz)),
-                    hn::Sub(yz, wx),
-                    hn::Mul(s, ty),
-                    hn::Sub(xz, wy),
-                    hn::Add(yz, wx),
-                    hn::Sub(one, hn::Add(xx, yy)),
-                    hn::Mul(s, tz),
-                    rest,
-                    moved,
-                    at)) {
-                skin_dual_scalar(skin, palette, rest, moved, at, at + lanes);
-            }
-        }
-        begin += block;
-    }
-    return begin;
+std::size_t skin_linear_vector(const skin::Work<Affine>& work, std::size_t begin, std::size_t end) {
+    return move_batches(work, begin, end);
+}
+std::size_t
+skin_dual_vector(const skin::Work<DualQuaternion>& work, std::size_t begin, std::size_t end) {
+    return move_batches(work, begin, end);
 }
 
 #endif  // HWY_TARGET
@@ -373,118 +653,6 @@ HWY_EXPORT(skin_dual_vector);
 
 namespace {
 
-float dot3(const Vec3& a, const Vec3& b) {
-    return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Vec3 turn(const Affine& m, const Vec3& v) {
-    return {dot3(Vec3(m.row[0]), v), dot3(Vec3(m.row[1]), v), dot3(Vec3(m.row[2]), v)};
-}
-
-/// `strongest` is the matrix of the joint with the largest weight.
-template <typename Strongest>
-void move_vertex(
-    const Affine& m,
-    const Strongest& strongest,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t v) {
-    const Vec3 x(m.row[0]);
-    const Vec3 y(m.row[1]);
-    const Vec3 z(m.row[2]);
-    const Vec3 a = cross(y, z);
-    const Vec3 rest_normal = rest.normals[v];
-    const Vec3 n = {
-        dot3(a, rest_normal), dot3(cross(z, x), rest_normal), dot3(cross(x, y), rest_normal)};
-    const float normal2 = dot3(n, n);
-    const float size = (dot3(x, x) + dot3(y, y)) + dot3(z, z);
-    moved.normals[v] = normal2 > skin::kFlat * (size * size)
-                           ? n * std::copysign(1.0f / std::sqrt(normal2), dot3(x, a))
-                           : normalize_or(turn(strongest(), rest_normal), rest_normal);
-    const Vec4 rest_tangent = rest.tangents[v];
-    const Vec3 t = turn(m, Vec3(rest_tangent));
-    const float tangent2 = dot3(t, t);
-    const Vec3 tangent =
-        tangent2 > skin::kNoLength ? t * (1.0f / std::sqrt(tangent2)) : Vec3(rest_tangent);
-    moved.tangents[v] = Vec4(tangent, rest_tangent.w);
-    moved.positions[v] = turn(m, rest.positions[v]) + Vec3(m.row[0].w, m.row[1].w, m.row[2].w);
-}
-
-std::uint32_t strongest_joint(const SkinWeights& skin, std::size_t v) {
-    const auto first = skin.weights.begin();
-    const auto found = std::max_element(first + skin.first[v], first + skin.first[v + 1]);
-    return skin.joints[static_cast<std::size_t>(found - first)];
-}
-
-/// Of any length; none: `real` has no length.
-Affine matrix_of(const DualQuaternion& motion) {
-    const auto [w, x, y, z] =
-        std::tuple(motion.real.w, motion.real.x, motion.real.y, motion.real.z);
-    const auto [dw, dx, dy, dz] =
-        std::tuple(motion.dual.w, motion.dual.x, motion.dual.y, motion.dual.z);
-    const float s = 2.0f / (((x * x + y * y) + z * z) + w * w);
-    const float xx = s * (x * x);
-    const float yy = s * (y * y);
-    const float zz = s * (z * z);
-    const float xy = s * (x * y);
-    const float xz = s * (x * z);
-    const float yz = s * (y * z);
-    const float wx = s * (w * x);
-    const float wy = s * (w * y);
-    const float wz = s * (w * z);
-    Affine m;
-    m.row[0] = {1.0f - (yy + zz), xy - wz, xz + wy, s * ((w * dx - dw * x) + (y * dz - z * dy))};
-    m.row[1] = {xy + wz, 1.0f - (xx + zz), yz - wx, s * ((w * dy - dw * y) + (z * dx - x * dz))};
-    m.row[2] = {xz - wy, yz + wx, 1.0f - (xx + yy), s * ((w * dz - dw * z) + (x * dy - y * dx))};
-    return m;
-}
-
-Affine mean_matrix(
-    const SkinWeights& skin, std::span<const Affine> palette, std::uint32_t i, std::uint32_t last) {
-    Affine mean;
-    if (i < last) {
-        for (int row = 0; row < 3; ++row) {
-            mean.row[row] = skin.weights[i] * palette[skin.joints[i]].row[row];
-        }
-        for (++i; i < last; ++i) {
-            for (int row = 0; row < 3; ++row) {
-                mean.row[row] += skin.weights[i] * palette[skin.joints[i]].row[row];
-            }
-        }
-    }
-    return mean;
-}
-
-DualQuaternion mean_motion(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    std::uint32_t i,
-    std::uint32_t last) {
-    DualQuaternion mean;
-    if (i == last) {
-        return mean;
-    }
-    const DualQuaternion& start = palette[skin.joints[i]];
-    mean.real = skin.weights[i] * start.real;
-    mean.dual = skin.weights[i] * start.dual;
-    for (++i; i < last; ++i) {
-        const DualQuaternion& next = palette[skin.joints[i]];
-        const Quat& p = next.real;
-        const Quat& q = start.real;
-        // q and -q turn alike, but their mean does not.
-        const float side = ((p.x * q.x + p.y * q.y) + p.z * q.z) + p.w * q.w;
-        const float weight = side < 0.0f ? -skin.weights[i] : skin.weights[i];
-        mean.real += weight * next.real;
-        mean.dual += weight * next.dual;
-    }
-    const Quat& r = mean.real;
-    const float length2 = ((r.x * r.x + r.y * r.y) + r.z * r.z) + r.w * r.w;
-    return length2 > skin::kNoMotion ? mean : start;
-}
-
 void check_spans(
     const SkinWeights& skin,
     const RestVertices& rest,
@@ -498,56 +666,19 @@ void check_spans(
     LIMN_CHECK(skin.first.size() == count + 1 && end <= count);
 }
 
+/// kStride numbers a joint, from the start of a cache line on.
+template <typename Joint>
+hwy::AlignedFreeUniquePtr<float[]> make_palette(std::span<const Joint> joints) {
+    constexpr std::size_t stride = skin::kStride<Joint>;
+    auto palette = hwy::AllocateAligned<float>(stride * std::max<std::size_t>(joints.size(), 1));
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        std::memset(palette.get() + stride * i, 0, stride * sizeof(float));
+        std::memcpy(palette.get() + stride * i, &joints[i], sizeof(Joint));
+    }
+    return palette;
+}
+
 }  // namespace
-
-void find_palette(const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette) {
-    LIMN_CHECK(palette.size() == skin.joints.size());
-    for (std::size_t i = 0; i < palette.size(); ++i) {
-        palette[i] = joints[skin.joints[i]] * skin.joint_from_mesh[i];
-    }
-}
-
-void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion> duals) {
-    LIMN_CHECK(palette.size() == duals.size());
-    for (std::size_t i = 0; i < palette.size(); ++i) {
-        const Affine& m = palette[i];
-        Mat3 axes;
-        for (int k = 0; k < 3; ++k) {
-            axes[k] = Vec3(m.row[0][k], m.row[1][k], m.row[2][k]);
-        }
-        const Quat real = rotation_in(axes).value_or(Quat(1, 0, 0, 0));
-        const Quat way(0, m.row[0].w, m.row[1].w, m.row[2].w);
-        duals[i] = {real, 0.5f * (way * real)};
-    }
-}
-
-void skin_linear_scalar(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-        const Affine mean = mean_matrix(skin, palette, skin.first[v], skin.first[v + 1]);
-        move_vertex(
-            mean, [&] { return palette[strongest_joint(skin, v)]; }, rest, moved, v);
-    }
-}
-
-void skin_dual_scalar(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-        const Affine mean = matrix_of(mean_motion(skin, palette, skin.first[v], skin.first[v + 1]));
-        move_vertex(
-            mean, [&] { return matrix_of(palette[strongest_joint(skin, v)]); }, rest, moved, v);
-    }
-}
 
 void skin_linear(
     const SkinWeights& skin,
@@ -557,8 +688,9 @@ void skin_linear(
     std::size_t begin,
     std::size_t end) {
     check_spans(skin, rest, moved, end);
-    const std::size_t next =
-        HWY_DYNAMIC_DISPATCH(skin_linear_vector)(skin, palette, rest, moved, begin, end);
+    const auto numbers = make_palette(palette);
+    const skin::Work<Affine> work = {skin, palette, numbers.get(), rest, moved};
+    const std::size_t next = HWY_DYNAMIC_DISPATCH(skin_linear_vector)(work, begin, end);
     skin_linear_scalar(skin, palette, rest, moved, next, end);
 }
 
@@ -570,61 +702,10 @@ void skin_dual(
     std::size_t begin,
     std::size_t end) {
     check_spans(skin, rest, moved, end);
-    const std::size_t next =
-        HWY_DYNAMIC_DISPATCH(skin_dual_vector)(skin, palette, rest, moved, begin, end);
+    const auto numbers = make_palette(palette);
+    const skin::Work<DualQuaternion> work = {skin, palette, numbers.get(), rest, moved};
+    const std::size_t next = HWY_DYNAMIC_DISPATCH(skin_dual_vector)(work, begin, end);
     skin_dual_scalar(skin, palette, rest, moved, next, end);
-}
-
-void add_morphs(
-    std::span<const MorphTarget> morphs,
-    std::span<const float> weights,
-    const MovedVertices& vertices) {
-    const std::size_t count = std::min(morphs.size(), weights.size());
-    for (std::size_t t = 0; t < count; ++t) {
-        const MorphTarget& morph = morphs[t];
-        const float weight = weights[t];
-        if (weight == 0.0f) {
-            continue;
-        }
-        for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
-            const std::uint32_t v = morph.vertices[i];
-            vertices.positions[v] += weight * morph.positions[i];
-            if (!morph.normals.empty()) {
-                vertices.normals[v] += weight * morph.normals[i];
-            }
-            if (!morph.tangents.empty()) {
-                vertices.tangents[v] += Vec4(weight * morph.tangents[i], 0.0f);
-            }
-        }
-    }
-}
-
-SkinWeights limit_influences(const SkinWeights& skin, std::size_t most) {
-    LIMN_CHECK(most > 0);
-    SkinWeights limited;
-    std::vector<std::uint32_t> kept;
-    for (std::size_t v = 0; v + 1 < skin.first.size(); ++v) {
-        kept.clear();
-        for (std::uint32_t i = skin.first[v]; i < skin.first[v + 1]; ++i) {
-            kept.push_back(i);
-        }
-        std::stable_sort(kept.begin(), kept.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return skin.weights[a] > skin.weights[b];
-        });
-        kept.resize(std::min(kept.size(), most));
-        std::sort(kept.begin(), kept.end());  // by joint again
-        float sum = 0.0f;
-        for (const std::uint32_t i : kept) {
-            sum += skin.weights[i];
-        }
-        limited.first.push_back(static_cast<std::uint32_t>(limited.joints.size()));
-        for (const std::uint32_t i : kept) {
-            limited.joints.push_back(skin.joints[i]);
-            limited.weights.push_back(skin.weights[i] / sum);
-        }
-    }
-    limited.first.push_back(static_cast<std::uint32_t>(limited.joints.size()));
-    return limited;
 }
 
 }  // namespace limn

@@ -17,7 +17,9 @@ namespace limn {
 // line, the joint with the largest weight turns them.
 //
 // The inner loops come twice, as those of pose_kernels.h: with the widest vectors of the machine
-// and as plain C++, `_scalar`. Both give the same bits, for any cut into ranges.
+// and as plain C++, `_scalar`. Both give the same bits, for any cut into ranges. The vectors do a
+// batch of vertices at once: quickest where neighbors follow the same joints, at most four, slower
+// where they follow different ones, and slowest where they also differ in how many.
 
 /// Vertices at rest; all of one length.
 struct RestVertices {

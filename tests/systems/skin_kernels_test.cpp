@@ -7,9 +7,13 @@
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
+#include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <string>
 
 using namespace limn;
 using namespace limn::test;
@@ -315,6 +319,108 @@ TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut an
         skin_dual(puppet.mesh.skin, puppet.duals, puppet.rest(), target, middle, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
         CHECK(same_bits(plain.tangents, puppet.moved.tangents));
+    }
+}
+
+/// Vertices of `count` joints each. Each follows others than its neighbors; or `run` neighbors in a
+/// row follow the same.
+Puppet make_regular_puppet(std::size_t count, std::size_t run, std::size_t vertices) {
+    Puppet puppet;
+    puppet.skeleton = make_chain(24);
+    Random random(13, 0, name_hash("regular"), 0);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        std::vector<std::pair<int, float>> by;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t joint = (v / run * 5 + 3 * i) % 24;
+            by.emplace_back(static_cast<int>(joint), random.uniform(0.1f, 1));
+        }
+        add_vertex(puppet.mesh, random.direction(), by);
+    }
+    puppet.bind();
+    puppet.pose(random_pose(puppet.skeleton, 3));
+    return puppet;
+}
+
+/// By vectors and without, both ways to blend.
+void check_same_bits(Puppet& puppet) {
+    MeshData plain = puppet.mesh;
+    const std::size_t count = plain.positions.size();
+    const MovedVertices target = {plain.positions, plain.normals, plain.tangents};
+    puppet.linear();
+    skin_linear_scalar(puppet.mesh.skin, puppet.palette, puppet.rest(), target, 0, count);
+    CHECK(same_bits(plain.positions, puppet.moved.positions));
+    CHECK(same_bits(plain.normals, puppet.moved.normals));
+    CHECK(same_bits(plain.tangents, puppet.moved.tangents));
+    puppet.dual();
+    skin_dual_scalar(puppet.mesh.skin, puppet.duals, puppet.rest(), target, 0, count);
+    CHECK(same_bits(plain.positions, puppet.moved.positions));
+    CHECK(same_bits(plain.normals, puppet.moved.normals));
+    CHECK(same_bits(plain.tangents, puppet.moved.tangents));
+}
+
+TEST_CASE("skin: neighbors on the same joints, on as many, or on any give the bits of each alone") {
+    // Every kind of vectors that this machine has.
+    const std::int64_t targets = hwy::SupportedTargets();
+    for (std::int64_t left = targets; left != 0; left &= left - 1) {
+        hwy::SetSupportedTargetsForTest(left & -left);
+        hwy::GetChosenTarget().DeInit();
+        CAPTURE(std::string(hwy::TargetName(left & -left)));
+        for (const std::size_t count : {1, 2, 3, 4, 5}) {
+            CAPTURE(count);
+            for (const std::size_t run : {1, 10, 1000}) {
+                Puppet puppet = make_regular_puppet(count, run, 100);
+                check_same_bits(puppet);
+            }
+        }
+        Puppet any = make_puppet(24, 100, 6);
+        any.pose(random_pose(any.skeleton, 3));
+        check_same_bits(any);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+}
+
+TEST_CASE(
+    "skin: motions and normals that cancel, in the midst of others, are those of each alone") {
+    for (const std::size_t run : {1, 1000}) {
+        Puppet puppet = make_regular_puppet(2, run, 64);
+        for (std::size_t i = 0; i < 24; i += 2) {  // half a turn apart, and as far the other way
+            puppet.palette[i] = Affine{};
+            puppet.palette[i].row[0] = {-1, 0, 0, 0};
+            puppet.palette[i].row[2] = {0, 0, -1, 0};
+            puppet.duals[i].real = -puppet.duals[(i + 3) % 24].real;
+        }
+        puppet.palette[3] = Affine{};
+        for (float& weight : puppet.mesh.skin.weights) {
+            weight = 0.5f;
+        }
+        puppet.mesh.tangents[20] = Vec4(0, 0, 0, 1);
+        puppet.mesh.normals[37] = Vec3(0);
+        check_same_bits(puppet);
+    }
+}
+
+TEST_CASE("skin: opposite motions leave the first, however small its weight") {
+    for (const std::size_t run : {1, 1000}) {
+        Puppet puppet = make_regular_puppet(3, run, 64);
+        for (std::size_t i = 0; i < 24; ++i) {
+            puppet.duals[i] = {Quat(0, i % 2 == 0 ? 1.0f : -1.0f, 0, 0), Quat(0, 0, 0, 0)};
+        }
+        for (std::size_t v = 0; v < 64; ++v) {
+            const std::size_t kind = run == 1 ? v % 3 : 0;
+            const auto even = static_cast<std::uint16_t>(2 * kind);
+            const auto odd = static_cast<std::uint16_t>(2 * kind + 1);
+            const std::uint16_t joints[] = {6, even, odd};
+            const float weights[] = {1e-7f, 0.5f, 0.5f};
+            std::copy(std::begin(joints), std::end(joints), &puppet.mesh.skin.joints[3 * v]);
+            std::copy(std::begin(weights), std::end(weights), &puppet.mesh.skin.weights[3 * v]);
+        }
+        puppet.duals[6] = {Quat(0.6f, 0, 0.8f, 0), Quat(0, 0, 0, 0)};
+        check_same_bits(puppet);
+        for (std::size_t v = 0; v < 64; ++v) {
+            const Vec3 turned = puppet.duals[6].real * puppet.mesh.positions[v];
+            CHECK(glm::distance(puppet.moved.positions[v], turned) < 1e-5f);
+        }
     }
 }
 
