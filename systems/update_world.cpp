@@ -20,6 +20,7 @@
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_ripple_system.h"
+#include "systems/water/water_stone_system.h"
 #include "systems/water/water_wave_system.h"
 
 namespace limn {
@@ -49,6 +50,7 @@ Schedule make_world_schedule() {
     schedule.add<advance_clips>();
     schedule.add<update_poses>();            // after clips: shows their new moment
     schedule.add<update_attachments>();      // after poses: hangs on the joints
+    schedule.add<throw_stones>();            // after all that moves water: meets it as it is now
     schedule.add<update_floating_bodies>();  // after all that moves water
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
     schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now

@@ -39,7 +39,7 @@ constexpr std::array kKeys = {
     KeyHelp{"[  ]", "pull focus nearer, farther"},
     KeyHelp{"-  =", "close, open the aperture"},
     KeyHelp{"9  0", "shutter: shorter, longer"},
-    KeyHelp{"Click", "select what is under the pointer"},
+    KeyHelp{"Click", "select what is under the pointer, throw a stone into water"},
     KeyHelp{nullptr, "Time and levels"},
     KeyHelp{"Space", "pause, go on"},
     KeyHelp{".", "one step"},

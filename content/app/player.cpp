@@ -290,6 +290,10 @@ Input Player::read_input(const WindowEvents& events) {
         input.fast =
             window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
     }
+    const Ray ray = pointer_ray();
+    input.eye = ray.origin;
+    input.pointing = on_panel ? Vec3(0) : ray.direction;
+    input.click = events.left_clicked && !on_panel;
     // The level's camera gives way to whoever takes hold of it.
     const bool moved =
         input.look != Vec2(0) || (input.move != Vec3(0) && !has_driver(stage_->world));
@@ -321,10 +325,13 @@ void Player::cycle_camera() {
     hud_->toast(camera_mode_name(camera_.mode));
 }
 
+Ray Player::pointer_ray() const {
+    return ray_through(
+        view_, window_->mouse_position() / Vec2(glm::max(window_->framebuffer_size(), IVec2(1))));
+}
+
 void Player::select_under_pointer() {
-    const Vec2 point =
-        window_->mouse_position() / Vec2(glm::max(window_->framebuffer_size(), IVec2(1)));
-    const std::optional<Hit> hit = pick_entity(stage_->world, ray_through(view_, point));
+    const std::optional<Hit> hit = pick_entity(stage_->world, pointer_ray());
     inspector_.select(hit ? hit->entity : Entity{});
     camera_.orbit.target = inspector_.selected();
 }
@@ -334,7 +341,9 @@ void Player::select_under_pointer() {
 void Player::simulate(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
     if (Input* resource = stage_->world.find_resource<Input>()) {
+        const bool waiting = resource->click;  // for a step, which a frame need not have
         *resource = input;
+        resource->click = input.click || waiting;
         if (camera_.mode != CameraMode::Level && has_driver(stage_->world)) {
             resource->move = Vec3(0);  // the camera has them
             resource->fast = false;

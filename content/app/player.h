@@ -3,6 +3,7 @@
 #include "content/app/buffer_viewer.h"
 #include "content/app/hud.h"
 #include "content/app/inspector.h"
+#include "content/app/pick.h"
 #include "content/app/play_command.h"
 #include "content/app/player_camera.h"
 #include "content/app/profiler_panel.h"
@@ -55,6 +56,7 @@ class Player {
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events);
     void cycle_camera();
+    [[nodiscard]] Ray pointer_ray() const;
     void select_under_pointer();
 
     void simulate(float dt, const Input& input);

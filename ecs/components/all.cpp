@@ -28,6 +28,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
+#include "ecs/components/water_stones.h"
 #include "ecs/components/water_waves.h"
 #include "ecs/hierarchy.h"
 
@@ -76,6 +77,8 @@ void register_all_components() {
     register_component<RippleState>();
     register_component<WaterTouch>();
     register_component<Floating>();
+    register_component<StoneThrower>();
+    register_component<ThrownStone>();
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();

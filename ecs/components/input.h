@@ -14,6 +14,9 @@ struct Input {
     bool fast = false;      ///< move faster
     Vec3 lens = {0, 0, 0};  ///< wanted turn: focus farther, aperture wider, shutter open longer,
                             ///< each -1 .. 1
+    bool click = false;     ///< on what the pointer is on; whoever takes it makes it false
+    Vec3 eye = {0, 0, 0};   ///< where the pointer is looked through from [m]
+    Vec3 pointing = {0, 0, 0};  ///< from there through the pointer; 0: at nothing
 };
 
 template <typename Visitor>
@@ -26,6 +29,9 @@ void visit_fields(Input& input, Visitor&& visit) {
         "lens",
         input.lens,
         {.doc = "wanted turn: focus farther, aperture wider, shutter longer", .min = -1, .max = 1});
+    visit("click", input.click, {.doc = "on what the pointer is on; a stone thrown takes it"});
+    visit("eye", input.eye, {.doc = "where the pointer is looked through from", .unit = "m"});
+    visit("pointing", input.pointing, {.doc = "from there through the pointer; 0: at nothing"});
 }
 
 }  // namespace limn
