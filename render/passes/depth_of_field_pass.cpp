@@ -345,7 +345,8 @@ void Drawing::draw_discs(TextureId picture, TextureId depth) {
          made_.near_wide,
          made_.far_rest,
          made_.near_rest,
-         made_.near_blurred},
+         made_.near_blurred,
+         made_.tiles},
         {picture},
         [&pass = pass_, made = made_, depth](PassContext& context) {
             gpu::PipelineState add = gpu::kFullscreenState;
@@ -361,6 +362,7 @@ void Drawing::draw_discs(TextureId picture, TextureId depth) {
             context.bind_texture(4, made.seen);
             context.bind_texture(5, made.near_blurred);
             context.bind_texture(6, depth);
+            context.bind_texture(kTilesUnit, made.tiles);
             context.device().draw(GL_POINTS, 0, 2 * made.quarter.x * made.quarter.y);
         });
 }

@@ -42,6 +42,7 @@ vec4 slightly_blurred(ivec2 here, float own, float reach) {
 #ifdef BLURRED
 
 const int kHiddenLevels = 5;
+const float kOpaque = 0.97;  // of a near surface, which then hides all
 
 // A loop is left early, a branch may not be.
 vec4 texture_if(sampler2D image, vec2 uv, bool wanted) {
@@ -87,7 +88,7 @@ void main() {
         shown += near;  // parts of one surface: neither hides the other
         near = vec4(0.0);
     }
-    vec4 behind = hidden(uv, is_near > 0.0 ? kHiddenLevels : 0);
+    vec4 behind = hidden(uv, is_near > 0.0 && shown.a < kOpaque ? kHiddenLevels : 0);
     behind = is_near > 0.0 ? behind : far;
     if (behind.a > 1e-4) {
         color.rgb = shown.rgb / max(shown.a, 1.0) + max(1.0 - shown.a, 0.0) * behind.rgb / behind.a;

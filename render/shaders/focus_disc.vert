@@ -7,6 +7,7 @@ layout(binding = 1) uniform sampler2D near_wide;
 layout(binding = 2) uniform sampler2D far_rest;
 layout(binding = 3) uniform sampler2D near_rest;
 layout(binding = 4) uniform sampler2D seen_pixels;
+layout(binding = 7) uniform sampler2D focus_tiles;
 
 uniform ivec2 texels;  // of a quarter of the picture
 
@@ -39,13 +40,22 @@ void main() {
     bool is_near = gl_VertexID >= count;
     int index = is_near ? gl_VertexID - count : gl_VertexID;
     ivec2 texel = ivec2(index % texels.x, index / texels.x);
+    ivec2 last = textureSize(focus_tiles, 0) - 1;
+    vec4 tile = texelFetch(focus_tiles, min(4 * texel / kFocusTile, last), 0);
     vec2 uv = 2.0 * (vec2(texel) + 0.5) / focus.size.zw;
-    vec4 all = is_near ? textureLod(near_wide, uv, 0.0) : textureLod(far_wide, uv, 0.0);
-    vec3 rest = (is_near ? texelFetch(near_rest, texel, 0) : texelFetch(far_rest, texel, 0)).rgb;
-    vec3 excess = all.rgb - rest;
+    vec4 all = vec4(0.0);
+    vec3 excess = vec3(0.0);
+    for (int i = 0; i < (is_near && tile.y > 0.0 ? 1 : 0); ++i) {  // a loop is left early, a branch may not be
+        all = textureLod(near_wide, uv, 0.0);
+        excess = all.rgb - texelFetch(near_rest, texel, 0).rgb;
+    }
+    for (int i = 0; i < (!is_near && tile.w > 0.0 ? 1 : 0); ++i) {
+        all = textureLod(far_wide, uv, 0.0);
+        excess = all.rgb - texelFetch(far_rest, texel, 0).rgb;
+    }
     bool shines = max(excess.r, max(excess.g, excess.b)) > 1e-5 * max(all.r, max(all.g, all.b));
     float side = is_near ? -1.0 : 1.0;
-    vec3 its = middle_of(texel, side, shines ? 36 : 0);  // a loop is left early, a branch may not be
+    vec3 its = middle_of(texel, side, shines ? 36 : 0);
     light = excess * 16.0;
     middle = its.xy;
     radius = side * its.z;

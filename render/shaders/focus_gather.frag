@@ -74,7 +74,8 @@ void main() {
     bool is_fine = fine > wide;
     float reach = fine + wide > 0.0 ? (is_fine ? own.x : 0.5 * tile.z) : -1.0;
     vec4 behind = texture(far_coarse, uv);
-    behind *= (is_fine ? share_of_wide(here, own, tile.w > 0.0 ? reach : -1.0) : 1.0) / max(behind.a, 1e-5);
+    float shows = is_fine ? share_of_wide(here, own, behind.a > 1e-3 ? reach : -1.0) : 1.0;
+    behind *= shows / max(behind.a, 1e-5);
     vec4 far = gather_far(here, own, is_fine, reach, behind);
     far_blurred = far.a > 1e-4 ? far * (min(4.0 * (fine + wide), 1.0) / far.a) : vec4(0.0);
 
