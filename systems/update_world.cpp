@@ -21,6 +21,7 @@
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_stone_system.h"
+#include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_system.h"
 
 namespace limn {
@@ -41,6 +42,7 @@ Schedule make_world_schedule() {
     schedule.add<update_path_followers>();
     schedule.add<update_racers>();
     schedule.add<age_wave_packets>();
+    schedule.add<emit_wakes>();        // after ages: new rings are as old as they are
     schedule.add<fill_wave_tables>();  // after ages
     schedule.add<update_oceans>();
     schedule.add<update_ocean_foam>();   // after oceans: where they break now

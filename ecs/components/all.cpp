@@ -29,6 +29,7 @@
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_stones.h"
+#include "ecs/components/water_wake.h"
 #include "ecs/components/water_waves.h"
 #include "ecs/hierarchy.h"
 
@@ -76,6 +77,7 @@ void register_all_components() {
     register_component<WaterRipples>();
     register_component<RippleState>();
     register_component<WaterTouch>();
+    register_component<WakeEmitter>();
     register_component<Floating>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();
