@@ -183,6 +183,28 @@ TEST_CASE("gltf animation: a cubic rotation of the other sign takes its slopes w
     CHECK(sheet.rotations[5].z == doctest::Approx(0.5));
 }
 
+TEST_CASE("gltf animation: a clip of a single key holds it, at any time") {
+    for (const float time : {0.0f, 0.5f}) {
+        Arm arm;
+        arm.times = {time};
+        arm.rotations = turn_about_z(30);
+        arm.places = {0, 3, 0};
+        arm.sizes = {9, 9, 9, 2, 1, 1, 9, 9, 9};
+        const Result<GltfScene> scene = arm.load();
+        REQUIRE_MESSAGE(scene.ok(), scene.error().message);
+        REQUIRE(scene->clips.size() == 1);
+        CHECK(scene->clips[0].duration == time);
+        for (const float at : {-1.0f, 0.0f, 0.3f, 7.0f}) {
+            LocalPose pose = scene->skeleton.rest;
+            sample_clip(scene->clips[0], clip_time(time, at, true), pose, {});
+            CHECK(
+                degrees(axis_angle(pose.rotations[2]).angle) == doctest::Approx(30).epsilon(1e-4));
+            CHECK(pose.translations[3] == Vec3(0, 3, 0));
+            CHECK(pose.scales[3] == Vec3(2, 1, 1));
+        }
+    }
+}
+
 TEST_CASE("gltf animation: what is in no scene or without a node moves nothing, weights are told") {
     Arm arm;
     arm.roots = "[5]";
