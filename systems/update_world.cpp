@@ -19,6 +19,7 @@
 #include "systems/transform_system.h"
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
+#include "systems/water/water_noise_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_stone_system.h"
 #include "systems/water/water_wake_system.h"
@@ -34,6 +35,7 @@ Schedule make_world_schedule() {
     schedule.add<add_poses>();
     schedule.add<add_ripple_states>();
     schedule.add<add_wave_tables>();
+    schedule.add<add_noise_fields>();
     schedule.add<add_ocean_states>();
     schedule.sync();
     schedule.add<update_spins>();
@@ -42,6 +44,7 @@ Schedule make_world_schedule() {
     schedule.add<update_path_followers>();
     schedule.add<update_racers>();
     schedule.add<age_wave_packets>();
+    schedule.add<update_noise_surfaces>();
     schedule.add<emit_wakes>();        // after ages: new rings are as old as they are
     schedule.add<fill_wave_tables>();  // after ages
     schedule.add<update_oceans>();
@@ -93,6 +96,8 @@ void start_world(World& world) {
     world.run(add_ripple_states);
     world.run(add_wave_tables);
     world.run(fill_wave_tables);
+    world.run(add_noise_fields);
+    world.run(update_noise_surfaces);
     world.run(update_env_probes);
     world.run(update_orbit_cameras);
     world.run(update_autofocus);

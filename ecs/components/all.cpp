@@ -27,6 +27,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_noise.h"
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_stones.h"
 #include "ecs/components/water_wake.h"
@@ -78,6 +79,7 @@ void register_all_components() {
     register_component<RippleState>();
     register_component<WaterTouch>();
     register_component<WakeEmitter>();
+    register_component<NoiseSurface>();
     register_component<Floating>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();
