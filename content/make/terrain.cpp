@@ -56,14 +56,23 @@ float clearing_height(const TerrainShape& shape) {
     return sum / kSamples;
 }
 
+/// Share of its height that land has so near the coast, the ellipse in its rectangle.
+float risen(const TerrainShape& shape, float x, float z) {
+    const Vec2 half = 0.5f * shape.size;
+    const float inland = 1.0f - glm::length(Vec2(x, z) / half);
+    const float whole = std::min(shape.shore / std::min(half.x, half.y), 1.0f);
+    return glm::smoothstep(0.0f, whole, inland);
+}
+
 /// `level` is clearing_height(), or anything without a clearing.
 float height_at(const TerrainShape& shape, float level, float x, float z) {
+    const float share = shape.shore > 0 ? risen(shape, x, z) : 1.0f;
     if (shape.clearing <= 0) {
-        return landscape(shape, x, z);
+        return share * landscape(shape, x, z);
     }
     const float wild =
         glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z));
-    return wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level;
+    return share * (wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct TerrainShape {
     float erosion = 1.0f;        ///< how much slopes lose detail, 0 = none .. 4
     float warp = 0.35f;          ///< how much ridges wander, in feature sizes, 0 .. 2
     float clearing = 0.0f;       ///< radius of a level place in the middle [m], 0 = none
+    float shore = 0.0f;          ///< an island: sinks to 0 over so far from its coast [m], 0 = no
     int seed = 1;                ///< another landscape
 };
 
@@ -61,6 +62,13 @@ void visit_fields(TerrainShape& shape, Visitor&& visit) {
         "clearing",
         shape.clearing,
         {.doc = "radius of a level place in the middle; 0 = none",
+         .unit = "m",
+         .min = 0,
+         .max = 1e5});
+    visit(
+        "shore",
+        shape.shore,
+        {.doc = "an island: sinks to 0 over so far from its coast; 0 = no",
          .unit = "m",
          .min = 0,
          .max = 1e5});

@@ -94,6 +94,11 @@ Through seen_through(vec3 position, vec3 direction, vec2 uv, float most) {
     float here = picture_of(position).z;
     vec4 straight = behind_at(uv);
     float way = straight.w > 0.0 ? (straight.w - here) * length(view_ray(gl_FragCoord.xy)) : kEndless;
+    // Rays that leave the picture are bent less, so that its edge is not drawn out: from half way to it on.
+    vec2 shift = picture_of(position + direction * min(way, most)).xy - uv;
+    vec2 room = mix(1.0 - uv, uv, lessThan(shift, vec2(0.0)));
+    vec2 shares = room / max(2.0 * abs(shift), vec2(1e-6));
+    direction = normalize(mix(normalize(position - view.camera_ws.xyz), direction, min(min(shares.x, shares.y), 1.0)));
     float reach = min(most, min(3.0 * way + 0.5, kEndless));
     float low = 0.0;
     float high = reach;
@@ -179,7 +184,7 @@ void main() {
         mirror = glow;
     }
     vec3 color = mix(seen, mirror, share) + glints;
-    radiance = vec4(mix(color, kFoamAlbedo * falling, above ? bend.foam : 0.0), 1.0);
+    radiance = vec4(mix(color, kFoamAlbedo * falling, above ? smoothstep(0.3, 0.9, bend.foam) : 0.0), 1.0);
 #ifdef VELOCITY
     vec2 now = 2.0 * uv - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now, clip_before);

@@ -65,6 +65,23 @@ TEST_CASE("terrain: the clearing is level and joins the hills without a step") {
     CHECK(terrain_height(shape, 30, 30) == terrain_height(TerrainShape{}, 30, 30));
 }
 
+TEST_CASE("terrain: an island rises from its coast, and is the land it was far from it") {
+    const TerrainShape island = {.size = {200, 100}, .shore = 20};
+    const TerrainShape land = {.size = {200, 100}};
+    for (int i = 0; i < 64; ++i) {
+        const float angle = 0.0981748f * static_cast<float>(i);
+        const Vec2 coast(100 * std::cos(angle), 50 * std::sin(angle));
+        CHECK(std::abs(terrain_height(island, 0.9999f * coast.x, 0.9999f * coast.y)) < 1e-3f);
+        CHECK(terrain_height(island, 1.2f * coast.x, 1.2f * coast.y) == 0);
+        CHECK(
+            terrain_height(island, 0.55f * coast.x, 0.55f * coast.y)
+            == terrain_height(land, 0.55f * coast.x, 0.55f * coast.y));
+        CHECK(
+            terrain_height(island, 0.8f * coast.x, 0.8f * coast.y)
+            < terrain_height(land, 0.8f * coast.x, 0.8f * coast.y));
+    }
+}
+
 TEST_CASE("terrain: erosion takes detail from slopes") {
     const auto roughness = [](float erosion) {
         const TerrainShape shape = {.ridges = 0, .erosion = erosion};
