@@ -21,6 +21,7 @@
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_noise_system.h"
 #include "systems/water/water_ripple_system.h"
+#include "systems/water/water_spray_system.h"
 #include "systems/water/water_stone_system.h"
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_system.h"
@@ -36,6 +37,7 @@ Schedule make_world_schedule() {
     schedule.add<add_ripple_states>();
     schedule.add<add_wave_tables>();
     schedule.add<add_noise_fields>();
+    schedule.add<add_spray_drops>();
     schedule.add<add_ocean_states>();
     schedule.sync();
     schedule.add<update_spins>();
@@ -55,6 +57,7 @@ Schedule make_world_schedule() {
     schedule.add<advance_clips>();
     schedule.add<update_poses>();            // after clips: shows their new moment
     schedule.add<update_attachments>();      // after poses: hangs on the joints
+    schedule.add<update_spray>();            // after all that moves water
     schedule.add<throw_stones>();            // after all that moves water: meets it as it is now
     schedule.add<update_floating_bodies>();  // after all that moves water
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices

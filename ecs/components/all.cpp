@@ -29,6 +29,7 @@
 #include "ecs/components/water.h"
 #include "ecs/components/water_noise.h"
 #include "ecs/components/water_ripples.h"
+#include "ecs/components/water_spray.h"
 #include "ecs/components/water_stones.h"
 #include "ecs/components/water_wake.h"
 #include "ecs/components/water_waves.h"
@@ -80,6 +81,8 @@ void register_all_components() {
     register_component<WaterTouch>();
     register_component<WakeEmitter>();
     register_component<NoiseSurface>();
+    register_component<SpraySource>();
+    register_component<SprayObstacle>();
     register_component<Floating>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();

@@ -1,0 +1,74 @@
+#include "systems/water/water_spray_system.h"
+
+#include "systems/water/water_spray.h"
+
+#include <cmath>
+#include <vector>
+
+namespace limn {
+
+namespace {
+
+constexpr float kReach = 3.0f;  ///< of water up or down an obstacle [m]
+
+}  // namespace
+
+void add_spray_drops(
+    Query<const SpraySource, Without<SprayDrops>> sources,
+    Query<const SprayObstacle, Without<SprayDrops>, Without<SpraySource>> obstacles,
+    Commands commands) {
+    sources.each([&](Entity entity, const SpraySource&) { commands.add(entity, SprayDrops{}); });
+    obstacles.each(
+        [&](Entity entity, const SprayObstacle&) { commands.add(entity, SprayDrops{}); });
+}
+
+void update_spray(
+    Query<
+        const Water,
+        const WorldTransform,
+        const WaveTable,
+        Optional<const OceanState>,
+        Optional<const RippleState>,
+        Optional<const SpraySource>,
+        Optional<SprayDrops>> waters,
+    Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
+    Res<const RandomSeed> seed,
+    Res<const FrameTime> time) {
+    const auto random_of = [&](Entity entity) {
+        return Random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
+    };
+    std::vector<WaterSurface> surfaces;
+    waters.each([&](Entity entity,
+                    const Water& water,
+                    const WorldTransform& place,
+                    const WaveTable& waves,
+                    const OceanState* ocean,
+                    const RippleState* ripples,
+                    const SpraySource* source,
+                    SprayDrops* drops) {
+        const WaterSurface surface = {water_frame(place.world), water, ocean, &waves, ripples};
+        surfaces.push_back(surface);
+        if (source != nullptr && drops != nullptr) {
+            drops->drops.clear();
+            Random random = random_of(entity);
+            spray_crests(surface, *source, time->step, random, drops->drops);
+        }
+    });
+    obstacles.each([&](Entity entity,
+                       const SprayObstacle& obstacle,
+                       const WorldTransform& place,
+                       SprayDrops& drops) {
+        drops.drops.clear();
+        Random random = random_of(entity);
+        const Vec3 point = transform_point(place.world, Vec3(0));
+        const Vec3 normal =
+            normalize_or(transform_vector(place.world, obstacle.normal), Vec3(0, 1, 0));
+        for (const WaterSurface& surface : surfaces) {
+            if (std::abs(surface.frame.origin.y - point.y) < kReach) {
+                spray_impact(surface, obstacle, point, normal, time->step, random, drops.drops);
+            }
+        }
+    });
+}
+
+}  // namespace limn

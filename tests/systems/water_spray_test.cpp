@@ -1,0 +1,182 @@
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "systems/update_world.h"
+#include "systems/water/water_dispersion.h"
+#include "systems/water/water_spray.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+struct Sea {
+    explicit Sea(const WaterWave& wave, double time = 0.4) {
+        fill_wave_table({}, {.waves = {wave}}, time, waves);
+        surface.waves = &waves;
+    }
+    [[nodiscard]] const WaveLine& line() const { return waves.lines[0]; }
+    WaveTable waves;
+    WaterSurface surface;
+};
+
+WaterWave wave_of(float steepness, float length = 10) {
+    return {.amplitude = 0.5f * steepness * length, .length = length, .direction = 0.7f};
+}
+
+}  // namespace
+
+TEST_CASE("water spray: at a crest water moves with pi S of the wave's speed") {
+    const auto speed = static_cast<float>(phase_speed(2 * 3.14159265358979 / 10, 1e9));
+    CHECK(speed == doctest::Approx(3.951342).epsilon(1e-6));
+    CHECK(orbital_speed(1, 10, speed) == doctest::Approx(1.241351).epsilon(1e-6));
+    CHECK(orbital_speed(1, 10, speed) / speed == doctest::Approx(0.314159).epsilon(1e-5));
+    const Sea sea(wave_of(0.1f));
+    CHECK(steepness(sea.line()) == doctest::Approx(0.1));
+    CHECK(orbital_speed(sea.line()) == doctest::Approx(1.241351).epsilon(1e-5));
+    // A cusp, Q k A = 1 with Q = 1, is as steep as 1 / pi: there water is as fast as the wave.
+    const Sea cusp({.amplitude = 10 / (2 * kPi), .length = 10, .sharpness = 1});
+    CHECK(steepness(cusp.line()) == doctest::Approx(0.318310).epsilon(1e-5));
+    CHECK(orbital_speed(cusp.line()) == doctest::Approx(speed));
+}
+
+TEST_CASE("water spray: waves that are not steep enough do not spray") {
+    constexpr float kOfBook = 0.31831f;
+    struct Case {
+        float wave;
+        float limit;
+        bool breaks;
+    };
+    for (const Case& c :
+         {Case{0.1f, kOfBook, false},
+          Case{0.319f, kOfBook, true},
+          Case{0.09f, 0.1f, false},
+          Case{0.11f, 0.1f, true}}) {
+        const Sea sea(wave_of(c.wave));
+        std::vector<SprayDrop> drops;
+        Random random(1, 2, 3, 4);
+        spray_crests(sea.surface, {.steepness = c.limit, .rate = 1000}, 0.1f, random, drops);
+        CHECK(drops.empty() != c.breaks);
+    }
+}
+
+TEST_CASE("water spray: drops begin near crests, not in rows, and go along the wave") {
+    for (const float lean : {0.0f, 0.5f}) {
+        WaterWave wave = wave_of(0.12f);
+        wave.lean = lean;
+        const Sea sea(wave);
+        std::vector<SprayDrop> drops;
+        Random random(1, 2, 3, 4);
+        spray_crests(sea.surface, {.rate = 4000}, 1, random, drops);
+        REQUIRE(drops.size() > 3000);
+        const Vec3 along = {std::cos(0.7f), 0, std::sin(0.7f)};
+        float mean = 0;
+        float least = 100;
+        float greatest = 0;
+        for (const SprayDrop& drop : drops) {
+            CHECK(drop.position.y >= 0.95f * wave.amplitude);
+            CHECK(std::abs(drop.position.x) <= 30);
+            const float speed = glm::length(drop.velocity);
+            if (speed > 0.01f) {
+                CHECK(glm::dot(drop.velocity / speed, along) > std::cos(0.3f) - 1e-4f);
+            }
+            mean += speed / static_cast<float>(drops.size());
+            least = std::min(least, drop.position.y);
+            greatest = std::max(greatest, drop.position.y);
+        }
+        CHECK(std::abs(mean / orbital_speed(sea.line()) - 1) < 0.02f);
+        CHECK(greatest - least > 0.02f * wave.amplitude);
+    }
+}
+
+TEST_CASE("water spray: as many as the rate says, however long the step") {
+    const Sea sea(wave_of(0.2f));
+    for (const float step : {0.001f, 0.01f}) {
+        std::vector<SprayDrop> drops;
+        SpraySource source{.rate = 250};
+        source.window = {1000, 1000};  // hardly any beyond the edge
+        const int steps = static_cast<int>(10 / step);
+        for (int i = 0; i < steps; ++i) {
+            Random random(1, 2, 3, static_cast<std::uint64_t>(i));
+            spray_crests(sea.surface, source, step, random, drops);
+        }
+        CHECK(std::abs(static_cast<float>(drops.size()) / 2500 - 1) < 0.06f);
+    }
+}
+
+TEST_CASE("water spray: a wall sprays most when a crest is at it, and not a quarter wave later") {
+    CHECK(impact_share(0) == 1);
+    CHECK(impact_share(0.5f * kPi) < 1e-20f);
+    CHECK(impact_share(2) == 0);
+    CHECK(impact_share(-0.3f) == impact_share(0.3f));
+    const WaterWave wave = {.amplitude = 0.5f, .length = 10};  // along +x
+    const auto drops_at = [&](float x, const Vec3& normal) {
+        Sea sea(wave, 0);  // its crest is at x = 2.5
+        std::vector<SprayDrop> drops;
+        Random random(1, 2, 3, 4);
+        spray_impact(sea.surface, {.rate = 5000}, {x, 0.2f, 3}, normal, 1, random, drops);
+        return drops;
+    };
+    CHECK(drops_at(2.5f, {-1, 0, 0}).size() == 5000);
+    CHECK(drops_at(5.0f, {-1, 0, 0}).empty());
+    CHECK(drops_at(0.0f, {-1, 0, 0}).empty());
+    CHECK(drops_at(2.5f, {1, 0, 0}).empty());  // it runs away from this side
+    CHECK(drops_at(2.5f, {0, 0, 1}).empty());
+}
+
+TEST_CASE("water spray: a wall throws drops back about as fast as the water was") {
+    Sea sea({.amplitude = 0.5f, .length = 10}, 0);
+    const Vec3 normal = glm::normalize(Vec3(-1, 0.1f, 0.8f));
+    const SprayObstacle obstacle = {.rate = 10000};
+    std::vector<SprayDrop> drops;
+    Random random(1, 2, 3, 4);
+    spray_impact(sea.surface, obstacle, {2.5f, 0, 0}, normal, 1, random, drops);
+    REQUIRE(drops.size() == 10000);
+    const Vec3 ideal = Vec3(1, 0, 0) - 2 * normal.x * normal;
+    double mean = 0;
+    for (const SprayDrop& drop : drops) {
+        const float speed = glm::length(drop.velocity);
+        CHECK(glm::dot(drop.velocity, ideal) >= (std::cos(obstacle.angle) - 1e-4f) * speed);
+        CHECK(glm::dot(drop.velocity, normal) >= -1e-6f);
+        CHECK(drop.position.y == doctest::Approx(0.5));
+        mean += static_cast<double>(speed) / 10000;
+    }
+    CHECK(std::abs(mean / static_cast<double>(orbital_speed(sea.line())) - 1) < 0.02);
+    // A wall that the wave only grazes keeps them on its side.
+    drops.clear();
+    const Vec3 grazed = glm::normalize(Vec3(-0.1f, 0, 1));
+    spray_impact(sea.surface, obstacle, {2.5f, 0, 0}, grazed, 1, random, drops);
+    for (const SprayDrop& drop : drops) {
+        CHECK(glm::dot(drop.velocity, grazed) >= -1e-6f);
+    }
+}
+
+TEST_CASE("water spray: a world makes its drops anew each step") {
+    World world;
+    Schedule schedule = make_world_schedule();
+    const Entity water = world.create(
+        Transform{.position = {0, 5, 0}},
+        Water{},
+        WaterWaves{.waves = {wave_of(0.15f)}},
+        SpraySource{.rate = 600});
+    const Entity wall = world.create(
+        Transform{.position = {0, 5, 0}}, SprayObstacle{.normal = {-1, 0, -1}, .rate = 6000});
+    start_world(world);
+    std::size_t of_wall = 0;
+    for (int i = 0; i < 200; ++i) {
+        step_world(world, schedule);
+        const std::size_t drops = world.get<SprayDrops>(water).drops.size();
+        CHECK(drops <= 11);
+        CHECK(drops + 6 >= 10);
+        of_wall += world.get<SprayDrops>(wall).drops.size();
+    }
+    // 3/8 of the time share of cos^4, half of the time: of 6000 / 60 a step.
+    CHECK(std::abs(static_cast<float>(of_wall) / (200 * 100) - 3.0f / 16) < 0.06f);
+}
+
+}  // namespace limn
