@@ -94,6 +94,15 @@ void cull_boxes_by_distance(
     }
 }
 
+void cull_boxes_further(
+    const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible) {
+    std::uint8_t inside[kCullBlock];
+    cull_boxes(frustum, boxes, count, inside);
+    for (int i = 0; i < count; ++i) {
+        visible[static_cast<std::size_t>(i)] &= inside[i];
+    }
+}
+
 void cull_boxes_scalar(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible) {
     LIMN_CHECK(count <= kCullBlock && visible.size() >= static_cast<std::size_t>(count));

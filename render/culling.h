@@ -25,6 +25,10 @@ struct Frustum {
     Vec4 planes[kFrustumPlanes];
 };
 
+/// Everything is inside.
+inline constexpr Frustum kEverywhere = {
+    {{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}};
+
 /// Of a reversed, infinite projection.
 [[nodiscard]] Frustum make_frustum(const Mat4& clip_from_world);
 
@@ -68,6 +72,10 @@ void cull_boxes_by_distance(
     const BoxBlock& boxes,
     int count,
     std::span<std::uint8_t> visible);
+
+/// visible[i] = 0 where box i lies outside `frustum`, too.
+void cull_boxes_further(
+    const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 
 /// cull_boxes, one box after the other.
 void cull_boxes_scalar(

@@ -164,6 +164,7 @@ void InstanceCollector::collect_casters(
         Without<NoShadow>>();
     const Selection casters = {
         .frustum = volume.frustum,
+        .shading = volume.shading,
         .eye = volume.eye,
         .reach = volume.reach,
         .alpha = alpha,
@@ -200,6 +201,7 @@ void InstanceCollector::collect_from(
         fill_boxes(rows, selection.alpha, meshes, boxes, mirrored);
         cull_boxes(selection.frustum, boxes, count, visible);
         if (selection.casters) {
+            cull_boxes_further(selection.shading, boxes, count, visible);
             cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
         }
         KeyTable table(work.keys);

@@ -58,6 +58,7 @@ struct InstanceList {
 /// Where what casts a light's shadows may be.
 struct CasterVolume {
     Frustum frustum;
+    Frustum shading = kEverywhere;  ///< outside, what casts a shadow shades nothing that is seen
     Vec3 eye = {0, 0, 0};
     float reach = INFINITY;  ///< from the eye [m]
 };
@@ -91,6 +92,7 @@ class InstanceCollector {
     /// Which instances, and at which moment.
     struct Selection {
         Frustum frustum;
+        Frustum shading = kEverywhere;  ///< of casters
         Vec3 eye = {0, 0, 0};
         Vec3 forward = {0, 0, 0};
         float reach = INFINITY;

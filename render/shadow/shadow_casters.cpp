@@ -14,7 +14,7 @@
 namespace limn {
 
 CasterVolume make_caster_volume(const ShadowView& view) {
-    CasterVolume volume = {make_frustum(view.clip_from_world), view.eye, view.reach};
+    CasterVolume volume = {make_frustum(view.clip_from_world), view.shading, view.eye, view.reach};
     if (view.clamp_depth) {
         // Before the near plane casters count; beyond the far one, depth 0, they shade nothing.
         const Mat4 rows = glm::transpose(view.clip_from_world);
@@ -71,6 +71,7 @@ void sign_casters(
         }
         for (std::size_t v = 0; v < count; ++v) {
             cull_boxes(volumes[v].frustum, boxes, rows_here, visible);
+            cull_boxes_further(volumes[v].shading, boxes, rows_here, visible);
             cull_boxes_by_distance(volumes[v].eye, volumes[v].reach, boxes, rows_here, visible);
             std::uint64_t sum = 0;
             for (std::size_t i = 0; i < chunk.size(); ++i) {

@@ -140,7 +140,74 @@ ShadowView make_cascade_view(
     view.guard = guard;
     view.clamp_depth = true;
     view.penumbra = static_cast<float>(range / texel);
+    // Filters look around within the guard, from places that are shifted along normals.
+    view.shading = shading_planes(camera, to_sun, slice_near, slice_far, (guard + 8) * texel);
     return view;
+}
+
+Frustum shading_planes(
+    const RenderView& camera,
+    const Vec3& to_sun,
+    double slice_near,
+    double slice_far,
+    double margin) {
+    const auto& pose = camera.world_from_camera.row;
+    const auto column = [&](int i) { return glm::dvec3(pose[0][i], pose[1][i], pose[2][i]); };
+    const glm::dvec2 tangent = widest_tangent(camera);
+    const glm::dvec3 right = column(0);
+    const glm::dvec3 up = column(1);
+    const glm::dvec3 forward = -column(2);
+    const glm::dvec3 eye = column(3);
+    const glm::dvec3 sun = to_sun;
+
+    enum Side { kLeft, kRight, kBottom, kTop, kNear, kFar };
+    const glm::dvec3 inward[] = {
+        right + tangent.x * forward,
+        -right + tangent.x * forward,
+        up + tangent.y * forward,
+        -up + tangent.y * forward,
+        forward,
+        -forward};
+    const glm::dvec3 to_left = forward - tangent.x * right;
+    const glm::dvec3 to_right = forward + tangent.x * right;
+    const glm::dvec3 to_bottom = forward - tangent.y * up;
+    const glm::dvec3 to_top = forward + tangent.y * up;
+    struct Edge {
+        Side a, b;
+        glm::dvec3 point;
+        glm::dvec3 along;
+    };
+    // An outline has at most six edges, those of the near side last: they bound the least.
+    const Edge edges[] = {
+        {kLeft, kBottom, eye, to_left + to_bottom - forward},
+        {kLeft, kTop, eye, to_left + to_top - forward},
+        {kRight, kBottom, eye, to_right + to_bottom - forward},
+        {kRight, kTop, eye, to_right + to_top - forward},
+        {kLeft, kFar, eye + slice_far * to_left, up},
+        {kRight, kFar, eye + slice_far * to_right, up},
+        {kBottom, kFar, eye + slice_far * to_bottom, right},
+        {kTop, kFar, eye + slice_far * to_top, right},
+        {kLeft, kNear, eye + slice_near * to_left, up},
+        {kRight, kNear, eye + slice_near * to_right, up},
+        {kBottom, kNear, eye + slice_near * to_bottom, right},
+        {kTop, kNear, eye + slice_near * to_top, right}};
+    const glm::dvec3 middle = eye + 0.5 * (slice_near + slice_far) * forward;
+
+    Frustum planes = kEverywhere;
+    int count = 0;
+    for (const Edge& edge : edges) {
+        const bool outline =
+            (glm::dot(inward[edge.a], sun) < 0) != (glm::dot(inward[edge.b], sun) < 0);
+        glm::dvec3 normal = glm::cross(edge.along, sun);
+        const double length = glm::length(normal);
+        if (!outline || count == kFrustumPlanes || length < 1e-6 * glm::length(edge.along)) {
+            continue;
+        }
+        normal /= glm::dot(normal, middle - edge.point) < 0 ? -length : length;
+        planes.planes[count] = Vec4(Vec3(normal), margin - glm::dot(normal, edge.point));
+        ++count;
+    }
+    return planes;
 }
 
 double texels_per_pixel(

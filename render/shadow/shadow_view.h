@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "render/culling.h"
 #include "render/render_view.h"
 #include "render/shaders/shadow_gpu.h"
 #include "render/shadow/shadow_atlas.h"
@@ -26,6 +27,7 @@ struct ShadowView {
     bool clamp_depth = false;  ///< what lies before the near plane is drawn on it
     /// Width of a penumbra [texels] for a difference in depth of 1 and a source of 1 m (or 1 rad).
     float penumbra = 0;
+    Frustum shading = kEverywhere;  ///< of a cascade: what lies outside shades nothing that is seen
 };
 
 /// Half angle of a spot above which one view would waste its texels: six faces serve it better.
@@ -63,6 +65,16 @@ inline constexpr int kMaxCascades = 4;
     float slice_far,
     int resolution,
     int guard);
+
+/// Planes around what may shade the slice of the camera's view between two distances, `margin` [m]
+/// farther out: the slice, drawn out toward the sun, is bounded by planes through those of its
+/// edges that are its outline as the sun sees it.
+[[nodiscard]] Frustum shading_planes(
+    const RenderView& camera,
+    const Vec3& to_sun,
+    double slice_near,
+    double slice_far,
+    double margin);
 
 /// Area [texels] of the map under a pixel of the camera's picture that shows a surface with
 /// `normal` at `point` (shadow.map-aliasing). Below 1 the map's texels show, above it some are

@@ -217,6 +217,69 @@ TEST_CASE("shadow view: a cascade holds all that the camera sees of its slice") 
     }
 }
 
+TEST_CASE(
+    "shadow view: what shades a slice of the view is inside its planes, what does not mostly out") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0, 1);
+    const auto inside = [](const Frustum& planes, const Vec3& p) {
+        for (const Vec4& plane : planes.planes) {
+            if (glm::dot(Vec3(plane), p) + plane.w < 0) {
+                return false;
+            }
+        }
+        return true;
+    };
+    int shading = 0;
+    int others = 0;
+    int others_out = 0;
+    for (int view = 0; view < 200; ++view) {
+        RenderView camera;
+        camera.width = 160;
+        camera.height = 90;
+        camera.tangent = {0.64f, 0.36f};
+        const Quat turn = glm::normalize(
+            Quat(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f, unit(random)));
+        const Vec3 eye = random_point(random, 20);
+        camera.world_from_camera = affine_from(eye, turn, Vec3(1));
+        const Vec3 to_sun = glm::normalize(random_point(random, 1) + Vec3(0, 0.1f, 0));
+        const float near = view % 2 == 0 ? 0.0f : 8.0f;
+        const float far = 20;
+        const Frustum planes = shading_planes(camera, to_sun, near, far, 0.01);
+        const auto seen = [&](const Vec3& p) {
+            const Vec3 local = glm::conjugate(turn) * (p - eye);
+            const float depth = -local.z;
+            return depth >= near && depth <= far && std::abs(local.x) <= 0.64f * depth
+                   && std::abs(local.y) <= 0.36f * depth;
+        };
+        for (int i = 0; i < 100; ++i) {
+            const float depth = near + (far - near) * unit(random);
+            const Vec3 local = {
+                0.64f * depth * (2 * unit(random) - 1),
+                0.36f * depth * (2 * unit(random) - 1),
+                -depth};
+            const Vec3 caster = eye + turn * local + 60 * unit(random) * to_sun;
+            CHECK(inside(planes, caster));
+            ++shading;
+        }
+        // Beside the slice, as far from it as the ball around it: shaded along a line through it?
+        for (int i = 0; i < 100; ++i) {
+            const Vec3 caster = eye + turn * Vec3(0, 0, -14) + random_point(random, 20);
+            bool shades = false;
+            for (int step = 0; step < 400 && !shades; ++step) {
+                shades = seen(caster - 0.2f * static_cast<float>(step) * to_sun);
+            }
+            const bool before = glm::dot(caster - (eye + turn * Vec3(0, 0, -14)), to_sun) > 0;
+            if (!shades && before) {
+                ++others;
+                others_out += inside(planes, caster) ? 0 : 1;
+            }
+        }
+    }
+    CHECK(shading == 20000);
+    CHECK(others > 1000);
+    CHECK(others_out > 0.85 * others);
+}
+
 TEST_CASE("shadow view: texels of a cascade stay where they are when the camera moves and turns") {
     std::mt19937 random(5);
     const Vec3 sun = glm::normalize(Vec3(0.4f, 1, 0.3f));
