@@ -15,7 +15,6 @@ namespace {
 constexpr unsigned kFocusBinding = 2;
 constexpr unsigned kTilesUnit = 7;
 constexpr unsigned kSlightTilesUnit = 8;
-constexpr int kHiddenLevels = 5;
 constexpr int kLuminanceLevels = 6;
 
 /// Kinds of tiles, bits of focus_tile.vert.
@@ -49,6 +48,7 @@ struct FocusTextures {
     TextureId behind;
     TextureId far_coarse;
     TextureId near_coarse;
+    TextureId near_radius;
     TextureId far_blurred;  ///< of half the size
     TextureId near_blurred;
 };
@@ -235,7 +235,7 @@ void Drawing::take_off_highlights() {
     fill_levels(luminance, luminance_levels);
 
     const int levels = levels_of(made_.quarter, std::max(block_.tiles.w, 1));
-    const int hidden_levels = levels_of(made_.quarter, kHiddenLevels);
+    const int hidden_levels = gpu::full_level_count(made_.quarter.x, made_.quarter.y);
     made_.far_rest = create("focus.far rest", format_, made_.quarter, levels);
     made_.near_rest = create("focus.near rest", format_, made_.quarter, levels);
     made_.rest_radii = create("focus.rest radii", pair_format(), made_.quarter, levels);
@@ -265,10 +265,11 @@ void Drawing::take_off_highlights() {
 void Drawing::gather_coarse() {
     made_.far_coarse = create("focus.far coarse", format_, made_.quarter);
     made_.near_coarse = create("focus.near coarse", format_, made_.quarter);
+    made_.near_radius = create("focus.near radius", GL_R16F, made_.quarter);
     graph_.add_pass(
         "focus.coarse",
         {made_.far_rest, made_.near_rest, made_.rest_radii, made_.tiles},
-        {discarded(made_.far_coarse), discarded(made_.near_coarse)},
+        {discarded(made_.far_coarse), discarded(made_.near_coarse), discarded(made_.near_radius)},
         [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.coarse, pass.focus);
             context.bind_texture(0, made.far_rest);
@@ -291,6 +292,7 @@ void Drawing::gather() {
          made_.far_wide,
          made_.far_coarse,
          made_.near_coarse,
+         made_.near_radius,
          made_.tiles,
          made_.slight_tiles},
         {cleared(made_.far_blurred), cleared(made_.near_blurred)},
@@ -303,6 +305,7 @@ void Drawing::gather() {
             context.bind_texture(5, made.far_coarse);
             context.bind_texture(6, made.near_coarse);
             bind_tiles(context, made);
+            context.bind_texture(9, made.near_radius);
             draw_tiles(context, pass.gather, pass.focus, kAnyBlurred, 2 * made.half, count);
         });
 }
@@ -317,6 +320,7 @@ TextureId Drawing::compose(TextureId radiance) {
          made_.near_blurred,
          made_.behind,
          made_.near_reach,
+         made_.near_coarse,
          made_.tiles,
          made_.slight_tiles},
         {discarded(picture)},
@@ -328,6 +332,7 @@ TextureId Drawing::compose(TextureId radiance) {
             context.bind_texture(3, made.near_blurred);
             context.bind_texture(4, made.behind);
             context.bind_texture(5, made.near_reach);
+            context.bind_texture(6, made.near_coarse);
             bind_tiles(context, made);
             for (int i = 0; i < 4; ++i) {
                 draw_tiles(context, pass.compose[i], pass.focus, 1 << i, size, count);

@@ -10,6 +10,7 @@ layout(binding = 7) uniform sampler2D focus_tiles;
 
 layout(location = 0) out vec4 far_coarse;   // with its share of the texel
 layout(location = 1) out vec4 near_coarse;  // with its coverage
+layout(location = 2) out float near_radius;  // [px] of what covers, times that
 
 const int kCell = 4;           // side of a texel [px]
 const float kNarrowest = 0.2;  // circle that taps can tell, of the widest
@@ -48,9 +49,10 @@ float fitted_radius(float radius, float texel) {
 
 // What of a layer lies over a place, by the area that its circles are spread over. The widest that may come here bounds
 // the search. Discs before the focus stand on their heads.
-vec4 gather_near(vec2 uv, float reach, float level, int taps) {
+vec4 gather_near(vec2 uv, float reach, float level, int taps, out float radius) {
     vec2 stride = 0.25 * reach / vec2(textureSize(near_rest, 0));
     vec4 sum = vec4(0.0);
+    radius = 0.0;
     for (int i = 0; i < taps; ++i) {
         float through = sqrt((float(i) + 0.5) / float(taps));  // radius of the aperture
         vec2 there = uv + stride * through * focus.tap[i].xy;
@@ -59,9 +61,11 @@ vec4 gather_near(vec2 uv, float reach, float level, int taps) {
         float spread = clamp(fitted_radius(its, side_of(level)) / reach, kNarrowest, 1.0);
         float rim = rim_of(is_as_wide(its, reach), reach) / reach;
         float reached = clamp((spread - through) / rim + 0.5, 0.0, 1.0);
-        sum += light * (reached / (spread * spread + rim * rim / 12.0));
+        light *= reached / (spread * spread + rim * rim / 12.0) / float(taps);
+        sum += light;
+        radius += light.a * its;
     }
-    return sum / float(max(taps, 1));
+    return sum;
 }
 
 // How a circle of `radius` is spread over a place that a kernel of `widest` reads at `through`, against one as wide.
@@ -111,5 +115,5 @@ void main() {
     far_coarse = far * (max(own.a, 0.01) / max(far.a, 1e-5));
 
     level = max(level_of(tile.y), 1.0);
-    near_coarse = gather_near(uv, tile.y, level, tile.y > 0.0 ? taps_for(tile.y, level) : 0);
+    near_coarse = gather_near(uv, tile.y, level, tile.y > 0.0 ? taps_for(tile.y, level) : 0, near_radius);
 }

@@ -9,6 +9,7 @@ layout(binding = 2) uniform sampler2D far_blurred;
 layout(binding = 3) uniform sampler2D near_blurred;
 layout(binding = 4) uniform sampler2D behind_near;
 layout(binding = 5) uniform sampler2D near_reach;  // of small circles, by blocks
+layout(binding = 6) uniform sampler2D near_coarse;  // of a quarter of the picture
 
 flat in vec4 tile;
 
@@ -41,7 +42,6 @@ vec4 slightly_blurred(ivec2 here, float own, float reach) {
 
 #ifdef BLURRED
 
-const int kHiddenLevels = 5;
 const float kOpaque = 0.97;  // of a near surface, which then hides all
 
 // A loop is left early, a branch may not be.
@@ -56,7 +56,7 @@ vec4 texture_if(sampler2D image, vec2 uv, bool wanted) {
 // What a near thing hides, guessed from around it: the finest level that knows.
 vec4 hidden(vec2 uv, int levels) {
     vec4 known = vec4(0.0);
-    for (int level = 0; level < levels; ++level) {
+    for (int level = 0; level < levels && known.a < 0.99; ++level) {
         vec4 more = textureLod(behind_near, uv, float(level));
         known += (1.0 - known.a) * more * (min(4.0 * more.a, 1.0) / max(more.a, 1e-5));
     }
@@ -84,16 +84,18 @@ void main() {
     vec4 far = texture_if(far_blurred, uv, tile.z > 0.0);
     vec4 near = texture_if(near_blurred, uv, max(tile.x, tile.y) > 0.0);
     float is_near = near_share(2.0 * own.a);
+    vec2 uv_coarse = 0.25 * gl_FragCoord.xy / vec2(textureSize(near_coarse, 0));
+    float hidden_share = texture_if(near_coarse, uv_coarse, tile.y > 0.0 && is_near > 0.0 && shown.a > 0.0).a;
     if (is_near > 0.0) {
-        shown += near;  // parts of one surface: neither hides the other
+        // Parts of one surface, of which neither hides the other; but wide circles hide slight ones.
+        shown = near + max(1.0 - hidden_share, 0.0) * shown;
         near = vec4(0.0);
     }
-    vec4 behind = hidden(uv, is_near > 0.0 && shown.a < kOpaque ? kHiddenLevels : 0);
-    behind = is_near > 0.0 ? behind : far;
+    vec4 behind = hidden(uv, is_near > 0.0 && shown.a < kOpaque ? textureQueryLevels(behind_near) : 0);
+    vec4 all = is_near > 0.0 ? shown / max(shown.a, 1e-4) : vec4(0.0);  // where nothing else is known
+    behind = is_near > 0.0 ? behind + (1.0 - min(behind.a, 1.0)) * all : far;
     if (behind.a > 1e-4) {
         color.rgb = shown.rgb / max(shown.a, 1.0) + max(1.0 - shown.a, 0.0) * behind.rgb / behind.a;
-    } else if (is_near > 0.0) {
-        color.rgb = shown.rgb / max(shown.a, 1e-4);  // nothing but near things around
     }
     color.rgb = color.rgb * (1.0 - near.a) + near.rgb;
 #endif

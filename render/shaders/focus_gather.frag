@@ -10,6 +10,7 @@ layout(binding = 3) uniform sampler2D near_kernels;
 layout(binding = 4) uniform sampler2D far_wide;
 layout(binding = 5) uniform sampler2D far_coarse;  // of a quarter of the picture
 layout(binding = 6) uniform sampler2D near_coarse;
+layout(binding = 9) uniform sampler2D near_radius;
 
 flat in vec4 tile;
 
@@ -53,15 +54,21 @@ float share_of_wide(ivec2 here, vec2 own, float reach) {
     return sum;
 }
 
-vec4 gather_near(ivec2 here, float reach) {
+// What stands before the focus: `wide` circles, of that radius [px], with fine ones that are about as wide beside them
+// and the others, which are farther away, behind them.
+vec4 gather_near(ivec2 here, float reach, vec4 wide, float radius) {
     ivec2 last = ivec2(focus.size.zw) - 1;
-    vec4 sum = vec4(0.0);
+    vec4 behind = vec4(0.0);
     for (int i = 0; i < kFineTaps && focus.texel[i].z < reach + 0.5; ++i) {
         ivec2 there = clamp(here + ivec2(focus.texel[i].xy), ivec2(0), last);
         vec2 kernel = texelFetch(near_kernels, there, 0).xy;
-        sum += reaches(kernel.x, focus.texel[i].z) * kernel.y * texelFetch(near_light, there, 0);
+        vec4 light = reaches(kernel.x, focus.texel[i].z) * kernel.y * texelFetch(near_light, there, 0);
+        float under = before(kernel.x, 0.5 * radius);
+        wide += (1.0 - under) * light;
+        behind += under * light;
     }
-    return sum;
+    wide /= max(wide.a, 1.0);
+    return wide + (1.0 - wide.a) * behind / max(behind.a, 1.0);
 }
 
 void main() {
@@ -79,6 +86,7 @@ void main() {
     vec4 far = gather_far(here, own, is_fine, reach, behind);
     far_blurred = far.a > 1e-4 ? far * (min(4.0 * (fine + wide), 1.0) / far.a) : vec4(0.0);
 
-    vec4 near = gather_near(here, tile.x > 0.0 ? 0.5 * tile.x : -1.0) + texture(near_coarse, uv);
-    near_blurred = near / max(near.a, 1.0);
+    vec4 near = texture(near_coarse, uv);
+    float radius = texture(near_radius, uv).r / max(near.a, 1e-5);
+    near_blurred = gather_near(here, tile.x > 0.0 ? 0.5 * tile.x : -1.0, near, radius);
 }

@@ -337,6 +337,25 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(
+    Darkroom, "depth_of_field: what stands far before the focus lies over what stands less far") {
+    const RenderView view = lens_view(160, 160, kAll);
+    const float radius = 20;
+    for (const float behind : {-3.0f, -4.5f, -6.0f, -9.0f}) {
+        CAPTURE(behind);
+        const gpu::FloatImage image = photograph(view, [&](int x, int /*y*/) {
+            return x < 80 ? Seen{Vec3(1), distance_of(-2 * radius, kAll)}
+                          : Seen{Vec3(0), distance_of(behind, kAll)};
+        });
+        for (int x = 84; x < 115; ++x) {
+            CAPTURE(x);
+            const float t = std::clamp((80 - (static_cast<float>(x) + 0.5f)) / radius, -1.0f, 1.0f);
+            const float covered = 0.5f + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
+            CHECK(std::abs(light_at(image, x, 80) - covered) < 0.06f);
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an even picture stays even, whatever is where") {
     for (const IVec2 size : {IVec2(128, 96), IVec2(97, 61), IVec2(7, 5), IVec2(16384, 4)}) {
         CAPTURE(size.x);

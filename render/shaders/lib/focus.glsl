@@ -56,7 +56,8 @@ vec2 kernel_of(float radius) {
     return mix(odd ? low.zw : low.xy, odd ? high.xy : high.zw, place - float(i));
 }
 
-// Share of what has a circle or kernel that lies clearly before what has `own`: over it, not beside it.
+// Share of what has a circle or kernel that is clearly less than `own`: behind the focus it lies before that, before the
+// focus behind it; else they are beside each other.
 float before(float circle, float own) {
     return clamp((own - circle) / (0.1 * own + 0.1) - 1.0, 0.0, 1.0);  // by eye
 }
