@@ -37,6 +37,7 @@ install(
     PATTERN base/bezier.h EXCLUDE
     PATTERN base/gradient_noise.h EXCLUDE
     PATTERN base/math.h EXCLUDE
+    PATTERN base/caustic_optics.h EXCLUDE
     PATTERN base/optics.h EXCLUDE
     PATTERN base/rng.h EXCLUDE
     PATTERN base/rotation.h EXCLUDE)

@@ -153,6 +153,10 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
         device.bind_texture(kProjectorImagesUnit, scene.projectors->images());
         scene.projector_records->bind(device, kProjectorsUnit);
     }
+    if (scene.waters) {
+        scene.sunken_waters->bind(device, kSunkenWatersUnit);
+        device.bind_texture(kCausticMapsUnit, *scene.caustic_maps);
+    }
     scene.materials->records().bind(device, kSurfaceMaterialsUnit);
 }
 
@@ -172,6 +176,9 @@ std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<U
     std::vector<Use> all = reads;
     if (scene.shadow_maps.valid()) {
         all.emplace_back(scene.shadow_maps);
+    }
+    if (scene.caustics.valid()) {
+        all.emplace_back(scene.caustics);
     }
     if (scene.lists.cells.valid()) {
         all.insert(all.end(), {scene.lists.cells, scene.lists.indices});
@@ -199,7 +206,8 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SHADOW_MAPS",
         "SHADOW_MASKS",
         "PROBES",
-        "PROJECTORS"};
+        "PROJECTORS",
+        "WATERS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -217,7 +225,7 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
            | (scene.clusters.lights.empty() ? 0u : 512u) | (maps.records.empty() ? 0u : 1024u)
            | (scene.volumes.lights.empty() ? 0u : 2048u) | (scene.probe_block.size > 0 ? 4096u : 0u)
-           | (scene.projectors->records().empty() ? 0u : 8192u);
+           | (scene.projectors->records().empty() ? 0u : 8192u) | (scene.waters ? 16384u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

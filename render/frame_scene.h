@@ -55,6 +55,8 @@ inline constexpr unsigned kShadowViewsUnit = 16;
 inline constexpr unsigned kShadowMasksUnit = 17;
 inline constexpr unsigned kProjectorImagesUnit = 18;
 inline constexpr unsigned kProjectorsUnit = 19;
+inline constexpr unsigned kSunkenWatersUnit = 20;
+inline constexpr unsigned kCausticMapsUnit = 21;
 
 /// The surroundings of this frame, and what was made of them.
 struct SceneEnvironment {
@@ -104,6 +106,10 @@ struct FrameScene {
     const BufferTexture* projector_records = nullptr;
     const ProjectorPool* projectors = nullptr;
     const gpu::Texture* shadow_atlas = nullptr;
+    bool waters = false;  ///< there is water in which something may lie
+    const BufferTexture* sunken_waters = nullptr;
+    const gpu::Texture* caustic_maps = nullptr;
+    TextureId caustics;  ///< those maps as this frame's graph knows them; not valid() without any
     TextureId
         shadow_maps;  ///< the atlas as this frame's graph knows it; not valid() without shadows
     TextureId shadow_masks;  ///< a layer for each of volumes.lights; not valid() without any

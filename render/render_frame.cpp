@@ -15,6 +15,7 @@
 #include "render/lens.h"
 #include "render/passes/aov_pass.h"
 #include "render/passes/blend_pass.h"
+#include "render/passes/caustics_pass.h"
 #include "render/passes/cluster_pass.h"
 #include "render/passes/deform_pass.h"
 #include "render/passes/forward_pass.h"
@@ -88,6 +89,7 @@ struct Passes {
     ShadowPass shadows;
     ShadowVolumePass volumes;
     WaterPass water;
+    CausticsPass caustics;
     SpeedLinePass speed_lines;
     LensPasses lens;
     const gpu::Program* accumulate = nullptr;
@@ -222,6 +224,8 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.object_lights = &object_lights_;
     scene.light_indices = &passes.clusters.indices;
     scene.light_cells = &passes.clusters.cells;
+    scene.sunken_waters = &passes.caustics.sunken;
+    scene.caustic_maps = &passes.caustics.maps;
     scene.environment.specular_albedo = &specular_albedo_;
 }
 
@@ -363,6 +367,24 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         scene.instances,
         is_forward(scene.method));
     volume_collector_.collect(world, view, shapes_, ring_, scene.lights, scene.volumes);
+    WaterSurfaces& water = passes.water.surfaces;
+    collect_waters(
+        world,
+        view,
+        velocity,
+        device.caps().max_texture_size,
+        water.ripples,
+        water.seas,
+        water.list);
+    CausticList& caustics = passes.caustics.list;
+    const auto& pose = view.world_from_camera.row;
+    collect_caustics(
+        water.list,
+        scene.lights,
+        {pose[0].w, pose[1].w, pose[2].w},
+        !for_probe,
+        caustics,
+        scene.shadows);
     shadow_collector_.collect(
         world, view, meshes_, materials_, shapes_, assets_, ring_, scene.lights, scene.shadows);
     shapes_.write_jobs(ring_);
@@ -392,20 +414,19 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     }
     passes.speed_lines.count = static_cast<int>(speed_lines_.size());
     passes.speed_lines.records.set(push(speed_lines_));
-    WaterPass& water = passes.water;
-    collect_waters(
-        world,
-        view,
-        velocity,
-        device.caps().max_texture_size,
-        water.ripples,
-        water.seas,
-        water.list);
-    if (!water.list.empty()) {
+    place_caustics(scene.lights, scene.shadows, caustics);
+    if (for_probe) {
+        caustics.maps.clear();
+    }
+    resize_caustic_maps(passes.caustics);
+    scene.waters = !water.list.bodies.empty();
+    if (scene.waters) {
+        passes.caustics.sunken.set(push(caustics.texels));
+        passes.caustics.records.set(push(caustics.maps));
         water.bodies.set(push(water.list.bodies));
         water.lines.set(push(water.list.lines));
         water.rings.set(push(water.list.rings));
-        water.patches.set(push(water.list.patches));
+        passes.water.patches.set(push(water.list.patches));
     }
     passes.clusters.lights.set(push(scene.clusters.lights));
     passes.clusters.boxes.set(push(scene.clusters.boxes));
@@ -476,6 +497,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
         draw_sky_reflection(into, passes.reflection, scene);
     }
     scene.shadow_maps = draw_shadows(into, passes.shadows, scene);
+    scene.caustics = draw_caustics(into, passes.caustics, passes.water.surfaces, scene);
     scene.shadow_masks = draw_shadow_volumes(into, passes.volumes, scene, gbuffer);
     TextureId radiance =
         scene.method == LightMethod::Clustered ? draw_lights(into, passes.lights, scene, gbuffer)
@@ -639,6 +661,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!water) {
         return water.error();
     }
+    Result<CausticsPass> caustics = create_caustics_pass(device);
+    if (!caustics) {
+        return caustics.error();
+    }
     const Result<const gpu::Program*> accumulate =
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "accumulate.frag"});
     if (!accumulate) {
@@ -660,6 +686,7 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         *std::move(shadows),
         *std::move(volumes),
         *std::move(water),
+        *std::move(caustics),
         SpeedLinePass{},
         LensPasses(device),
         *accumulate};

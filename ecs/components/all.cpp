@@ -5,6 +5,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/caustics.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/glare.h"
@@ -83,6 +84,7 @@ void register_all_components() {
     register_component<NoiseSurface>();
     register_component<SpraySource>();
     register_component<SprayObstacle>();
+    register_component<Caustics>();
     register_component<Floating>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();

@@ -9,15 +9,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kPatchesUnit = 0;
-constexpr unsigned kWatersUnit = 1;
-constexpr unsigned kWaveLinesUnit = 2;
-constexpr unsigned kWaveRingsUnit = 3;
-constexpr unsigned kRipplesUnit = 4;
 constexpr unsigned kBehindUnit = 5;
-constexpr unsigned kOceanShiftUnit = 6;
-constexpr unsigned kOceanShiftBeforeUnit = 13;
-constexpr unsigned kOceanSlopeUnit = 14;
-constexpr unsigned kOceanFoamUnit = 17;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
 constexpr int kSide = kWaterGrid + 1;
@@ -91,7 +83,7 @@ TextureId draw_water(
     const FrameScene& scene,
     TextureId radiance,
     const Gbuffer& gbuffer) {
-    if (pass.list.empty()) {
+    if (pass.surfaces.list.empty()) {
         return radiance;
     }
     const TextureId behind = copy_behind(graph, pass, scene, radiance, gbuffer);
@@ -110,7 +102,7 @@ TextureId draw_water(
             if (velocity) {
                 defines.push_back({"VELOCITY"});
             }
-            const bool ocean = !pass.seas.empty();
+            const bool ocean = !pass.surfaces.seas.empty();
             if (ocean) {
                 defines.push_back({"OCEAN"});
             }
@@ -125,16 +117,7 @@ TextureId draw_water(
             device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
             bind_lighting(device, scene);
             pass.patches.bind(device, kPatchesUnit);
-            pass.bodies.bind(device, kWatersUnit);
-            pass.lines.bind(device, kWaveLinesUnit);
-            pass.rings.bind(device, kWaveRingsUnit);
-            device.bind_texture(kRipplesUnit, pass.ripples.texture());
-            if (ocean) {
-                device.bind_texture(kOceanShiftUnit, pass.seas.shift());
-                device.bind_texture(kOceanShiftBeforeUnit, pass.seas.shift_before());
-                device.bind_texture(kOceanSlopeUnit, pass.seas.slope());
-                device.bind_texture(kOceanFoamUnit, pass.seas.foam());
-            }
+            bind_water_surfaces(device, pass.surfaces);
             context.bind_texture(kBehindUnit, behind);
             device.bind_vertex_array(pass.grid);
             device.draw_indexed(
@@ -143,7 +126,7 @@ TextureId draw_water(
                 GL_UNSIGNED_SHORT,
                 0,
                 0,
-                static_cast<int>(pass.list.patches.size()));
+                static_cast<int>(pass.surfaces.list.patches.size()));
         });
     return radiance;
 }

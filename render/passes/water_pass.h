@@ -3,8 +3,7 @@
 #include "render/frame_scene.h"
 #include "render/gbuffer.h"
 #include "render/gpu/vertex_array.h"
-#include "render/water/ripple_atlas.h"
-#include "render/water/water_list.h"
+#include "render/water/water_surfaces.h"
 
 namespace limn {
 
@@ -23,13 +22,8 @@ struct WaterPass {
     const gpu::Program* behind = nullptr;
     gpu::VertexArray grid{};
     gpu::Buffer indices{};
-    RippleAtlas ripples{};
-    OceanTextures seas{};
-    WaterList list{};
+    WaterSurfaces surfaces{};
     BufferTexture patches = BufferTexture("water patches", GL_RGBA32F);
-    BufferTexture bodies = BufferTexture("waters", GL_RGBA32F);
-    BufferTexture lines = BufferTexture("wave lines", GL_RGBA32F);
-    BufferTexture rings = BufferTexture("wave rings", GL_RGBA32F);
 };
 
 [[nodiscard]] Result<WaterPass> create_water_pass(gpu::Device& device);

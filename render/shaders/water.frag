@@ -2,6 +2,7 @@
 // equations; light is lost and scattered on its way through the water (Beer-Lambert). Definition VELOCITY.
 #version 450
 #define UNMASKED  // the masks of shadow volumes are of the surfaces behind
+#define ON_WATER
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
 #include "lib/velocity.glsl"

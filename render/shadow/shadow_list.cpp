@@ -136,11 +136,13 @@ bool ShadowCollector::want_perspective(const RenderView& view, LightViews& wante
 }
 
 /// Every light's views, in the order of the lights.
-void ShadowCollector::want_views(const RenderView& view, const LightList& lights) {
+void ShadowCollector::want_views(
+    const RenderView& view, const LightList& lights, ShadowList& list) {
     views_.clear();
     wanted_.clear();
     for (const ShadowedLight& light : lights.shadowed) {
-        LightViews wanted = {.light = &light, .settings = make_sane(light.settings)};
+        LightViews wanted = {
+            .light = &light, .key = key_of(light.entity), .settings = make_sane(light.settings)};
         wanted.first_view = views_.size();
         const Shadow& settings = wanted.settings;
         const bool perspective =
@@ -174,10 +176,23 @@ void ShadowCollector::want_views(const RenderView& view, const LightList& lights
         }
         wanted_.push_back(wanted);
     }
+    for (WaterShadow& water : list.waters) {
+        water.record = -1;
+        constexpr std::uint64_t kWaters = std::uint64_t{1} << 63;  // apart from lights
+        LightViews wanted = {
+            .water = &water,
+            .key = key_of(water.water) | kWaters,
+            .settings = {.filter = ShadowFilter::Bilinear, .resolution = water.view.resolution},
+            .kind = layout::kShadowView,
+            .first_view = views_.size(),
+            .count = 1};
+        views_.push_back(water.view);
+        wanted_.push_back(wanted);
+    }
 }
 
 ShadowCollector::Kept& ShadowCollector::kept(const LightViews& wanted, std::size_t number) {
-    return kept_.at({key_of(wanted.light->entity), static_cast<int>(number)});
+    return kept_.at({wanted.key, static_cast<int>(number)});
 }
 
 /// False if there is no room for all of the light's views.
@@ -185,7 +200,7 @@ bool ShadowCollector::place_light(LightViews& wanted) {
     for (std::size_t i = 0; i < wanted.count; ++i) {
         const int size = wanted.settings.resolution;
         const auto [found, fresh] =
-            kept_.try_emplace(KeptKey(key_of(wanted.light->entity), static_cast<int>(i)), Kept{});
+            kept_.try_emplace(KeptKey(wanted.key, static_cast<int>(i)), Kept{});
         Kept& view = found->second;
         view.used = true;
         if (!fresh && view.place.size == size) {
@@ -206,9 +221,8 @@ bool ShadowCollector::place_light(LightViews& wanted) {
 }
 
 void ShadowCollector::release_light(const LightViews& wanted) {
-    const std::uint64_t key = key_of(wanted.light->entity);
-    auto it = kept_.lower_bound({key, 0});
-    while (it != kept_.end() && it->first.first == key) {
+    auto it = kept_.lower_bound({wanted.key, 0});
+    while (it != kept_.end() && it->first.first == wanted.key) {
         atlas_.release(it->second.place);
         it = kept_.erase(it);
     }
@@ -221,7 +235,7 @@ void ShadowCollector::place_views() {
     }
     for (const LightViews& wanted : wanted_) {
         for (std::size_t i = 0; i < wanted.count; ++i) {
-            const auto found = kept_.find({key_of(wanted.light->entity), static_cast<int>(i)});
+            const auto found = kept_.find({wanted.key, static_cast<int>(i)});
             if (found != kept_.end()) {
                 found->second.used = true;
             }
@@ -264,11 +278,15 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
         list.cascades = list.cascades || wanted.kind == layout::kShadowCascades;
         const bool soft = wanted.settings.filter >= ShadowFilter::Soft;
         list.soft = list.soft || (soft && !wanted.light->for_volumes);
-        lights.records[wanted.light->record].shadow = {
-            static_cast<float>(list.records.size()),
-            wanted.kind,
-            static_cast<float>(wanted.count),
-            0};
+        if (wanted.water != nullptr) {
+            wanted.water->record = static_cast<int>(list.records.size());
+        } else {
+            lights.records[wanted.light->record].shadow = {
+                static_cast<float>(list.records.size()),
+                wanted.kind,
+                static_cast<float>(wanted.count),
+                0};
+        }
         for (std::size_t i = 0; i < wanted.count; ++i) {
             list.records.push_back(make_shadow_record(
                 views_[wanted.first_view + i],
@@ -295,7 +313,7 @@ void ShadowCollector::collect(
     list.due.clear();
     list.unserved = 0;
     list.cubes = list.cascades = list.soft = false;
-    want_views(view, lights);
+    want_views(view, lights, list);
     place_views();
     write_records(lights, list);
     list.atlas_size = list.records.empty() ? 0 : atlas_.size();

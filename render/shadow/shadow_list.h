@@ -25,7 +25,16 @@ struct ShadowDraw {
     InstanceList casters;
 };
 
+/// A view that belongs to no light: of what lies below the surface of a water, as light comes down
+/// that flat water bends.
+struct WaterShadow {
+    Entity water;
+    ShadowView view;
+    int record = -1;  ///< index into ShadowList::records; -1: the atlas is full
+};
+
 struct ShadowList {
+    std::vector<WaterShadow> waters;  ///< asked for before collect(), which sets their records
     std::vector<layout::ShadowViewRecord> records;
     std::vector<ShadowDraw> due;
     bool cubes = false;     ///< some light has six faces
@@ -65,7 +74,9 @@ class ShadowCollector {
     using KeptKey = std::pair<std::uint64_t, int>;
     /// The views of a light in this frame, at first_view of views_.
     struct LightViews {
-        const ShadowedLight* light = nullptr;
+        const ShadowedLight* light = nullptr;  ///< or
+        WaterShadow* water = nullptr;
+        std::uint64_t key = 0;
         Shadow settings;  ///< sane
         float kind = 0;   ///< layout::kShadow*
         std::size_t first_view = 0;
@@ -74,7 +85,7 @@ class ShadowCollector {
         bool placed = false;
     };
 
-    void want_views(const RenderView& view, const LightList& lights);
+    void want_views(const RenderView& view, const LightList& lights, ShadowList& list);
     void want_cascades(const RenderView& view, LightViews& wanted);
     [[nodiscard]] bool want_perspective(const RenderView& view, LightViews& wanted);
     void place_views();

@@ -135,6 +135,17 @@ void place_sea(
     body.variance = place.variance;
 }
 
+/// How low and high waves go that are no ripples of this body, and those.
+Vec2 heights_of(float reach, const RippleState* ripples) {
+    Vec2 heights(-reach, reach);
+    if (ripples != nullptr && !ripples->height.empty()) {
+        const auto [least, greatest] =
+            std::minmax_element(ripples->height.begin(), ripples->height.end());
+        heights += Vec2(*least, *greatest);
+    }
+    return heights;
+}
+
 struct Body {
     const Water* water = nullptr;
     const WaveTable* table = nullptr;
@@ -160,6 +171,10 @@ void add_body(
     source.finest = finest_of(body.table, ripples, sea);
     source.body = static_cast<float>(list.bodies.size());
     append_water_patches(source, list.patches);
+    const bool by_height = list.caustics[list.bodies.size()] != nullptr
+                           && list.caustics[list.bodies.size()]->method == CausticMethod::Pool;
+    list.heights.push_back(
+        by_height ? heights_of(reach.y + reach_of(body.table).y, ripples) : Vec2(0));
 
     const auto first_line = static_cast<float>(list.lines.size());
     const auto first_ring = static_cast<float>(list.rings.size());
@@ -199,6 +214,9 @@ void collect_waters(
     list.patches.clear();
     list.ripples.clear();
     list.seas.clear();
+    list.entities.clear();
+    list.caustics.clear();
+    list.heights.clear();
     const Moments at = moments_of(world, view);
     std::vector<Body> bodies;
     world
@@ -208,13 +226,18 @@ void collect_waters(
             Optional<const WaveTable>,
             Optional<const RippleState>,
             Optional<const OceanState>,
-            Optional<const OceanFoam>>()
-        .each([&](const Water& water,
+            Optional<const OceanFoam>,
+            Optional<const Caustics>>()
+        .each([&](Entity entity,
+                  const Water& water,
                   const WorldTransform& place,
                   const WaveTable* table,
                   const RippleState* rippling,
                   const OceanState* sea,
-                  const OceanFoam* foam) {
+                  const OceanFoam* foam,
+                  const Caustics* caustics) {
+            list.entities.push_back(entity);
+            list.caustics.push_back(caustics);
             bodies.push_back({&water, table, water_frame(place.world)});
             list.ripples.push_back(rippling);
             list.seas.push_back({sea, foam, at.now, at.before});

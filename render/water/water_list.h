@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ecs/components/caustics.h"
+#include "ecs/entity.h"
 #include "render/render_view.h"
 #include "render/shaders/water_gpu.h"
 #include "render/water/ocean_textures.h"
@@ -19,6 +21,9 @@ struct WaterList {
     std::vector<WaterPatch> patches;
     std::vector<const RippleState*> ripples;  ///< of each body, or null
     std::vector<OceanSource> seas;            ///< of each body, in the same order
+    std::vector<Entity> entities;
+    std::vector<const Caustics*> caustics;  ///< of each body, or null
+    std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };

@@ -7,8 +7,10 @@
 //   SHADOWS             some light has a shadow
 //   PROJECTORS          some light throws an image
 //   LOCAL_LIGHTS        some point or spot light is in view
+//   WATERS              there is water; ON_WATER: but what is lit is its surface
 
 #include "lib/light.glsl"
+#include "lib/optics.glsl"
 #include "lib/reflector.glsl"
 #include "lib/surroundings.glsl"
 #include "lib/view.glsl"
@@ -22,30 +24,57 @@
 #if defined(SHADOWS) || defined(PROJECTORS)
 #define LIGHT_PASSING
 #endif
+#if defined(WATERS) && !defined(ON_WATER)
+#define UNDER_WATER
+#include "lib/under_water.glsl"
+#endif
 
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
 layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
 
-// What casters and images let pass of a light, on its way to `position_ws`.
-vec3 light_passing(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+// What casters and images let pass of a light with this LightRecord::shadow, on its way to `position_ws`.
+vec3 shadow_passing(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
     vec3 passing = vec3(1.0);
-#ifdef LIGHT_PASSING
-    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
 #ifdef SHADOWS
     passing *= light_visibility(shadow, position_ws, normal, to_light, pixel);
 #endif
 #ifdef PROJECTORS
     passing *= projected_color(shadow.w, position_ws);
 #endif
-#endif
     return passing;
+}
+
+vec3 light_passing(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+#ifdef LIGHT_PASSING
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+    return shadow_passing(shadow, position_ws, normal, to_light, pixel);
+#else
+    return vec3(1.0);
+#endif
 }
 
 Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pixel) {
     vec3 to_light = texelFetch(lights, index * int(kLightTexels)).xyz;
     vec3 irradiance = texelFetch(lights, index * int(kLightTexels) + 1).rgb;
+#ifdef UNDER_WATER
+    vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
+    Sunken water = sunken_at(position_ws);
+    bool sunken = water.depth >= 0.0;
+    vec3 bent = bent_to_light(water, to_light);
+    irradiance *= sunken ? sunken_share(water, to_light, bent) : vec3(1.0);
+    vec3 uv;
+    if (in_caustic_map(water, index, uv) && sunken) {
+        irradiance *= caustic_at(water, uv);
+        shadow.xyz = vec3(water.map.y, kShadowView, 1.0);
+    }
+    to_light = sunken ? bent : to_light;
+#ifdef LIGHT_PASSING
+    irradiance *= shadow_passing(shadow, position_ws, normal, to_light, pixel);
+#endif
+#else
     irradiance *= light_passing(index, position_ws, normal, to_light, pixel);
+#endif
     return Incoming(to_light, irradiance);
 }
 
@@ -133,6 +162,11 @@ Reflected reflect_lights(Reflector r, LightSum sum) {
 
 Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
     Around around = light_from_around(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+#ifdef UNDER_WATER
+    vec3 left = sunken_surroundings(position_ws);
+    around.irradiance *= left;
+    around.mirrored *= left;
+#endif
     float open = specular_occlusion(r.n_v, s.occlusion, s.roughness);
     Reflected result;
     result.diffuse = r.diffuse * (around.irradiance * s.occlusion);

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+
+namespace limn {
+
+/// How the light that waves gather is found.
+enum class CausticMethod : std::uint8_t {
+    Simulated,  ///< rays bent by the true surface, as bright as they are dense
+    Pool,       ///< after the book: onto five planes, as bright as the water is high where they
+                ///< come from
+};
+
+/// Beside a Water: the first and brightest of the directional lights is gathered and scattered by
+/// its waves on what lies below, and what stands in it throws shadows there. Without it light is
+/// bent and absorbed on its way down as by flat water.
+struct Caustics {
+    CausticMethod method = CausticMethod::Simulated;
+    std::int32_t resolution = 512;  ///< texels of a side of the map, a power of two
+    std::int32_t spacing = 2;       ///< texels from ray to ray
+    float strength = 1;             ///< 1: as it is; 0: as flat water; a straight line between
+    float reach = 20;               ///< depth down to which light is followed [m]
+    float window = 40;  ///< of water without end: side of the square about the camera [m]
+};
+
+template <typename Visitor>
+void visit_fields(Caustics& caustics, Visitor&& visit) {
+    visit(
+        "method",
+        caustics.method,
+        {.doc = "by the true surface, or onto five planes by the height",
+         .values = "simulated pool"});
+    visit(
+        "resolution",
+        caustics.resolution,
+        {.doc = "texels of a side of the map, a power of two", .min = 64, .max = 1024});
+    visit("spacing", caustics.spacing, {.doc = "texels from ray to ray", .min = 1, .max = 8});
+    visit(
+        "strength",
+        caustics.strength,
+        {.doc = "1: as it is; 0: as flat water", .min = 0, .max = 4});
+    visit(
+        "reach",
+        caustics.reach,
+        {.doc = "depth down to which light is followed", .unit = "m", .min = 0.01, .max = 1000});
+    visit(
+        "window",
+        caustics.window,
+        {.doc = "of water without end: side of the square about the camera",
+         .unit = "m",
+         .min = 0.1,
+         .max = 10000});
+}
+
+}  // namespace limn

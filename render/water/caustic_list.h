@@ -1,0 +1,47 @@
+#pragma once
+
+#include "render/light_list.h"
+#include "render/shaders/caustics_gpu.h"
+#include "render/shadow/shadow_list.h"
+#include "render/water/water_list.h"
+
+#include <vector>
+
+namespace limn {
+
+// The waters of a frame as what lies in them is lit, and the maps of the light that waves gather.
+//
+// A map is as the light of flat water sees what is below: a point at depth d below the surface at
+// rest lies where its ray entered, xz - bent d, in the water's own space. So all points of a ray
+// share a texel, walls have theirs like floors, and where the water is flat the map is 1
+// everywhere. A shadow view with the same places tells how deep the ground is and what stands
+// before it.
+
+inline constexpr std::size_t kMaxSunkenWaters = 16;  ///< the nearest ones
+inline constexpr std::size_t kMaxCausticMaps = 4;
+
+struct CausticList {
+    std::vector<layout::SunkenRecord> sunken;  ///< nearest to the camera last
+    std::vector<layout::CausticRecord> maps;   ///< in the order of their layers
+    int resolution = 0;                        ///< texels of a side of each map; 0: none
+    int cells = 0;                             ///< of a side of the finest grid of rays
+    std::vector<Vec4> texels;                  ///< `sunken` as lib/under_water.glsl reads it
+};
+
+/// Chooses waters and maps and asks `shadows` for the views they need. `maps`: also make maps.
+void collect_caustics(
+    const WaterList& waters,
+    const LightList& lights,
+    const Vec3& camera,
+    bool maps,
+    CausticList& list,
+    ShadowList& shadows);
+
+/// After the shadow views have their places.
+void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list);
+
+/// How far light that comes from `to_sun` (unit, in the water's own space) goes along x and z on a
+/// meter down, below flat water.
+[[nodiscard]] Vec2 flat_slant(const Vec3& to_sun, float index);
+
+}  // namespace limn

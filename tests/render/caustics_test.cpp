@@ -1,0 +1,380 @@
+#include "bench/oracles/caustic_oracle.h"
+#include "ecs/base/optics.h"
+#include "ecs/components/caustics.h"
+#include "ecs/components/shadow.h"
+#include "ecs/components/time.h"
+#include "ecs/components/water.h"
+#include "render/graph/frame_graph.h"
+#include "systems/water/water_ripple_field.h"
+#include "systems/water/water_wave_table.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::test {
+namespace {
+
+constexpr float kHalf = 2;       ///< of the pool [m]
+constexpr float kDepth = 1.5f;   ///< [m]
+constexpr float kClear = 1e-4f;  ///< [1/m]
+
+/// Where the sun stands, `angle` above the horizon [rad], over +x turned toward +z.
+Vec3 sun_at(float angle, float turn = 0.4f) {
+    return {std::cos(angle) * std::cos(turn), std::sin(angle), std::cos(angle) * std::sin(turn)};
+}
+
+/// A pool about the origin with a floor and nothing around it.
+class Pool : public Scene {
+  public:
+    Pool() {
+        world.insert_resource(FrameTime{.step = 1.0f / 60, .time = 1});
+        world.insert_resource(Exposure{});
+        const MaterialId white =
+            add(Material{.shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}});
+        floor_ = place(
+            add(make_square()),
+            white,
+            affine_from({0, -kDepth, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), {4, 4, 4}));
+        white_ = white;
+    }
+
+    Entity fill(const Caustics& caustics) {
+        return world.create(
+            Water{
+                .size = {2 * kHalf, 2 * kHalf},
+                .depth = kDepth,
+                .absorption = Vec3(kClear),
+                .scattering = Vec3(0)},
+            WorldTransform{at({0, 0, 0})},
+            caustics);
+    }
+    Entity sun(const Vec3& to_sun) {
+        return shine(
+            DirectionalLight{.color = {1, 1, 1}, .illuminance = 1}, look_at(to_sun, {0, 0, 0}));
+    }
+    Entity wave(Entity water, const WaterWaves& waves) {
+        WaveTable table;
+        fill_wave_table(world.get<Water>(water), waves, 1.0, table);
+        world.add(water, table);
+        return water;
+    }
+    Entity block(const Vec3& middle, float half) {
+        return place(
+            add(make_square()),
+            white_,
+            affine_from(middle, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half)));
+    }
+
+    /// The map of the first water; rows run along z.
+    gpu::FloatImage map() {
+        draw(from_below());
+        FrameGraph& graph = frame_graph(shared_renderer());
+        const gpu::Texture* const texture = graph.texture(graph.find("caustics"));
+        REQUIRE(texture != nullptr);
+        gpu::FloatImage image = gpu::read_floats(*texture, 0, 0);
+        gpu::FloatImage turned = image;
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                turned.pixels[static_cast<std::size_t>(y * image.width + x)] =
+                    image.at(x, image.height - 1 - y, 0);
+            }
+        }
+        return turned;
+    }
+    /// From just below the surface straight down: +x is right, +z is down.
+    [[nodiscard]] RenderView from_below(const Vec3& eye = {0, -0.1f, 0}) const {
+        const Affine pose =
+            affine_from(eye, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), {1, 1, 1});
+        return make_render_view(
+            {.fov_y = radians(90.0f), .near = 0.01f}, pose, pose, {.width = 96, .height = 96});
+    }
+
+  private:
+    Entity floor_;
+    MaterialId white_;
+};
+
+WaterWaves some_waves() {
+    return {
+        .waves = {
+            {.amplitude = 0.02f, .length = 1.1f, .direction = 0.3f},
+            {.amplitude = 0.015f, .length = 0.8f, .direction = 1.9f, .phase = 1},
+            {.amplitude = 0.01f, .length = 0.6f, .direction = -1.2f, .phase = 2}}};
+}
+
+oracle::CausticSurfaceAt surface_of(const WaveTable& table) {
+    return [&table](const glm::dvec2& rest) {
+        const WavePoint wave = evaluate_waves(table, Vec2(rest));
+        const glm::dvec3 by_x = glm::dvec3(1, 0, 0) + glm::dvec3(wave.by_x);
+        const glm::dvec3 by_z = glm::dvec3(0, 0, 1) + glm::dvec3(wave.by_z);
+        return oracle::CausticSurface{
+            glm::dvec3(rest.x, 0, rest.y) + glm::dvec3(wave.offset), glm::cross(by_z, by_x)};
+    };
+}
+
+/// Texel of a place of the window, which is 3 % wider on both sides than the pool.
+double texel_of(double place, int side) {
+    const double size = 2 * static_cast<double>(kHalf) * 1.06;
+    return (place / size + 0.5) * side;
+}
+
+/// Mean of the map over the part of the floor from `low` to `high`.
+double mean_on_floor(
+    const gpu::FloatImage& map, const Vec2& slant, const glm::dvec2& low, const glm::dvec2& high) {
+    const glm::dvec2 moved = glm::dvec2(slant) * static_cast<double>(kDepth);
+    double sum = 0;
+    int count = 0;
+    constexpr int kPoints = 12;
+    for (int j = 0; j < kPoints; ++j) {
+        for (int i = 0; i < kPoints; ++i) {
+            const glm::dvec2 at =
+                low + (high - low) * glm::dvec2((i + 0.5) / kPoints, (j + 0.5) / kPoints) - moved;
+            const double x = texel_of(at.x, map.width) - 0.5;
+            const double z = texel_of(at.y, map.width) - 0.5;
+            const int a = static_cast<int>(std::floor(x));
+            const int b = static_cast<int>(std::floor(z));
+            const double s = x - a;
+            const double t = z - b;
+            const auto value = [&](int u, int v) {
+                return static_cast<double>(
+                    map.at(std::clamp(u, 0, map.width - 1), std::clamp(v, 0, map.width - 1), 0));
+            };
+            sum += (1 - t) * ((1 - s) * value(a, b) + s * value(a + 1, b))
+                   + t * ((1 - s) * value(a, b + 1) + s * value(a + 1, b + 1));
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+Vec2 slant_of(const Vec3& to_sun, float index) {
+    const Vec3 ray = refract_ray({0, 1, 0}, to_sun, 1 / index);
+    return Vec2(ray.x, ray.z) / -ray.y;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(
+    Pool, "caustics: flat water gathers nothing: even to 0.5 %, at any height of the sun") {
+    const Entity water = fill({.resolution = 128});
+    Entity light = sun(sun_at(radians(80)));
+    for (const float height : {80.0f, 50.0f, 15.0f}) {
+        world.destroy(light);
+        light = sun(sun_at(radians(height)));
+        for (const int spacing : {1, 2, 4}) {
+            world.get<Caustics>(water).spacing = spacing;
+            const gpu::FloatImage found = map();
+            REQUIRE(found.width == 128);
+            float least = 2;
+            float most = 0;
+            for (int z = 1; z < 127; ++z) {
+                for (int x = 1; x < 127; ++x) {
+                    least = std::min(least, found.at(x, z, 0));
+                    most = std::max(most, found.at(x, z, 0));
+                }
+            }
+            CAPTURE(height);
+            CAPTURE(spacing);
+            CHECK(least > 0.995f);
+            CHECK(most < 1.005f);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Pool, "caustics: the floor of flat water gets what Fresnel and Snell let through") {
+    const float absorption = 0.3f;
+    const Entity water = fill({.resolution = 64});
+    world.get<Water>(water).absorption = {absorption, 0.0f, 0.0f};
+    const Vec3 to_sun = sun_at(radians(40));
+    sun(to_sun);
+    const Vec3 ray = refract_ray({0, 1, 0}, to_sun, 1 / 1.333f);
+    const float through = (1 - fresnel(to_sun.y, 1.333f)) * to_sun.y / kPi;
+    const float left = std::exp(absorption * kDepth / ray.y);
+    for (const bool simulated : {true, false}) {
+        if (!simulated) {
+            world.remove<Caustics>(water);
+        }
+        const Vec3 seen = rgb_at(radiance(from_below()), 48, 48);
+        CHECK(seen.y == doctest::Approx(through).epsilon(0.005));
+        CHECK(seen.x == doctest::Approx(through * left).epsilon(0.005));
+    }
+    world.destroy(water);
+    CHECK(
+        rgb_at(radiance(from_below()), 48, 48).x == doctest::Approx(to_sun.y / kPi).epsilon(0.005));
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: all light that waves let in arrives, to 1 %") {
+    const Entity water = wave(fill({.resolution = 256}), some_waves());
+    const Vec3 to_sun = sun_at(radians(60));
+    sun(to_sun);
+    const gpu::FloatImage found = map();
+    // The window is wider than the pool; photons are let in by all of it.
+    oracle::CausticPool pool = {.half = glm::dvec2(1.06 * kHalf), .depth = kDepth, .boxes = {}};
+    const oracle::CausticLight traced = oracle::trace_photons(
+        pool, surface_of(world.get<WaveTable>(water)), glm::dvec3(to_sun), 64, 90000);
+    CHECK(traced.received() == doctest::Approx(traced.entered).epsilon(1e-9));
+    double sum = 0;
+    for (const float texel : found.pixels) {
+        sum += static_cast<double>(texel);
+    }
+    sum *= std::pow(2 * 1.06 * kHalf / found.width, 2);
+    CHECK(sum == doctest::Approx(traced.entered).epsilon(0.01));
+}
+
+TEST_CASE_FIXTURE(
+    Pool, "caustics: they are those of traced photons, the nearer the finer the grid") {
+    const Entity water = wave(fill({.resolution = 256}), some_waves());
+    const Vec3 to_sun = sun_at(radians(60));
+    sun(to_sun);
+    const Vec2 slant = slant_of(to_sun, 1.333f);
+    constexpr int kCells = 40;
+    const oracle::CausticLight traced = oracle::trace_photons(
+        {.half = glm::dvec2(kHalf), .depth = kDepth, .boxes = {}},
+        surface_of(world.get<WaveTable>(water)),
+        glm::dvec3(to_sun),
+        kCells,
+        1500000);
+    double before = 1;
+    for (const int spacing : {8, 4, 2}) {
+        world.get<Caustics>(water).spacing = spacing;
+        const gpu::FloatImage found = map();
+        double error = 0;
+        double all = 0;
+        double contrast = 0;
+        for (int z = 4; z < kCells - 14; ++z) {
+            for (int x = 4; x < kCells - 14; ++x) {
+                const glm::dvec2 low =
+                    glm::dvec2(x, z) * (2.0 * kHalf / kCells) - glm::dvec2(kHalf);
+                const double here =
+                    mean_on_floor(found, slant, low, low + glm::dvec2(2.0 * kHalf / kCells));
+                error += std::abs(here - traced.at(x, z));
+                contrast += std::abs(traced.at(x, z) - 1);
+                all += traced.at(x, z);
+            }
+        }
+        CAPTURE(spacing);
+        CHECK(contrast / all > 0.3);
+        CHECK(error / all < before);
+        before = error / all;
+    }
+    CHECK(before < 0.04);
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: a ripple that moves takes its caustic along") {
+    const Entity water = fill({.resolution = 256});
+    sun(sun_at(radians(89)));
+    const WaterRipples ripples = {.cell = 0.05f};
+    int before = -1;
+    for (const int shift : {-20, 20}) {
+        RippleState state = make_ripples(world.get<Water>(water), ripples, 1.0f / 60);
+        for (int z = 0; z < state.cells.y; ++z) {
+            for (int x = 0; x < state.cells.x; ++x) {
+                const float u = static_cast<float>(x - state.cells.x / 2 - shift) * state.cell;
+                const float v = static_cast<float>(z - state.cells.y / 2) * state.cell;
+                state.height[state.at(x, z)] = 0.03f * std::exp(-(u * u + v * v) / 0.08f);
+            }
+        }
+        state.before = state.height;
+        if (world.has<RippleState>(water)) {
+            world.get<RippleState>(water) = state;
+        } else {
+            world.add(water, state);
+        }
+        const gpu::FloatImage found = map();
+        const auto most = std::max_element(found.pixels.begin(), found.pixels.end());
+        const int x = static_cast<int>(most - found.pixels.begin()) % 256;
+        CHECK(*most > 1.5f);
+        CHECK(std::abs(x - texel_of(shift * 0.05, 256)) < 6);
+        CHECK(x != before);
+        before = x;
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Pool, "caustics: what stands in the water cuts a hole where bent light would go") {
+    fill({.resolution = 256});
+    const Vec3 to_sun = sun_at(radians(45), 0);
+    sun(to_sun);
+    block({0, -0.75f, 0}, 0.2f);
+    // Its shadow is as far aside as the bent ray goes on the rest of the way.
+    const float aside = slant_of(to_sun, 1.333f).x * (kDepth - 0.75f);
+    const auto floor_at = [&](float x) {
+        return rgb_at(radiance(from_below({x, -1.2f, 0})), 48, 48).x;
+    };
+    CHECK(aside < -0.3f);
+    CHECK(floor_at(aside) < 1e-3f);
+    CHECK(floor_at(aside - 0.15f) < 1e-3f);
+    CHECK(floor_at(aside - 0.28f) > 0.1f);
+    CHECK(floor_at(aside + 0.28f) > 0.1f);
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: what stands above the water shades what lies below it") {
+    fill({.resolution = 256});
+    const Vec3 to_sun = sun_at(radians(45), 0);
+    world.add(sun(to_sun), Shadow{.resolution = 1024, .cascades = 1, .distance = 10});
+    block({0.5f, 0.5f, 0}, 0.3f);
+    const float entry = 0.5f - 0.5f;  // the sun stands 45 degrees high
+    const float aside = slant_of(to_sun, 1.333f).x * kDepth;
+    const auto floor_at = [&](float x) {
+        return rgb_at(radiance(from_below({x, -1.2f, 0})), 48, 48).x;
+    };
+    CHECK(floor_at(entry + aside) < 2e-3f);
+    CHECK(floor_at(entry + aside + 0.5f) > 0.1f);
+    CHECK(floor_at(entry + aside - 0.5f) > 0.1f);
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice to the bit") {
+    const Entity water = wave(fill({.resolution = 128, .strength = 0}), some_waves());
+    const Vec3 to_sun = sun_at(radians(60));
+    sun(to_sun);
+    const gpu::FloatImage flat = radiance(from_below());
+    const float through = (1 - fresnel(to_sun.y, 1.333f)) * to_sun.y / kPi;
+    for (const int x : {10, 48, 80}) {
+        CHECK(flat.at(x, 40, 0) == doctest::Approx(through).epsilon(0.005));
+    }
+    world.get<Caustics>(water).strength = 1;
+    const gpu::FloatImage first = map();
+    CHECK(largest_difference(first, map()) == 0);
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {
+    sun(sun_at(radians(60)));
+    draw(from_below());
+    CHECK(!frame_graph(shared_renderer()).was_run("caustic rays"));
+    const Entity water = fill({.resolution = 64});
+    draw(from_below());
+    CHECK(frame_graph(shared_renderer()).was_run("caustic rays"));
+    world.remove<Caustics>(water);
+    draw(from_below());
+    CHECK(!frame_graph(shared_renderer()).was_run("caustic rays"));
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: numbers that mean nothing give a picture") {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    const Entity water = wave(
+        fill({.resolution = -7, .spacing = 0, .strength = kNan, .reach = -1, .window = INFINITY}),
+        some_waves());
+    const auto all_finite = [&] {
+        const gpu::FloatImage seen = radiance(from_below());
+        return std::all_of(seen.pixels.begin(), seen.pixels.end(), [](float x) {
+            return std::isfinite(x) && x >= 0;
+        });
+    };
+    const Entity light = sun(sun_at(radians(30)));
+    CHECK(all_finite());
+    world.get<Water>(water).size = {0, 0};
+    CHECK(all_finite());
+    world.get<Water>(water).depth = 0;
+    CHECK(all_finite());
+    for (const float height : {0.0f, -30.0f, 90.0f}) {
+        world.get<WorldTransform>(light).world = look_at(sun_at(radians(height), 0.01f), {0, 0, 0});
+        CHECK(all_finite());
+    }
+}
+
+}  // namespace limn::test
