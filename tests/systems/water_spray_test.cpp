@@ -113,6 +113,7 @@ TEST_CASE("water spray: a wall sprays most when a crest is at it, and not a quar
     CHECK(impact_share(0) == 1);
     CHECK(impact_share(0.5f * kPi) < 1e-20f);
     CHECK(impact_share(2) == 0);
+    CHECK(impact_share(kPi / 3) == doctest::Approx(1.0 / 16));
     CHECK(impact_share(-0.3f) == impact_share(0.3f));
     const WaterWave wave = {.amplitude = 0.5f, .length = 10};  // along +x
     const auto drops_at = [&](float x, const Vec3& normal) {

@@ -1,0 +1,177 @@
+#include "systems/water/water_refraction.h"
+
+#include "ecs/base/check.h"
+#include "systems/water/water_dispersion.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+constexpr double kTurn = 6.283185307179586;
+constexpr float kSteepestRow = 0.999f;  ///< share of k that may go along a row
+constexpr int kMostSubsteps = 32;       ///< between rows
+
+float number_of(float period, float depth) {
+    const double deep = static_cast<double>(std::max(depth, kLeastWaveDepth));
+    return static_cast<float>(wave_number(kTurn / static_cast<double>(period), deep));
+}
+
+/// The grid as the train meets it: rows from the side that it comes in over, one after another.
+struct Rows {
+    int count = 0;
+    int length = 0;
+    bool along_x = false;   ///< the train runs along x, mostly
+    bool backward = false;  ///< toward lesser x or z
+    int width = 0;          ///< of the grid
+
+    [[nodiscard]] std::size_t at(int row, int i) const {
+        const int far = backward ? count - 1 - row : row;
+        return static_cast<std::size_t>(along_x ? i * width + far : far * width + i);
+    }
+};
+
+/// d S from row to row over the square of the greatest d S along it that runs in.
+float rise(float number, float left, float right, float cell) {
+    const float along = std::max(std::max(left, 0.0f), std::max(-right, 0.0f)) / cell;
+    const float most = kSteepestRow * number;
+    return std::sqrt(square(number) - square(std::min(along, most)));
+}
+
+/// Depth between points; beyond the edge as at it.
+float depth_at(const DepthGrid& grid, const Vec2& at) {
+    const Vec2 place = glm::clamp(at / grid.cell, Vec2(0), Vec2(grid.points - 1));
+    const IVec2 corner = glm::min(IVec2(place), grid.points - 2);
+    const Vec2 u = place - Vec2(corner);
+    const float* const first = grid.depth.data() + corner.y * grid.points.x + corner.x;
+    return glm::mix(
+        glm::mix(first[0], first[1], u.x),
+        glm::mix(first[grid.points.x], first[grid.points.x + 1], u.x),
+        u.y);
+}
+
+bool is_grid(const DepthGrid& grid) {
+    return grid.points.x >= 2 && grid.points.y >= 2 && grid.cell > 0
+           && grid.depth.size()
+                  == static_cast<std::size_t>(grid.points.x)
+                         * static_cast<std::size_t>(grid.points.y);
+}
+
+}  // namespace
+
+WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
+    LIMN_CHECK(is_grid(grid));
+    LIMN_CHECK(period > 0);
+    WaveTrain train;
+    std::vector<float> numbers;
+    for (const float depth : grid.depth) {
+        numbers.push_back(number_of(period, depth));
+        train.number.push_back(depth > 0 ? numbers.back() : 0.0f);
+        train.amplitude.push_back(depth > 0 ? 1.0f : 0.0f);
+    }
+    train.phase.resize(grid.depth.size());
+
+    const Vec2 way = {std::cos(direction), std::sin(direction)};
+    Rows rows;
+    rows.along_x = std::abs(way.x) >= std::abs(way.y);
+    rows.backward = (rows.along_x ? way.x : way.y) < 0;
+    rows.count = rows.along_x ? grid.points.x : grid.points.y;
+    rows.length = rows.along_x ? grid.points.y : grid.points.x;
+    rows.width = grid.points.x;
+    float incoming = numbers[rows.at(0, 0)];
+    for (int i = 0; i < rows.length; ++i) {
+        incoming = std::min(incoming, numbers[rows.at(0, i)]);
+    }
+    // From point to point of a row; beyond the ends it goes on so.
+    const float aside = incoming * (rows.along_x ? way.y : way.x) * grid.cell;
+    const auto length = static_cast<std::size_t>(rows.length);
+    std::vector<float> here(length + 2);
+    std::vector<float> next(length + 2);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+        here[i] = aside * (static_cast<float>(i) - 1);
+    }
+    for (int row = 0; row < rows.count; ++row) {
+        float quickest = 0;  // how far a ray goes along the row while it goes to the next
+        for (int i = 0; i < rows.length; ++i) {
+            const std::size_t at = rows.at(row, i);
+            train.phase[at] = here[static_cast<std::size_t>(i) + 1];
+            const std::size_t p = static_cast<std::size_t>(i) + 1;
+            const float up =
+                rise(numbers[at], here[p] - here[p - 1], here[p + 1] - here[p], grid.cell);
+            quickest = std::max(quickest, std::sqrt(square(numbers[at] / up) - 1));
+        }
+        if (row + 1 == rows.count) {
+            break;
+        }
+        const int substeps = std::clamp(static_cast<int>(std::ceil(quickest)), 1, kMostSubsteps);
+        for (int substep = 0; substep < substeps; ++substep) {
+            const float share = (static_cast<float>(substep) + 0.5f) / static_cast<float>(substeps);
+            for (int i = 0; i < rows.length; ++i) {
+                const std::size_t p = static_cast<std::size_t>(i) + 1;
+                const float number =
+                    glm::mix(numbers[rows.at(row, i)], numbers[rows.at(row + 1, i)], share);
+                next[p] =
+                    here[p]
+                    + grid.cell / static_cast<float>(substeps)
+                          * rise(number, here[p] - here[p - 1], here[p + 1] - here[p], grid.cell);
+            }
+            next.front() = next[1] - aside;
+            next.back() = next[length] + aside;
+            here.swap(next);
+        }
+    }
+    const float origin = train.phase[0];
+    for (float& phase : train.phase) {
+        phase -= origin;
+    }
+    return train;
+}
+
+std::vector<Vec2> trace_wave_ray(
+    const DepthGrid& grid,
+    float period,
+    const Vec2& from,
+    float direction,
+    float length,
+    float step) {
+    LIMN_CHECK(is_grid(grid));
+    LIMN_CHECK(step > 0);
+    const auto number = [&](const Vec2& at) { return number_of(period, depth_at(grid, at)); };
+    const auto slope = [&](const Vec2& at) {
+        const float h = 0.5f * grid.cell;
+        return Vec2(
+                   number(at + Vec2(h, 0)) - number(at - Vec2(h, 0)),
+                   number(at + Vec2(0, h)) - number(at - Vec2(0, h)))
+               / (2 * h);
+    };
+    const Vec2 extent = grid.cell * Vec2(grid.points - 1);
+    std::vector<Vec2> ray;
+    Vec2 at = from;
+    Vec2 wave = number(at) * Vec2(std::cos(direction), std::sin(direction));
+    for (float way = 0; way <= length; way += step) {
+        const bool inside = at.x >= 0 && at.y >= 0 && at.x <= extent.x && at.y <= extent.y;
+        if (!inside || !(depth_at(grid, at) > 0)) {
+            break;
+        }
+        ray.push_back(at);
+        // d x / d s = k / |k|, d k / d s = grad |k|, by the midpoint rule.
+        const Vec2 middle = at + 0.5f * step * glm::normalize(wave);
+        wave += step * slope(middle);
+        const Vec2 turned = glm::normalize(wave);
+        at = middle + 0.5f * step * turned;
+        wave = number(at) * turned;
+    }
+    return ray;
+}
+
+float snell_angle(float angle, float from, float to, float period) {
+    const float ratio = number_of(period, from) / number_of(period, to);
+    return std::asin(std::clamp(std::sin(angle) * ratio, -1.0f, 1.0f));
+}
+
+}  // namespace limn
