@@ -1,6 +1,6 @@
 #include "systems/water/water_spray_system.h"
 
-#include "systems/water/water_spray.h"
+#include "systems/water/water_spray_drops.h"
 
 #include <cmath>
 #include <vector>

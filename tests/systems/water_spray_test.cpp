@@ -3,7 +3,7 @@
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/water_dispersion.h"
-#include "systems/water/water_spray.h"
+#include "systems/water/water_spray_drops.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>

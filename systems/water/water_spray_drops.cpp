@@ -1,4 +1,4 @@
-#include "systems/water/water_spray.h"
+#include "systems/water/water_spray_drops.h"
 
 #include <glm/geometric.hpp>
 
