@@ -12,13 +12,15 @@ layout(binding = 5) uniform sampler2D scene_behind;  // water_behind.frag
 
 layout(location = 0) in vec2 rest;
 layout(location = 1) flat in int body;
+layout(location = 3) in vec4 wave_by_x;
+layout(location = 4) in vec3 wave_by_z;
 #ifdef VELOCITY
 layout(location = 2) in vec3 clip_before;
 layout(location = 1) out vec2 velocity;
 #endif
 layout(location = 0) out vec4 radiance;
 
-const int kMirrorSteps = 14;
+const int kMirrorSteps = 10;
 const int kBendSteps = 8;
 const int kBendHalvings = 4;
 const float kSmooth = 1e-5;  // variance of the slopes of ripples that nothing else has
@@ -27,10 +29,20 @@ const float kEndless = 1e4;     // way through water [m]
 const float kUpwelling = 0.33;  // of what is scattered back (Gordon et al. 1975)
 const float kThrough = 0.54;    // of upwelling radiance the surface lets out (Mobley 1999)
 
-// Where a point of the world is in the picture: uv, and its distance along the view axis.
-vec3 picture_of(vec3 p) {
-    vec4 clip = view.clip_from_world * vec4(p, 1.0);
-    return vec3(0.5 + 0.5 * clip.xy / max(clip.w, 1e-6), clip.w);
+// A ray in the picture: at way t it is at clip x, y, w = from + t along.
+struct PictureRay {
+    vec3 from;
+    vec3 along;
+};
+PictureRay picture_ray(vec3 from, vec3 along) {
+    return PictureRay(
+        (view.clip_from_world * vec4(from, 1.0)).xyw, (view.clip_from_world * vec4(along, 0.0)).xyw);
+}
+
+// Where its point at `way` is in the picture: uv, and its distance along the view axis.
+vec3 picture_of(PictureRay ray, float way) {
+    vec3 clip = ray.from + way * ray.along;
+    return vec3(0.5 + 0.5 * clip.xy / max(clip.z, 1e-6), clip.z);
 }
 bool in_picture(vec3 p) {
     return p.z > view.camera_ws.w && all(equal(p.xy, clamp(p.xy, 0.0, 1.0)));
@@ -52,10 +64,11 @@ bool is_hidden(vec3 at, float rest_level) {
 // What is seen along a ray that leaves the water: the picture itself where it shows it, else the surroundings.
 vec3 mirrored(vec3 position, vec3 normal, vec3 direction, float roughness, float rest_level) {
     vec3 around = light_from_around(position, normal, direction, roughness).mirrored;
+    PictureRay ray = picture_ray(position, direction);
     float way = 0.02 * distance(position, view.camera_ws.xyz) + 0.05;
     float last = 0.0;
     for (int i = 0; i < kMirrorSteps; ++i) {
-        vec3 at = picture_of(position + direction * way);
+        vec3 at = picture_of(ray, way);
         if (!in_picture(at)) {
             break;
         }
@@ -65,11 +78,11 @@ vec3 mirrored(vec3 position, vec3 normal, vec3 direction, float roughness, float
             float high = way;
             for (int j = 0; j < 4; ++j) {
                 float middle = 0.5 * (low + high);
-                bool hidden = is_hidden(picture_of(position + direction * middle), rest_level);
+                bool hidden = is_hidden(picture_of(ray, middle), rest_level);
                 low = hidden ? low : middle;
                 high = hidden ? middle : high;
             }
-            vec3 hit = picture_of(position + direction * high);
+            vec3 hit = picture_of(ray, high);
             vec4 found = behind_at(hit.xy);
             // Far behind what hides it, it meets something that the picture does not show.
             float gap = hit.z - found.w;
@@ -79,7 +92,7 @@ vec3 mirrored(vec3 position, vec3 normal, vec3 direction, float roughness, float
             return mix(around, found.rgb, trust);
         }
         last = way;
-        way *= 1.45;
+        way *= 1.7;
     }
     return around;
 }
@@ -92,14 +105,16 @@ struct Through {
 // What a bent ray meets, as far as the picture shows it: steps to where it has gone behind something, then between
 // the last two. What stands before the water is not in it. `most`: way after which there is something for certain [m].
 Through seen_through(vec3 position, vec3 direction, vec2 uv, float most) {
-    float here = picture_of(position).z;
+    PictureRay ray = picture_ray(position, direction);
+    float here = ray.from.z;
     vec4 straight = behind_at(uv);
     float way = straight.w > 0.0 ? (straight.w - here) * length(view_ray(gl_FragCoord.xy)) : kEndless;
     // Rays that leave the picture are bent less, so that its edge is not drawn out: from half way to it on.
-    vec2 shift = picture_of(position + direction * min(way, most)).xy - uv;
+    vec2 shift = picture_of(ray, min(way, most)).xy - uv;
     vec2 room = mix(1.0 - uv, uv, lessThan(shift, vec2(0.0)));
     vec2 shares = room / max(2.0 * abs(shift), vec2(1e-6));
     direction = normalize(mix(normalize(position - view.camera_ws.xyz), direction, min(min(shares.x, shares.y), 1.0)));
+    ray = picture_ray(position, direction);
     float reach = min(most, min(3.0 * way + 0.5, kEndless));
     float low = 0.0;
     float high = reach;
@@ -107,7 +122,7 @@ Through seen_through(vec3 position, vec3 direction, vec2 uv, float most) {
     for (int i = 1; i <= kBendSteps; ++i) {
         float share = float(i) / float(kBendSteps);
         float there = reach * share * share;
-        vec3 at = picture_of(position + direction * there);
+        vec3 at = picture_of(ray, there);
         vec4 scene = behind_at(clamp(at.xy, vec2(0.001), vec2(0.999)));
         shown = scene.w > here ? scene.rgb : shown;
         high = there;
@@ -118,13 +133,13 @@ Through seen_through(vec3 position, vec3 direction, vec2 uv, float most) {
     }
     for (int j = 0; j < kBendHalvings; ++j) {
         float middle = 0.5 * (low + high);
-        vec3 at = picture_of(position + direction * middle);
+        vec3 at = picture_of(ray, middle);
         float seen = behind_at(clamp(at.xy, vec2(0.001), vec2(0.999))).w;
         bool hidden = seen > here && seen < at.z;
         low = hidden ? low : middle;
         high = hidden ? middle : high;
     }
-    vec4 found = behind_at(clamp(picture_of(position + direction * high).xy, vec2(0.001), vec2(0.999)));
+    vec4 found = behind_at(clamp(picture_of(ray, high).xy, vec2(0.001), vec2(0.999)));
     shown = found.w > here ? found.rgb : shown;
     bool endless = straight.w <= 0.0 && high >= reach;
     return Through(shown, endless ? kEndless : high);
@@ -138,7 +153,10 @@ void main() {
     vec2 along = dFdy(rest);
     // Where a pixel is longer than wide, blurred along less than it takes: grazing views stay crisp.
     float footprint = sqrt(sqrt(dot(across, across) * dot(along, along)));
-    WaterBend bend = water_bend(water, rest, footprint);
+    WaterBend bend = field_bend(water, rest, footprint);
+    bend.by_x += wave_by_x.xyz;
+    bend.by_z += wave_by_z;
+    bend.variance += wave_by_x.w;
     vec3 up = water_to_world(water, water_normal(bend));
     float roughness = sqrt(sqrt(kSmooth + bend.variance));  // a normal distribution's alpha is the root of this
     bool above = gl_FrontFacing;
@@ -163,7 +181,7 @@ void main() {
         add_listed(sum, r, cell_list(gl_FragCoord.xy, view_distance(gl_FragCoord.z)), position, gl_FragCoord.xy);
     }
     vec3 glints = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
-    vec3 falling = sum.diffuse / kPi + light_from_around(position, vec3(0.0, 1.0, 0.0), normal, 1.0).irradiance;
+    vec3 falling = sum.diffuse / kPi + irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 
     vec3 extinction = water.absorption.rgb + water.scattering.rgb;
     vec3 glow = falling * (kUpwelling * kThrough) * water.scattering.rgb / max(extinction, vec3(1e-6));

@@ -8,6 +8,8 @@ layout(binding = 0) uniform samplerBuffer patches;  // WaterPatch
 
 layout(location = 0) out vec2 rest;           // x and z at rest, in the water's own space
 layout(location = 1) flat out int body;
+layout(location = 3) out vec4 wave_by_x;  // of waves of closed form; w: variance of slopes too fine to be seen
+layout(location = 4) out vec3 wave_by_z;
 #ifdef VELOCITY
 layout(location = 2) out vec3 clip_before;    // x, y, w
 #endif
@@ -37,6 +39,9 @@ void main() {
 
     rest = q;
     float spacing = cell * (1.0 + slid);
+    WaterBend bend = wave_bend(water, q, spacing);
+    wave_by_x = vec4(bend.by_x, bend.variance);
+    wave_by_z = bend.by_z;
     gl_Position = view.clip_from_world * vec4(surface_ws(water, q, spacing, false), 1.0);
 #ifdef VELOCITY
     vec4 before = view.previous_from_world * vec4(surface_ws(water, q, spacing, true), 1.0);

@@ -36,7 +36,7 @@ struct PatchSource {
     Vec3 margin = {0, 0, 0};  ///< by which waves move the surface, at most [m]
     Frustum frustum;          ///< what the camera sees
     float finest = 1;         ///< squares of this side, > 0, or less are not cut up [m]
-    float detail = 3;         ///< squares are as large as their distance over this, >= 2
+    float detail = 2.2f;      ///< squares are as large as their distance over this, >= 2
     float body = 0;
 };
 

@@ -51,6 +51,11 @@ vec3 ocean_place(WaterRecord water, int i, vec2 q) {
 }
 #endif
 
+// Share of waves of wave number k that points `spacing` [m] apart still show: none of those with less than two points.
+float wave_share(float k, float spacing) {
+    return 1.0 - smoothstep(0.25, 0.5, spacing * k * 0.159154943);
+}
+
 // Where the point at rest at q is, as points `spacing` [m] apart show it; at the moment shown or the moment `before`.
 vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
     vec3 offset = vec3(0.0);
@@ -67,9 +72,10 @@ vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
     for (; line < end; ++line) {
         vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
         vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
+        float share = wave_share(length(run.xy), spacing);
         float phase = dot(run.xy, q) + (before ? wave.y : wave.x);
         float leaning = wave.w * max(sin(phase), 0.0);
-        offset += vec3(run.z * cos(phase), wave.z * sin(phase - leaning), run.w * cos(phase));
+        offset += share * vec3(run.z * cos(phase), wave.z * sin(phase - leaning), run.w * cos(phase));
     }
     int ring = int(water.waves.z);
     end = ring + int(water.waves.w);
@@ -81,7 +87,7 @@ vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
         float r = distance(q, place.xy);
         float window = fade.y > 0.5 ? sin(kPi * (r - edges.x) / (edges.y - edges.x)) : 1.0;
         float faded = fade.x > 0.0 ? sqrt(min(fade.x / max(r, 1e-6), 1.0)) : 1.0;
-        float height = wave.w * faded * window * window * sin(wave.z * r + (before ? wave.y : wave.x));
+        float height = wave.w * wave_share(wave.z, spacing) * faded * window * window * sin(wave.z * r + (before ? wave.y : wave.x));
         offset.y += r >= edges.x && r <= edges.y ? height : 0.0;
     }
     vec4 ripples = ripples_at(water, q);
@@ -93,40 +99,29 @@ vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
 struct WaterBend {
     vec3 by_x;
     vec3 by_z;
-    float foam;      // 0 .. 1
     float variance;  // of slopes that are too fine to be seen
+    float foam;      // 0 .. 1
 };
 
-// Of the surface about q; of patches the mean over `footprint` [m].
-WaterBend water_bend(WaterRecord water, vec2 q, float footprint) {
+// By waves of closed form, as points `spacing` [m] apart show them.
+WaterBend wave_bend(WaterRecord water, vec2 q, float spacing) {
     WaterBend bend = WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0);
-#ifdef OCEAN
-    int patches = int(water.ocean.y);
-    for (int i = 0; i < patches; ++i) {
-        vec3 place = ocean_place(water, i, q);
-        float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
-        vec4 slope = textureLod(ocean_slope, place, level);
-        vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
-        bend.by_x += vec3(slope.z, slope.x, cross_foam.x);
-        bend.by_z += vec3(cross_foam.x, slope.y, slope.w);
-        bend.foam += cross_foam.y;
-        bend.variance += water.variance[i] * clamp(level * 0.3, 0.0, 1.0);
-    }
-    bend.foam = min(bend.foam, 1.0);
-#endif
     int line = int(water.waves.x);
     int end = line + int(water.waves.y);
     for (; line < end; ++line) {
         vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
         vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
+        float k = length(run.xy);
+        float share = wave_share(k, spacing);
         float phase = dot(run.xy, q) + wave.x;
         float s = sin(phase);
         float c = cos(phase);
         float lean = s > 0.0 ? wave.w : 0.0;
         float rise = wave.z * cos(phase - lean * s) * (1.0 - lean * c);
-        vec3 by_phase = vec3(-run.z * s, rise, -run.w * s);
+        vec3 by_phase = share * vec3(-run.z * s, rise, -run.w * s);
         bend.by_x += run.x * by_phase;
         bend.by_z += run.y * by_phase;
+        bend.variance += (1.0 - share * share) * 0.5 * wave.z * wave.z * k * k;
     }
     int ring = int(water.waves.z);
     end = ring + int(water.waves.w);
@@ -143,16 +138,45 @@ WaterBend water_bend(WaterRecord water, vec2 q, float footprint) {
         bool fading = fade.x > 0.0 && r > fade.x;
         float faded = fading ? sqrt(fade.x / r) : 1.0;
         float phase = wave.z * r + wave.x;
-        float slope = wave.w * faded
+        float slope = wave.w * wave_share(wave.z, spacing) * faded
                       * (wave.z * cos(phase) * window + sin(phase) * window_slope
                          - sin(phase) * window * (fading ? 0.5 / r : 0.0));
         slope = r >= place.z && r <= place.w ? slope : 0.0;
         bend.by_x.y += slope * out_from.x / r;
         bend.by_z.y += slope * out_from.y / r;
     }
+    return bend;
+}
+
+// By ripples and seas; of seas the mean over `footprint` [m].
+WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
+    WaterBend bend = WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0);
+#ifdef OCEAN
+    int patches = int(water.ocean.y);
+    for (int i = 0; i < patches; ++i) {
+        vec3 place = ocean_place(water, i, q);
+        float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
+        vec4 slope = textureLod(ocean_slope, place, level);
+        vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
+        bend.by_x += vec3(slope.z, slope.x, cross_foam.x);
+        bend.by_z += vec3(cross_foam.x, slope.y, slope.w);
+        bend.foam += cross_foam.y;
+        bend.variance += water.variance[i] * clamp(level * 0.3, 0.0, 1.0);
+    }
+    bend.foam = min(bend.foam, 1.0);
+#endif
     vec2 slopes = ripples_at(water, q).zw;
     bend.by_x.y += slopes.x;
     bend.by_z.y += slopes.y;
+    return bend;
+}
+
+// By all; of seas the mean over `footprint` [m].
+WaterBend water_bend(WaterRecord water, vec2 q, float footprint) {
+    WaterBend waves = wave_bend(water, q, 0.0);
+    WaterBend bend = field_bend(water, q, footprint);
+    bend.by_x += waves.by_x;
+    bend.by_z += waves.by_z;
     return bend;
 }
 
