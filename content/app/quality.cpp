@@ -1,5 +1,6 @@
 #include "content/app/quality.h"
 
+#include "content/app/quality_caustics.h"
 #include "content/app/quality_dof.h"
 #include "content/app/quality_glow.h"
 #include "content/app/quality_lights.h"
@@ -41,6 +42,9 @@ std::span<const QualityEffect> quality_effects() {
         {"water",
          "Fourier sums term by term in double precision, the dispersion relation",
          measure_water},
+        {"caustics",
+         "ten million photons through the same waves in double precision, and the laws of light",
+         measure_caustics},
     };
     return kEffects;
 }

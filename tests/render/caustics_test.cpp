@@ -1,10 +1,15 @@
 #include "bench/oracles/caustic_oracle.h"
+#include "ecs/base/caustic_optics.h"
 #include "ecs/base/optics.h"
 #include "ecs/components/caustics.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
+#include "render/buffer_texture.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
+#include "render/water/caustic_splat.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
 #include "tests/render/scene_fixture.h"
@@ -340,6 +345,70 @@ TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice
     world.get<Caustics>(water).strength = 1;
     const gpu::FloatImage first = map();
     CHECK(largest_difference(first, map()) == 0);
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: those of the book are as bright as the water is high") {
+    const Entity water = fill({.method = CausticMethod::Pool, .resolution = 256});
+    world.get<Water>(water).depth = 0.01f;  // where it lands is where it comes from
+    sun(sun_at(radians(89.9f)));
+    const gpu::FloatImage still = map();
+    CHECK(*std::max_element(still.pixels.begin(), still.pixels.end()) == 0);
+    const float amplitude = 0.1f;
+    wave(water, {.waves = {{.amplitude = amplitude, .length = 1.7f, .direction = 0.5f}}});
+    const gpu::FloatImage found = map();
+    for (int i = 20; i < 236; i += 9) {
+        const double place =
+            (i + 0.5) / 256 * 2.12 * static_cast<double>(kHalf) - 1.06 * static_cast<double>(kHalf);
+        const Vec2 at(static_cast<float>(place), 0.3f);
+        const float height = evaluate_waves(world.get<WaveTable>(water), at).offset.y;
+        const int row = static_cast<int>(texel_of(0.3, 256));
+        const float light = pool_light(height, -amplitude, 0.5f / amplitude);
+        CHECK(std::abs(found.at(i, row, 0) - light) < 0.06f);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    RenderTest, "caustics: GPUs sum light as the CPU does, to the rounding of a texel") {
+    constexpr int kCells = 16;
+    constexpr int kSide = 32;
+    layout::CausticRecord record{};
+    record.grid = {kCells, kSide, 0, 0};
+    std::vector<Vec4> rays;
+    for (int z = 0; z <= kCells; ++z) {
+        for (int x = 0; x <= kCells; ++x) {
+            const auto u = static_cast<float>(2 * x);
+            const auto v = static_cast<float>(2 * z);
+            // Some fold over, and some land beside the map.
+            rays.emplace_back(
+                u + 3 * std::sin(0.7f * v), v + 4 * std::sin(0.5f * u), 1 + 0.3f * std::sin(v), 0);
+        }
+    }
+    CausticSums sums;
+    std::vector<float> expected(kSide * kSide);
+    splat_caustics(record, rays, sums, expected);
+
+    const Result<const gpu::Program*> splat =
+        device().shaders().load({.compute = "caustics_splat.comp"});
+    REQUIRE(splat.ok());
+    const gpu::Buffer records =
+        gpu::Buffer::of<layout::CausticRecord>("record", std::span(&record, 1));
+    BufferTexture texels("record", GL_RGBA32F);
+    texels.set(records);
+    const gpu::Buffer landed = gpu::Buffer::of<Vec4>("rays", rays);
+    const std::vector<std::uint32_t> none(kSide * kSide);
+    const gpu::Buffer light("light", none.size() * 4, gpu::BufferUse::Dynamic, none.data());
+    device().use(**splat);
+    (*splat)->set("stride", static_cast<unsigned>(rays.size()));
+    texels.bind(device(), 20);
+    device().bind_storage(0, landed);
+    device().bind_storage(1, light);
+    device().dispatch(kCells * kCells / 64, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    std::vector<std::uint32_t> found(none.size());
+    light.read(0, std::as_writable_bytes(std::span(found)));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        CHECK(static_cast<float>(found[i]) / 524288 == doctest::Approx(expected[i]).epsilon(2e-3));
+    }
 }
 
 TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {
