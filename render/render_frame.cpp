@@ -22,6 +22,7 @@
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/light_each_pass.h"
 #include "render/passes/light_pass.h"
+#include "render/passes/mirror_caustic_pass.h"
 #include "render/passes/panorama_pass.h"
 #include "render/passes/probe_pass.h"
 #include "render/passes/reflection_pass.h"
@@ -90,6 +91,7 @@ struct Passes {
     ShadowVolumePass volumes;
     WaterPass water;
     CausticsPass caustics;
+    MirrorCausticPass mirrors;
     SpeedLinePass speed_lines;
     LensPasses lens;
     const gpu::Program* accumulate = nullptr;
@@ -414,6 +416,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     }
     passes.speed_lines.count = static_cast<int>(speed_lines_.size());
     passes.speed_lines.records.set(push(speed_lines_));
+    collect_mirrors(world, view.alpha, passes.mirrors.mirrors);
     place_caustics(scene.lights, scene.shadows, caustics);
     if (for_probe) {
         caustics.maps.clear();
@@ -504,6 +507,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
         : is_forward(scene.method) ? draw_forward(into, passes.forward, scene, gbuffer.depth)
                                    : draw_each_light(into, passes.light_each, scene, gbuffer);
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
+    draw_mirror_caustics(into, device, passes.mirrors, scene, radiance, gbuffer);
     radiance = draw_water(into, passes.water, scene, radiance, gbuffer);
     radiance =
         draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
@@ -671,25 +675,11 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
         return accumulate.error();
     }
     Passes passes = {
-        *std::move(deform),
-        *std::move(gbuffer),
-        *std::move(lights),
-        *std::move(clusters),
-        *std::move(light_each),
-        *std::move(forward),
-        *std::move(blend),
-        *std::move(developer),
-        *std::move(aovs),
-        *std::move(panorama),
-        *std::move(reflection),
-        *std::move(probes),
-        *std::move(shadows),
-        *std::move(volumes),
-        *std::move(water),
-        *std::move(caustics),
-        SpeedLinePass{},
-        LensPasses(device),
-        *accumulate};
+        *std::move(deform),     *std::move(gbuffer),  *std::move(lights),     *std::move(clusters),
+        *std::move(light_each), *std::move(forward),  *std::move(blend),      *std::move(developer),
+        *std::move(aovs),       *std::move(panorama), *std::move(reflection), *std::move(probes),
+        *std::move(shadows),    *std::move(volumes),  *std::move(water),      *std::move(caustics),
+        MirrorCausticPass{},    SpeedLinePass{},      LensPasses(device),     *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }
 

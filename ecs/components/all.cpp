@@ -12,6 +12,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
+#include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
@@ -85,6 +86,7 @@ void register_all_components() {
     register_component<SpraySource>();
     register_component<SprayObstacle>();
     register_component<Caustics>();
+    register_component<MirrorCaustic>();
     register_component<Floating>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();

@@ -277,7 +277,8 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
         list.cubes = list.cubes || wanted.kind == layout::kShadowCube;
         list.cascades = list.cascades || wanted.kind == layout::kShadowCascades;
         const bool soft = wanted.settings.filter >= ShadowFilter::Soft;
-        list.soft = list.soft || (soft && !wanted.light->for_volumes);
+        const bool lights_by_it = wanted.water != nullptr || !wanted.light->for_volumes;
+        list.soft = list.soft || (soft && lights_by_it);
         if (wanted.water != nullptr) {
             wanted.water->record = static_cast<int>(list.records.size());
         } else {

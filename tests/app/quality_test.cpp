@@ -222,6 +222,24 @@ TEST_CASE("quality: skinning is that of double precision, for many joints and mo
     CHECK(told == 1);  // what linear blending loses, which is why the others are there
 }
 
+TEST_CASE("quality: caustics are those of ten million photons") {
+    const TemporaryFolder folder;
+    const ProgramRun run = run_limn(folder, {"quality", "caustics", "--json", "q.json"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    const auto& rows = json["effects"][0]["rows"];
+    CHECK(rows.size() == 2 + 3 + 1 + 2);
+    int told = 0;
+    for (const auto& row : rows) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+        told += row["bound"] == "none" ? 1 : 0;
+    }
+    CHECK(told == 1);  // the coarsest grid, which the others are nearer than
+}
+
 TEST_CASE("quality: open water is the sum of its waves, as high and as fast as the laws say") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(folder, {"quality", "water", "--json", "q.json"});

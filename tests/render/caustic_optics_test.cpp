@@ -208,6 +208,27 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions") {
+    std::vector<Vec4> mirrors;
+    for (int i = 0; i < 256; ++i) {
+        mirrors.emplace_back(start_of(i), static_cast<float>(i));
+    }
+    const std::vector<Vec4> sent = evaluate_shader(
+        "#include \"lib/caustic_landing.glsl\"\n",
+        "vec3 normal = normalize(vec3(sin(0.9 * x.w), -0.3, cos(1.3 * x.w)));\n"
+        "y = mirror_vertex(x.xyz, normal, vec4(1.0, 4.0, 2.0, 1.0), vec4(0.0, 1.0, 0.0, -1.5),"
+        " vec4(1.0, 4.0, 20.0, 1e6));",
+        mirrors);
+    for (int i = 0; i < 256; ++i) {
+        const MirroredVertex expected = mirror_vertex(
+            start_of(i),
+            ray_of(i),
+            {1, 4, 2},
+            {{0, 1, 0}, -1.5f},
+            {.power_plane = 1, .power_surface = 4, .farthest = 20});
+        const Vec4 found = sent[static_cast<std::size_t>(i)];
+        CHECK(glm::distance(Vec3(found), expected.position) < 2e-3f);
+        CHECK(std::abs(std::max(found.w, 0.0f) - expected.light) < 1e-4f);
+    }
     std::vector<Vec4> inputs;
     for (int i = 0; i < 256; ++i) {
         inputs.emplace_back(start_of(i), static_cast<float>(i));

@@ -2,6 +2,7 @@
 #include "ecs/base/caustic_optics.h"
 #include "ecs/base/optics.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/mirror_caustic.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
@@ -409,6 +410,38 @@ TEST_CASE_FIXTURE(
     for (std::size_t i = 0; i < found.size(); ++i) {
         CHECK(static_cast<float>(found[i]) / 524288 == doctest::Approx(expected[i]).epsilon(2e-3));
     }
+}
+
+TEST_CASE_FIXTURE(Pool, "caustics: a mirror sends the sun where the book says, and nowhere else") {
+    // Upright at x = 1, a meter above the plane, turned toward -x; the sun comes down along (1,
+    // -1).
+    const float floor_height = -kDepth;
+    const MeshId square = add(make_square());
+    const MaterialId black =
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}});
+    const Entity mirror = place(
+        square,
+        black,
+        affine_from(
+            {1, floor_height + 1, 0}, glm::angleAxis(radians(-90), Vec3(0, 1, 0)), Vec3(0.2f)));
+    sun(glm::normalize(Vec3(-1, 1, 0)));
+    const RenderView view = from_below({0, floor_height + 0.5f, 0});
+    const gpu::FloatImage without = radiance(view);
+    world.add(mirror, MirrorCaustic{.offset = floor_height});
+    const gpu::FloatImage with = radiance(view);
+    const auto added = [&](float x, float z) {
+        const int i = static_cast<int>(48 + 48 * x / 0.5f);
+        const int j = static_cast<int>(48 + 48 * z / 0.5f);
+        return with.at(i, j, 0) - without.at(i, j, 0);
+    };
+    CHECK(added(0, 0) == doctest::Approx(0.125).epsilon(1e-3));
+    CHECK(added(0.17f, -0.17f) == doctest::Approx(0.125).epsilon(1e-3));
+    for (const float out : {-0.23f, 0.23f}) {
+        CHECK(added(out, 0) == 0);
+        CHECK(added(0, out) == 0);
+    }
+    world.get<MirrorCaustic>(mirror).strength = std::numeric_limits<float>::quiet_NaN();
+    CHECK(largest_difference(without, radiance(view)) == 0);
 }
 
 TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {

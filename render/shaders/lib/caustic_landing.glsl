@@ -30,3 +30,24 @@ float pool_light(float height, float least, float per_height) {
     float c = (height - least) * per_height;
     return c * c * c;
 }
+
+// Where a vertex of a mirror sends light from `light` (a place and 1, or the direction toward it and 0): place on the
+// plane dot(normal, x) = plane.w, and w: light there. `look`: powers of the cosines at the plane and at the mirror,
+// the farthest way, the greatest height above the plane. One that faces away stays where it is, with w = -1.
+vec4 mirror_vertex(vec3 vertex, vec3 normal, vec4 light, vec4 plane, vec4 look) {
+    vec3 incoming = light.w > 0.0 ? normalize(vertex - light.xyz) : -light.xyz;
+    float facing = -dot(incoming, normal);
+    if (facing < 0.0) {
+        return vec4(vertex, -1.0);
+    }
+    vec3 outgoing = incoming + 2.0 * facing * normal;
+    float toward = -dot(plane.xyz, outgoing);
+    float height = dot(plane.xyz, vertex) - plane.w;
+    float way = toward > 1e-9 ? height / toward : height > 0.0 ? 0.0 : look.z;
+    vec3 place = vertex + clamp(way, 0.0, look.z) * outgoing;
+    float above = dot(plane.xyz, place) - plane.w;
+    bool black = above > look.w;
+    place -= way > look.z || black ? above * plane.xyz : vec3(0.0);
+    float lit = pow(max(toward, 1e-9), look.x) * pow(max(facing, 1e-9), look.y);
+    return vec4(place, black || toward <= 0.0 ? -1.0 : lit);
+}

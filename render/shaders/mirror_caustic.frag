@@ -1,0 +1,13 @@
+// Light that a mirror sends to a plane, added where triangles of it land.
+#version 450
+
+uniform vec3 color;
+
+layout(location = 0) in float lit;
+layout(location = 1) in float dark;
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    // A triangle with a vertex that faces away would lie across the plane as a fan.
+    radiance = vec4(dark > 0.0 ? vec3(0.0) : color * lit, 0.0);
+}
