@@ -30,6 +30,7 @@
 #include "render/passes/shadow_volume_pass.h"
 #include "render/passes/speed_line_pass.h"
 #include "render/passes/water_pass.h"
+#include "render/passes/water_veil_pass.h"
 #include "render/shaders/view_gpu.h"
 
 #include <algorithm>
@@ -90,6 +91,7 @@ struct Passes {
     ShadowPass shadows;
     ShadowVolumePass volumes;
     WaterPass water;
+    WaterVeilPass veil;
     CausticsPass caustics;
     MirrorCausticPass mirrors;
     SpeedLinePass speed_lines;
@@ -509,6 +511,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
     draw_mirror_caustics(into, device, passes.mirrors, scene, radiance, gbuffer);
     radiance = draw_water(into, passes.water, scene, radiance, gbuffer);
+    radiance = draw_water_veil(into, passes.veil, passes.water.surfaces, scene, radiance, gbuffer);
     radiance =
         draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
     draw_speed_lines(into, device, passes.speed_lines, scene, radiance, gbuffer);
@@ -665,6 +668,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!water) {
         return water.error();
     }
+    Result<WaterVeilPass> veil = create_water_veil_pass(device);
+    if (!veil) {
+        return veil.error();
+    }
     Result<CausticsPass> caustics = create_caustics_pass(device);
     if (!caustics) {
         return caustics.error();
@@ -674,12 +681,13 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!accumulate) {
         return accumulate.error();
     }
-    Passes passes = {
-        *std::move(deform),     *std::move(gbuffer),  *std::move(lights),     *std::move(clusters),
-        *std::move(light_each), *std::move(forward),  *std::move(blend),      *std::move(developer),
-        *std::move(aovs),       *std::move(panorama), *std::move(reflection), *std::move(probes),
-        *std::move(shadows),    *std::move(volumes),  *std::move(water),      *std::move(caustics),
-        MirrorCausticPass{},    SpeedLinePass{},      LensPasses(device),     *accumulate};
+    Passes passes = {*std::move(deform),   *std::move(gbuffer),    *std::move(lights),
+                     *std::move(clusters), *std::move(light_each), *std::move(forward),
+                     *std::move(blend),    *std::move(developer),  *std::move(aovs),
+                     *std::move(panorama), *std::move(reflection), *std::move(probes),
+                     *std::move(shadows),  *std::move(volumes),    *std::move(water),
+                     *std::move(veil),     *std::move(caustics),   MirrorCausticPass{},
+                     SpeedLinePass{},      LensPasses(device),     *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }
 

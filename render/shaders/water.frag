@@ -7,6 +7,7 @@
 #include "lib/optics.glsl"
 #include "lib/velocity.glsl"
 #include "lib/water_surface.glsl"
+#include "lib/water_light.glsl"
 
 layout(binding = 5) uniform sampler2D scene_behind;  // water_behind.frag
 
@@ -26,7 +27,6 @@ const int kBendHalvings = 4;
 const float kSmooth = 1e-5;  // variance of the slopes of ripples that nothing else has
 const float kFoamAlbedo = 0.8;
 const float kEndless = 1e4;     // way through water [m]
-const float kUpwelling = 0.33;  // of what is scattered back (Gordon et al. 1975)
 const float kThrough = 0.54;    // of upwelling radiance the surface lets out (Mobley 1999)
 
 // A ray in the picture: at way t it is at clip x, y, w = from + t along.
@@ -54,31 +54,41 @@ vec3 scene_point(vec2 uv, float distance) {
     return view.camera_ws.xyz + view_ray(uv * view.size.xy) * distance;
 }
 
+// The side of the water at rest on which a ray is that leaves its surface.
+struct Side {
+    float level;  // height of the water at rest, a little toward the other side: waves
+    float up;     // 1: above, -1: below
+};
+
 // Whether the picture shows something at `at` (uv, distance) that is nearer than it, and on the same side of the
 // water at rest as the ray.
-bool is_hidden(vec3 at, float rest_level) {
+bool is_hidden(vec3 at, Side side) {
     float seen = behind_at(at.xy).w;
-    return seen > 0.0 && seen < at.z && scene_point(at.xy, seen).y > rest_level;
+    return seen > 0.0 && seen < at.z && side.up * (scene_point(at.xy, seen).y - side.level) > 0.0;
 }
 
-// What is seen along a ray that leaves the water: the picture itself where it shows it, else the surroundings.
-vec3 mirrored(vec3 position, vec3 normal, vec3 direction, float roughness, float rest_level) {
-    vec3 around = light_from_around(position, normal, direction, roughness).mirrored;
+// What is seen along a ray that leaves the surface: the picture itself where it shows it, with the way to it [m], else
+// `around`, after an endless way.
+vec4 mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
     PictureRay ray = picture_ray(position, direction);
     float way = 0.02 * distance(position, view.camera_ws.xyz) + 0.05;
     float last = 0.0;
     for (int i = 0; i < kMirrorSteps; ++i) {
         vec3 at = picture_of(ray, way);
         if (!in_picture(at)) {
-            break;
+            // Under water there is no sky to see instead: what is at the edge of the picture goes on.
+            vec2 edge = clamp(at.xy, vec2(0.001), vec2(0.999));
+            vec4 found = behind_at(edge);
+            bool goes_on = side.up < 0.0 && found.w > 0.0 && scene_point(edge, found.w).y < side.level;
+            return goes_on && at.z > view.camera_ws.w ? vec4(found.rgb, way) : vec4(around, kEndless);
         }
-        if (is_hidden(at, rest_level)) {
+        if (is_hidden(at, side)) {
             // Between the last step and this one it went behind something: where?
             float low = last;
             float high = way;
             for (int j = 0; j < 4; ++j) {
                 float middle = 0.5 * (low + high);
-                bool hidden = is_hidden(picture_of(ray, middle), rest_level);
+                bool hidden = is_hidden(picture_of(ray, middle), side);
                 low = hidden ? low : middle;
                 high = hidden ? middle : high;
             }
@@ -89,12 +99,12 @@ vec3 mirrored(vec3 position, vec3 normal, vec3 direction, float roughness, float
             vec2 edge = min(hit.xy, 1.0 - hit.xy);
             float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0)
                           * clamp(2.0 - gap / (0.5 * (way - last) + 0.05), 0.0, 1.0);
-            return mix(around, found.rgb, trust);
+            return vec4(mix(around, found.rgb, trust), trust > 0.5 ? high : kEndless);
         }
         last = way;
         way *= 1.7;
     }
-    return around;
+    return vec4(around, kEndless);
 }
 
 struct Through {
@@ -183,7 +193,7 @@ void main() {
     vec3 glints = r.specular_0 * (sum.specular - sum.fresnel) + r.specular_90 * sum.fresnel;
     vec3 falling = sum.diffuse / kPi + irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 
-    vec3 extinction = water.absorption.rgb + water.scattering.rgb;
+    vec3 extinction = water_extinction(water);
     vec3 glow = falling * (kUpwelling * kThrough) * water.scattering.rgb / max(extinction, vec3(1e-6));
 
     vec3 seen = vec3(0.0);
@@ -192,15 +202,27 @@ void main() {
         float depth = water.absorption.w + position.y - water.origin.y;
         float most = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kEndless;
         Through through = seen_through(position, bent, uv, most);
-        vec3 left = above ? exp(-extinction * through.way) : vec3(1.0);
-        seen = through.color * left + (above ? glow * (1.0 - left) : vec3(0.0));
+        if (above) {
+            vec3 left = exp(-extinction * through.way);
+            seen = through.color * left + glow * (1.0 - left);
+        } else {
+            vec3 sky = light_from_around(position, normal, bent, roughness).mirrored;
+            seen = through.way < kEndless ? through.color : sky;
+        }
     }
-    vec3 mirror = vec3(0.0);
     vec3 away = reflect(-to_camera, normal);
+    vec3 mirror;
     if (above) {
-        mirror = mirrored(position, normal, away, roughness, water.origin.y - 0.02);
+        vec3 around = light_from_around(position, normal, away, roughness).mirrored;
+        mirror = mirrored(position, away, around, Side(water.origin.y - 0.02, 1.0)).rgb;
     } else {
-        mirror = glow;
+        vec3 scattered = scattered_light(water, 0.0, away);
+        vec3 around = scattered;
+        if (water.absorption.w > 0.0) {
+            around = mix(scattered, ground_light(water), exp(-extinction * way_to_ground(water, away)));
+        }
+        vec4 found = mirrored(position, away, around, Side(water.origin.y + 0.02, -1.0));
+        mirror = found.w < kEndless ? mix(scattered, found.rgb, exp(-extinction * found.w)) : around;
     }
     vec3 color = mix(seen, mirror, share) + glints;
     radiance = vec4(mix(color, kFoamAlbedo * falling, above ? smoothstep(0.3, 0.9, bend.foam) : 0.0), 1.0);

@@ -152,6 +152,18 @@ struct Body {
     WaterFrame frame;
 };
 
+/// Whether a camera there is in this water, or may be.
+std::optional<WaterAroundView> find_around(const PatchSource& source, float depth, float near) {
+    const Vec3& eye = source.camera;
+    const float reach = source.margin.y + 2 * near;
+    const bool beside = (source.half.x > 0 && std::abs(eye.x) > source.half.x)
+                        || (source.half.y > 0 && std::abs(eye.z) > source.half.y);
+    if (beside || !(eye.y < reach) || (depth > 0 && eye.y < -depth)) {
+        return std::nullopt;
+    }
+    return WaterAroundView{static_cast<int>(source.body), eye.y > -reach};
+}
+
 void add_body(
     const Body& body,
     const Moments& at,
@@ -171,6 +183,9 @@ void add_body(
     source.finest = finest_of(body.table, ripples, sea);
     source.body = static_cast<float>(list.bodies.size());
     append_water_patches(source, list.patches);
+    if (!list.around) {
+        list.around = find_around(source, body.water->depth, view.near);
+    }
     const bool by_height = list.caustics[list.bodies.size()] != nullptr
                            && list.caustics[list.bodies.size()]->method == CausticMethod::Pool;
     list.heights.push_back(
@@ -214,6 +229,7 @@ void collect_waters(
     list.patches.clear();
     list.ripples.clear();
     list.seas.clear();
+    list.around.reset();
     list.entities.clear();
     list.caustics.clear();
     list.heights.clear();

@@ -8,11 +8,18 @@
 #include "render/water/ripple_atlas.h"
 #include "render/water/water_patches.h"
 
+#include <optional>
 #include <vector>
 
 namespace limn {
 
 // All bodies of water at the moment that a view shows, ready to be drawn.
+
+/// The water that the camera is in, or that waves may wash over it.
+struct WaterAroundView {
+    int body = 0;
+    bool at_surface = false;  ///< the surface may cut through the picture
+};
 
 struct WaterList {
     std::vector<layout::WaterRecord> bodies;  ///< in world order
@@ -21,6 +28,7 @@ struct WaterList {
     std::vector<WaterPatch> patches;
     std::vector<const RippleState*> ripples;  ///< of each body, or null
     std::vector<OceanSource> seas;            ///< of each body, in the same order
+    std::optional<WaterAroundView> around{};  ///< the first there is
     std::vector<Entity> entities;
     std::vector<const Caustics*> caustics;  ///< of each body, or null
     std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]

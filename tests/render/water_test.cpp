@@ -399,4 +399,74 @@ TEST_CASE_FIXTURE(Pond, "water: from below, it mirrors all beyond the critical a
     CHECK(outside > 10);
 }
 
+TEST_CASE_FIXTURE(Pond, "water veil: what a camera in the water sees is dimmed by its distance") {
+    const Vec3 absorption = {0.4f, 0.1f, 0.02f};
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {0.8f, 0.6f, 0.4f, 1}}),
+        affine_from({0, -4, -3}, {1, 0, 0, 0}, Vec3(3)));
+    pour({.absorption = absorption, .scattering = Vec3(0)});
+    const gpu::FloatImage seen = radiance(look({0, -4, 0}, {0, -4, -1}, 65, 65));
+    CHECK(frame_graph(shared_renderer()).was_run("water veil"));
+    for (int c = 0; c < 3; ++c) {
+        const float expected = Vec3(0.8f, 0.6f, 0.4f)[c] * std::exp(-3 * absorption[c]);
+        CHECK(seen.at(32, 32, c) == doctest::Approx(expected).epsilon(0.005));
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Pond, "water veil: above the water, beside it and below its bottom there is none") {
+    surround({1, 1, 1});
+    pour({.size = {4, 4}, .depth = 2});
+    for (const Vec3 eye : {Vec3(0, 1, 0), Vec3(3, -1, 0), Vec3(0, -3, 0)}) {
+        draw(look(eye, eye + Vec3(0, 0.1f, -1)));
+        CHECK_FALSE(frame_graph(shared_renderer()).was_run("water veil"));
+    }
+    draw(look({0, -1, 0}, {0, -1, -1}));
+    CHECK(frame_graph(shared_renderer()).was_run("water veil"));
+}
+
+TEST_CASE_FIXTURE(Pond, "water veil: endless water has one color, the darker the deeper") {
+    surround({1, 1, 1});
+    const Vec3 scattering = {0.01f, 0.02f, 0.04f};
+    pour({.absorption = Vec3(0.2f), .scattering = scattering});
+    float last = 1;
+    for (const float depth : {2.0f, 4.0f, 8.0f}) {
+        const gpu::FloatImage seen =
+            radiance(look({0, -depth, 0}, {0, -depth - 1, -0.01f}, 33, 33));
+        CHECK(seen.at(16, 16, 0) < seen.at(16, 16, 1));
+        CHECK(seen.at(16, 16, 1) < seen.at(16, 16, 2));
+        CHECK(seen.at(16, 16, 2) < last);
+        // Straight down: a third of backscatter over extinction, of what is left of the light.
+        const float extinction = 0.2f + scattering.z;
+        const float expected =
+            0.33f * scattering.z / extinction * std::exp(-1.2f * extinction * depth);
+        CHECK(seen.at(16, 16, 2) == doctest::Approx(expected).epsilon(0.02));
+        last = seen.at(16, 16, 2);
+    }
+}
+
+TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water meets the lens") {
+    // A camera in still water's plane: the lower half of the picture is under it.
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        affine_from({0, 0, -3}, {1, 0, 0, 0}, Vec3(6)));
+    const Entity pond = pour({.absorption = Vec3(0.3f), .scattering = Vec3(0)});
+    for (const float height : {0.0f, 0.01f, -0.01f}) {
+        const gpu::FloatImage seen = radiance(look({0, height, 0}, {0, height, -1}, 64, 64));
+        for (const float value : seen.pixels) {
+            REQUIRE(std::isfinite(value));
+        }
+        CHECK(seen.at(32, 62, 0) < 0.5f);
+        CHECK(seen.at(32, 2, 0) == doctest::Approx(1).epsilon(0.01));
+    }
+    // Waves move the line: a crest on the camera covers it.
+    WaveTable table;
+    fill_wave_table({}, {.waves = {{.amplitude = 0.2f, .length = 40, .phase = kPi / 2}}}, 0, table);
+    world.add(pond, table);
+    const gpu::FloatImage covered = radiance(look({0, 0.1f, 0}, {0, 0.1f, -1}, 64, 64));
+    CHECK(covered.at(32, 20, 0) < 0.5f);
+}
+
 }  // namespace limn::test

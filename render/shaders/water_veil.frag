@@ -1,0 +1,47 @@
+// What a camera in the water sees through it: light is lost on the way, and light that falls in is scattered toward it.
+// At the surface, only below the line at which it meets the lens.
+#version 450
+#define UNMASKED
+#include "lib/lighting.glsl"
+#include "lib/optics.glsl"
+#include "lib/water_surface.glsl"
+#include "lib/water_light.glsl"
+
+layout(binding = 0) uniform sampler2D scene_radiance;
+layout(binding = 5) uniform sampler2D scene_depth;
+
+uniform int body;         // index of the water around the camera
+uniform bool at_surface;  // its waves may reach the camera
+
+layout(location = 0) out vec4 radiance;
+
+const int kSearchSteps = 3;
+const float kEndless = 1e4;  // [m]
+
+bool is_under(WaterRecord water, vec3 lens) {
+    vec3 p = world_to_water(water, lens - water.origin.xyz);
+    if (!at_surface) {
+        return true;
+    }
+    vec2 q = p.xz;
+    vec3 offset = vec3(0.0);
+    for (int i = 0; i < kSearchSteps; ++i) {
+        offset = water_offset(water, q, 0.0, false);
+        q = p.xz - offset.xz;
+    }
+    return p.y < offset.y;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 seen = texelFetch(scene_radiance, pixel, 0).rgb;
+    float depth = texelFetch(scene_depth, pixel, 0).r;
+    WaterRecord water = water_record(body);
+    vec3 ray = view_ray(gl_FragCoord.xy);
+    vec3 lens = view.camera_ws.xyz + ray * view.camera_ws.w;
+    float way = depth > 0.0 ? view_distance(depth) * length(ray) : kEndless;
+    vec3 left = exp(-water_extinction(water) * way);
+    float below = max(water.origin.y - view.camera_ws.y, 0.0);
+    vec3 veiled = seen * left + scattered_light(water, below, normalize(ray)) * (1.0 - left);
+    radiance = vec4(is_under(water, lens) ? veiled : seen, 1.0);
+}
