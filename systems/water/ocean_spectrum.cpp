@@ -9,6 +9,12 @@ namespace limn {
 
 namespace {
 
+/// ln |gamma(x)|. std::lgamma keeps the sign in a global variable, which threads would share.
+double log_gamma(double x) {
+    int sign = 0;
+    return ::lgamma_r(x, &sign);
+}
+
 constexpr double kTurn = 6.283185307179586;  ///< 2 pi
 
 // Scales of spreadings without closed form are sampled over the logarithm of omega / omega_p,
@@ -99,8 +105,8 @@ double cosine_power_integral(double p) {
     // Of logarithms: the gamma functions themselves overflow from p = 85 on.
     return 0.5 * kTurn
            * std::exp(
-               (1.0 - 2.0 * p) * std::log(2.0) + std::lgamma(2.0 * p + 1.0)
-               - 2.0 * std::lgamma(p + 1.0));
+               (1.0 - 2.0 * p) * std::log(2.0) + log_gamma(2.0 * p + 1.0)
+               - 2.0 * log_gamma(p + 1.0));
 }
 
 double jonswap_energy(double omega, double omega_p, double alpha, double gamma) {
