@@ -161,7 +161,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: an even picture stays as it is") {
 }
 
 TEST_CASE_FIXTURE(RenderTest, "glow: a point becomes round, within 5 % at any radius and place") {
-    constexpr double kHeight = 240;
+    constexpr int kHeight = 240;
     const Glow glow = {.strength = 1, .radius = 0.1f, .firefly = 0};
     for (const glm::dvec2& place :
          {glm::dvec2(160.5, 120.5), glm::dvec2(163.5, 125.5), glm::dvec2(170.5, 113.5)}) {
