@@ -19,12 +19,14 @@
 #include "systems/transform_system.h"
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
+#include "systems/water/sailing_system.h"
 #include "systems/water/water_noise_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_spray_system.h"
 #include "systems/water/water_stone_system.h"
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_system.h"
+#include "systems/water/weather_system.h"
 
 namespace limn {
 
@@ -40,6 +42,7 @@ Schedule make_world_schedule() {
     schedule.add<add_spray_drops>();
     schedule.add<add_ocean_states>();
     schedule.sync();
+    schedule.add<update_weather>();
     schedule.add<update_spins>();
     schedule.add<update_sways>();
     schedule.add<update_ripples>();
@@ -59,7 +62,9 @@ Schedule make_world_schedule() {
     schedule.add<update_attachments>();      // after poses: hangs on the joints
     schedule.add<update_spray>();            // after all that moves water
     schedule.add<throw_stones>();            // after all that moves water: meets it as it is now
-    schedule.add<update_floating_bodies>();  // after all that moves water
+    schedule.add<update_sailboats>();        // after all that moves water
+    schedule.add<update_floating_bodies>();  // after sailboats, which push theirs
+    schedule.add<turn_booms>();
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
     schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now
     schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
@@ -84,6 +89,7 @@ void start_world(World& world) {
     resource_or_default<RandomSeed>(world);
     resource_or_default<Input>(world);
     resource_or_default<Assets>(world);
+    world.run(update_weather);
     world.run(update_sways);
     world.run(place_path_followers);
     world.run(place_racers);

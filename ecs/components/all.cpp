@@ -22,6 +22,7 @@
 #include "ecs/components/racer.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
+#include "ecs/components/sailing.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/speed_lines.h"
@@ -35,6 +36,7 @@
 #include "ecs/components/water_stones.h"
 #include "ecs/components/water_wake.h"
 #include "ecs/components/water_waves.h"
+#include "ecs/components/weather.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -88,6 +90,8 @@ void register_all_components() {
     register_component<Caustics>();
     register_component<MirrorCaustic>();
     register_component<Floating>();
+    register_component<Sailboat>();
+    register_component<Boom>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();
     register_component<Camera>();
@@ -107,6 +111,7 @@ void register_all_components() {
     register_resource<Glow>();
     register_resource<Glare>();
     register_resource<LensRain>();
+    register_resource<Weather>();
     register_resource<MotionBlur>();
 }
 

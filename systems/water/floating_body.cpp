@@ -493,6 +493,11 @@ displaced_water(const WaterTouch& touch, const Transform& transform, const Water
         hull.volume};
 }
 
+BodyMass body_mass(const WaterTouch& touch, const Floating& floating, const Vec3& scale) {
+    const Hull hull = make_hull(touch, floating, scale);
+    return {hull.mass, hull.inertia, -hull.origin};
+}
+
 RippleImpulse splash_of(float mass, float radius, float speed) {
     RippleImpulse impulse;
     impulse.radius = 1.5f * radius;

@@ -38,6 +38,15 @@ displaced_water(const WaterTouch& touch, const Transform& transform, const Water
 /// crater 1.5 times as wide, as deep as its momentum makes it and never deeper than half its width.
 [[nodiscard]] RippleImpulse splash_of(float mass, float radius, float speed);
 
+/// What impulses move of a body.
+struct BodyMass {
+    float mass = 0;            ///< [kg]
+    Vec3 inertia = {0, 0, 0};  ///< about its own axes, through its center [kg m^2]
+    Vec3 center = {0, 0, 0};   ///< of mass, from the entity's place in its own axes [m]
+};
+[[nodiscard]] BodyMass
+body_mass(const WaterTouch& touch, const Floating& floating, const Vec3& scale);
+
 /// A body has fallen into the water.
 struct Splash {
     std::size_t surface = 0;  ///< which
