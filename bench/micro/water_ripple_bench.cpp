@@ -1,6 +1,10 @@
 #include "ecs/base/jobs.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_kernels.h"
+#include "systems/water/water_ripple_system.h"
+#include "systems/water/water_ripple_walls.h"
 
 #include <benchmark/benchmark.h>
 
@@ -9,7 +13,8 @@
 
 // Ripples against the size of their grid: a sub-step of the wave equation with vectors and with one
 // lane, a copy of as many bytes as it moves (reads two fields, writes one), and a whole step on one
-// and two threads.
+// and two threads. The same between 64 columns of ten cells, and what it takes when one of them
+// moves. Then one to a hundred pools of different sizes in a world.
 
 namespace {
 
@@ -74,6 +79,74 @@ void step(benchmark::State& state) {
     per_cell(state);
 }
 
+/// Eight by eight columns, each a fortieth of the pool thick; the first is moved aside.
+std::vector<PlacedWall> columns_of(const RippleState& pool, float aside) {
+    std::vector<PlacedWall> columns;
+    const float side = pool.size().x;
+    for (int i = 0; i < 64; ++i) {
+        const Vec2 place = side * ((Vec2(i % 8, i / 8) + 0.5f) / 8.0f - 0.5f);
+        const Affine world =
+            affine_from({place.x + (i == 0 ? aside : 0.0f), 0, place.y}, Quat(1, 0, 0, 0), Vec3(1));
+        const float radius = side / 80;
+        columns.push_back(*place_wall(
+            {.shape = WallShape::Cylinder, .half = {radius, 1, radius}},
+            world,
+            {},
+            1,
+            pool.size()));
+    }
+    return columns;
+}
+
+void step_columns(benchmark::State& state) {
+    set_thread_count(static_cast<int>(state.range(1)));
+    RippleState pool = make_pool(state);
+    set_ripple_walls(pool, columns_of(pool, 0), RippleBorder::Reflecting);
+    const WaterRipples ripples = {.cell = 0.05f};
+    for (auto _ : state) {
+        step_ripples(pool, ripples, kStep);
+    }
+    per_cell(state);
+}
+
+void move_column(benchmark::State& state) {
+    RippleState pool = make_pool(state);
+    const std::vector<PlacedWall> places[2] = {columns_of(pool, 0), columns_of(pool, 0.2f)};
+    int turn = 0;
+    for (auto _ : state) {
+        set_ripple_walls(pool, places[turn++ % 2], RippleBorder::Reflecting);
+    }
+    per_cell(state);
+}
+
+/// Pools of 32 to 128 cells a side in a world, with rain and a stone in each.
+void many_pools(benchmark::State& state) {
+    World world;
+    world.insert_resource(FrameTime{});
+    world.insert_resource(RandomSeed{});
+    std::int64_t cells = 0;
+    for (std::int64_t i = 0; i < state.range(0); ++i) {
+        const int side = 32 + static_cast<int>(i * 37 % 97);
+        const float size = 0.05f * static_cast<float>(side);
+        const Vec3 place = {10.0f * static_cast<float>(i), 0, 0};
+        world.create(
+            Transform{.position = place},
+            WorldTransform{affine_from(place, Quat(1, 0, 0, 0), Vec3(1))},
+            Water{.size = Vec2(size)},
+            WaterRipples{.rain = 10});
+        cells += side * side;
+    }
+    world.run(add_ripple_states);
+    for (auto _ : state) {
+        world.run(update_water_ripples);
+    }
+    state.counters["cells"] = static_cast<double>(cells);
+    state.counters["per_cell"] = benchmark::Counter(
+        static_cast<double>(cells),
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert,
+        benchmark::Counter::kIs1000);
+}
+
 void each_size(benchmark::internal::Benchmark* bench) {
     for (const int size : {64, 128, 256, 512, 1024}) {
         bench->Arg(size);
@@ -86,6 +159,21 @@ BENCHMARK(raw_copy)->Name("ripple_raw_copy")->Apply(each_size);
 BENCHMARK(step)
     ->Name("ripple_step")
     ->ArgsProduct({{64, 128, 256, 512, 1024}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(step_columns)
+    ->Name("ripple_step_columns")
+    ->ArgsProduct({{64, 128, 256, 512, 1024}, {1, 2}})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(move_column)->Name("ripple_move_column")->Apply(each_size)->Unit(benchmark::kMillisecond);
+BENCHMARK(many_pools)
+    ->Name("ripple_pools")
+    ->Arg(1)
+    ->Arg(3)
+    ->Arg(10)
+    ->Arg(30)
+    ->Arg(100)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 

@@ -35,6 +35,7 @@
 #include "ecs/components/water_spray.h"
 #include "ecs/components/water_stones.h"
 #include "ecs/components/water_wake.h"
+#include "ecs/components/water_walls.h"
 #include "ecs/components/water_waves.h"
 #include "ecs/components/weather.h"
 #include "ecs/hierarchy.h"
@@ -83,6 +84,7 @@ void register_all_components() {
     register_component<WaterRipples>();
     register_component<RippleState>();
     register_component<WaterTouch>();
+    register_component<WaterWall>();
     register_component<WakeEmitter>();
     register_component<NoiseSurface>();
     register_component<SpraySource>();

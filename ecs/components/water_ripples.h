@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/water_walls.h"
 #include "ecs/reflect.h"
 
 #include <cstdint>
@@ -35,6 +36,13 @@ struct RippleImpulse {
     float height = -0.05f;  ///< of the middle [m]; negative: down
 };
 
+/// Two cells, by their places in the arrays: a neighbor's share in what happens to the first.
+struct RippleLink {
+    std::uint32_t at = 0;
+    std::uint32_t other = 0;
+    float weight = 0;
+};
+
 /// Beside a WaterRipples, made and stepped by the systems. Rows run along x, one after another
 /// along z; around the grid lies a border of one cell, which is no water.
 struct RippleState {
@@ -47,8 +55,18 @@ struct RippleState {
     std::vector<float> before;  ///< one sub-step earlier
     std::vector<float> body;    ///< what bodies under water make of it; empty where there are none
     std::vector<RippleImpulse> impulses;  ///< of the next step; others add to it
-    double level = 0;                     ///< mean of `body` [m]
+    double level = 0;                     ///< mean height that bodies and walls make [m]
     std::uint32_t steps = 0;              ///< since it was made
+    std::int32_t wet = 0;                 ///< cells that are no wall
+
+    // What stands in it; all empty where nothing does.
+    std::vector<PlacedWall> walls;
+    RippleBorder wall_border = RippleBorder::Reflecting;  ///< that `faces` are made for
+    std::vector<std::uint8_t> dry;   ///< 1 of a cell that is wall, a byte for each height
+    std::vector<RippleLink> faces;   ///< what walls change of the Laplacian, row by row
+    std::vector<std::uint32_t> row;  ///< the first of `faces` of each row, and their number
+    std::vector<RippleLink> rims;    ///< cells of walls repeat what is before them
+    double walled = 0;               ///< what walls have displaced since it was made [m^3]
 
     /// Place of cell (x, z) in the arrays; -1 and `cells` are the border.
     [[nodiscard]] std::size_t at(int x, int z) const {
@@ -117,6 +135,13 @@ void visit_fields(RippleImpulse& impulse, Visitor&& visit) {
 }
 
 template <typename Visitor>
+void visit_fields(RippleLink& link, Visitor&& visit) {
+    visit("at", link.at, {.doc = "place of a cell"});
+    visit("other", link.other, {.doc = "place of the one that it depends on"});
+    visit("weight", link.weight, {.doc = "how much"});
+}
+
+template <typename Visitor>
 void visit_fields(RippleState& state, Visitor&& visit) {
     visit("cells", state.cells, {.doc = "of the grid"});
     visit("stride", state.stride, {.doc = "floats from row to row"});
@@ -127,8 +152,19 @@ void visit_fields(RippleState& state, Visitor&& visit) {
     visit("before", state.before, {.doc = "one sub-step earlier", .unit = "m"});
     visit("body", state.body, {.doc = "what bodies under water make of it", .unit = "m"});
     visit("impulses", state.impulses, {.doc = "of the next step"});
-    visit("level", state.level, {.doc = "mean height that bodies make", .unit = "m"});
+    visit("level", state.level, {.doc = "mean height that bodies and walls make", .unit = "m"});
     visit("steps", state.steps, {.doc = "since it was made"});
+    visit("wet", state.wet, {.doc = "cells that are no wall"});
+    visit("walls", state.walls, {.doc = "that stand in it"});
+    visit(
+        "wall_border",
+        state.wall_border,
+        {.doc = "that the faces are made for", .values = "reflecting absorbing"});
+    visit("dry", state.dry, {.doc = "1 of cells that are wall"});
+    visit("faces", state.faces, {.doc = "what walls change of the Laplacian"});
+    visit("row", state.row, {.doc = "first face of each row"});
+    visit("rims", state.rims, {.doc = "what cells of walls repeat"});
+    visit("walled", state.walled, {.doc = "what walls have displaced", .unit = "m^3"});
 }
 
 template <typename Visitor>

@@ -1,7 +1,9 @@
 #include "systems/water/water_ripple_field.h"
 
 #include "ecs/base/jobs.h"
+#include "systems/water/water_ripple_grid.h"
 #include "systems/water/water_ripple_kernels.h"
+#include "systems/water/water_ripple_walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,41 +47,6 @@ Grid grid_of(const Water& water, const WaterRipples& ripples) {
     }
     grid.cells = {count(extent.x), count(extent.y)};
     return grid;
-}
-
-/// The cells around an ellipse that lie on the grid.
-struct CellBox {
-    IVec2 first;
-    IVec2 last;  ///< exclusive
-};
-CellBox box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
-    const Vec2 middle = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
-    const Vec2 reach = radius / state.cell;
-    CellBox box;
-    for (int axis = 0; axis < 2; ++axis) {
-        const float cells = static_cast<float>(state.cells[axis]);
-        const float from = std::clamp(std::ceil(middle[axis] - reach[axis]), 0.0f, cells);
-        const float to = std::clamp(std::floor(middle[axis] + reach[axis]) + 1, 0.0f, cells);
-        box.first[axis] = static_cast<int>(from);
-        box.last[axis] = static_cast<int>(to);
-    }
-    return box;
-}
-
-Vec2 middle_of(const RippleState& state, int x, int z) {
-    return state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
-}
-
-bool is_over(const RippleState& state, const Vec2& at) {
-    const Vec2 half = 0.5f * state.size();
-    return std::abs(at.x) <= half.x && std::abs(at.y) <= half.y;
-}
-
-/// (1 - u^2)^2 with u the distance from the middle in radii; 0 outside.
-float bump(const Vec2& from_center, const Vec2& radius) {
-    const Vec2 u = from_center / radius;
-    const float rest = std::max(0.0f, 1.0f - (u.x * u.x + u.y * u.y));
-    return rest * rest;
 }
 
 /// The border repeats the outermost cells: no water goes through a wall.
@@ -130,19 +97,23 @@ void fill_keep(std::vector<float>& keep, int cells, float base, bool absorbing) 
     }
 }
 
-double mean_of(const RippleState& state, const std::vector<float>& field) {
+double sum_of(const RippleState& state, const std::vector<float>& field) {
     double sum = 0;
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
-            sum += static_cast<double>(field[state.at(x, z)]);
+            const std::size_t at = state.at(x, z);
+            sum += is_dry(state, at) ? 0.0 : static_cast<double>(field[at]);
         }
     }
-    return sum / (static_cast<double>(state.cells.x) * state.cells.y);
+    return sum;
 }
 
 /// Takes off what rounding has added.
 void keep_level(const RippleState& state, std::vector<float>& field) {
-    const auto drift = static_cast<float>(mean_of(state, field) - state.level);
+    if (state.wet == 0) {
+        return;
+    }
+    const auto drift = static_cast<float>(sum_of(state, field) / state.wet - state.level);
     for (float& h : field) {
         h -= drift;
     }
@@ -168,6 +139,7 @@ RippleState make_ripples(const Water& water, const WaterRipples& ripples, float 
     }
     state.cells = grid.cells;
     state.cell = grid.cell;
+    state.wet = grid.cells.x * grid.cells.y;
     state.stride = (grid.cells.x + 2 + 15) / 16 * 16;
     const auto floats =
         static_cast<std::size_t>(state.stride) * static_cast<std::size_t>(grid.cells.y + 2);
@@ -185,38 +157,32 @@ bool fits(const RippleState& state, const Water& water, const WaterRipples& ripp
 
 void push_ripples(RippleState& state, const RippleImpulse& impulse) {
     const float check = impulse.center.x + impulse.center.y + impulse.radius + impulse.height;
-    if (state.cells.x == 0 || !std::isfinite(check) || !is_over(state, impulse.center)) {
+    if (state.cells.x == 0 || !std::isfinite(check) || !is_over(state, impulse.center)
+        || is_dry(state, cell_at(state, impulse.center))) {
         return;
     }
     const Vec2 extent = state.size();
     const Vec2 radius(std::clamp(
         impulse.radius, 1.5f * state.cell, std::max(extent.x + extent.y, 1.5f * state.cell)));
     const float height = std::clamp(impulse.height, -kLargestPush, kLargestPush);
-    const CellBox box = box_around(state, impulse.center, radius);
     // A crater and its rim, (1 - u^2)^2 (1 - 4 u^2), have no volume; what the grid and the walls
     // make of it is put right by more or less of (1 - u^2)^2.
+    const auto crater = [&](float weight, int x, int z) {
+        const Vec2 from = (middle_of(state, x, z) - impulse.center) / radius;
+        return weight * (1 - 4 * (from.x * from.x + from.y * from.y));
+    };
     double weights = 0;
     double sum = 0;
-    const auto each = [&](auto&& body) {
-        for (int z = box.first.y; z < box.last.y; ++z) {
-            for (int x = box.first.x; x < box.last.x; ++x) {
-                const Vec2 from = middle_of(state, x, z) - impulse.center;
-                const float weight = bump(from, radius);
-                const float u2 = (from.x * from.x + from.y * from.y) / (radius.x * radius.x);
-                body(state.at(x, z), weight, weight * (1 - 4 * u2));
-            }
-        }
-    };
-    each([&](std::size_t, float weight, float crater) {
+    each_bump_cell(state, impulse.center, radius, [&](std::size_t, float weight, int x, int z) {
         weights += static_cast<double>(weight);
-        sum += static_cast<double>(crater);
+        sum += static_cast<double>(crater(weight, x, z));
     });
     if (!(weights > 0)) {
         return;
     }
     const auto excess = static_cast<float>(sum / weights);
-    each([&](std::size_t at, float weight, float crater) {
-        const float push = height * (crater - excess * weight);
+    each_bump_cell(state, impulse.center, radius, [&](std::size_t at, float weight, int x, int z) {
+        const float push = height * (crater(weight, x, z) - excess * weight);
         state.height[at] += push;
         state.before[at] += push;
     });
@@ -240,24 +206,19 @@ void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
             continue;
         }
         const Vec2 radius = glm::max(bulge.radius, Vec2(1.5f * state.cell));
-        const CellBox box = box_around(state, bulge.center, radius);
         double weights = 0;
-        for (int z = box.first.y; z < box.last.y; ++z) {
-            for (int x = box.first.x; x < box.last.x; ++x) {
-                weights += static_cast<double>(bump(middle_of(state, x, z) - bulge.center, radius));
-            }
-        }
+        each_bump_cell(state, bulge.center, radius, [&](std::size_t, float weight, int, int) {
+            weights += static_cast<double>(weight);
+        });
         if (!(weights > 0)) {
             continue;
         }
         volume += static_cast<double>(bulge.volume);
         const auto height = static_cast<float>(
             static_cast<double>(bulge.volume) / (weights * static_cast<double>(area)));
-        for (int z = box.first.y; z < box.last.y; ++z) {
-            for (int x = box.first.x; x < box.last.x; ++x) {
-                now[state.at(x, z)] += height * bump(middle_of(state, x, z) - bulge.center, radius);
-            }
-        }
+        each_bump_cell(state, bulge.center, radius, [&](std::size_t at, float weight, int, int) {
+            now[at] += height * weight;
+        });
     }
     state.body.resize(state.height.size());
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -269,9 +230,8 @@ void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
     if (!any) {
         state.body.clear();
     }
-    state.level = volume
-                  / (static_cast<double>(area) * static_cast<double>(state.cells.x)
-                     * static_cast<double>(state.cells.y));
+    const double covered = static_cast<double>(area) * state.wet;
+    state.level = state.wet > 0 ? (volume + state.walled) / covered : 0;
 }
 
 void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
@@ -328,7 +288,9 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
                         row_keeps[z],
                         courant * courant);
                 }
+                close_faces(state, begin, end, courant * courant / 6.0f);
             });
+        fill_rims(state, state.before);
         if (absorbing) {
             open_border(state, state.height, state.before, courant);
         }
@@ -373,7 +335,7 @@ RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
 
 double ripple_volume(const RippleState& state) {
     const double area = static_cast<double>(state.cell) * static_cast<double>(state.cell);
-    return mean_of(state, state.height) * area * state.cells.x * state.cells.y;
+    return sum_of(state, state.height) * area;
 }
 
 }  // namespace limn

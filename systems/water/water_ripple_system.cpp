@@ -4,6 +4,8 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/water_frame.h"
 #include "systems/water/water_ripple_field.h"
+#include "systems/water/water_ripple_walls.h"
+#include "systems/water/water_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,38 +18,22 @@ constexpr float kBulgeReach = 1.5f;      ///< of the bulge, in half extents of t
 constexpr float kDropCells = 3.0f;       ///< radius of what a rain drop disturbs
 constexpr float kMostDrops = 100000.0f;  ///< in a step
 
-/// Share of a ball's volume that is below a plane at `share` of its height.
-float cap_volume(float share) {
-    return share * share * (3 - 2 * share);
-}
-
 WaterBulge bulge_of(const WaterTouch& touch, const Affine& world, const WaterFrame& frame) {
-    const Vec3 center = frame.local(transform_point(world, touch.offset));
-    const bool ball = touch.shape == TouchShape::Ball;
-    Vec3 axes[3];
-    for (int i = 0; i < 3; ++i) {
-        const Vec3 axis(world.row[0][i], world.row[1][i], world.row[2][i]);
-        axes[i] = frame.turned_in(axis) * (ball ? touch.half.x : touch.half[i]);
-    }
-    // How far it reaches along each axis of the water: an ellipsoid and a box of these axes.
-    Vec3 reach;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3 along(axes[0][i], axes[1][i], axes[2][i]);
-        reach[i] =
-            ball ? glm::length(along) : std::abs(along.x) + std::abs(along.y) + std::abs(along.z);
-    }
-    const float below = std::clamp((reach.y - center.y) / std::max(2 * reach.y, 1e-6f), 0.0f, 1.0f);
-    const float whole = (ball ? 4.0f / 3.0f * kPi : 8.0f)
-                        * std::abs(glm::dot(axes[0], glm::cross(axes[1], axes[2])));
+    const WaterShape shape = place_shape(touch, world, frame);
     WaterBulge bulge;
-    bulge.center = {center.x, center.z};
-    bulge.radius = kBulgeReach * Vec2(reach.x, reach.z);
-    bulge.volume = whole * (ball ? cap_volume(below) : below);
+    bulge.center = {shape.center.x, shape.center.z};
+    bulge.radius = kBulgeReach * Vec2(shape.reach.x, shape.reach.z);
+    bulge.volume = volume_below(shape, 0);
     return bulge;
 }
 
 struct Body {
     const WaterTouch* touch = nullptr;
+    const Affine* place = nullptr;
+};
+
+struct Wall {
+    const WaterWall* wall = nullptr;
     const Affine* place = nullptr;
 };
 
@@ -73,7 +59,25 @@ void let_rain(const WaterRipples& ripples, Random& random, float step, RippleSta
     }
 }
 
-void step_pool(const Pool& pool, std::span<const Body> bodies, Random& random, float step) {
+void stand_walls(const Pool& pool, std::span<const Wall> walls, const WaterFrame& frame) {
+    thread_local std::vector<PlacedWall> placed;
+    placed.clear();
+    for (const Wall& wall : walls) {
+        const auto one =
+            place_wall(*wall.wall, *wall.place, frame, pool.water->depth, pool.state->size());
+        if (one) {
+            placed.push_back(*one);
+        }
+    }
+    set_ripple_walls(*pool.state, placed, pool.ripples->border);
+}
+
+void step_pool(
+    const Pool& pool,
+    std::span<const Body> bodies,
+    std::span<const Wall> walls,
+    Random& random,
+    float step) {
     RippleState& state = *pool.state;
     if (!fits(state, *pool.water, *pool.ripples)) {
         state = make_ripples(*pool.water, *pool.ripples, step);
@@ -81,6 +85,7 @@ void step_pool(const Pool& pool, std::span<const Body> bodies, Random& random, f
     thread_local std::vector<WaterBulge> bulges;
     bulges.clear();
     const WaterFrame frame = water_frame(*pool.place);
+    stand_walls(pool, walls, frame);
     for (const Body& body : bodies) {
         bulges.push_back(bulge_of(*body.touch, *body.place, frame));
     }
@@ -103,14 +108,20 @@ void add_ripple_states(
 void update_water_ripples(
     Query<const Water, const WaterRipples, const WorldTransform, RippleState> waters,
     Query<const WaterTouch, const WorldTransform> bodies,
+    Query<const WaterWall, const WorldTransform> walls,
     Res<const RandomSeed> seed,
     Res<const FrameTime> time) {
-    thread_local std::vector<Body> touching;  // both keep their memory from step to step
+    thread_local std::vector<Body> touching;  // all keep their memory from step to step
+    thread_local std::vector<Wall> standing;
     thread_local std::vector<Pool> pools;
     touching.clear();
+    standing.clear();
     pools.clear();
     bodies.each([&](const WaterTouch& touch, const WorldTransform& place) {
         touching.push_back({&touch, &place.world});
+    });
+    walls.each([&](const WaterWall& wall, const WorldTransform& place) {
+        standing.push_back({&wall, &place.world});
     });
     waters.each([&](Entity entity,
                     const Water& water,
@@ -120,12 +131,13 @@ void update_water_ripples(
         pools.push_back({entity, &water, &ripples, &place.world, &state});
     });
     const std::vector<Body>& all_bodies = touching;
+    const std::vector<Wall>& all_walls = standing;
     const std::vector<Pool>& all_pools = pools;
     parallel_for(all_pools.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (const Pool& pool : std::span(all_pools).subspan(begin, end - begin)) {
             Random random(
                 seed->seed, pool.entity.bits(), name_hash("update_water_ripples"), time->frame);
-            step_pool(pool, all_bodies, random, time->step);
+            step_pool(pool, all_bodies, all_walls, random, time->step);
         }
     });
 }

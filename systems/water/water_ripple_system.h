@@ -5,6 +5,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
+#include "ecs/components/water_walls.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
 
@@ -17,11 +18,12 @@ void add_ripple_states(
     Res<const FrameTime> time,
     Commands commands);
 
-/// Rain, what touches the water, then a step of the wave equation. A state whose grid no longer
-/// fits the settings begins anew, at rest.
+/// Walls, what touches the water, rain, then a step of the wave equation. A state whose grid no
+/// longer fits the settings begins anew, at rest.
 void update_water_ripples(
     Query<const Water, const WaterRipples, const WorldTransform, RippleState> waters,
     Query<const WaterTouch, const WorldTransform> bodies,
+    Query<const WaterWall, const WorldTransform> walls,
     Res<const RandomSeed> seed,
     Res<const FrameTime> time);
 

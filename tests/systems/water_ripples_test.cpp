@@ -21,12 +21,16 @@ Water pool(float width, float length) {
     return {.size = {width, length}, .depth = 2};
 }
 
-/// Largest height, up or down.
+/// Largest height, up or down; not a number if one is none.
 float reach(const RippleState& state) {
     float most = 0;
     for (int z = 0; z < state.cells.y; ++z) {
         for (int x = 0; x < state.cells.x; ++x) {
-            most = std::max(most, std::abs(state.height[state.at(x, z)]));
+            const float height = std::abs(state.height[state.at(x, z)]);
+            most = height <= most ? most : height;
+            if (std::isnan(most)) {
+                return most;
+            }
         }
     }
     return most;

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "ecs/components/water_ripples.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+// The grid of a RippleState: where its cells are, and which of them are near an ellipse.
+
+/// Cells, the last exclusive.
+struct CellBox {
+    IVec2 first;
+    IVec2 last;
+};
+
+/// Those around an ellipse that lie on the grid.
+[[nodiscard]] inline CellBox
+box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
+    const Vec2 middle = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
+    const Vec2 reach = radius / state.cell;
+    CellBox box;
+    for (int axis = 0; axis < 2; ++axis) {
+        const float cells = static_cast<float>(state.cells[axis]);
+        const float from = std::clamp(std::ceil(middle[axis] - reach[axis]), 0.0f, cells);
+        const float to = std::clamp(std::floor(middle[axis] + reach[axis]) + 1, 0.0f, cells);
+        box.first[axis] = static_cast<int>(from);
+        box.last[axis] = static_cast<int>(to);
+    }
+    return box;
+}
+
+/// Of a cell, in the water's own space.
+[[nodiscard]] inline Vec2 middle_of(const RippleState& state, int x, int z) {
+    return state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
+}
+
+[[nodiscard]] inline bool is_over(const RippleState& state, const Vec2& at) {
+    const Vec2 half = 0.5f * state.size();
+    return std::abs(at.x) <= half.x && std::abs(at.y) <= half.y;
+}
+
+/// Place in the arrays of the cell that a point over the grid is in.
+[[nodiscard]] inline std::size_t cell_at(const RippleState& state, const Vec2& point) {
+    const Vec2 cell = glm::floor(point / state.cell + 0.5f * Vec2(state.cells));
+    const IVec2 on = glm::clamp(IVec2(cell), IVec2(0), state.cells - 1);
+    return state.at(on.x, on.y);
+}
+
+/// Whether a place in the arrays is a wall's.
+[[nodiscard]] inline bool is_dry(const RippleState& state, std::size_t at) {
+    return !state.dry.empty() && state.dry[at] != 0;
+}
+
+/// (1 - u^2)^2 with u the distance from the middle in radii; 0 outside.
+[[nodiscard]] inline float bump(const Vec2& from_center, const Vec2& radius) {
+    const Vec2 u = from_center / radius;
+    const float rest = std::max(0.0f, 1.0f - (u.x * u.x + u.y * u.y));
+    return rest * rest;
+}
+
+/// body(place, weight, x, z) for each cell around an ellipse that is water, weighted by its bump.
+template <typename Body>
+void each_bump_cell(const RippleState& state, const Vec2& center, const Vec2& radius, Body&& body) {
+    const CellBox box = box_around(state, center, radius);
+    for (int z = box.first.y; z < box.last.y; ++z) {
+        for (int x = box.first.x; x < box.last.x; ++x) {
+            const std::size_t at = state.at(x, z);
+            if (!is_dry(state, at)) {
+                body(at, bump(middle_of(state, x, z) - center, radius), x, z);
+            }
+        }
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,80 @@
+#include "systems/water/water_shape.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+
+namespace {
+
+/// Share of a ball's volume that is below a plane at `share` of its height.
+float cap_volume(float share) {
+    return share * share * (3 - 2 * share);
+}
+
+float unit_volume(WallShape shape) {
+    switch (shape) {
+    case WallShape::Box:
+        return 8;
+    case WallShape::Cylinder:
+        return 2 * kPi;
+    case WallShape::Ball:
+        return 4.0f / 3.0f * kPi;
+    }
+    return 0;
+}
+
+}  // namespace
+
+WaterShape place_shape(
+    WallShape shape,
+    const Vec3& half,
+    const Vec3& offset,
+    const Affine& world,
+    const WaterFrame& frame) {
+    WaterShape placed;
+    placed.shape = shape;
+    placed.center = frame.local(transform_point(world, offset));
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 axis(world.row[0][i], world.row[1][i], world.row[2][i]);
+        placed.axes[i] = frame.turned_in(axis) * half[i];
+    }
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 along = glm::abs(Vec3(placed.axes[0][i], placed.axes[1][i], placed.axes[2][i]));
+        switch (shape) {
+        case WallShape::Box:
+            placed.reach[i] = along.x + along.y + along.z;
+            break;
+        case WallShape::Cylinder:
+            placed.reach[i] = std::sqrt(along.x * along.x + along.z * along.z) + along.y;
+            break;
+        case WallShape::Ball:
+            placed.reach[i] = glm::length(along);
+            break;
+        }
+    }
+    placed.volume =
+        unit_volume(shape)
+        * std::abs(glm::dot(placed.axes[0], glm::cross(placed.axes[1], placed.axes[2])));
+    return placed;
+}
+
+WaterShape place_shape(const WaterTouch& touch, const Affine& world, const WaterFrame& frame) {
+    const bool ball = touch.shape == TouchShape::Ball;
+    return place_shape(
+        ball ? WallShape::Ball : WallShape::Box,
+        ball ? Vec3(touch.half.x) : touch.half,
+        touch.offset,
+        world,
+        frame);
+}
+
+float volume_below(const WaterShape& shape, float height) {
+    const float above_lowest = height - (shape.center.y - shape.reach.y);
+    const float share = std::clamp(above_lowest / std::max(2 * shape.reach.y, 1e-6f), 0.0f, 1.0f);
+    return shape.volume * (shape.shape == WallShape::Ball ? cap_volume(share) : share);
+}
+
+}  // namespace limn
