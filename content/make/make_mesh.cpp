@@ -1,5 +1,6 @@
 #include "content/make/make_mesh.h"
 
+#include "content/make/boat.h"
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/shapes.h"
@@ -42,6 +43,7 @@ MeshKind creature_kind() {
 std::span<const MeshKind> mesh_kinds() {
     static const std::vector<MeshKind> kinds = {
         mesh_kind<ArchShape, make_arch>("arch", "a pointed rib or frame on two legs, facing z"),
+        mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
         mesh_kind<BoxShape, make_box>("box", "a box, its edges rounded if asked"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
         creature_kind(),
