@@ -121,6 +121,7 @@ make_view_block(const RenderView& view, const ClusterShape& shape, const LightLi
     block.grid_cells = {shape.columns, shape.rows, shape.slices, shape.tile};
     block.grid_depth = {
         shape.depth_scale, shape.depth_bias, lights.directional, lights.first_shadowed};
+    block.clip_plane = view.clip_plane;
     return block;
 }
 
@@ -170,6 +171,10 @@ bool needs_stencil(const FrameScene& scene) {
     const bool by_screen =
         scene.method == LightMethod::Clustered || scene.method == LightMethod::FullScreen;
     return !by_screen || !scene.volumes.lights.empty();
+}
+
+bool is_clipped(const FrameScene& scene) {
+    return scene.view.clip_plane != Vec4(0);
 }
 
 std::vector<Use> lighting_reads(const FrameScene& scene, std::initializer_list<Use> reads) {

@@ -95,7 +95,8 @@ struct FrameScene {
     gpu::RingSlice view_block;
     gpu::RingSlice environment_block;
     gpu::RingSlice probe_block;  ///< of no size: no probes
-    bool for_probe = false;      ///< a probe looks: at what lights, without other probes
+    bool for_light = false;  ///< a probe looks or a water: at what lights or is mirrored, without
+                             ///< the sun, which does so by itself
     const BufferTexture* light_records = nullptr;
     const BufferTexture* light_indices = nullptr;
     const BufferTexture* light_cells = nullptr;
@@ -129,6 +130,10 @@ void bind_shadow_masks(PassContext& context, const FrameScene& scene);
 /// Whether the depth of surfaces needs a stencil beside it: for volumes of shadow or of light, or
 /// to light each pixel once.
 [[nodiscard]] bool needs_stencil(const FrameScene& scene);
+
+/// Whether a plane cuts away part of what is drawn: then surfaces are drawn with the definition
+/// CLIPPED and PipelineState::clip.
+[[nodiscard]] bool is_clipped(const FrameScene& scene);
 
 /// `reads` and what a pass that lights reads beside them.
 [[nodiscard]] std::vector<Use>

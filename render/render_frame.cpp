@@ -32,6 +32,7 @@
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
 #include "render/shaders/view_gpu.h"
+#include "render/water/water_reflection.h"
 
 #include <algorithm>
 #include <chrono>
@@ -105,6 +106,13 @@ double shown_time(const World& world, const RenderView& view) {
     return time != nullptr ? time->time - (1.0 - view.alpha) * time->step : 0.0;
 }
 
+/// What a frame is made for.
+enum class Seen : std::uint8_t {
+    Picture,
+    ByProbe,  ///< what lights, without probes
+    InWater,  ///< what water mirrors, without water
+};
+
 bool asks_for_velocity(const FrameRequest& request) {
     return std::find(request.aovs.begin(), request.aovs.end(), "velocity") != request.aovs.end();
 }
@@ -125,10 +133,13 @@ class Renderer {
 
     /// Draws what probes see, where that is due: before the image that shows it.
     void draw_probes(const World& world, const RenderView& view);
+    /// Draws what a water mirrors that asks for it, before the image of `view` that shows it.
+    void draw_water_reflection(const World& world, const RenderView& view);
     /// Tells whether this picture follows the one before. After draw_probes(), which knows Assets.
     void follow(const World& world, const RenderView& view);
     /// Brings what changed in the world to the GPU and collects this frame's draws and lights.
-    void prepare(const World& world, const RenderView& view, bool velocity, bool for_probe = false);
+    void
+    prepare(const World& world, const RenderView& view, bool velocity, Seen seen = Seen::Picture);
     /// The image, as a list.
     FrameTextures draw_image(const FrameRequest& request, bool attributes, bool velocity);
     /// What lies where; `attributes`: also of what kind, which forward lighting has no need of.
@@ -161,6 +172,7 @@ class Renderer {
     void draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha);
 
     FrameGraph probe_graph_;  ///< apart from the image's, whose times it would blur
+    FrameGraph reflection_graph_;
     EnvProbeList probes_;
     gpu::RingBuffer ring_;
     MeshPool meshes_;
@@ -184,6 +196,7 @@ class Renderer {
     std::vector<std::pair<int, gpu::Texture>> kept_aovs_;
     std::uint64_t assets_ = 0;                // identity of those that were uploaded
     int probe_faces_ = 0;                     // drawn for this frame
+    Entity planar_water_;                     // whose reflection was drawn for this frame
     std::optional<Environment> environment_;  // that the reflection map shows
     bool reflection_due_ = false;
     bool dropped_reported_ = false;
@@ -198,7 +211,7 @@ void RendererDeleter::operator()(Renderer* renderer) const {
 
 Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Passes made)
     : device(gpu_device), graph(gpu_device), passes(std::move(made)), probe_graph_(gpu_device),
-      ring_(gpu_device.caps(), "frame data", kRingBytes),
+      reflection_graph_(gpu_device), ring_(gpu_device.caps(), "frame data", kRingBytes),
       materials_(gpu_device, settings.anisotropy),
       shapes_(static_cast<std::size_t>(gpu_device.caps().max_storage_bytes)),
       light_records_("lights", GL_RGBA32F), shadow_views_("shadow views", GL_RGBA32F),
@@ -310,7 +323,7 @@ void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, f
     }
     const int face = static_cast<int>(slot.drawn % kCubeFaces);
     probe_graph_.begin_frame();
-    prepare(world, make_probe_view(slot, face, alpha), false, true);
+    prepare(world, make_probe_view(slot, face, alpha), false, Seen::ByProbe);
     deform_meshes(probe_graph_, passes.deform, shapes_);
     const Gbuffer gbuffer = draw_gbuffer(probe_graph_, passes.gbuffer, scene, false);
     const TextureId radiance = draw_radiance(probe_graph_, gbuffer);
@@ -328,6 +341,21 @@ void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, f
     finish(probe_graph_);
 }
 
+void Renderer::draw_water_reflection(const World& world, const RenderView& view) {
+    const std::optional<PlanarWater> water = find_planar_water(world, view);
+    planar_water_ = water ? water->entity : Entity{};
+    if (!water) {
+        return;
+    }
+    reflection_graph_.begin_frame();
+    prepare(world, make_reflected_view(view, water->level, water->map_scale), false, Seen::InWater);
+    deform_meshes(reflection_graph_, passes.deform, shapes_);
+    const Gbuffer gbuffer = draw_gbuffer(reflection_graph_, passes.gbuffer, scene, false);
+    const TextureId radiance = draw_radiance(reflection_graph_, gbuffer);
+    keep_reflection(reflection_graph_, passes.water, scene, radiance, gbuffer);
+    finish(reflection_graph_);
+}
+
 void Renderer::report_missing_tangents(const Assets& assets) {
     for (const std::uint32_t mesh : scene.instances.without_tangents) {
         if (untangented_reported_.insert(mesh).second) {
@@ -339,7 +367,9 @@ void Renderer::report_missing_tangents(const Assets& assets) {
     }
 }
 
-void Renderer::prepare(const World& world, const RenderView& view, bool velocity, bool for_probe) {
+void Renderer::prepare(const World& world, const RenderView& view, bool velocity, Seen seen) {
+    const bool for_probe = seen == Seen::ByProbe;
+    const bool for_picture = seen == Seen::Picture;
     update_assets(world);
     ring_.begin_frame();
 
@@ -356,7 +386,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
             scene.lights.reach.size());
         dropped_reported_ = true;
     }
-    const Rendering rendering = for_probe ? Rendering{} : rendering_of(world);
+    const Rendering rendering = for_picture ? rendering_of(world) : Rendering{};
     scene.per_vertex = rendering.shading == ShadingRate::Vertex;
     scene.method = scene.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
     shapes_.update(world, meshes_, view.alpha, view.alpha_before);
@@ -376,6 +406,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         world,
         view,
         velocity,
+        for_picture ? planar_water_ : Entity{},
         device.caps().max_texture_size,
         water.ripples,
         water.seas,
@@ -413,15 +444,19 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     shadow_views_.set(push(scene.shadows.records));
     projector_records_.set(push(projectors_.records()));
     collect_speed_lines(world, view, speed_lines_);
-    if (for_probe) {
+    if (!for_picture) {
         speed_lines_.clear();
     }
     passes.speed_lines.count = static_cast<int>(speed_lines_.size());
     passes.speed_lines.records.set(push(speed_lines_));
     collect_mirrors(world, view.alpha, passes.mirrors.mirrors);
     place_caustics(scene.lights, scene.shadows, caustics);
-    if (for_probe) {
+    if (!for_picture) {
         caustics.maps.clear();
+    }
+    if (seen == Seen::InWater) {
+        water.list.patches.clear();
+        water.list.around.reset();
     }
     resize_caustic_maps(passes.caustics);
     scene.waters = !water.list.bodies.empty();
@@ -455,7 +490,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     const layout::ProbeBlock probes = probes_.make_block();
     const bool any_probes = !for_probe && probes.count.x > 0;
     scene.probe_block = any_probes ? ring_.push_value(probes) : gpu::RingSlice{};
-    scene.for_probe = for_probe;
+    scene.for_light = !for_picture;
     const auto end = std::chrono::steady_clock::now();
 
     const InstanceList& list = scene.instances;
@@ -469,6 +504,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         .shadow_views = static_cast<int>(scene.shadows.records.size()),
         .shadow_views_drawn = static_cast<int>(scene.shadows.due.size()),
         .probe_faces = probe_faces_,
+        .water_reflections = planar_water_.is_null() ? 0 : 1,
         .lit_objects = scene.method == LightMethod::LightMajor
                            ? static_cast<int>(light_objects_.objects.size())
                            : 0,
@@ -697,9 +733,11 @@ FrameOutput render_frame(
     const bool velocity = asks_for_velocity(request) || needs_velocity(lens);
     renderer.draw_probes(world, view);
     renderer.follow(world, view);
-    renderer.graph.begin_frame();
     const bool cut = !renderer.scene.since_last.has_value();
-    renderer.prepare(world, lens_view(renderer.passes.lens, lens, view, cut), velocity);
+    const RenderView shown = lens_view(renderer.passes.lens, lens, view, cut);
+    renderer.draw_water_reflection(world, shown);
+    renderer.graph.begin_frame();
+    renderer.prepare(world, shown, velocity);
     FrameTextures textures = renderer.draw_image(request, needs_attributes(lens), velocity);
     renderer.develop_image(world, lens, textures);
     renderer.finish(renderer.graph);
@@ -714,6 +752,7 @@ void accumulate(Renderer& renderer, const World& world, const RenderView& view, 
     const LensSettings lens = lens_of_sample(lens_settings(world, view), renderer.sample_kind());
     const bool velocity = needs_velocity(lens);
     renderer.draw_probes(world, view);
+    renderer.draw_water_reflection(world, view);
     renderer.graph.begin_frame();
     renderer.prepare(world, view, velocity);
     renderer.add_to_sum(renderer.draw_image({}, needs_attributes(lens), velocity), lens, weight);
@@ -726,9 +765,11 @@ void accumulate_aovs(
         return;
     }
     const bool velocity = asks_for_velocity(request);
+    const RenderView middle = with_jitter(view, {0, 0});
     renderer.draw_probes(world, view);
+    renderer.draw_water_reflection(world, middle);
     renderer.graph.begin_frame();
-    renderer.prepare(world, with_jitter(view, {0, 0}), velocity);
+    renderer.prepare(world, middle, velocity);
     const FrameTextures textures = renderer.draw_image(request, false, velocity);
     renderer.finish(renderer.graph);
     renderer.keep_aovs(textures);

@@ -65,6 +65,7 @@ struct FrameStatistics {
     int shadow_views = 0;        ///< in the shadow atlas
     int shadow_views_drawn = 0;  ///< of them, in this frame
     int probe_faces = 0;         ///< that probes looked at anew
+    int water_reflections = 0;   ///< drawn for this frame
     int lit_objects = 0;         ///< drawn for a light, each once a light (LightMethod::LightMajor)
     double extract_ms = 0;       ///< CPU time of culling and filling instance and light buffers
 };

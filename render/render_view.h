@@ -36,6 +36,7 @@ struct RenderView {
     float alpha = 1.0f;              ///< moment shown, 0 .. 1
     float alpha_before = 0.0f;       ///< moment motion is measured from, <= alpha
     LensView lens;                   ///< what is in front of the camera; at first a pinhole
+    Vec4 clip_plane = {0, 0, 0, 0};  ///< shown is where dot(xyz, p) + w >= 0; 0: everywhere
     Entity hidden;                   ///< not shown, nor what is below it; null: all is shown
 };
 

@@ -151,6 +151,9 @@ void Device::apply(const PipelineState& state) {
     if (all || state.depth_clamp != state_.depth_clamp) {
         enable(GL_DEPTH_CLAMP, state.depth_clamp);
     }
+    if (all || state.clip != state_.clip) {
+        enable(GL_CLIP_DISTANCE0, state.clip);
+    }
     if (all || state.wireframe != state_.wireframe) {
         glPolygonMode(GL_FRONT_AND_BACK, state.wireframe ? GL_LINE : GL_FILL);
     }

@@ -64,6 +64,7 @@ struct PipelineState {
     GLenum cull = GL_BACK;  ///< GL_NONE, GL_FRONT, GL_BACK; counterclockwise is the front
     std::uint8_t color_mask = 0b1111;  ///< bit 0 red .. bit 3 alpha
     bool depth_clamp = false;
+    bool clip = false;  ///< by gl_ClipDistance[0], which the vertex shader must write
     bool wireframe = false;
     bool alpha_to_coverage = false;
     float depth_bias = 0;  ///< units of glPolygonOffset; positive is nearer, as depth is reversed

@@ -2,6 +2,12 @@
 
 namespace limn {
 
+namespace {
+
+constexpr std::uint32_t kClippedKey = 1u << 31;  ///< beside those of lighting_key
+
+}  // namespace
+
 Result<BlendPass> create_blend_pass(gpu::Device& device) {
     BlendPass pass = {SurfacePrograms(device, "mesh.vert", "blend.frag")};
     const Status plain = pass.programs.load(0, 0, {});
@@ -26,15 +32,22 @@ TextureId draw_blended(
             std::span<const Use>(writes),
             [&pass, &scene](PassContext& context) {
                 bind_lighting(context.device(), scene);
+                const bool clipped = is_clipped(scene);
+                std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
+                if (clipped) {
+                    defines.push_back({"CLIPPED"});
+                }
                 draw_runs(
                     context.device(),
                     scene,
                     scene.instances.blended,
                     pass.programs,
                     0,
-                    lighting_key(scene),
-                    lighting_defines(scene),
-                    {.depth = {.write = false}, .blend = gpu::kBlendPremultiplied});
+                    lighting_key(scene) | (clipped ? kClippedKey : 0),
+                    defines,
+                    {.depth = {.write = false},
+                     .blend = gpu::kBlendPremultiplied,
+                     .clip = clipped});
             });
     }
     return radiance;

@@ -56,15 +56,17 @@ Gbuffer draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& sce
          .height = height});
     const auto draw = [&pass, &scene, velocity](PassContext& context) {
         bind_view(context.device(), scene);
+        const bool clipped = is_clipped(scene);
         draw_runs(
             context.device(),
             scene,
             scene.instances.opaque,
             pass.programs,
             velocity ? kVelocity : 0u,
-            0,
-            {},
-            {});
+            clipped ? 1 : 0,
+            clipped ? std::vector<gpu::ShaderDefine>{{"CLIPPED"}}
+                    : std::vector<gpu::ShaderDefine>{},
+            {.clip = clipped});
     };
     if (velocity) {
         g.velocity = graph.create(

@@ -67,7 +67,7 @@ TextureId draw_sky(
     const FrameScene& scene,
     TextureId radiance,
     const Gbuffer& gbuffer) {
-    if (scene.environment.settings.visible || scene.for_probe) {
+    if (scene.environment.settings.visible || scene.for_light) {
         graph.add_pass(
             "sky",
             {depth_tested(gbuffer.depth)},
@@ -82,7 +82,7 @@ TextureId draw_sky(
                 if (scene.environment.settings.sky == SkyKind::Panorama) {
                     context.device().bind_texture(kGbufferUnit, *scene.environment.cube);
                 }
-                pass.sky[kind]->set("for_light", scene.for_probe ? 1 : 0);
+                pass.sky[kind]->set("for_light", scene.for_light ? 1 : 0);
                 context.device().draw_fullscreen();
             });
     }

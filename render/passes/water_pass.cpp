@@ -10,8 +10,12 @@ namespace {
 
 constexpr unsigned kPatchesUnit = 0;
 constexpr unsigned kBehindUnit = 5;
+constexpr unsigned kReflectionMapUnit = 22;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
+constexpr std::uint32_t kLooksKey = 1u << 29;
+constexpr std::uint32_t kPlanarKey = 1u << 28;
+constexpr std::uint32_t kUntracedKey = 1u << 27;
 constexpr int kSide = kWaterGrid + 1;
 constexpr int kIndices = 6 * kWaterGrid * kWaterGrid;
 
@@ -34,6 +38,43 @@ std::array<std::uint16_t, kIndices> grid_indices() {
     return indices;
 }
 
+/// What all waters of a frame ask for, as definitions and the key that tells them apart.
+struct Variant {
+    std::vector<gpu::ShaderDefine> defines;
+    std::uint32_t key = 0;
+};
+
+Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool velocity) {
+    Variant variant = {lighting_defines(scene), lighting_key(scene)};
+    const auto add = [&](bool wanted, const char* name, std::uint32_t key) {
+        if (wanted) {
+            variant.defines.push_back({name});
+            variant.key |= key;
+        }
+    };
+    const WaterList& list = waters.list;
+    add(velocity, "VELOCITY", kVelocityKey);
+    add(!waters.seas.empty(), "OCEAN", kOceanKey);
+    add(list.looks, "LOOKS", kLooksKey);
+    add(list.planar, "PLANAR", kPlanarKey);
+    add(!list.traced, "UNTRACED", kUntracedKey);
+    return variant;
+}
+
+/// Draws radiance and distance of the scene.
+void draw_behind(
+    PassContext& context,
+    const WaterPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    TextureId depth) {
+    context.device().use(gpu::Pipeline{pass.behind, gpu::kFullscreenState});
+    bind_view(context.device(), scene);
+    context.bind_texture(0, radiance);
+    context.bind_texture(1, depth);
+    context.device().draw_fullscreen();
+}
+
 /// The scene as the water sees it: radiance and distance.
 TextureId copy_behind(
     FrameGraph& graph,
@@ -51,11 +92,7 @@ TextureId copy_behind(
         {radiance, gbuffer.depth},
         {discarded(behind)},
         [&pass, &scene, radiance, gbuffer](PassContext& context) {
-            context.device().use(gpu::Pipeline{pass.behind, gpu::kFullscreenState});
-            bind_view(context.device(), scene);
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, gbuffer.depth);
-            context.device().draw_fullscreen();
+            draw_behind(context, pass, scene, radiance, gbuffer.depth);
         });
     return behind;
 }
@@ -75,6 +112,33 @@ Result<WaterPass> create_water_pass(gpu::Device& device) {
     pass.grid = gpu::VertexArray("water grid");
     pass.grid.set_indices(pass.indices);
     return pass;
+}
+
+void keep_reflection(
+    FrameGraph& graph,
+    WaterPass& pass,
+    const FrameScene& scene,
+    TextureId radiance,
+    const Gbuffer& gbuffer) {
+    const int width = scene.view.width;
+    const int height = scene.view.height;
+    if (!pass.reflection || pass.reflection.width() != width
+        || pass.reflection.height() != height) {
+        pass.reflection = gpu::Texture(
+            "water reflection",
+            {.format = GL_RGBA32F, .width = width, .height = height, .levels = 0});
+    }
+    const TextureId target = graph.import("water reflection", pass.reflection);
+    graph.add_pass(
+        "water reflection",
+        {radiance, gbuffer.depth},
+        {target_level(discarded(target), 0)},
+        [&pass, &scene, radiance, gbuffer](PassContext& context) {
+            draw_behind(context, pass, scene, radiance, gbuffer.depth);
+        });
+    graph.add_pass("water reflection, blurred", {}, {image(target)}, [&pass](PassContext&) {
+        pass.reflection.generate_mipmaps();
+    });
 }
 
 TextureId draw_water(
@@ -98,18 +162,8 @@ TextureId draw_water(
         std::span<const Use>(reads),
         std::span<const Use>(writes),
         [&pass, &scene, behind, velocity](PassContext& context) {
-            std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
-            if (velocity) {
-                defines.push_back({"VELOCITY"});
-            }
-            const bool ocean = !pass.surfaces.seas.empty();
-            if (ocean) {
-                defines.push_back({"OCEAN"});
-            }
-            const gpu::Program* program = pass.surface.get(
-                0,
-                lighting_key(scene) | (velocity ? kVelocityKey : 0) | (ocean ? kOceanKey : 0),
-                defines);
+            const Variant variant = variant_of(scene, pass.surfaces, velocity);
+            const gpu::Program* program = pass.surface.get(0, variant.key, variant.defines);
             if (program == nullptr) {
                 return;
             }
@@ -119,6 +173,9 @@ TextureId draw_water(
             pass.patches.bind(device, kPatchesUnit);
             bind_water_surfaces(device, pass.surfaces);
             context.bind_texture(kBehindUnit, behind);
+            if (pass.surfaces.list.planar) {
+                device.bind_texture(kReflectionMapUnit, pass.reflection);
+            }
             device.bind_vertex_array(pass.grid);
             device.draw_indexed(
                 GL_TRIANGLES,

@@ -3,6 +3,7 @@
 //   VELOCITY  also where each point was the moment before
 //   DEFORMED  with VELOCITY: points moved in the mesh's own space, too
 //   OBJECT_LIGHTS  also the instance's place
+//   CLIPPED  only on the side of a plane that is seen
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/vertex_before.glsl"
@@ -19,10 +20,16 @@ layout(location = 5) out vec3 before;  // clip x, y, w
 #ifdef OBJECT_LIGHTS
 layout(location = 6) flat out uint object;
 #endif
+#ifdef CLIPPED
+out float gl_ClipDistance[1];
+#endif
 invariant gl_Position;  // passes that draw again what is nearest ask for the same depth
 
 void main() {
     gl_Position = view.clip_from_world * vec4(vertex_ws(), 1.0);
+#ifdef CLIPPED
+    gl_ClipDistance[0] = dot(view.clip_plane, vec4(vertex_ws(), 1.0));
+#endif
     normal_ws = vertex_normal_ws();
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
     tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());

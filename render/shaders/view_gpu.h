@@ -17,9 +17,10 @@ struct ViewBlock {
     vec4 grid_cells;           // columns, rows, slices of the light clusters; w: side of a tile [px]
     vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first light
                                // with a shadow or an image that is not directional
+    vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewBlock) == 240);
+static_assert(sizeof(ViewBlock) == 256);
 }  // namespace limn::layout
 #endif

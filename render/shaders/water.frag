@@ -1,5 +1,6 @@
 // The surface of water, seen from above or from below: what it mirrors and what is seen through it, by the Fresnel
-// equations; light is lost and scattered on its way through the water (Beer-Lambert). Definition VELOCITY.
+// equations; light is lost and scattered on its way through the water (Beer-Lambert). Definitions VELOCITY and those of
+// lib/water_reflection.glsl.
 #version 450
 #define UNMASKED  // the masks of shadow volumes are of the surfaces behind
 #define ON_WATER
@@ -8,6 +9,7 @@
 #include "lib/velocity.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
+#include "lib/water_reflection.glsl"
 
 layout(binding = 5) uniform sampler2D scene_behind;  // water_behind.frag
 
@@ -176,7 +178,7 @@ void main() {
     normal = facing < 0.02 ? normalize(normal + (0.02 - facing) * to_camera) : normal;
     float cosine = max(dot(normal, to_camera), 1e-3);
     float index = above ? water.shape.w : 1.0 / water.shape.w;
-    float share = fresnel(cosine, index);
+    float share = water_share(water, above, cosine);
     vec2 uv = gl_FragCoord.xy * view.size.zw;
 
     // Light that falls on the water, to be scattered in it or mirrored as glints.
@@ -213,8 +215,17 @@ void main() {
     vec3 away = reflect(-to_camera, normal);
     vec3 mirror;
     if (above) {
-        vec3 around = light_from_around(position, normal, away, roughness).mirrored;
-        mirror = mirrored(position, away, around, Side(water.origin.y - 0.02, 1.0)).rgb;
+        mirror = light_from_around(position, normal, away, roughness).mirrored;
+#ifndef UNTRACED
+        if (reflection_of(water) == kPictureReflection) {
+            mirror = mirrored(position, away, mirror, Side(water.origin.y - 0.02, 1.0)).rgb;
+        }
+#endif
+#ifdef PLANAR
+        if (reflection_of(water) == kPlanarReflection) {
+            mirror = planar_reflection(water, position, away, roughness * roughness);
+        }
+#endif
     } else {
         vec3 scattered = scattered_light(water, 0.0, away);
         vec3 around = scattered;

@@ -10,12 +10,13 @@ struct WaterRecord {
     vec4 origin;      // world [m]; w: x of the water's x axis in the world
     vec4 shape;       // z of that axis; half extents along x and z [m], 0 = endless; w: refractive index
     vec4 absorption;  // [1/m]; w: depth of the bottom [m], 0 = deep
-    vec4 scattering;  // back to the eye [1/m]; w: roughness
+    vec4 scattering;  // back to the eye [1/m]; w: how it is drawn (pack_look)
     vec4 waves;       // first line and number of lines, first ring and number of rings
     vec4 ripples;     // texture coordinates = xz * xy + zw
     vec4 rippling;    // half extents of the grid [m], 0 = none; zw: seconds from the last step to the moment
                       // shown and to the moment before
-    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; 0
+    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; w: distortion of a
+                      // planar reflection
     vec4 patches;     // 1 / side of each patch [1/m]
     vec4 variance;    // of the slopes of each patch
 };

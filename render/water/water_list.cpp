@@ -128,7 +128,7 @@ void place_sea(
         static_cast<float>(place.first_layer),
         static_cast<float>(place.patches),
         static_cast<float>(textures.size()),
-        0};
+        body.ocean.w};
     for (int i = 0; i < place.patches; ++i) {
         body.patches[i] = 1.0f / sea.state->cascades[static_cast<std::size_t>(i)].patch;
     }
@@ -150,6 +150,7 @@ struct Body {
     const Water* water = nullptr;
     const WaveTable* table = nullptr;
     WaterFrame frame;
+    WaterLook look;
 };
 
 /// Whether a camera there is in this water, or may be.
@@ -191,6 +192,9 @@ void add_body(
     list.heights.push_back(
         by_height ? heights_of(reach.y + reach_of(body.table).y, ripples) : Vec2(0));
 
+    list.looks = list.looks || pack_look(body.look) != 0;
+    list.planar = list.planar || body.look.reflection == WaterReflection::Planar;
+    list.traced = list.traced || body.look.reflection == WaterReflection::Picture;
     const auto first_line = static_cast<float>(list.lines.size());
     const auto first_ring = static_cast<float>(list.rings.size());
     if (body.table != nullptr) {
@@ -200,7 +204,7 @@ void add_body(
         {.origin = Vec4(body.frame.origin, body.frame.along_x.x),
          .shape = Vec4(body.frame.along_x.y, source.half, water.refractive_index),
          .absorption = Vec4(water.absorption, water.depth),
-         .scattering = Vec4(water.scattering, 0),
+         .scattering = Vec4(water.scattering, pack_look(body.look)),
          .waves =
              {first_line,
               static_cast<float>(list.lines.size()) - first_line,
@@ -208,17 +212,32 @@ void add_body(
               static_cast<float>(list.rings.size()) - first_ring},
          .ripples = Vec4(0),
          .rippling = {0, 0, at.now, at.before},
-         .ocean = Vec4(0),
+         .ocean = {0, 0, 0, body.look.distortion},
          .patches = Vec4(0),
          .variance = Vec4(0)});
 }
 
+/// One body has the planar reflection; another that asks for it makes do with the picture.
+WaterLook served_look(const WaterLook* look, bool planar) {
+    WaterLook served = look != nullptr ? *look : WaterLook{};
+    if (served.reflection == WaterReflection::Planar && !planar) {
+        served.reflection = WaterReflection::Picture;
+    }
+    return served;
+}
+
 }  // namespace
+
+float pack_look(const WaterLook& look) {
+    return static_cast<float>(
+        static_cast<int>(look.fresnel) + 4 * static_cast<int>(look.reflection));
+}
 
 void collect_waters(
     const World& world,
     const RenderView& view,
     bool velocity,
+    Entity planar,
     int max_texture_size,
     RippleAtlas& ripples,
     OceanTextures& seas,
@@ -233,12 +252,14 @@ void collect_waters(
     list.entities.clear();
     list.caustics.clear();
     list.heights.clear();
+    list.looks = list.planar = list.traced = false;
     const Moments at = moments_of(world, view);
     std::vector<Body> bodies;
     world
         .query<
             const Water,
             const WorldTransform,
+            Optional<const WaterLook>,
             Optional<const WaveTable>,
             Optional<const RippleState>,
             Optional<const OceanState>,
@@ -247,6 +268,7 @@ void collect_waters(
         .each([&](Entity entity,
                   const Water& water,
                   const WorldTransform& place,
+                  const WaterLook* look,
                   const WaveTable* table,
                   const RippleState* rippling,
                   const OceanState* sea,
@@ -254,7 +276,8 @@ void collect_waters(
                   const Caustics* caustics) {
             list.entities.push_back(entity);
             list.caustics.push_back(caustics);
-            bodies.push_back({&water, table, water_frame(place.world)});
+            bodies.push_back(
+                {&water, table, water_frame(place.world), served_look(look, entity == planar)});
             list.ripples.push_back(rippling);
             list.seas.push_back({sea, foam, at.now, at.before});
         });

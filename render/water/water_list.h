@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/caustics.h"
+#include "ecs/components/water_look.h"
 #include "ecs/entity.h"
 #include "render/render_view.h"
 #include "render/shaders/water_gpu.h"
@@ -21,6 +22,9 @@ struct WaterAroundView {
     bool at_surface = false;  ///< the surface may cut through the picture
 };
 
+/// How a body is drawn, in WaterRecord::scattering.w: fresnel + 4 reflection.
+[[nodiscard]] float pack_look(const WaterLook& look);
+
 struct WaterList {
     std::vector<layout::WaterRecord> bodies;  ///< in world order
     std::vector<layout::WaveLineRecord> lines;
@@ -32,16 +36,21 @@ struct WaterList {
     std::vector<Entity> entities;
     std::vector<const Caustics*> caustics;  ///< of each body, or null
     std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
+    bool looks = false;                     ///< some body is not drawn as usual (WaterLook)
+    bool planar = false;                    ///< a body has the planar reflection
+    bool traced = false;                    ///< some body mirrors what the picture shows
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };
 
 /// Everything at the moment that `view` shows; keeps the memory of `list`. The textures get the
-/// ripples and patches of all bodies; `velocity`: also of the moment before.
+/// ripples and patches of all bodies; `velocity`: also of the moment before. `planar` has the
+/// planar reflection.
 void collect_waters(
     const World& world,
     const RenderView& view,
     bool velocity,
+    Entity planar,
     int max_texture_size,
     RippleAtlas& ripples,
     OceanTextures& seas,

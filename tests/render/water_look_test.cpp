@@ -1,0 +1,271 @@
+#include "ecs/base/optics.h"
+#include "ecs/components/time.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_look.h"
+#include "ecs/components/water_waves.h"
+#include "render/water/water_reflection.h"
+#include "systems/water/water_query.h"
+#include "systems/water/water_wave_table.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::test {
+namespace {
+
+/// Of water so dark that it only mirrors.
+constexpr Water kMirror = {.absorption = Vec3(1000), .scattering = Vec3(0)};
+
+/// Things of plain colors above and below y = 0.3, and water there.
+class Look : public Scene {
+  public:
+    Look() {
+        world.insert_resource(FrameTime{.step = 1.0f / 60, .time = 2.5});
+        world.insert_resource(Exposure{});
+        world.insert_resource(Environment{
+            .sky = SkyKind::Uniform,
+            .zenith = Vec3(0.5f),
+            .horizon = Vec3(0.5f),
+            .ground = Vec3(0.5f),
+            .visible = true});
+    }
+    Entity pour(const Water& water, float y = kLevel) {
+        return world.create(water, WorldTransform{at({0, y, 0})});
+    }
+    Entity ball(const Vec3& middle, float radius, const Vec3& color) {
+        return place(
+            add(make_ball(24)),
+            add(Material{.shading = ShadingModel::Unlit, .base_color = Vec4(color, 1)}),
+            affine_from(middle, {1, 0, 0, 0}, Vec3(radius)));
+    }
+    void things_above() {
+        ball({-1, 1.5f, -4}, 0.8f, {0.9f, 0.1f, 0.1f});
+        ball({1.2f, 0.9f, -3}, 0.4f, {0.1f, 0.9f, 0.2f});
+        ball({0.3f, 3.5f, -6}, 1.1f, {0.1f, 0.2f, 0.9f});
+    }
+
+    static constexpr float kLevel = 0.3f;
+};
+
+/// Unit, from the eye through the middle of a pixel; row 0 is the top one.
+Vec3 ray_through(const RenderView& view, int x, int y) {
+    const Vec2 size(view.width, view.height);
+    const Vec2 ndc =
+        Vec2(static_cast<float>(x) + 0.5f, size.y - static_cast<float>(y) - 0.5f) / size * 2.0f
+        - 1.0f;
+    const auto& pose = view.world_from_camera.row;
+    const Vec3 in_camera(ndc.x * view.tangent.x, ndc.y * view.tangent.y, -1);
+    return glm::normalize(Vec3(
+        glm::dot(Vec3(pose[0]), in_camera),
+        glm::dot(Vec3(pose[1]), in_camera),
+        glm::dot(Vec3(pose[2]), in_camera)));
+}
+
+/// What the picture shows there, in the world.
+Vec3 point_at(const RenderView& view, const gpu::FloatImage& depth, int x, int y) {
+    const auto& pose = view.world_from_camera.row;
+    const Vec3 axis = -Vec3(pose[0].z, pose[1].z, pose[2].z);
+    const Vec3 ray = ray_through(view, x, y);
+    return Vec3(pose[0].w, pose[1].w, pose[2].w) + ray * (depth.at(x, y, 0) / glm::dot(ray, axis));
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Look, "water look: one that asks for nothing is no look, to the bit") {
+    things_above();
+    const Entity pond = pour(kMirror);
+    const RenderView view = look({0, 1.5f, 2}, {0, 0.8f, -3});
+    const gpu::FloatImage plain = radiance(view);
+    world.add(pond, WaterLook{});
+    const FrameOutput out = draw(view);
+    CHECK(gpu::read_floats(*out.radiance).pixels == plain.pixels);
+    CHECK(out.statistics.water_reflections == 0);
+}
+
+TEST_CASE_FIXTURE(Look, "water look: from above it mirrors by the form that is chosen") {
+    world.resource<Environment>() = {
+        .sky = SkyKind::Uniform, .zenith = Vec3(1), .horizon = Vec3(1), .ground = Vec3(1)};
+    const Entity pond = pour(kMirror);
+    const RenderView view = look({0, 1, 0}, {0, 0.3f, -1}, 64, 64);
+    for (const WaterFresnel form : {WaterFresnel::Schlick, WaterFresnel::Angle}) {
+        world.add(pond, WaterLook{.fresnel = form});
+        const gpu::FloatImage seen = radiance(view);
+        int tested = 0;
+        for (int y = 30; y < 64; y += 3) {
+            const float cosine = -ray_through(view, 32, y).y;
+            if (cosine > 0.02f) {
+                CAPTURE(y);
+                const float expected = form == WaterFresnel::Angle
+                                           ? fresnel_tso_barsky(cosine)
+                                           : fresnel_schlick(cosine, kMirror.refractive_index);
+                CHECK(seen.at(32, y, 0) == doctest::Approx(expected).epsilon(0.01));
+                ++tested;
+            }
+        }
+        CHECK(tested > 5);
+        world.remove<WaterLook>(pond);
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Look, "water look: of the surroundings alone it mirrors nothing that stands there") {
+    ball({0, 1.3f, -4}, 1, {0, 0, 4});
+    const Entity pond = pour(kMirror);
+    const RenderView view = look({0, 1.5f, 2}, {0, 0.3f, -2});
+    const auto blue_share = [&] {
+        const Vec3 mirrored = rgb_at(radiance(view), 32, 32);
+        return mirrored.z / std::max(mirrored.x, 1e-3f);
+    };
+    CHECK(blue_share() > 5);
+    world.add(pond, WaterLook{.reflection = WaterReflection::Environment});
+    CHECK(blue_share() == doctest::Approx(1).epsilon(0.01));
+}
+
+TEST_CASE("water reflection: its camera is the picture's, mirrored, and mirrored again the same") {
+    const RenderView view = with_jitter(
+        make_render_view(
+            {.fov_y = 1.0f, .near = 0.1f},
+            look_at({1, 2, 3}, {-2, 0.5f, -4}),
+            look_at({1, 2, 3}, {-2, 0.5f, -4}),
+            {.width = 200, .height = 100}),
+        {0.25f, -0.4f});
+    constexpr float kLevel = 0.7f;
+    const RenderView mirrored = make_reflected_view(view, kLevel, 0.5f);
+    CHECK(mirrored.width == 100);
+    CHECK(mirrored.height == 50);
+    const auto& pose = mirrored.world_from_camera.row;
+    CHECK(pose[0].w == doctest::Approx(1));
+    CHECK(pose[1].w == doctest::Approx(2 * kLevel - 2));
+    CHECK(pose[2].w == doctest::Approx(3));
+    // A camera that turns triangles around would see their backs.
+    const glm::mat3 turned{Vec3(pose[0]), Vec3(pose[1]), Vec3(pose[2])};
+    CHECK(glm::determinant(turned) == doctest::Approx(1));
+    for (const Vec3 p : {Vec3(0, 1, -2), Vec3(-3, 0.2f, -5), Vec3(2, 5, -9)}) {
+        const Vec4 seen = view.clip_from_world * Vec4(p.x, 2 * kLevel - p.y, p.z, 1);
+        const Vec4 found = mirrored.clip_from_world * Vec4(p, 1);
+        CHECK(found.x == doctest::Approx(seen.x));
+        CHECK(found.y == doctest::Approx(-seen.y));
+        CHECK(found.w == doctest::Approx(seen.w));
+        // What is above the surface is shown, what is below is not.
+        CHECK((glm::dot(mirrored.clip_plane, Vec4(p, 1)) >= 0) == (p.y >= kLevel));
+    }
+    const RenderView again = make_reflected_view(mirrored, kLevel, 1);
+    for (int c = 0; c < 4; ++c) {
+        for (int r = 0; r < 4; ++r) {
+            CHECK(again.steady_from_world[c][r] == doctest::Approx(view.steady_from_world[c][r]));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Look, "water reflection: in flat water it is what a mirrored camera sees") {
+    things_above();
+    const Vec3 eye = {0, 1.6f, 2};
+    const Vec3 target = {0, 0.3f, -2};
+    const auto mirrored = [](const Vec3& p) { return Vec3(p.x, 2 * kLevel - p.y, p.z); };
+    const gpu::FloatImage truth = radiance(look(mirrored(eye), mirrored(target), 96, 96));
+    // It must not be seen: it is between that camera and the surface.
+    ball({0.1f, -0.5f, 0.2f}, 0.6f, {9, 9, 0});
+    world.add(pour(kMirror), WaterLook{.reflection = WaterReflection::Planar, .map_scale = 1});
+    const RenderView view = look(eye, target, 96, 96);
+    const FrameOutput out = draw(view);
+    CHECK(out.statistics.water_reflections == 1);
+    const gpu::FloatImage seen = gpu::read_floats(*out.radiance);
+    const gpu::FloatImage depth = aov(view, "depth");
+    int tested = 0;
+    double worst = 0;
+    for (int y = 0; y < 96; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            const Vec3 ray = ray_through(view, x, y);
+            const Vec3 point = point_at(view, depth, x, y);
+            if (ray.y > -0.1f || std::abs(point.y - kLevel) > 1e-3f) {
+                continue;  // the sky, or what stands before the water
+            }
+            const float share = fresnel(-ray.y, kMirror.refractive_index);
+            for (int c = 0; c < 3; ++c) {
+                const float expected = share * truth.at(x, 95 - y, c);
+                worst = std::max<double>(worst, std::abs(seen.at(x, y, c) - expected) / share);
+            }
+            ++tested;
+        }
+    }
+    CHECK(tested > 3000);
+    CHECK(worst < 0.01);
+}
+
+TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, or not at all") {
+    // A wall whose color tells where it is.
+    MeshData wall = make_square();
+    wall.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};
+    place(
+        add(wall),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        affine_from({0, 0, -8}, {1, 0, 0, 0}, Vec3(12)));
+    const Water water = {.size = {30, 14}, .absorption = Vec3(1000), .scattering = Vec3(0)};
+    const Entity pond = world.create(water, WorldTransform{at({0, 0, 0})});
+    WaveTable table;
+    fill_wave_table(
+        water, {.waves = {{.amplitude = 0.02f, .length = 4, .direction = 0.6f}}}, 2.5, table);
+    world.add(pond, table);
+    WaterSurface surface;
+    surface.frame = water_frame(at({0, 0, 0}));
+    surface.water = water;
+    surface.waves = &table;
+    const Vec3 eye = {0, 2.5f, 5};
+    const RenderView view = look(eye, {0, 0.5f, -3}, 96, 96);
+    const gpu::FloatImage depth = aov(view, "depth");
+    const auto mean_error = [&](float distortion, bool flat) {
+        world.add(
+            pond,
+            WaterLook{
+                .reflection = WaterReflection::Planar, .distortion = distortion, .map_scale = 1});
+        const gpu::FloatImage seen = radiance(view);
+        world.remove<WaterLook>(pond);
+        double sum = 0;
+        int tested = 0;
+        for (int y = 56; y < 74; ++y) {
+            for (int x = 20; x < 76; ++x) {
+                const Vec3 ray = ray_through(view, x, y);
+                const Vec3 p = point_at(view, depth, x, y);
+                const WaterPoint at = sample_water(surface, {p.x, p.z});
+                const float share = fresnel(-glm::dot(ray, at.normal), water.refractive_index);
+                const Vec3 start = flat ? Vec3(p.x, -p.y, p.z) : p;
+                const Vec3 away = reflect_ray(flat ? Vec3(0, 1, 0) : at.normal, -ray);
+                const Vec3 met = start + away * ((-8 - start.z) / away.z);
+                const Vec2 expected = 0.5f + Vec2(met.x, met.y) / 24.0f;
+                sum += glm::distance(Vec2(seen.at(x, y, 0), seen.at(x, y, 1)) / share, expected);
+                ++tested;
+            }
+        }
+        return sum / tested;
+    };
+    CHECK(mean_error(1, false) < 0.004);  // a tenth of a meter on the wall
+    CHECK(mean_error(0, true) < 0.004);
+    CHECK(mean_error(0, false) > 0.012);
+}
+
+TEST_CASE_FIXTURE(
+    Look, "water reflection: the nearest that asks and is seen has it, once a picture") {
+    things_above();
+    const RenderView view = look({0, 1.6f, 2}, {0, 0.3f, -2});
+    Water pool = kMirror;
+    pool.size = {3, 3};
+    const Entity near = world.create(pool, WorldTransform{at({0, 0.1f, -1})});
+    const Entity far = world.create(pool, WorldTransform{at({0, 0.2f, -5})});
+    CHECK_FALSE(find_planar_water(world, view).has_value());
+    world.add(far, WaterLook{.reflection = WaterReflection::Planar});
+    CHECK(find_planar_water(world, view)->entity == far);
+    CHECK(find_planar_water(world, view)->level == 0.2f);
+    world.add(near, WaterLook{.reflection = WaterReflection::Planar});
+    CHECK(find_planar_water(world, view)->entity == near);
+    CHECK(draw(view).statistics.water_reflections == 1);
+    // From below, and turned away, there is nothing to draw.
+    CHECK_FALSE(find_planar_water(world, look({0, -1, 2}, {0, 0.3f, -2})).has_value());
+    const RenderView turned_away = look({0, 1.6f, 2}, {0, 1.6f, 9});
+    CHECK(draw(turned_away).statistics.water_reflections == 0);
+}
+
+}  // namespace limn::test
