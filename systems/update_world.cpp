@@ -24,6 +24,7 @@
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_spray_system.h"
 #include "systems/water/water_stone_system.h"
+#include "systems/water/water_touch.h"
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_system.h"
 #include "systems/water/weather_system.h"
@@ -37,6 +38,7 @@ Schedule make_world_schedule() {
     schedule.add<add_env_probe_states>();
     schedule.add<add_poses>();
     schedule.add<add_ripple_states>();
+    schedule.add<add_touch_parts>();
     schedule.add<add_wave_tables>();
     schedule.add<add_noise_fields>();
     schedule.add<add_spray_drops>();
@@ -103,6 +105,7 @@ void start_world(World& world) {
     world.run(update_transforms);
     world.run(add_env_probe_states);
     world.run(add_ripple_states);
+    world.run(add_touch_parts);
     world.run(add_wave_tables);
     world.run(fill_wave_tables);
     world.run(add_noise_fields);

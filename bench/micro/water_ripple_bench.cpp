@@ -124,6 +124,7 @@ void many_pools(benchmark::State& state) {
     World world;
     world.insert_resource(FrameTime{});
     world.insert_resource(RandomSeed{});
+    world.insert_resource(Assets{});
     std::int64_t cells = 0;
     for (std::int64_t i = 0; i < state.range(0); ++i) {
         const int side = 32 + static_cast<int>(i * 37 % 97);

@@ -77,13 +77,37 @@ struct RippleState {
     [[nodiscard]] Vec2 size() const { return cell * Vec2(cells); }
 };
 
-enum class TouchShape : std::uint8_t { Ball, Box };
+enum class TouchShape : std::uint8_t {
+    Ball,
+    Box,
+    Mesh,  ///< what its mesh is, joint by joint where a pose moves it; `half` says nothing
+};
 
 /// An entity that pushes water aside where it is in it.
 struct WaterTouch {
     TouchShape shape = TouchShape::Ball;
     Vec3 half = {0.25f, 0.25f, 0.25f};  ///< half extents in its own space; of a ball x [m]
     Vec3 offset = {0, 0, 0};            ///< of its middle in its own space [m]
+};
+
+/// An ellipsoid of a mesh that touches the water, in the mesh's space at rest.
+struct TouchPart {
+    std::int32_t joint = -1;  ///< of the skin, that moves it; -1: none
+    Vec3 center = {0, 0, 0};  ///< [m]
+    Vec3 half = {0, 0, 0};    ///< [m]
+};
+
+/// Beside a WaterTouch of a mesh: follows from it.
+struct TouchParts {
+    std::vector<TouchPart> parts;
+    float fill = 1;  ///< volume of the mesh over that of the ellipsoids
+};
+
+template <>
+struct ComponentTraits<TouchParts> : DefaultTraits {
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+    static constexpr bool in_prefabs = false;
 };
 
 /// A pool of a prefab begins at rest.
@@ -168,8 +192,21 @@ void visit_fields(RippleState& state, Visitor&& visit) {
 }
 
 template <typename Visitor>
+void visit_fields(TouchPart& part, Visitor&& visit) {
+    visit("joint", part.joint, {.doc = "of the skin, that moves it; -1: none"});
+    visit("center", part.center, {.doc = "in the mesh's space at rest", .unit = "m"});
+    visit("half", part.half, {.doc = "half extents of the ellipsoid", .unit = "m"});
+}
+
+template <typename Visitor>
+void visit_fields(TouchParts& parts, Visitor&& visit) {
+    visit("parts", parts.parts, {.doc = "the ellipsoids"});
+    visit("fill", parts.fill, {.doc = "volume of the mesh over theirs"});
+}
+
+template <typename Visitor>
 void visit_fields(WaterTouch& touch, Visitor&& visit) {
-    visit("shape", touch.shape, {.doc = "what pushes the water aside", .values = "ball box"});
+    visit("shape", touch.shape, {.doc = "what pushes the water aside", .values = "ball box mesh"});
     visit(
         "half",
         touch.half,

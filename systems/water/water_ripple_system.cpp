@@ -5,7 +5,7 @@
 #include "ecs/components/water_frame.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_walls.h"
-#include "systems/water/water_shape.h"
+#include "systems/water/water_touch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,23 +14,8 @@ namespace limn {
 
 namespace {
 
-constexpr float kBulgeReach = 1.5f;      ///< of the bulge, in half extents of the body
 constexpr float kDropCells = 3.0f;       ///< radius of what a rain drop disturbs
 constexpr float kMostDrops = 100000.0f;  ///< in a step
-
-WaterBulge bulge_of(const WaterTouch& touch, const Affine& world, const WaterFrame& frame) {
-    const WaterShape shape = place_shape(touch, world, frame);
-    WaterBulge bulge;
-    bulge.center = {shape.center.x, shape.center.z};
-    bulge.radius = kBulgeReach * Vec2(shape.reach.x, shape.reach.z);
-    bulge.volume = volume_below(shape, 0);
-    return bulge;
-}
-
-struct Body {
-    const WaterTouch* touch = nullptr;
-    const Affine* place = nullptr;
-};
 
 struct Wall {
     const WaterWall* wall = nullptr;
@@ -39,9 +24,8 @@ struct Wall {
 
 struct Pool {
     Entity entity;
-    const Water* water = nullptr;
     const WaterRipples* ripples = nullptr;
-    const Affine* place = nullptr;
+    WaterSurface surface;  ///< without its ripples
     RippleState* state = nullptr;
 };
 
@@ -63,8 +47,8 @@ void stand_walls(const Pool& pool, std::span<const Wall> walls, const WaterFrame
     thread_local std::vector<PlacedWall> placed;
     placed.clear();
     for (const Wall& wall : walls) {
-        const auto one =
-            place_wall(*wall.wall, *wall.place, frame, pool.water->depth, pool.state->size());
+        const auto one = place_wall(
+            *wall.wall, *wall.place, frame, pool.surface.water.depth, pool.state->size());
         if (one) {
             placed.push_back(*one);
         }
@@ -74,20 +58,22 @@ void stand_walls(const Pool& pool, std::span<const Wall> walls, const WaterFrame
 
 void step_pool(
     const Pool& pool,
-    std::span<const Body> bodies,
+    std::span<const TouchingShape> bodies,
     std::span<const Wall> walls,
     Random& random,
     float step) {
     RippleState& state = *pool.state;
-    if (!fits(state, *pool.water, *pool.ripples)) {
-        state = make_ripples(*pool.water, *pool.ripples, step);
+    if (!fits(state, pool.surface.water, *pool.ripples)) {
+        state = make_ripples(pool.surface.water, *pool.ripples, step);
     }
     thread_local std::vector<WaterBulge> bulges;
     bulges.clear();
-    const WaterFrame frame = water_frame(*pool.place);
-    stand_walls(pool, walls, frame);
-    for (const Body& body : bodies) {
-        bulges.push_back(bulge_of(*body.touch, *body.place, frame));
+    stand_walls(pool, walls, pool.surface.frame);
+    // Open water is too large to rise.
+    const bool rises = pool.ripples->border == RippleBorder::Reflecting;
+    const float level = rises ? static_cast<float>(state.level) : 0.0f;
+    for (const TouchingShape& body : bodies) {
+        bulges.push_back(bulge_of(body, pool.surface, level, state.size()));
     }
     displace_ripples(state, bulges);
     let_rain(*pool.ripples, random, step, state);
@@ -106,19 +92,41 @@ void add_ripple_states(
 }
 
 void update_water_ripples(
-    Query<const Water, const WaterRipples, const WorldTransform, RippleState> waters,
-    Query<const WaterTouch, const WorldTransform> bodies,
+    Query<
+        const Water,
+        const WaterRipples,
+        const WorldTransform,
+        Optional<const OceanState>,
+        Optional<const WaveTable>,
+        RippleState> waters,
+    Query<
+        const WaterTouch,
+        const WorldTransform,
+        Optional<const TouchParts>,
+        Optional<const Deformed>> bodies,
+    Query<const Pose> poses,
     Query<const WaterWall, const WorldTransform> walls,
+    Res<const Assets> assets,
     Res<const RandomSeed> seed,
     Res<const FrameTime> time) {
-    thread_local std::vector<Body> touching;  // all keep their memory from step to step
+    thread_local std::vector<TouchingShape> touching;  // all keep their memory from step to step
     thread_local std::vector<Wall> standing;
     thread_local std::vector<Pool> pools;
     touching.clear();
     standing.clear();
     pools.clear();
-    bodies.each([&](const WaterTouch& touch, const WorldTransform& place) {
-        touching.push_back({&touch, &place.world});
+    bodies.each([&](const WaterTouch& touch,
+                    const WorldTransform& place,
+                    const TouchParts* parts,
+                    const Deformed* deformed) {
+        const bool skinned = deformed != nullptr && deformed->skin.index < assets->skins.size();
+        add_touching_shapes(
+            touch,
+            place.world,
+            parts,
+            skinned ? &assets->skins[deformed->skin.index] : nullptr,
+            skinned ? poses.find<const Pose>(deformed->character) : nullptr,
+            touching);
     });
     walls.each([&](const WaterWall& wall, const WorldTransform& place) {
         standing.push_back({&wall, &place.world});
@@ -127,10 +135,13 @@ void update_water_ripples(
                     const Water& water,
                     const WaterRipples& ripples,
                     const WorldTransform& place,
+                    const OceanState* ocean,
+                    const WaveTable* waves,
                     RippleState& state) {
-        pools.push_back({entity, &water, &ripples, &place.world, &state});
+        const WaterSurface surface = {water_frame(place.world), water, ocean, waves};
+        pools.push_back({entity, &ripples, surface, &state});
     });
-    const std::vector<Body>& all_bodies = touching;
+    const std::vector<TouchingShape>& all_bodies = touching;
     const std::vector<Wall>& all_walls = standing;
     const std::vector<Pool>& all_pools = pools;
     parallel_for(all_pools.size(), 1, [&](std::size_t begin, std::size_t end) {

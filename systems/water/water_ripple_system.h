@@ -1,11 +1,15 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/ocean.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_walls.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
 
@@ -21,9 +25,21 @@ void add_ripple_states(
 /// Walls, what touches the water, rain, then a step of the wave equation. A state whose grid no
 /// longer fits the settings begins anew, at rest.
 void update_water_ripples(
-    Query<const Water, const WaterRipples, const WorldTransform, RippleState> waters,
-    Query<const WaterTouch, const WorldTransform> bodies,
+    Query<
+        const Water,
+        const WaterRipples,
+        const WorldTransform,
+        Optional<const OceanState>,
+        Optional<const WaveTable>,
+        RippleState> waters,
+    Query<
+        const WaterTouch,
+        const WorldTransform,
+        Optional<const TouchParts>,
+        Optional<const Deformed>> bodies,
+    Query<const Pose> poses,
     Query<const WaterWall, const WorldTransform> walls,
+    Res<const Assets> assets,
     Res<const RandomSeed> seed,
     Res<const FrameTime> time);
 

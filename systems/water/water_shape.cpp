@@ -61,16 +61,6 @@ WaterShape place_shape(
     return placed;
 }
 
-WaterShape place_shape(const WaterTouch& touch, const Affine& world, const WaterFrame& frame) {
-    const bool ball = touch.shape == TouchShape::Ball;
-    return place_shape(
-        ball ? WallShape::Ball : WallShape::Box,
-        ball ? Vec3(touch.half.x) : touch.half,
-        touch.offset,
-        world,
-        frame);
-}
-
 float volume_below(const WaterShape& shape, float height) {
     const float above_lowest = height - (shape.center.y - shape.reach.y);
     const float share = std::clamp(above_lowest / std::max(2 * shape.reach.y, 1e-6f), 0.0f, 1.0f);

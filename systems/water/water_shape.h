@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ecs/components/water_frame.h"
-#include "ecs/components/water_ripples.h"
+#include "ecs/components/water_walls.h"
 
 namespace limn {
 
@@ -24,9 +24,6 @@ struct WaterShape {
     const Vec3& offset,
     const Affine& world,
     const WaterFrame& frame);
-
-[[nodiscard]] WaterShape
-place_shape(const WaterTouch& touch, const Affine& world, const WaterFrame& frame);
 
 /// What of it is below `height`, in the water's own space [m^3].
 [[nodiscard]] float volume_below(const WaterShape& shape, float height);

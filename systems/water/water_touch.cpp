@@ -1,0 +1,157 @@
+#include "systems/water/water_touch.h"
+
+#include "systems/water/water_shape.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace limn {
+
+namespace {
+
+constexpr float kBulgeReach = 1.5f;  ///< of the bulge, in half extents of the body
+constexpr float kUnitBall = 4.0f / 3.0f * kPi;
+constexpr float kThinnest = 1e-4f;  ///< half extent of a part [m]
+
+/// What its triangles enclose, if they are closed and face outward [m^3].
+double enclosed_volume(const MeshData& mesh) {
+    double sum = 0;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        Vec3 corner[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh.indices[i + k];
+            corner[k] = vertex < mesh.positions.size() ? mesh.positions[vertex] : Vec3(0);
+        }
+        sum += static_cast<double>(glm::dot(corner[0], glm::cross(corner[1], corner[2]))) / 6;
+    }
+    return sum;
+}
+
+/// The joint that moves a vertex most; -1: none.
+int main_joint(const SkinWeights& weights, std::size_t vertex) {
+    int joint = -1;
+    float most = 0;
+    for (std::uint32_t i = weights.first[vertex]; i < weights.first[vertex + 1]; ++i) {
+        if (weights.weights[i] > most) {
+            most = weights.weights[i];
+            joint = weights.joints[i];
+        }
+    }
+    return joint;
+}
+
+bool is_whole(const SkinWeights& weights, std::size_t vertices) {
+    return weights.first.size() == vertices + 1
+           && std::is_sorted(weights.first.begin(), weights.first.end())
+           && weights.first.back() <= weights.joints.size()
+           && weights.joints.size() == weights.weights.size();
+}
+
+}  // namespace
+
+TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin) {
+    std::map<int, Bounds> boxes;
+    const bool skinned = skin != nullptr && is_whole(mesh.skin, mesh.positions.size());
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const int joint = skinned ? main_joint(mesh.skin, v) : -1;
+        const bool is_joint = joint >= 0 && static_cast<std::size_t>(joint) < skin->joints.size();
+        grow(boxes[is_joint ? joint : -1], mesh.positions[v]);
+    }
+    TouchParts parts;
+    double held = 0;
+    for (const auto& [joint, box] : boxes) {
+        const Vec3 half = glm::max(half_extent(box), Vec3(kThinnest));
+        if (!std::isfinite(glm::dot(half + glm::abs(center(box)), Vec3(1)))) {
+            continue;
+        }
+        parts.parts.push_back({joint, center(box), half});
+        held += static_cast<double>(kUnitBall * half.x * half.y * half.z);
+    }
+    const double volume = enclosed_volume(mesh);
+    // No more than the boxes, which hold 6 / pi of their ellipsoids.
+    const bool closed = volume > 1e-3 * held && volume < 2 * held;
+    parts.fill = closed ? static_cast<float>(volume / held) : 1.0f;
+    return parts;
+}
+
+void add_touch_parts(
+    Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Without<TouchParts>>
+        bodies,
+    Res<const Assets> assets,
+    Commands commands) {
+    bodies.each([&](Entity entity,
+                    const WaterTouch& touch,
+                    const MeshInstance& instance,
+                    const Deformed* deformed) {
+        if (touch.shape != TouchShape::Mesh || instance.mesh.index >= assets->meshes.size()) {
+            return;
+        }
+        const bool skinned = deformed != nullptr && deformed->skin.index < assets->skins.size();
+        commands.add(
+            entity,
+            make_touch_parts(
+                assets->meshes[instance.mesh.index],
+                skinned ? &assets->skins[deformed->skin.index] : nullptr));
+    });
+}
+
+void add_touching_shapes(
+    const WaterTouch& touch,
+    const Affine& world,
+    const TouchParts* parts,
+    const SkinData* skin,
+    const Pose* pose,
+    std::vector<TouchingShape>& shapes) {
+    switch (touch.shape) {
+    case TouchShape::Ball:
+        shapes.push_back({WallShape::Ball, Vec3(touch.half.x), touch.offset, world});
+        break;
+    case TouchShape::Box:
+        shapes.push_back({WallShape::Box, touch.half, touch.offset, world});
+        break;
+    case TouchShape::Mesh:
+        for (std::size_t i = 0; parts != nullptr && i < parts->parts.size(); ++i) {
+            const TouchPart& part = parts->parts[i];
+            Affine place = world;
+            const auto joint = static_cast<std::size_t>(std::max(part.joint, 0));
+            if (part.joint >= 0 && skin != nullptr && pose != nullptr && joint < skin->joints.size()
+                && joint < skin->joint_from_mesh.size()
+                && skin->joints[joint] < pose->joints.size()) {
+                place = world * pose->joints[skin->joints[joint]] * skin->joint_from_mesh[joint];
+            }
+            shapes.push_back({WallShape::Ball, part.half, part.center, place, parts->fill});
+        }
+        break;
+    }
+}
+
+WaterBulge bulge_of(
+    const TouchingShape& touching, const WaterSurface& surface, float level, const Vec2& extent) {
+    const WaterFrame& frame = surface.frame;
+    const WaterShape shape =
+        place_shape(touching.shape, touching.half, touching.offset, touching.world, frame);
+    WaterBulge bulge;
+    bulge.center = {shape.center.x, shape.center.z};
+    bulge.radius = kBulgeReach * Vec2(shape.reach.x, shape.reach.z);
+    // A place that is not finite is over nothing.
+    const bool over = std::abs(bulge.center.x) <= 0.5f * extent.x
+                      && std::abs(bulge.center.y) <= 0.5f * extent.y
+                      && std::isfinite(shape.center.y);
+    if (!over) {
+        return bulge;
+    }
+    if (surface.ocean != nullptr || surface.waves != nullptr) {
+        WaterSurface calm = surface;
+        calm.shortest = 2 * std::max(shape.reach.x, shape.reach.z);
+        const Vec3 middle = frame.world(shape.center);
+        const WaterPoint top = sample_water(calm, {middle.x, middle.z});
+        level += top.is_water ? top.position.y - frame.origin.y : 0.0f;
+    }
+    bulge.volume = touching.fill * volume_below(shape, level);
+    return bulge;
+}
+
+}  // namespace limn
