@@ -155,7 +155,7 @@ void bind_lighting(gpu::Device& device, const FrameScene& scene) {
         scene.projector_records->bind(device, kProjectorsUnit);
     }
     if (scene.waters) {
-        scene.sunken_waters->bind(device, kSunkenWatersUnit);
+        scene.water_lights->bind(device, kWaterLightsUnit);
         device.bind_texture(kCausticMapsUnit, *scene.caustic_maps);
     }
     scene.materials->records().bind(device, kSurfaceMaterialsUnit);
@@ -212,7 +212,8 @@ std::vector<gpu::ShaderDefine> lighting_defines(const FrameScene& scene) {
         "SHADOW_MASKS",
         "PROBES",
         "PROJECTORS",
-        "WATERS"};
+        "WATERS",
+        "MIRRORS"};
     for (std::uint32_t i = 0; i < std::size(kNames); ++i) {
         if ((key >> i & 1) != 0) {
             defines.push_back({kNames[i]});
@@ -230,7 +231,8 @@ std::uint32_t lighting_key(const FrameScene& scene) {
            | (maps.cascades ? 128u : 0u) | (maps.soft ? 256u : 0u)
            | (scene.clusters.lights.empty() ? 0u : 512u) | (maps.records.empty() ? 0u : 1024u)
            | (scene.volumes.lights.empty() ? 0u : 2048u) | (scene.probe_block.size > 0 ? 4096u : 0u)
-           | (scene.projectors->records().empty() ? 0u : 8192u) | (scene.waters ? 16384u : 0u);
+           | (scene.projectors->records().empty() ? 0u : 8192u) | (scene.waters ? 16384u : 0u)
+           | (scene.mirrors ? 32768u : 0u);
 }
 
 const gpu::Program* SurfacePrograms::get(

@@ -55,7 +55,7 @@ inline constexpr unsigned kShadowViewsUnit = 16;
 inline constexpr unsigned kShadowMasksUnit = 17;
 inline constexpr unsigned kProjectorImagesUnit = 18;
 inline constexpr unsigned kProjectorsUnit = 19;
-inline constexpr unsigned kSunkenWatersUnit = 20;
+inline constexpr unsigned kWaterLightsUnit = 20;
 inline constexpr unsigned kCausticMapsUnit = 21;
 
 /// The surroundings of this frame, and what was made of them.
@@ -107,8 +107,9 @@ struct FrameScene {
     const BufferTexture* projector_records = nullptr;
     const ProjectorPool* projectors = nullptr;
     const gpu::Texture* shadow_atlas = nullptr;
-    bool waters = false;  ///< there is water in which something may lie
-    const BufferTexture* sunken_waters = nullptr;
+    bool waters = false;   ///< there is water in which something may lie
+    bool mirrors = false;  ///< some of it throws light up
+    const BufferTexture* water_lights = nullptr;
     const gpu::Texture* caustic_maps = nullptr;
     TextureId caustics;  ///< those maps as this frame's graph knows them; not valid() without any
     TextureId

@@ -241,7 +241,7 @@ Renderer::Renderer(gpu::Device& gpu_device, const RenderSettings& settings, Pass
     scene.object_lights = &object_lights_;
     scene.light_indices = &passes.clusters.indices;
     scene.light_cells = &passes.clusters.cells;
-    scene.sunken_waters = &passes.caustics.sunken;
+    scene.water_lights = &passes.caustics.waters;
     scene.caustic_maps = &passes.caustics.maps;
     scene.environment.specular_albedo = &specular_albedo_;
 }
@@ -458,11 +458,12 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         water.list.patches.clear();
         water.list.around.reset();
     }
-    resize_caustic_maps(passes.caustics);
+    resize_caustic_atlas(passes.caustics);
     scene.waters = !water.list.bodies.empty();
+    scene.mirrors = !caustics.mirrors.empty();
     if (scene.waters) {
-        passes.caustics.sunken.set(push(caustics.texels));
-        passes.caustics.records.set(push(caustics.maps));
+        passes.caustics.waters.set(push(caustics.texels));
+        passes.caustics.jobs.set(push(caustics.jobs));
         water.bodies.set(push(water.list.bodies));
         water.lines.set(push(water.list.lines));
         water.rings.set(push(water.list.rings));

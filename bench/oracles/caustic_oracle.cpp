@@ -126,4 +126,59 @@ CausticLight trace_photons(
     return light;
 }
 
+CausticLight trace_mirrored_photons(
+    const CausticPool& pool,
+    const CausticSurfaceAt& surface,
+    const dvec3& to_sun,
+    double height,
+    const dvec2& middle,
+    int side,
+    long photons) {
+    CausticLight light;
+    light.side = side;
+    light.floor.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
+    const long rows = std::max(1L, std::lround(std::sqrt(static_cast<double>(photons))));
+    const dvec2 step = 2.0 * pool.half / static_cast<double>(rows);
+    const double flat = (1 - bend({0, 1, 0}, to_sun, pool.index).through) * to_sun.y;
+    const dvec2 cell = 2.0 * pool.half / static_cast<double>(side);
+    for (long n = 0; n < rows * rows; ++n) {
+        const auto counter = static_cast<std::uint64_t>(2 * n);
+        const dvec2 part(
+            static_cast<double>(n % rows) + chance(counter),
+            static_cast<double>(n / rows) + chance(counter + 1));
+        const CausticSurface at = surface(-pool.half + step * part);
+        const dvec3 normal = glm::normalize(at.area);
+        const double cosine = glm::dot(normal, to_sun);
+        if (cosine <= 0) {
+            continue;
+        }
+        // Half a turn about the normal.
+        const dvec3 ray = 2 * cosine * normal - to_sun;
+        if (ray.y <= 0) {
+            continue;
+        }
+        const double amount = (1 - bend(normal, to_sun, pool.index).through)
+                              * glm::dot(at.area, to_sun) / flat * step.x * step.y;
+        light.entered += amount;
+        const double up = (height - at.position.y) / ray.y;
+        double box = kFar;
+        for (const CausticBox& one : pool.boxes) {
+            box = std::min(box, way_to_box(at.position, ray, one));
+        }
+        if (box <= up) {
+            light.on_boxes += amount;
+            continue;
+        }
+        light.on_floor += amount;
+        const dvec3 hit = at.position + up * ray;
+        const dvec2 place = (dvec2(hit.x, hit.z) - middle + pool.half) / cell;
+        const auto x = static_cast<long>(std::floor(place.x));
+        const auto z = static_cast<long>(std::floor(place.y));
+        if (x >= 0 && z >= 0 && x < side && z < side) {
+            light.floor[static_cast<std::size_t>(z * side + x)] += amount / (cell.x * cell.y);
+        }
+    }
+    return light;
+}
+
 }  // namespace limn::oracle

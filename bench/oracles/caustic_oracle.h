@@ -10,7 +10,8 @@ namespace limn::oracle {
 
 // Light under waves, photon by photon in double precision: each enters at a place of the surface at
 // rest, is bent by Snell's law at the surface as it is there, weakened by Fresnel's equations, and
-// goes straight on to the first thing it meets. What the caustic maps are held against.
+// goes straight on to the first thing it meets; or is mirrored there and goes up. What the caustic
+// maps are held against.
 
 /// The surface above a place at rest.
 struct CausticSurface {
@@ -53,6 +54,18 @@ struct CausticLight {
     const CausticPool& pool,
     const CausticSurfaceAt& surface,
     const glm::dvec3& to_sun,
+    int side,
+    long photons);
+
+/// The same of light that the surface mirrors, on a ceiling at `height` above rest: `floor` is the
+/// part of it of half extents `half` about `middle`, `on_floor` all of it. Light that is thrown
+/// down again has not entered.
+[[nodiscard]] CausticLight trace_mirrored_photons(
+    const CausticPool& pool,
+    const CausticSurfaceAt& surface,
+    const glm::dvec3& to_sun,
+    double height,
+    const glm::dvec2& middle,
     int side,
     long photons);
 

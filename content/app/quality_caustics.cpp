@@ -61,7 +61,7 @@ class Pool {
     [[nodiscard]] gpu::FloatImage map() {
         (void)scene_.radiance(headless_, from_below({0, -0.1f, 0}));
         FrameGraph& graph = frame_graph(*headless_.renderer);
-        gpu::FloatImage image = gpu::read_floats(*graph.texture(graph.find("caustics")), 0, 0);
+        gpu::FloatImage image = gpu::read_floats(*graph.texture(graph.find("caustics")));
         const std::vector<float> rows = image.pixels;
         const auto width = static_cast<std::size_t>(image.width);
         for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
@@ -296,6 +296,40 @@ void measure_ripple_caustic(HeadlessRenderer& headless, QualityReport& report) {
          "m"});
 }
 
+/// Light that waves throw up, on the map of it: the first square of the atlas.
+void measure_mirrored(HeadlessRenderer& headless, QualityReport& report) {
+    constexpr int kSide = 512;
+    Pool pool(headless, sun_at(55));
+    const WaveTable& table = make_waves(pool);
+    pool.world().get<Caustics>(pool.entity()) = {
+        .resolution = 64, .spacing = 1, .mirror_reach = 1.5f, .mirror_resolution = kSide};
+    const oracle::CausticLight exact = oracle::trace_mirrored_photons(
+        {.half = glm::dvec2(kHalf),
+         .index = static_cast<double>(pool.water().refractive_index),
+         .boxes = {}},
+        surface_of(table),
+        pool.to_sun(),
+        1.5,
+        glm::dvec2(0),
+        1,
+        1'000'000);
+    const gpu::FloatImage atlas = pool.map();
+    double received = 0;
+    for (int z = 0; z < kSide; ++z) {
+        for (int x = 0; x < kSide; ++x) {
+            received += static_cast<double>(atlas.at(x, z, 0));
+        }
+    }
+    const double inner = kSide - 2 * (std::floor(0.2 * kSide) + 0.5);
+    received *= square(2 * static_cast<double>(kHalf) / inner);
+    report.rows.push_back(
+        {"light that waves mirror, that arrives above, off from what they should",
+         100 * std::abs(received / exact.entered - 1),
+         QualityBound::AtMost,
+         1,
+         "%"});
+}
+
 void measure_hole(HeadlessRenderer& headless, QualityReport& report) {
     Pool pool(headless, sun_at(45));
     constexpr float kStands = -0.75f;
@@ -325,6 +359,7 @@ Result<QualityReport> measure_caustics(HeadlessRenderer& headless) {
     measure_photons(headless, report);
     measure_ripple_caustic(headless, report);
     measure_hole(headless, report);
+    measure_mirrored(headless, report);
     return report;
 }
 

@@ -16,14 +16,18 @@ enum class CausticMethod : std::uint8_t {
 
 /// Beside a Water: the first and brightest of the directional lights is gathered and scattered by
 /// its waves on what lies below, and what stands in it throws shadows there. Without it light is
-/// bent and absorbed on its way down as by flat water.
+/// bent and absorbed on its way down as by flat water. On request its waves throw it up onto walls
+/// and ceilings, too; of other mirrors than water, see MirrorCaustic.
 struct Caustics {
     CausticMethod method = CausticMethod::Simulated;
     std::int32_t resolution = 512;  ///< texels of a side of the map, a power of two
     std::int32_t spacing = 2;       ///< texels from ray to ray
     float strength = 1;             ///< 1: as it is; 0: as flat water; a straight line between
     float reach = 20;               ///< depth down to which light is followed [m]
-    float window = 40;  ///< of water without end: side of the square about the camera [m]
+    float window = 40;       ///< of water without end: side of the square about the camera [m]
+    float mirror_reach = 0;  ///< height up to which light that the water mirrors is followed [m];
+                             ///< 0: none is
+    std::int32_t mirror_resolution = 256;  ///< texels of a side of its map, a power of two
 };
 
 template <typename Visitor>
@@ -53,6 +57,19 @@ void visit_fields(Caustics& caustics, Visitor&& visit) {
          .unit = "m",
          .min = 0.1,
          .max = 10000});
+    visit(
+        "mirror_reach",
+        caustics.mirror_reach,
+        {.doc = "height up to which mirrored light is followed; 0: none is",
+         .unit = "m",
+         .min = 0,
+         .max = 1000});
+    visit(
+        "mirror_resolution",
+        caustics.mirror_resolution,
+        {.doc = "texels of a side of the map of mirrored light, a power of two",
+         .min = 32,
+         .max = 1024});
 }
 
 }  // namespace limn

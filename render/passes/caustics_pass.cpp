@@ -7,26 +7,15 @@
 namespace limn {
 namespace {
 
-constexpr unsigned kRecordsUnit = 20;
+constexpr unsigned kJobsUnit = 20;
 constexpr unsigned kRaysBinding = 0;
 constexpr unsigned kLightBinding = 1;
 constexpr unsigned kMapsImage = 0;
-constexpr int kRayGroup = 8;     ///< rays of a side of a work group
-constexpr unsigned kGroup = 64;  ///< of cells and of texels
+constexpr unsigned kGroup = 64;  ///< texels of a work group
 constexpr std::uint32_t kOceanKey = 1u << 31;
 
-gpu::Texture make_maps(int side, int layers) {
-    return {
-        "caustic maps",
-        {.format = GL_R32F,
-         .width = side,
-         .height = side,
-         .depth = layers,
-         .target = GL_TEXTURE_2D_ARRAY}};
-}
-
-unsigned groups_of(unsigned items, unsigned group) {
-    return (items + group - 1) / group;
+gpu::Texture make_atlas(const IVec2& size) {
+    return {"caustic maps", {.format = GL_R32F, .width = size.x, .height = size.y}};
 }
 
 /// Null, and said once, if it does not compile.
@@ -49,12 +38,17 @@ rays_program(CausticsPass& pass, gpu::Device& device, const FrameScene& scene, b
     return pass.rays[key] = program ? *program : nullptr;
 }
 
+void use_with_jobs(gpu::Device& device, const CausticsPass& pass, const gpu::Program& program) {
+    device.use(program);
+    program.set("groups", pass.list.groups);
+    pass.jobs.bind(device, kJobsUnit);
+}
+
 /// Transient sums, then the maps.
-void sum_on_gpu(
-    FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made, unsigned stride) {
-    const auto maps = static_cast<unsigned>(pass.list.maps.size());
-    const auto side = static_cast<unsigned>(pass.list.resolution);
-    const std::size_t bytes = std::size_t{side} * side * maps * sizeof(std::uint32_t);
+void sum_on_gpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made) {
+    const auto width = static_cast<unsigned>(pass.list.atlas.x);
+    const auto height = static_cast<unsigned>(pass.list.atlas.y);
+    const std::size_t bytes = std::size_t{width} * height * sizeof(std::uint32_t);
     const BufferId light = graph.create_buffer({"caustics.light", bytes});
     graph.add_pass("caustic splats", {rays}, {light}, [=, &pass](PassContext& context) {
         gpu::Device& device = context.device();
@@ -67,38 +61,32 @@ void sum_on_gpu(
             GL_RED_INTEGER,
             GL_UNSIGNED_INT,
             &none);
-        device.use(*pass.splat);
-        pass.splat->set("stride", stride);
-        pass.records.bind(device, kRecordsUnit);
+        use_with_jobs(device, pass, *pass.splat);
+        pass.splat->set("width", static_cast<int>(width));
         context.bind_storage(kRaysBinding, rays);
         context.bind_storage(kLightBinding, light);
-        const auto cells = static_cast<unsigned>(pass.list.cells);
-        device.dispatch(groups_of(cells * cells, kGroup), maps);
+        device.dispatch(static_cast<unsigned>(pass.list.groups));
     });
     graph.add_pass("caustic maps", {light}, {image(made)}, [=, &pass](PassContext& context) {
         gpu::Device& device = context.device();
         device.use(*pass.map);
-        pass.records.bind(device, kRecordsUnit);
         context.bind_storage(kLightBinding, light);
         context.bind_image(kMapsImage, made, GL_WRITE_ONLY);
-        device.dispatch(groups_of(side, kGroup), side, maps);
+        device.dispatch((width + kGroup - 1) / kGroup, height);
     });
 }
 
-void sum_on_cpu(
-    FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made, unsigned stride) {
+void sum_on_cpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made) {
     graph.add_pass("caustic splats", {rays}, {image(made)}, [=, &pass](PassContext& context) {
         const CausticList& list = pass.list;
-        pass.rays_on_cpu.resize(stride * list.maps.size());
+        pass.rays_on_cpu.resize(list.rays);
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         context.buffer(rays).read(0, std::as_writable_bytes(std::span(pass.rays_on_cpu)));
-        const auto side = static_cast<std::size_t>(list.resolution);
-        pass.map_on_cpu.resize(side * side);
-        for (std::size_t i = 0; i < list.maps.size(); ++i) {
-            const std::span<const Vec4> own(pass.rays_on_cpu.data() + i * stride, stride);
-            splat_caustics(list.maps[i], own, pass.sums_on_cpu, pass.map_on_cpu);
-            pass.maps.upload<float>(pass.map_on_cpu, GL_RED, GL_FLOAT, 0, static_cast<int>(i));
-        }
+        pass.atlas_on_cpu.resize(
+            static_cast<std::size_t>(list.atlas.x) * static_cast<std::size_t>(list.atlas.y));
+        splat_caustics(
+            list.maps, pass.rays_on_cpu, list.atlas.x, pass.sums_on_cpu, pass.atlas_on_cpu);
+        pass.maps.upload<float>(pass.atlas_on_cpu, GL_RED, GL_FLOAT);
     });
 }
 
@@ -107,7 +95,7 @@ void sum_on_cpu(
 Result<CausticsPass> create_caustics_pass(gpu::Device& device) {
     CausticsPass pass;
     pass.on_cpu = device.caps().software;
-    pass.maps = make_maps(1, 1);
+    pass.maps = make_atlas({1, 1});
     const Result<const gpu::Program*> splat =
         device.shaders().load({.compute = "caustics_splat.comp"});
     if (!splat) {
@@ -122,10 +110,10 @@ Result<CausticsPass> create_caustics_pass(gpu::Device& device) {
     return pass;
 }
 
-void resize_caustic_maps(CausticsPass& pass) {
-    const int layers = static_cast<int>(pass.list.maps.size());
-    if (layers > 0 && (pass.maps.width() != pass.list.resolution || pass.maps.layers() != layers)) {
-        pass.maps = make_maps(pass.list.resolution, layers);
+void resize_caustic_atlas(CausticsPass& pass) {
+    const IVec2 size = pass.list.atlas;
+    if (size.x > 0 && (pass.maps.width() != size.x || pass.maps.height() != size.y)) {
+        pass.maps = make_atlas(size);
     }
 }
 
@@ -135,10 +123,7 @@ TextureId draw_caustics(
     if (list.maps.empty()) {
         return {};
     }
-    const auto maps = static_cast<unsigned>(list.maps.size());
-    const auto points = static_cast<unsigned>(list.cells + 1);
-    const unsigned stride = points * points;
-    const BufferId rays = graph.create_buffer({"caustics.rays", stride * maps * sizeof(Vec4)});
+    const BufferId rays = graph.create_buffer({"caustics.rays", list.rays * sizeof(Vec4)});
     const TextureId made = graph.import("caustics", pass.maps);
 
     std::vector<Use> reads;
@@ -157,23 +142,20 @@ TextureId draw_caustics(
             if (program == nullptr) {
                 return;
             }
-            device.use(*program);
-            program->set("stride", stride);
+            use_with_jobs(device, pass, *program);
             bind_view(device, scene);
             if (scene.lights.shadows) {
                 device.bind_texture(kShadowAtlasUnit, *scene.shadow_atlas);
                 scene.shadow_views->bind(device, kShadowViewsUnit);
             }
             bind_water_surfaces(device, waters);
-            pass.records.bind(device, kRecordsUnit);
             context.bind_storage(kRaysBinding, rays);
-            const unsigned groups = groups_of(points, kRayGroup);
-            device.dispatch(groups, groups, maps);
+            device.dispatch(static_cast<unsigned>(pass.list.groups));
         });
     if (pass.on_cpu) {
-        sum_on_cpu(graph, pass, rays, made, stride);
+        sum_on_cpu(graph, pass, rays, made);
     } else {
-        sum_on_gpu(graph, pass, rays, made, stride);
+        sum_on_gpu(graph, pass, rays, made);
     }
     return made;
 }

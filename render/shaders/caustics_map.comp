@@ -1,4 +1,4 @@
-// The sums of caustics_splat.comp as a texture: light that arrives over the light that flat water lets in.
+// The sums of caustics_splat.comp as a texture: light that arrives over the light that flat water sends there.
 #version 450
 #include "lib/caustic_record.glsl"
 
@@ -7,14 +7,12 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 1) readonly buffer Light {
     uint light[];
 };
-layout(binding = 0, r32f) writeonly uniform image2DArray maps;
+layout(binding = 0, r32f) writeonly uniform image2D maps;
 
 void main() {
-    uint map = gl_GlobalInvocationID.z;
-    uint side = uint(caustic_record(map).grid.y);
-    uvec2 at = gl_GlobalInvocationID.xy;
-    if (at.x < side) {
-        float sum = float(light[(map * side + at.y) * side + at.x]) / kWhole;
-        imageStore(maps, ivec3(at, map), vec4(sum));
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    int width = imageSize(maps).x;
+    if (at.x < width) {
+        imageStore(maps, at, vec4(float(light[at.y * width + at.x]) / kWhole));
     }
 }

@@ -1,5 +1,6 @@
-// Where light goes that enters the water at the points of a grid: bent by the surface as it is there, then down to
-// what lies below (lib/caustic_landing.glsl). An invocation a ray. Definitions: OCEAN, and those of lib/shadow.glsl.
+// Where light goes that meets the water at the points of a grid: bent by the surface as it is there and down to what
+// lies below, or mirrored and up to what stands above (lib/caustic_landing.glsl). An invocation a ray. Definitions:
+// OCEAN, and those of lib/shadow.glsl.
 #version 450
 #define UNMASKED  // the masks of shadow volumes are of pixels
 #include "lib/caustic_landing.glsl"
@@ -13,18 +14,17 @@ const float kPi = 3.14159265358979;
 #include "lib/shadow.glsl"
 #endif
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) writeonly buffer Rays {
     vec4 rays[];  // texel of the map, light, height above rest [m]
 };
-uniform uint stride;  // rays from map to map
 
 const int kSteps = 5;
-const float kMethodPool = 1.0;  // CausticMethod
+const float kLeastSlope = 0.05;  // of light that is mirrored up [m/m]
 
 #ifdef SHADOWS
-// Depth of what lies below a place of the map, 0 .. 1.
+// How far below a place of the map something lies, or above it: 0 .. 1 of the way that light is followed.
 float ground_at(CausticRecord record, vec2 uv) {
     vec4 rect = texelFetch(shadow_views, int(record.world.w) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
@@ -36,19 +36,21 @@ float ground_at(CausticRecord record, vec2 uv) {
 #endif
 
 void main() {
-    uint map = gl_GlobalInvocationID.z;
-    CausticRecord record = caustic_record(map);
+    ivec2 ray_of_map = caustic_ray();
+    CausticRecord record = caustic_record(ray_of_map.x);
     int cells = int(record.grid.x);
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x > cells || at.y > cells) {
+    ivec2 at = ivec2(ray_of_map.y % (cells + 1), ray_of_map.y / (cells + 1));
+    if (at.y > cells) {
         return;
     }
     WaterRecord water = water_record(int(record.to_sun.w));
+    bool mirrored = record.grid.w == kCausticsMirrored;
     vec2 q = record.window.xy + record.window.zw * (vec2(at) / float(cells));
     vec2 cell = record.window.zw / float(cells);
 
     // Beyond its rectangle the water goes on as it is at the rim: what lands by a wall has neighbors on both sides.
-    vec2 bounds = mix(vec2(1e9), water.shape.yz - 0.5 * cell, greaterThan(water.shape.yz, vec2(0.0)));
+    bvec2 walled = greaterThan(water.shape.yz, vec2(0.0));
+    vec2 bounds = mix(vec2(1e9), water.shape.yz - 0.5 * cell, walled);
     vec2 inner = clamp(q, -bounds, bounds);
     vec3 offset = water_offset(water, inner, cell.x, false);
     WaterBend bend = water_bend(water, inner, cell.x);
@@ -56,34 +58,42 @@ void main() {
     vec3 normal = normalize(area);
     vec3 to_sun = record.to_sun.xyz;
     float facing = dot(normal, to_sun);
-    float light = max(dot(area, to_sun), 0.0) * (1.0 - fresnel(facing, water.shape.w)) / record.bent.w;
+    float share = fresnel(facing, water.shape.w);
+    float light = max(dot(area, to_sun), 0.0) * (mirrored ? share : 1.0 - share) / record.bent.w;
 
-    vec3 ray = refract_ray(normal, to_sun, 1.0 / water.shape.w);
-    vec2 slant = ray.xz / max(-ray.y, 0.1);
+    vec3 ray = mirrored ? reflect_ray(normal, to_sun) : -refract_ray(normal, to_sun, 1.0 / water.shape.w);
+    vec2 slant = ray.xz / max(ray.y, kLeastSlope) * (mirrored ? 1.0 : -1.0);
 
+    // Down below, rays at the edge of the map go straight; above it, there is no light beside the water, and none that
+    // waves throw down again.
     vec2 edge = min(q - record.window.xy, record.window.xy + record.window.zw - q);
-    float free = clamp(min(edge.x, edge.y) / record.grid.z, 0.0, 1.0);
+    float within = clamp(min(edge.x, edge.y) / record.grid.z, 0.0, 1.0);
+    float free = mirrored ? record.place.w : within;
+    if (mirrored) {
+        bool beside = any(greaterThan(mix(vec2(-1.0), abs(q) - water.shape.yz, walled), vec2(0.0)));
+        light *= beside || ray.y < kLeastSlope ? 0.0 : all(walled) ? 1.0 : within;
+    }
     vec2 bent = record.bent.xy;
-    vec2 entry = q + free * (offset.xz + slant * offset.y);
-    float depth = record.bent.z;
+    vec2 entry = q + free * (offset.xz + (mirrored ? -slant : slant) * offset.y);
+    float way = record.bent.z;
 #ifdef SHADOWS
     vec3 entry_ws = water.origin.xyz + water_to_world(water, vec3(inner.x, 0.0, inner.y) + vec3(0.0, offset.y, 0.0));
     light *= light_visibility(record.shadows, entry_ws, vec3(0.0, 1.0, 0.0), record.world.xyz, vec2(at));
-    if (record.world.w >= 0.0 && record.grid.w != kMethodPool) {
+    if (record.world.w >= 0.0 && record.grid.w != kCausticsPool) {
         for (int i = 0; i < kSteps; ++i) {
-            vec2 place = flat_place(entry, free * (slant - bent), depth);
-            depth = record.bent.z * ground_at(record, (place - record.window.xy) / record.window.zw);
+            vec2 place = flat_place(entry, free * (slant - bent), way);
+            way = record.bent.z * ground_at(record, (place - record.window.xy) / record.window.zw);
         }
     }
 #endif
-    if (record.grid.w == kMethodPool) {
+    if (record.grid.w == kCausticsPool) {
         vec3 from = vec3(inner.x, offset.y, inner.y);
         vec3 hit = land_in_pool(from, vec3(slant.x, -1.0, slant.y), record.pool.xy, record.bent.z);
-        depth = -hit.y;
-        entry = q - inner + hit.xz - slant * depth;
+        way = -hit.y;
+        entry = q - inner + hit.xz - slant * way;
         light = light > 0.0 ? pool_light(offset.y, record.pool.z, record.pool.w) : 0.0;
     }
-    vec2 place = flat_place(entry, free * (slant - bent), depth);
-    rays[map * stride + uint(at.y * (cells + 1) + at.x)] =
+    vec2 place = flat_place(entry, free * (slant - bent), way);
+    rays[int(record.place.z) + ray_of_map.y] =
         vec4((place - record.window.xy) / record.window.zw * record.grid.y, light, offset.y);
 }

@@ -1,6 +1,6 @@
-// Sums the light of a map: an invocation a cell of the grid of rays, which is cut into so many that they lie half a
-// texel from each other or less where they land; each gives its light to the nearest four texels. None is lost, however
-// the water folds, and whole numbers add up to the same in any order.
+// Sums the light of a map: an invocation a cell of the grid of rays, which is cut along both sides into so many that
+// they lie half a texel from each other or less where they land, or a whole one above the water; each gives its light to the nearest four texels. None
+// is lost, however the water folds, and whole numbers add up to the same in any order.
 #version 450
 #include "lib/caustic_record.glsl"
 
@@ -12,51 +12,58 @@ layout(std430, binding = 0) readonly buffer Rays {
 layout(std430, binding = 1) buffer Light {
     uint light[];
 };
-uniform uint stride;  // rays from map to map
+uniform int width;  // of the atlas [texels]
 
-const float kMost = 48.0;       // rays along a side of a cell
-const float kPerTexel = 2.0;    // rays along a texel
-const float kMethodPool = 1.0;  // CausticMethod
+const float kMost = 48.0;         // rays along a side of a cell
+const float kPerTexel = 2.0;      // rays along a texel
+const float kMostMirrored = 12.0;  // waves spread what they mirror so far that cells lie on each other in heaps
+const float kMirroredPerTexel = 1.0;
 
-void add(uint first, ivec2 texel, int side, float amount) {
+int rays_along(vec2 one, vec2 other, bool mirrored) {
+    vec2 longest = max(abs(one), abs(other));
+    float wanted = (mirrored ? kMirroredPerTexel : kPerTexel) * max(longest.x, longest.y);
+    return int(clamp(ceil(wanted - 0.01), 1.0, mirrored ? kMostMirrored : kMost));
+}
+
+void add(ivec2 first, ivec2 texel, int side, float amount) {
     if (texel.x >= 0 && texel.y >= 0 && texel.x < side && texel.y < side) {
-        atomicAdd(light[first + uint(texel.y * side + texel.x)], uint(amount + 0.5));
+        atomicAdd(light[(first.y + texel.y) * width + first.x + texel.x], uint(amount + 0.5));
     }
 }
 
 void main() {
-    uint map = gl_GlobalInvocationID.y;
-    CausticRecord record = caustic_record(map);
-    uint cells = uint(record.grid.x);
-    uint cell = gl_GlobalInvocationID.x;
-    if (cell >= cells * cells) {
+    ivec2 ray_of_map = caustic_ray();
+    CausticRecord record = caustic_record(ray_of_map.x);
+    int cells = int(record.grid.x);
+    ivec2 cell = ivec2(ray_of_map.y % (cells + 1), ray_of_map.y / (cells + 1));
+    if (cell.x >= cells || cell.y >= cells) {
         return;
     }
     int side = int(record.grid.y);
-    uint corner = map * stride + (cell / cells) * (cells + 1u) + cell % cells;
+    int corner = int(record.place.z) + ray_of_map.y;
     vec4 a = rays[corner];
-    vec4 b = rays[corner + 1u];
-    vec4 c = rays[corner + cells + 1u];
-    vec4 d = rays[corner + cells + 2u];
+    vec4 b = rays[corner + 1];
+    vec4 c = rays[corner + cells + 1];
+    vec4 d = rays[corner + cells + 2];
 
-    vec2 longest = max(max(abs(b.xy - a.xy), abs(d.xy - c.xy)), max(abs(c.xy - a.xy), abs(d.xy - b.xy)));
-    int rows = int(clamp(ceil(kPerTexel * max(longest.x, longest.y) - 0.01), 1.0, kMost));
-    float part = 1.0 / float(rows);
+    bool mirrored = record.grid.w == kCausticsMirrored;
+    int columns = rays_along(b.xy - a.xy, d.xy - c.xy, mirrored);
+    int rows = rays_along(c.xy - a.xy, d.xy - b.xy, mirrored);
     float texels = record.grid.y / record.grid.x;
     float area = texels * texels;
-    if (record.grid.w == kMethodPool) {
+    if (record.grid.w == kCausticsPool) {
         vec2 across = d.xy - a.xy;
         vec2 along = c.xy - b.xy;
         area = 0.5 * abs(across.x * along.y - across.y * along.x);
     }
-    float whole = kWhole * area * part * part;
-    uint first = map * uint(side * side);
+    float whole = kWhole * area / float(rows * columns);
+    ivec2 first = ivec2(record.place.xy);
     for (int j = 0; j < rows; ++j) {
-        float v = (float(j) + 0.5) * part;
+        float v = (float(j) + 0.5) / float(rows);
         vec3 left = mix(a.xyz, c.xyz, v);
         vec3 right = mix(b.xyz, d.xyz, v);
-        for (int i = 0; i < rows; ++i) {
-            vec3 ray = mix(left, right, (float(i) + 0.5) * part);
+        for (int i = 0; i < columns; ++i) {
+            vec3 ray = mix(left, right, (float(i) + 0.5) / float(columns));
             vec2 at = clamp(ray.xy, vec2(-8.0), vec2(float(side) + 8.0)) - 0.5;
             ivec2 texel = ivec2(floor(at));
             vec2 share = at - vec2(texel);

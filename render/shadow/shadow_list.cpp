@@ -181,7 +181,7 @@ void ShadowCollector::want_views(
         constexpr std::uint64_t kWaters = std::uint64_t{1} << 63;  // apart from lights
         LightViews wanted = {
             .water = &water,
-            .key = key_of(water.water) | kWaters,
+            .key = key_of(water.water) | kWaters | water.part << 60,
             .settings = {.filter = ShadowFilter::Bilinear, .resolution = water.view.resolution},
             .kind = layout::kShadowView,
             .first_view = views_.size(),

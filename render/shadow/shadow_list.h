@@ -26,9 +26,10 @@ struct ShadowDraw {
 };
 
 /// A view that belongs to no light: of what lies below the surface of a water, as light comes down
-/// that flat water bends.
+/// that flat water bends, or above it, as light goes up that it mirrors.
 struct WaterShadow {
     Entity water;
+    std::uint64_t part = 0;  ///< tells apart those of the same water, 0 .. 7
     ShadowView view;
     int record = -1;  ///< index into ShadowList::records; -1: the atlas is full
 };

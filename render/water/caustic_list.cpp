@@ -19,6 +19,7 @@ constexpr float kLowestSun = 0.02f;    ///< sine of the height above the horizon
 constexpr float kRim = 0.03f;          ///< of the map, beyond a rectangle of water
 constexpr float kEndlessRim = 0.1f;    ///< of the map of endless water
 constexpr float kBelowBottom = 0.05f;  ///< how far below the bottom light still lands [m]
+constexpr float kMirrorRim = 0.2f;     ///< of the cells of a map of mirrored light, on each side
 
 WaterFrame frame_of(const layout::WaterRecord& body) {
     return {Vec3(body.origin), {body.origin.w, body.shape.x}};
@@ -52,10 +53,16 @@ float finite_or(float x, float fallback) {
     return std::isfinite(x) ? x : fallback;
 }
 
+std::int32_t power_of_two(std::int32_t side, std::int32_t least) {
+    return static_cast<std::int32_t>(
+        std::bit_ceil(static_cast<unsigned>(std::clamp(side, least, 1024))));
+}
+
 Caustics make_sane(const Caustics& caustics) {
     Caustics sane = caustics;
-    sane.resolution = static_cast<std::int32_t>(
-        std::bit_ceil(static_cast<unsigned>(std::clamp(caustics.resolution, 64, 1024))));
+    sane.resolution = power_of_two(caustics.resolution, 64);
+    sane.mirror_resolution = power_of_two(caustics.mirror_resolution, 32);
+    sane.mirror_reach = std::clamp(finite_or(caustics.mirror_reach, 0.0f), 0.0f, 1000.0f);
     sane.spacing = std::clamp(caustics.spacing, 1, 8);
     sane.strength = std::clamp(finite_or(caustics.strength, 1.0f), 0.0f, 4.0f);
     sane.reach = std::clamp(finite_or(caustics.reach, 20.0f), 0.01f, 1000.0f);
@@ -93,13 +100,42 @@ window_of(const layout::WaterRecord& body, const Caustics& caustics, const Vec3&
     return window;
 }
 
-/// The world as the light of flat water sees it from the surface down to `depth`.
+/// The same of light that is mirrored and followed up to `height`: the rim of a rectangle lies in
+/// the middle of cells, which so hold the light that they should.
+Window mirror_window(
+    const layout::WaterRecord& body,
+    const Caustics& caustics,
+    const Vec3& camera,
+    const Vec2& slant,
+    int cells) {
+    // Of endless water, what throws light to the camera's surroundings.
+    Window window = window_of(
+        body,
+        caustics,
+        camera
+            - frame_of(body).turned_out(Vec3(slant.x, 0, slant.y)) * 0.5f * caustics.mirror_reach,
+        caustics.mirror_resolution);
+    const auto count = static_cast<float>(cells);
+    const float inner = count - 2 * (std::floor(kMirrorRim * count) + 0.5f);
+    for (int axis = 0; axis < 2; ++axis) {
+        const float half = axis == 0 ? body.shape.y : body.shape.z;
+        if (half > 0) {
+            window.size[axis] = 2 * half * count / inner;
+            window.corner[axis] = -0.5f * window.size[axis];
+        }
+    }
+    return window;
+}
+
+/// The world as light of flat water sees it, from the surface on and `depth` down: up if negative.
 ShadowView make_water_view(
     const WaterFrame& frame, const Window& window, const Vec2& slant, float depth, int resolution) {
-    // Rows of a matrix of the water's own space, then turned and moved there.
+    // Rows of a matrix of the water's own space, then turned and moved there. On a meter along y
+    // the light goes so far aside:
+    const Vec2 aside = depth > 0 ? slant : -slant;
     Mat4 rows(0.0f);
-    rows[0] = Vec4(1, slant.x, 0, -window.corner.x - 0.5f * window.size.x) * (2 / window.size.x);
-    rows[1] = Vec4(0, slant.y, 1, -window.corner.y - 0.5f * window.size.y) * (2 / window.size.y);
+    rows[0] = Vec4(1, aside.x, 0, -window.corner.x - 0.5f * window.size.x) * (2 / window.size.x);
+    rows[1] = Vec4(0, aside.y, 1, -window.corner.y - 0.5f * window.size.y) * (2 / window.size.y);
     rows[2] = {0, 1 / depth, 0, 1};
     rows[3] = {0, 0, 0, 1};
     Mat4 local_from_world(1.0f);
@@ -122,9 +158,151 @@ layout::SunkenRecord sunken_of(const layout::WaterRecord& body) {
         .origin = body.origin,
         .shape = body.shape,
         .extinction = Vec4(Vec3(body.absorption) + Vec3(body.scattering), body.absorption.w),
-        .window = Vec4(0, 0, 1, 1),
-        .map = Vec4(-1, -1, -1, 0),
+        .maps = Vec4(0, 0, -1, 0),
         .bent = Vec4(0)};
+}
+
+/// A water whose light is followed, and the light.
+struct Source {
+    const WaterList& waters;
+    std::size_t body;
+    Caustics caustics;  ///< sane
+    const layout::LightRecord& light;
+    Vec3 to_sun;  ///< in the water's own space
+};
+
+enum class Part : std::uint8_t { Below, Above };
+
+/// A map, its place and its view.
+void add_map(
+    const Source& source,
+    Part part,
+    const Window& window,
+    const Vec2& slant,
+    float way,
+    bool make,
+    CausticList& list,
+    ShadowList& shadows) {
+    const layout::WaterRecord& body = source.waters.bodies[source.body];
+    const bool above = part == Part::Above;
+    const int side = above ? source.caustics.mirror_resolution : source.caustics.resolution;
+    const float share = fresnel(source.to_sun.y, body.shape.w);
+    const Vec2 heights = source.waters.heights[source.body];
+    list.places.push_back(
+        {.window = Vec4(window.corner, 1.0f / window.size),
+         .rect = {0, 0, static_cast<float>(side), make ? 1.0f : 0.0f},
+         .view = {-1, window.rim / std::max(window.size.x, window.size.y), 0, 0}});
+    list.maps.push_back(
+        {.window = Vec4(window.corner, window.size),
+         .to_sun = Vec4(source.to_sun, static_cast<float>(source.body)),
+         .bent = Vec4(slant, way, (above ? share : 1 - share) * source.to_sun.y),
+         .shadows = Vec4(0),
+         .world = Vec4(Vec3(source.light.position), -1),
+         .grid =
+             {static_cast<float>(side / std::min(source.caustics.spacing, side)),
+              static_cast<float>(side),
+              window.rim,
+              above ? layout::kCausticsMirrored : static_cast<float>(source.caustics.method)},
+         .pool =
+             {body.shape.y > 0 ? body.shape.y : 1e6f,
+              body.shape.z > 0 ? body.shape.z : 1e6f,
+              heights.x,
+              1 / std::max(heights.y - heights.x, 1e-4f)},
+         .place = {0, 0, 0, source.caustics.strength}});
+    shadows.waters.push_back(
+        {source.waters.entities[source.body],
+         static_cast<std::uint64_t>(part),
+         make_water_view(frame_of(body), window, slant, above ? -way : way, side)});
+}
+
+/// The light that goes down from this water.
+void add_below(
+    const Source& source,
+    const Vec3& camera,
+    int light,
+    bool make,
+    layout::SunkenRecord& sunken,
+    CausticList& list,
+    ShadowList& shadows) {
+    const layout::WaterRecord& body = source.waters.bodies[source.body];
+    const Caustics& caustics = source.caustics;
+    const Vec2 slant = flat_slant(source.to_sun, body.shape.w);
+    const float bottom = body.absorption.w > 0 ? body.absorption.w + kBelowBottom : 1e9f;
+    const float depth = std::min(bottom, caustics.reach);
+    sunken.maps = {
+        static_cast<float>(list.places.size()), 1, static_cast<float>(light), 0.999f * depth};
+    sunken.bent = Vec4(slant, caustics.strength, 0);
+    const Window window = window_of(body, caustics, camera, caustics.resolution);
+    add_map(source, Part::Below, window, slant, depth, make, list, shadows);
+}
+
+/// The light that it mirrors.
+void add_above(
+    const Source& source, const Vec3& camera, int light, CausticList& list, ShadowList& shadows) {
+    const layout::WaterRecord& body = source.waters.bodies[source.body];
+    const Caustics& caustics = source.caustics;
+    const Vec2 slant = mirrored_slant(source.to_sun);
+    const int cells = caustics.mirror_resolution / caustics.spacing;
+    list.mirrors.push_back(
+        {.origin = body.origin,
+         .shape =
+             {body.shape.x,
+              static_cast<float>(list.places.size()),
+              static_cast<float>(light),
+              0.999f * caustics.mirror_reach},
+         .bent = Vec4(slant, fresnel(source.to_sun.y, body.shape.w), caustics.mirror_reach)});
+    const Window window = mirror_window(body, caustics, camera, slant, cells);
+    add_map(source, Part::Above, window, slant, caustics.mirror_reach, true, list, shadows);
+}
+
+/// Gives every map its square of the atlas and its rays: the largest first, along a curve of Z, so
+/// that none is wasted between them.
+void place_maps(CausticList& list) {
+    std::vector<std::size_t> order(list.maps.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return list.maps[a].grid.y > list.maps[b].grid.y;
+    });
+    std::uint64_t texels = 0;
+    for (const std::size_t i : order) {
+        layout::CausticRecord& map = list.maps[i];
+        const int side = static_cast<int>(map.grid.y);
+        IVec2 at(0);
+        for (int bit = 0; bit < 16; ++bit) {
+            at.x |= static_cast<int>(texels >> (2 * bit) & 1) << bit;
+            at.y |= static_cast<int>(texels >> (2 * bit + 1) & 1) << bit;
+        }
+        texels += static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+        map.place.x = list.places[i].rect.x = static_cast<float>(at.x);
+        map.place.y = list.places[i].rect.y = static_cast<float>(at.y);
+        list.atlas = glm::max(list.atlas, at + side);
+    }
+}
+
+/// A copy of the bytes of records, as texels.
+template <typename Record>
+void append(std::vector<Vec4>& texels, const std::vector<Record>& records) {
+    const std::size_t first = texels.size();
+    texels.resize(first + records.size() * sizeof(Record) / sizeof(Vec4));
+    if (!records.empty()) {
+        std::memcpy(texels.data() + first, records.data(), records.size() * sizeof(Record));
+    }
+}
+
+/// The rays of all maps, as work groups find them.
+void list_rays(CausticList& list) {
+    list.jobs.clear();
+    list.rays = 0;
+    for (std::size_t i = 0; i < list.maps.size(); ++i) {
+        const auto points = static_cast<std::size_t>(list.maps[i].grid.x) + 1;
+        list.maps[i].place.z = static_cast<float>(list.rays);
+        for (std::size_t first = 0; first < points * points; first += layout::kRayGroup) {
+            list.jobs.emplace_back(static_cast<float>(i), static_cast<float>(first), 0, 0);
+        }
+        list.rays += points * points;
+    }
+    list.groups = static_cast<int>(list.jobs.size());
+    append(list.jobs, list.maps);
 }
 
 }  // namespace
@@ -132,6 +310,10 @@ layout::SunkenRecord sunken_of(const layout::WaterRecord& body) {
 Vec2 flat_slant(const Vec3& to_sun, float index) {
     const Vec3 ray = refract_ray({0, 1, 0}, to_sun, 1 / index);
     return Vec2(ray.x, ray.z) / std::max(-ray.y, 0.1f);
+}
+
+Vec2 mirrored_slant(const Vec3& to_sun) {
+    return -Vec2(to_sun.x, to_sun.z) / std::max(to_sun.y, kLowestSun);
 }
 
 void collect_caustics(
@@ -142,8 +324,10 @@ void collect_caustics(
     CausticList& list,
     ShadowList& shadows) {
     list.sunken.clear();
+    list.mirrors.clear();
+    list.places.clear();
     list.maps.clear();
-    list.resolution = list.cells = 0;
+    list.atlas = {0, 0};
     shadows.waters.clear();
     std::vector<std::size_t> order(waters.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -153,90 +337,46 @@ void collect_caustics(
     order.resize(std::min(order.size(), kMaxSunkenWaters));
 
     const int sun = brightest_sun(lights);
-    std::vector<std::size_t> mapped;
+    std::size_t mapped = 0;
     for (const std::size_t i : order) {
-        if (sun >= 0 && waters.caustics[i] != nullptr && mapped.size() < kMaxCausticMaps) {
-            mapped.push_back(i);
-            list.resolution = std::max(
-                list.resolution, static_cast<int>(make_sane(*waters.caustics[i]).resolution));
+        layout::SunkenRecord& sunken = list.sunken.emplace_back(sunken_of(waters.bodies[i]));
+        if (sun < 0 || waters.caustics[i] == nullptr || mapped == kMaxCausticMaps) {
+            continue;
         }
-    }
-    std::sort(mapped.begin(), mapped.end());  // layers stay when the camera moves
-    for (const std::size_t i : order) {
-        list.sunken.push_back(sunken_of(waters.bodies[i]));
-        const auto found = std::lower_bound(mapped.begin(), mapped.end(), i);
-        if (found != mapped.end() && *found == i) {
-            list.sunken.back().map.x = static_cast<float>(found - mapped.begin());
-        }
-    }
-    for (std::size_t layer = 0; layer < mapped.size(); ++layer) {
-        const layout::WaterRecord& body = waters.bodies[mapped[layer]];
-        const Caustics caustics = make_sane(*waters.caustics[mapped[layer]]);
+        ++mapped;
         const layout::LightRecord& light = lights.records[static_cast<std::size_t>(sun)];
-        const WaterFrame frame = frame_of(body);
-        const Vec3 to_sun = frame.turned_in(Vec3(light.position));
-        const float index = body.shape.w;
-        const Vec2 slant = flat_slant(to_sun, index);
-        const Window window = window_of(body, caustics, camera, list.resolution);
-        const float bottom = body.absorption.w > 0 ? body.absorption.w + kBelowBottom : 1e9f;
-        const float depth = std::min(bottom, caustics.reach);
-        const int cells = list.resolution / caustics.spacing;
-        list.cells = std::max(list.cells, cells);
-        const Vec2 heights = waters.heights[mapped[layer]];
-        list.maps.push_back(
-            {.window = Vec4(window.corner, window.size),
-             .to_sun = Vec4(to_sun, static_cast<float>(mapped[layer])),
-             .bent = Vec4(slant, depth, (1 - fresnel(to_sun.y, index)) * to_sun.y),
-             .shadows = Vec4(0),
-             .world = Vec4(Vec3(light.position), -1),
-             .grid =
-                 {static_cast<float>(cells),
-                  static_cast<float>(list.resolution),
-                  window.rim,
-                  static_cast<float>(caustics.method)},
-             .pool = {
-                 body.shape.y > 0 ? body.shape.y : 1e6f,
-                 body.shape.z > 0 ? body.shape.z : 1e6f,
-                 heights.x,
-                 1 / std::max(heights.y - heights.x, 1e-4f)}});
-        shadows.waters.push_back(
-            {waters.entities[mapped[layer]],
-             make_water_view(frame, window, slant, depth, list.resolution)});
-        for (layout::SunkenRecord& sunken : list.sunken) {
-            if (sunken.map.x == static_cast<float>(layer)) {
-                sunken.window = Vec4(window.corner, 1.0f / window.size);
-                sunken.map = {
-                    maps ? static_cast<float>(layer) : -1.0f,
-                    static_cast<float>(layer),  // its view, until place_caustics()
-                    static_cast<float>(sun),
-                    0.999f * depth};
-                sunken.bent = Vec4(slant, caustics.strength, 0);
-            }
+        const Source source = {
+            waters,
+            i,
+            make_sane(*waters.caustics[i]),
+            light,
+            frame_of(waters.bodies[i]).turned_in(Vec3(light.position))};
+        add_below(source, camera, sun, maps, sunken, list, shadows);
+        if (maps && source.caustics.mirror_reach > 0) {
+            add_above(source, camera, sun, list, shadows);
         }
     }
+    place_maps(list);
 }
 
 void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list) {
-    for (layout::SunkenRecord& sunken : list.sunken) {
-        if (sunken.map.y >= 0) {
-            const auto layer = static_cast<std::size_t>(sunken.map.y);
-            const layout::LightRecord& light =
-                lights.records[static_cast<std::size_t>(sunken.map.z)];
-            list.maps[layer].shadows = light.shadow;
-            list.maps[layer].world.w = static_cast<float>(shadows.waters[layer].record);
-            sunken.map.y = list.maps[layer].world.w;
-        }
+    const int sun = brightest_sun(lights);
+    for (std::size_t i = 0; i < list.maps.size(); ++i) {
+        list.maps[i].shadows = lights.records[static_cast<std::size_t>(sun)].shadow;
+        list.maps[i].world.w = list.places[i].view.x = static_cast<float>(shadows.waters[i].record);
     }
+    list_rays(list);
     std::reverse(list.sunken.begin(), list.sunken.end());  // of several, the last one counts
-    list.texels.assign(
-        1 + list.sunken.size() * layout::kSunkenTexels,
-        Vec4(static_cast<float>(list.sunken.size()), 0, 0, 0));
-    if (!list.sunken.empty()) {
-        std::memcpy(
-            list.texels.data() + 1,
-            list.sunken.data(),
-            list.sunken.size() * sizeof(layout::SunkenRecord));
-    }
+    list.texels.clear();
+    const layout::WaterLightHead head = {
+        {static_cast<float>(list.sunken.size()),
+         static_cast<float>(list.mirrors.size()),
+         static_cast<float>(list.places.size()),
+         0}};
+    append(list.texels, std::vector{head});
+    append(list.texels, list.sunken);
+    append(list.texels, list.mirrors);
+    append(list.texels, list.places);
 }
 
 }  // namespace limn

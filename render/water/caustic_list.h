@@ -17,15 +17,25 @@ namespace limn {
 // everywhere. A shadow view with the same places tells how deep the ground is and what stands
 // before it.
 
+//
+// Light that the water mirrors is the same upside down: a point at height h lies where its ray left
+// the water, xz - bent h. There the map is 1 above flat water and 0 beside it.
+//
+// All maps lie in one atlas, the largest first, and the rays of all of them are one list.
+
 inline constexpr std::size_t kMaxSunkenWaters = 16;  ///< the nearest ones
 inline constexpr std::size_t kMaxCausticMaps = 4;
 
 struct CausticList {
     std::vector<layout::SunkenRecord> sunken;  ///< nearest to the camera last
-    std::vector<layout::CausticRecord> maps;   ///< in the order of their layers
-    int resolution = 0;                        ///< texels of a side of each map; 0: none
-    int cells = 0;                             ///< of a side of the finest grid of rays
-    std::vector<Vec4> texels;                  ///< `sunken` as lib/under_water.glsl reads it
+    std::vector<layout::MirrorRecord> mirrors;
+    std::vector<layout::CausticPlace> places;
+    std::vector<layout::CausticRecord> maps;  ///< to be made, each for the place of its number
+    IVec2 atlas = {0, 0};                     ///< [texels]
+    std::size_t rays = 0;                     ///< of all maps
+    int groups = 0;                           ///< of rays
+    std::vector<Vec4> jobs;    ///< groups and `maps`, as lib/caustic_record.glsl reads them
+    std::vector<Vec4> texels;  ///< of the records, as lib/caustic_place.glsl reads them
 };
 
 /// Chooses waters and maps and asks `shadows` for the views they need. `maps`: also make maps.
@@ -43,5 +53,7 @@ void place_caustics(const LightList& lights, const ShadowList& shadows, CausticL
 /// How far light that comes from `to_sun` (unit, in the water's own space) goes along x and z on a
 /// meter down, below flat water.
 [[nodiscard]] Vec2 flat_slant(const Vec3& to_sun, float index);
+/// The same of light that flat water mirrors, on a meter up.
+[[nodiscard]] Vec2 mirrored_slant(const Vec3& to_sun);
 
 }  // namespace limn

@@ -2,19 +2,24 @@
 
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
-#include "ecs/components/caustics.h"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace limn {
 namespace {
 
-constexpr int kStripes = 4;          ///< of the grid, whatever the number of threads
+constexpr int kMostStripes = 4;      ///< of a grid, whatever the number of threads
+constexpr int kStripe = 64;          ///< cells across a stripe, or more
 constexpr float kWhole = 524288.0f;  ///< what a texel counts for the light of flat water
 constexpr float kMost = 48;          ///< rays along a side of a cell
 constexpr float kPerTexel = 2;       ///< rays along a texel
-constexpr int kAside = 8;            ///< texels around a map that rays may land on
+constexpr float kMostMirrored = 12;  ///< the same above the water
+constexpr float kMirroredPerTexel = 1;
+constexpr int kAside = 8;  ///< texels around a map that rays may land on
 
 /// A map with texels around it, so that nobody asks whether a ray is in it.
 struct Sheet {
@@ -22,6 +27,26 @@ struct Sheet {
     int stride = 0;
     float most = 0;  ///< of a ray's place, from the sheet's corner
 };
+
+/// How a map's cells are cut into rays.
+struct Cut {
+    float texels = 1;  ///< from ray to ray of the grid
+    bool by_area = false;
+    float per_texel = kPerTexel;
+    float most = kMost;
+};
+
+/// To two texels at once: neither sum reaches 2^32.
+void add_pair(std::uint32_t* texels, float left, float right) {
+    std::uint64_t both = 0;
+    std::memcpy(&both, texels, sizeof(both));
+    both += static_cast<std::uint64_t>(
+                static_cast<std::uint32_t>(static_cast<std::int32_t>(left + 0.5f)))
+            + (static_cast<std::uint64_t>(
+                   static_cast<std::uint32_t>(static_cast<std::int32_t>(right + 0.5f)))
+               << 32);
+    std::memcpy(texels, &both, sizeof(both));
+}
 
 void add(const Sheet& sheet, float x, float y, float amount) {
     const float u = std::clamp(x + (kAside - 0.5f), 0.0f, sheet.most);
@@ -31,13 +56,10 @@ void add(const Sheet& sheet, float x, float y, float amount) {
     const float s = u - static_cast<float>(column);
     const float t = v - static_cast<float>(row);
     std::uint32_t* const at = sheet.texels + row * sheet.stride + column;
-    const float below = amount * (1 - t);
     const float above = amount * t;
-    at[0] += static_cast<std::uint32_t>(static_cast<std::int32_t>(below * (1 - s) + 0.5f));
-    at[1] += static_cast<std::uint32_t>(static_cast<std::int32_t>(below * s + 0.5f));
-    at[sheet.stride] +=
-        static_cast<std::uint32_t>(static_cast<std::int32_t>(above * (1 - s) + 0.5f));
-    at[sheet.stride + 1] += static_cast<std::uint32_t>(static_cast<std::int32_t>(above * s + 0.5f));
+    const float below = amount - above;
+    add_pair(at, below - below * s, below * s);
+    add_pair(at + sheet.stride, above - above * s, above * s);
 }
 
 /// The cell with rays a, b and, a row on, c, d.
@@ -47,80 +69,138 @@ void add_cell(
     const Vec4& b,
     const Vec4& c,
     const Vec4& d,
-    float texels,
-    bool by_area) {
-    const auto reach = [](const Vec4& from, const Vec4& to) {
-        return std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
-    };
-    const float longest =
-        std::max(std::max(reach(a, b), reach(c, d)), std::max(reach(a, c), reach(b, d)));
-    const int rows =
-        static_cast<int>(std::clamp(std::ceil(kPerTexel * longest - 0.01f), 1.0f, kMost));
-    const float part = 1 / static_cast<float>(rows);
-    const float area = by_area
+    const Cut& cut) {
+    const auto rays_along =
+        [&cut](const Vec4& one_end, const Vec4& one, const Vec4& other_end, const Vec4& other) {
+            const Vec2 longest = glm::max(
+                glm::abs(Vec2(one) - Vec2(one_end)), glm::abs(Vec2(other) - Vec2(other_end)));
+            return static_cast<int>(std::clamp(
+                std::ceil(cut.per_texel * std::max(longest.x, longest.y) - 0.01f), 1.0f, cut.most));
+        };
+    const int columns = rays_along(a, b, c, d);
+    const int rows = rays_along(a, c, b, d);
+    const float across = 1 / static_cast<float>(columns);
+    const float down = 1 / static_cast<float>(rows);
+    const float area = cut.by_area
                            ? 0.5f * std::abs((d.x - a.x) * (c.y - b.y) - (d.y - a.y) * (c.x - b.x))
-                           : texels * texels;
-    const float whole = kWhole * area * part * part;
+                           : cut.texels * cut.texels;
+    const float whole = kWhole * area * across * down;
     for (int j = 0; j < rows; ++j) {
-        const float v = (static_cast<float>(j) + 0.5f) * part;
+        const float v = (static_cast<float>(j) + 0.5f) * down;
         const Vec3 left = Vec3(a) + v * (Vec3(c) - Vec3(a));
         const Vec3 step = Vec3(b) + v * (Vec3(d) - Vec3(b)) - left;
-        for (int i = 0; i < rows; ++i) {
-            const Vec3 ray = left + (static_cast<float>(i) + 0.5f) * part * step;
+        for (int i = 0; i < columns; ++i) {
+            const Vec3 ray = left + (static_cast<float>(i) + 0.5f) * across * step;
             add(sheet, ray.x, ray.y, whole * ray.z);
         }
+    }
+}
+
+/// A part of a map's grid of rays, and where it is summed.
+struct Stripe {
+    std::size_t map = 0;
+    int first = 0;  ///< row of cells
+    int last = 0;
+    std::size_t sums = 0;  ///< of CausticSums::parts
+};
+
+int side_of(const layout::CausticRecord& record) {
+    return static_cast<int>(record.grid.y);
+}
+int stripes_of(const layout::CausticRecord& record) {
+    return std::clamp(static_cast<int>(record.grid.x) / kStripe, 1, kMostStripes);
+}
+std::size_t sheet_size(const layout::CausticRecord& record) {
+    const auto stride = static_cast<std::size_t>(side_of(record) + 2 * kAside);
+    return stride * stride;
+}
+
+void sum_stripe(
+    const layout::CausticRecord& record,
+    std::span<const Vec4> rays,
+    const Stripe& stripe,
+    std::uint32_t* texels) {
+    const int cells = static_cast<int>(record.grid.x);
+    const int stride = side_of(record) + 2 * kAside;
+    const Sheet sheet = {texels, stride, static_cast<float>(stride) - 1.01f};
+    std::fill_n(texels, sheet_size(record), 0u);
+    const bool mirrored = record.grid.w == layout::kCausticsMirrored;
+    const Cut cut = {
+        record.grid.y / record.grid.x,
+        record.grid.w == layout::kCausticsPool,
+        mirrored ? kMirroredPerTexel : kPerTexel,
+        mirrored ? kMostMirrored : kMost};
+    for (int z = stripe.first; z < stripe.last; ++z) {
+        const Vec4* const row = rays.data() + z * (cells + 1);
+        const Vec4* const next = row + cells + 1;
+        for (int x = 0; x < cells; ++x) {
+            add_cell(sheet, row[x], row[x + 1], next[x], next[x + 1], cut);
+        }
+    }
+}
+
+/// A row of a map, of the sums of its stripes, the first of which are at `parts`.
+void write_row(
+    const layout::CausticRecord& record, const std::uint32_t* parts, int row, float* texels) {
+    const int side = side_of(record);
+    const int stripes = stripes_of(record);
+    const std::size_t apart = sheet_size(record);
+    const std::uint32_t* const from = parts + (row + kAside) * (side + 2 * kAside) + kAside;
+    for (int x = 0; x < side; ++x) {
+        std::uint32_t sum = 0;
+        for (int stripe = 0; stripe < stripes; ++stripe) {
+            sum += from[static_cast<std::size_t>(stripe) * apart + static_cast<std::size_t>(x)];
+        }
+        texels[x] = static_cast<float>(sum) * (1 / kWhole);
     }
 }
 
 }  // namespace
 
 void splat_caustics(
-    const layout::CausticRecord& record,
+    std::span<const layout::CausticRecord> records,
     std::span<const Vec4> rays,
+    int width,
     CausticSums& sums,
-    std::span<float> map) {
-    const int cells = static_cast<int>(record.grid.x);
-    const int side = static_cast<int>(record.grid.y);
-    LIMN_CHECK(
-        rays.size() >= static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1));
-    LIMN_CHECK(map.size() == static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    const int stride = side + 2 * kAside;
-    const auto sheet_size = static_cast<std::size_t>(stride) * static_cast<std::size_t>(stride);
-    sums.parts.resize(kStripes * sheet_size);
-    const float texels = record.grid.y / record.grid.x;
-    const bool by_area = record.grid.w == static_cast<float>(CausticMethod::Pool);
+    std::span<float> atlas) {
+    std::vector<Stripe> stripes;
+    std::vector<std::size_t> first_sum;
+    std::size_t size = 0;
+    for (std::size_t map = 0; map < records.size(); ++map) {
+        const int cells = static_cast<int>(records[map].grid.x);
+        const int count = stripes_of(records[map]);
+        first_sum.push_back(size);
+        for (int i = 0; i < count; ++i) {
+            stripes.push_back({map, cells * i / count, cells * (i + 1) / count, size});
+            size += sheet_size(records[map]);
+        }
+    }
+    sums.parts.resize(size);
 
-    parallel_for(kStripes, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t stripe = begin; stripe < end; ++stripe) {
-            const Sheet sheet = {
-                sums.parts.data() + stripe * sheet_size,
-                stride,
-                static_cast<float>(stride) - 1.01f};
-            std::fill_n(sheet.texels, sheet_size, 0u);
-            const int first = cells * static_cast<int>(stripe) / kStripes;
-            const int last = cells * static_cast<int>(stripe + 1) / kStripes;
-            for (int z = first; z < last; ++z) {
-                const Vec4* const row = rays.data() + z * (cells + 1);
-                const Vec4* const next = row + cells + 1;
-                for (int x = 0; x < cells; ++x) {
-                    add_cell(sheet, row[x], row[x + 1], next[x], next[x + 1], texels, by_area);
-                }
-            }
+    parallel_for(stripes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const layout::CausticRecord& record = records[stripes[i].map];
+            const auto points = static_cast<std::size_t>(record.grid.x) + 1;
+            const auto first = static_cast<std::size_t>(record.place.z);
+            LIMN_CHECK(rays.size() >= first + points * points);
+            const std::span own = rays.subspan(first, points * points);
+            sum_stripe(record, own, stripes[i], sums.parts.data() + stripes[i].sums);
         }
     });
-    parallel_for(static_cast<std::size_t>(side), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t z = begin; z < end; ++z) {
-            const std::uint32_t* const from =
-                sums.parts.data() + (z + kAside) * static_cast<std::size_t>(stride) + kAside;
-            for (int x = 0; x < side; ++x) {
-                std::uint32_t sum = 0;
-                for (int stripe = 0; stripe < kStripes; ++stripe) {
-                    sum += from
-                        [static_cast<std::size_t>(stripe) * sheet_size
-                         + static_cast<std::size_t>(x)];
-                }
-                map[z * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)] =
-                    static_cast<float>(sum) * (1 / kWhole);
+    parallel_for(stripes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Stripe& stripe = stripes[i];
+            const layout::CausticRecord& record = records[stripe.map];
+            const int side = side_of(record);
+            const int cells = static_cast<int>(record.grid.x);
+            const auto x = static_cast<std::size_t>(record.place.x);
+            const auto y = static_cast<std::size_t>(record.place.y);
+            const auto stride = static_cast<std::size_t>(width);
+            for (int row = side * stripe.first / cells; row < side * stripe.last / cells; ++row) {
+                const std::size_t at = (y + static_cast<std::size_t>(row)) * stride + x;
+                LIMN_CHECK(at + static_cast<std::size_t>(side) <= atlas.size());
+                const std::uint32_t* const parts = sums.parts.data() + first_sum[stripe.map];
+                write_row(record, parts, row, atlas.data() + at);
             }
         }
     });

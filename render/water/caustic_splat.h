@@ -14,15 +14,17 @@ namespace limn {
 
 /// Keeps its memory.
 struct CausticSums {
-    std::vector<std::uint32_t> parts;  ///< of stripes of the grid, one after the other
+    std::vector<std::uint32_t> parts;  ///< of stripes of the grids, one after the other
 };
 
-/// Where rays land and their light, (cells + 1)^2 of them, to the side^2 texels of a map: light
-/// that arrives over that of flat water. The same for any number of threads.
+/// Where the rays of all maps land and their light, (cells + 1)^2 a map, to the texels of the atlas
+/// that has `width` of them along x: light that arrives over that of flat water. The same for any
+/// number of threads. Texels of no map are left alone.
 void splat_caustics(
-    const layout::CausticRecord& record,
+    std::span<const layout::CausticRecord> records,
     std::span<const Vec4> rays,
+    int width,
     CausticSums& sums,
-    std::span<float> map);
+    std::span<float> atlas);
 
 }  // namespace limn

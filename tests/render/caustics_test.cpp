@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace limn::test {
@@ -81,7 +82,7 @@ class Pool : public Scene {
         FrameGraph& graph = frame_graph(shared_renderer());
         const gpu::Texture* const texture = graph.texture(graph.find("caustics"));
         REQUIRE(texture != nullptr);
-        gpu::FloatImage image = gpu::read_floats(*texture, 0, 0);
+        gpu::FloatImage image = gpu::read_floats(*texture);
         gpu::FloatImage turned = image;
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
@@ -375,6 +376,8 @@ TEST_CASE_FIXTURE(
     constexpr int kSide = 32;
     layout::CausticRecord record{};
     record.grid = {kCells, kSide, 0, 0};
+    constexpr int kWidth = 64;
+    record.place = {kSide, 0, 0, 1};
     std::vector<Vec4> rays;
     for (int z = 0; z <= kCells; ++z) {
         for (int x = 0; x <= kCells; ++x) {
@@ -386,25 +389,32 @@ TEST_CASE_FIXTURE(
         }
     }
     CausticSums sums;
-    std::vector<float> expected(kSide * kSide);
-    splat_caustics(record, rays, sums, expected);
+    std::vector<float> expected(kWidth * kSide);
+    splat_caustics(std::span(&record, 1), rays, kWidth, sums, expected);
 
     const Result<const gpu::Program*> splat =
         device().shaders().load({.compute = "caustics_splat.comp"});
     REQUIRE(splat.ok());
-    const gpu::Buffer records =
-        gpu::Buffer::of<layout::CausticRecord>("record", std::span(&record, 1));
-    BufferTexture texels("record", GL_RGBA32F);
+    std::vector<Vec4> jobs;
+    for (std::size_t first = 0; first < rays.size(); first += layout::kRayGroup) {
+        jobs.emplace_back(0, static_cast<float>(first), 0, 0);
+    }
+    const std::size_t groups = jobs.size();
+    jobs.resize(groups + layout::kCausticTexels);
+    std::memcpy(jobs.data() + groups, &record, sizeof(record));
+    const gpu::Buffer records = gpu::Buffer::of<Vec4>("jobs", jobs);
+    BufferTexture texels("jobs", GL_RGBA32F);
     texels.set(records);
     const gpu::Buffer landed = gpu::Buffer::of<Vec4>("rays", rays);
-    const std::vector<std::uint32_t> none(kSide * kSide);
+    const std::vector<std::uint32_t> none(kWidth * kSide);
     const gpu::Buffer light("light", none.size() * 4, gpu::BufferUse::Dynamic, none.data());
     device().use(**splat);
-    (*splat)->set("stride", static_cast<unsigned>(rays.size()));
+    (*splat)->set("groups", static_cast<int>(groups));
+    (*splat)->set("width", kWidth);
     texels.bind(device(), 20);
     device().bind_storage(0, landed);
     device().bind_storage(1, light);
-    device().dispatch(kCells * kCells / 64, 1);
+    device().dispatch(static_cast<unsigned>(groups));
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     std::vector<std::uint32_t> found(none.size());
     light.read(0, std::as_writable_bytes(std::span(found)));

@@ -8,6 +8,7 @@
 //   PROJECTORS          some light throws an image
 //   LOCAL_LIGHTS        some point or spot light is in view
 //   WATERS              there is water; ON_WATER: but what is lit is its surface
+//   MIRRORS             some water throws the sun's light up
 
 #include "lib/light.glsl"
 #include "lib/optics.glsl"
@@ -32,6 +33,10 @@
 layout(binding = 9) uniform samplerBuffer lights;           // LightRecord
 layout(binding = 10) uniform usamplerBuffer light_indices;  // the lists of the cells, one after the other
 layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length of each cell's list
+#if defined(UNDER_WATER) && defined(MIRRORS)
+#define OVER_WATER
+#include "lib/over_water.glsl"
+#endif
 
 // What casters and images let pass of a light with this LightRecord::shadow, on its way to `position_ws`.
 vec3 shadow_passing(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
@@ -63,10 +68,10 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     bool sunken = water.depth >= 0.0;
     vec3 bent = bent_to_light(water, to_light);
     irradiance *= sunken ? sunken_share(water, to_light, bent) : vec3(1.0);
-    vec3 uv;
-    if (in_caustic_map(water, index, uv) && sunken) {
-        irradiance *= caustic_at(water, uv);
-        shadow.xyz = vec3(water.map.y, kShadowView, 1.0);
+    Gathered gathered = gathered_at(water, index);
+    if (gathered.view >= 0.0 && sunken) {
+        irradiance *= gathered.light;
+        shadow.xyz = vec3(gathered.view, kShadowView, 1.0);
     }
     to_light = sunken ? bent : to_light;
 #ifdef LIGHT_PASSING
@@ -171,6 +176,9 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
     Reflected result;
     result.diffuse = r.diffuse * (around.irradiance * s.occlusion);
     result.specular = r.mirror * around.mirrored * open;
+#ifdef OVER_WATER
+    result.diffuse += r.diffuse * (mirrored_irradiance(position_ws, r.normal) / kPi);
+#endif
     return result;
 }
 

@@ -1,10 +1,7 @@
 // Light under water: bent by the surface at rest, absorbed on its way down, gathered by the waves where there is a map
 // of that (caustics_pass.h). After lib/optics.glsl.
 
-#include "caustics_gpu.h"
-
-layout(binding = 20) uniform samplerBuffer sunken_waters;  // SunkenRecord; the first texel's x is their number
-layout(binding = 21) uniform sampler2DArray caustic_maps;  // light that arrives over the light that flat water lets in
+#include "lib/caustic_place.glsl"
 
 const float kDiffuseWay = 1.2;     // how much longer than straight down the way of light from all around is
 const float kDiffuseThrough = 0.93;  // of light from all around, that the surface lets in
@@ -15,21 +12,20 @@ struct Sunken {
     vec2 axis;        // of the water, in the world
     vec3 extinction;  // [1/m]
     float index;      // of refraction
-    vec4 window;      // SunkenRecord
-    vec4 map;
-    vec3 bent;
+    vec4 maps;        // SunkenRecord
+    vec4 bent;
 };
 
 // In which water a point is.
 Sunken sunken_at(vec3 position_ws) {
-    Sunken found = Sunken(-1.0, vec2(0.0), vec2(1.0, 0.0), vec3(0.0), 1.333, vec4(0.0), vec4(-1.0), vec3(0.0));
-    int count = int(texelFetch(sunken_waters, 0).x);
+    Sunken found = Sunken(-1.0, vec2(0.0), vec2(1.0, 0.0), vec3(0.0), 1.333, vec4(0.0), vec4(0.0));
+    int count = int(texelFetch(water_lights, 0).x);
     int i = 0;
     do {
-        int at = 1 + i * int(kSunkenTexels);
-        vec4 origin = texelFetch(sunken_waters, at);
-        vec4 shape = texelFetch(sunken_waters, at + 1);
-        vec4 extinction = texelFetch(sunken_waters, at + 2);
+        int at = int(kHeadTexels) + i * int(kSunkenTexels);
+        vec4 origin = texelFetch(water_lights, at);
+        vec4 shape = texelFetch(water_lights, at + 1);
+        vec4 extinction = texelFetch(water_lights, at + 2);
         vec2 axis = vec2(origin.w, shape.x);
         vec3 from = position_ws - origin.xyz;
         vec2 place = vec2(axis.x * from.x + axis.y * from.z, axis.x * from.z - axis.y * from.x);
@@ -43,9 +39,8 @@ Sunken sunken_at(vec3 position_ws) {
                 axis,
                 extinction.rgb,
                 shape.w,
-                texelFetch(sunken_waters, at + 3),
-                texelFetch(sunken_waters, at + 4),
-                texelFetch(sunken_waters, at + 5).xyz);
+                texelFetch(water_lights, at + 3),
+                texelFetch(water_lights, at + 4));
         }
     } while (++i < count);
     return found;
@@ -64,17 +59,35 @@ vec3 sunken_share(Sunken water, vec3 to_light, vec3 bent) {
     return left * (through * max(to_light.y, 0.0) / down);
 }
 
-// Whether the map knows the place.
-bool in_caustic_map(Sunken water, int light, out vec3 uv) {
-    uv = vec3((water.place - water.bent.xy * water.depth - water.window.xy) * water.window.zw, water.map.x);
-    bool inside = all(greaterThan(uv.xy, vec2(0.0))) && all(lessThan(uv.xy, vec2(1.0)));
-    return inside && water.map.y >= 0.0 && float(light) == water.map.z && water.depth < water.map.w;
-}
+// What waves make of a light at a point: of the light under flat water, and the shadow view of what stands before it.
+struct Gathered {
+    float light;
+    float view;  // -1: no map knows the point
+};
 
-// What waves make of the light at a place of the map, over that under flat water.
-float caustic_at(Sunken water, vec3 uv) {
-    float gathered = textureLod(caustic_maps, uv, 0.0).r;
-    return water.map.x >= 0.0 ? max(mix(1.0, gathered, water.bent.z), 0.0) : 1.0;
+// Of the finest map that has the point in it; toward its edge the next one takes over, which at last is flat water.
+Gathered gathered_at(Sunken water, int light) {
+    vec2 entry = water.place - water.bent.xy * water.depth;
+    int map = int(water.maps.x);
+    int end = map + (float(light) == water.maps.z && water.depth < water.maps.w ? int(water.maps.y) : 0);
+    Gathered found = Gathered(1.0, -1.0);
+    float open = 1.0;  // share that no map has told of
+    float sum = 0.0;
+    do {
+        CausticPlace place = caustic_place(map);
+        vec2 uv = (entry - place.window.xy) * place.window.zw;
+        vec2 inside = min(uv, 1.0 - uv);
+        float edge = min(inside.x, inside.y);
+        bool here = map < end && edge > 0.0;
+        float share = here ? open * clamp(edge / max(place.view.y, 1e-6) - 1.0, 0.0, 1.0) : 0.0;
+        share = here && map + 1 == end ? open : share;
+        sum += share * (place.rect.w > 0.0 ? caustic_texel(place, uv) : 1.0);
+        open -= share;
+        found.view = here && found.view < 0.0 ? place.view.x : found.view;
+        ++map;
+    } while (map < end && open > 0.0);
+    found.light = max(mix(1.0, sum + open, water.bent.z), 0.0);
+    return found;
 }
 
 // Light from all around that is left.

@@ -1,0 +1,51 @@
+// The sun's light that waters throw up onto what stands above them (caustics_pass.h). After lib/caustic_place.glsl, the
+// lights and lib/shadow.glsl of lib/lighting.glsl.
+
+const float kAside = 1.5;  // texels of the map along the normal, from where a surface asks what is before it
+
+// Share of the mirrored light that meets nothing before it is `way` along, 0 .. 1 of the map's reach.
+float way_is_open(CausticPlace place, vec2 uv, float way) {
+#ifdef SHADOW_MAPS
+    vec4 rect = texelFetch(shadow_views, max(int(place.view.x), 0) * int(kShadowViewTexels) + 7);
+    vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
+    vec2 corner = floor(texel - 0.5);
+    vec2 part = texel - 0.5 - corner;
+    vec4 depths = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+    vec4 open = vec4(lessThanEqual(depths, vec4(1.0 - way)));
+    float share = mix(mix(open.w, open.z, part.x), mix(open.x, open.y, part.x), part.y);
+    return place.view.x >= 0.0 ? share : 1.0;
+#else
+    return 1.0;
+#endif
+}
+
+// Light that comes from water number n, as bright as its waves make it.
+vec3 mirrored_by(int n, vec3 position_ws, vec3 normal) {
+    int at = int(kHeadTexels) + int(texelFetch(water_lights, 0).x) * int(kSunkenTexels) + n * int(kMirrorTexels);
+    vec4 origin = texelFetch(water_lights, at);
+    vec4 shape = texelFetch(water_lights, at + 1);
+    vec4 bent = texelFetch(water_lights, at + 2);
+    CausticPlace place = caustic_place(int(shape.y));
+    int light = int(shape.z) * int(kLightTexels);
+    vec3 to_sun = texelFetch(lights, light).xyz;
+    float facing = max(dot(normal, vec3(to_sun.x, -to_sun.y, to_sun.z)), 0.0);
+
+    vec2 texel = 1.0 / (place.window.zw * place.rect.z);
+    vec3 from = position_ws - origin.xyz + normal * (kAside * max(texel.x, texel.y));
+    vec2 local = vec2(origin.w * from.x + shape.x * from.z, origin.w * from.z - shape.x * from.x);
+    vec2 uv = (local - bent.xy * from.y - place.window.xy) * place.window.zw;
+    bool inside = from.y > 0.0 && from.y < shape.w && all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
+    float share = bent.z * facing * caustic_texel(place, uv) * way_is_open(place, uv, from.y / bent.w);
+    return inside ? texelFetch(lights, light + 1).rgb * share : vec3(0.0);
+}
+
+// Irradiance of all.
+vec3 mirrored_irradiance(vec3 position_ws, vec3 normal) {
+    int count = int(texelFetch(water_lights, 0).y);
+    vec3 sum = vec3(0.0);
+    int n = 0;
+    do {
+        sum += mirrored_by(n, position_ws, normal);
+    } while (++n < count);
+    return sum;
+}
