@@ -356,7 +356,9 @@ void collect_caustics(
             add_above(source, camera, sun, list, shadows);
         }
     }
-    place_maps(list);
+    if (maps) {
+        place_maps(list);
+    }
 }
 
 void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list) {
