@@ -29,6 +29,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/shadow_volume_pass.h"
 #include "render/passes/speed_line_pass.h"
+#include "render/passes/texture_wave_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
 #include "render/shaders/view_gpu.h"
@@ -91,6 +92,7 @@ struct Passes {
     ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
+    TextureWavePass texture_waves;
     WaterPass water;
     WaterVeilPass veil;
     CausticsPass caustics;
@@ -467,6 +469,10 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         water.bodies.set(push(water.list.bodies));
         water.lines.set(push(water.list.lines));
         water.rings.set(push(water.list.rings));
+        if (water.list.details.needed) {
+            water.details.set(push(water.list.details.records));
+            water.texture_waves.set(push(water.list.details.waves));
+        }
         passes.water.patches.set(push(water.list.patches));
     }
     passes.clusters.lights.set(push(scene.clusters.lights));
@@ -547,6 +553,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
                                    : draw_each_light(into, passes.light_each, scene, gbuffer);
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
     draw_mirror_caustics(into, device, passes.mirrors, scene, radiance, gbuffer);
+    draw_texture_waves(into, passes.texture_waves, passes.water.surfaces);
     radiance = draw_water(into, passes.water, scene, radiance, gbuffer);
     radiance = draw_water_veil(into, passes.veil, passes.water.surfaces, scene, radiance, gbuffer);
     radiance =
@@ -701,6 +708,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!volumes) {
         return volumes.error();
     }
+    Result<TextureWavePass> texture_waves = create_texture_wave_pass(device);
+    if (!texture_waves) {
+        return texture_waves.error();
+    }
     Result<WaterPass> water = create_water_pass(device);
     if (!water) {
         return water.error();
@@ -722,9 +733,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
                      *std::move(clusters), *std::move(light_each), *std::move(forward),
                      *std::move(blend),    *std::move(developer),  *std::move(aovs),
                      *std::move(panorama), *std::move(reflection), *std::move(probes),
-                     *std::move(shadows),  *std::move(volumes),    *std::move(water),
-                     *std::move(veil),     *std::move(caustics),   MirrorCausticPass{},
-                     SpeedLinePass{},      LensPasses(device),     *accumulate};
+                     *std::move(shadows),  *std::move(volumes),    *std::move(texture_waves),
+                     *std::move(water),    *std::move(veil),       *std::move(caustics),
+                     MirrorCausticPass{},  SpeedLinePass{},        LensPasses(device),
+                     *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }
 

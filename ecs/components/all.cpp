@@ -30,6 +30,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_detail.h"
 #include "ecs/components/water_look.h"
 #include "ecs/components/water_noise.h"
 #include "ecs/components/water_ripples.h"
@@ -82,6 +83,7 @@ void register_all_components() {
     register_component<ScreenRipple>();
     register_component<Water>();
     register_component<WaterLook>();
+    register_component<WaterDetail>();
     register_component<WaterWaves>();
     register_component<WaterRipples>();
     register_component<RippleState>();

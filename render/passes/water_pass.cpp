@@ -11,10 +11,15 @@ namespace {
 constexpr unsigned kPatchesUnit = 0;
 constexpr unsigned kBehindUnit = 5;
 constexpr unsigned kReflectionMapUnit = 22;
+constexpr unsigned kDetailMapUnit = 23;
+constexpr unsigned kDetailWavesUnit = 24;
+constexpr unsigned kDetailsUnit = 25;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
 constexpr std::uint32_t kLooksKey = 1u << 29;
 constexpr std::uint32_t kPlanarKey = 1u << 28;
+constexpr std::uint32_t kDetailKey = 1u << 26;
+constexpr std::uint32_t kDetailMapKey = 1u << 25;
 constexpr std::uint32_t kUntracedKey = 1u << 27;
 constexpr int kSide = kWaterGrid + 1;
 constexpr int kIndices = 6 * kWaterGrid * kWaterGrid;
@@ -44,6 +49,11 @@ struct Variant {
     std::uint32_t key = 0;
 };
 
+/// Null where no water has any.
+const gpu::Texture* detail_map(const FrameScene& scene, const WaterSurfaces& waters) {
+    return scene.materials->find_image(waters.list.details.normal_map);
+}
+
 Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool velocity) {
     Variant variant = {lighting_defines(scene), lighting_key(scene)};
     const auto add = [&](bool wanted, const char* name, std::uint32_t key) {
@@ -58,7 +68,20 @@ Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool ve
     add(list.looks, "LOOKS", kLooksKey);
     add(list.planar, "PLANAR", kPlanarKey);
     add(!list.traced, "UNTRACED", kUntracedKey);
+    add(list.details.needed, "DETAIL", kDetailKey);
+    add(detail_map(scene, waters) != nullptr, "DETAIL_MAP", kDetailMapKey);
     return variant;
+}
+
+void bind_details(gpu::Device& device, const WaterPass& pass, const FrameScene& scene) {
+    const WaterSurfaces& waters = pass.surfaces;
+    waters.details.bind(device, kDetailsUnit);
+    if (const gpu::Texture* map = detail_map(scene, waters)) {
+        device.bind_texture(kDetailMapUnit, *map, &pass.repeat);
+    }
+    if (waters.wave_tiles) {
+        device.bind_texture(kDetailWavesUnit, waters.wave_tiles);
+    }
 }
 
 /// Draws radiance and distance of the scene.
@@ -109,6 +132,7 @@ Result<WaterPass> create_water_pass(gpu::Device& device) {
     pass.behind = *behind;
     const std::array<std::uint16_t, kIndices> indices = grid_indices();
     pass.indices = gpu::Buffer::of("water grid", std::span<const std::uint16_t>(indices));
+    pass.repeat = gpu::Sampler("water detail", {});
     pass.grid = gpu::VertexArray("water grid");
     pass.grid.set_indices(pass.indices);
     return pass;
@@ -175,6 +199,9 @@ TextureId draw_water(
             context.bind_texture(kBehindUnit, behind);
             if (pass.surfaces.list.planar) {
                 device.bind_texture(kReflectionMapUnit, pass.reflection);
+            }
+            if (pass.surfaces.list.details.needed) {
+                bind_details(device, pass, scene);
             }
             device.bind_vertex_array(pass.grid);
             device.draw_indexed(

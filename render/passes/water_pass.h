@@ -27,6 +27,7 @@ struct WaterPass {
     gpu::VertexArray grid{};
     gpu::Buffer indices{};
     WaterSurfaces surfaces{};
+    gpu::Sampler repeat{};      ///< of normal maps
     gpu::Texture reflection{};  ///< radiance and distance, upside down, and blurred levels of it
     BufferTexture patches = BufferTexture("water patches", GL_RGBA32F);
 };

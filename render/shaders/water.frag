@@ -1,6 +1,6 @@
 // The surface of water, seen from above or from below: what it mirrors and what is seen through it, by the Fresnel
 // equations; light is lost and scattered on its way through the water (Beer-Lambert). Definitions VELOCITY and those of
-// lib/water_reflection.glsl.
+// lib/water_detail.glsl and lib/water_reflection.glsl.
 #version 450
 #define UNMASKED  // the masks of shadow volumes are of the surfaces behind
 #define ON_WATER
@@ -9,6 +9,7 @@
 #include "lib/velocity.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
+#include "lib/water_detail.glsl"
 #include "lib/water_reflection.glsl"
 
 layout(binding = 5) uniform sampler2D scene_behind;  // water_behind.frag
@@ -169,6 +170,7 @@ void main() {
     bend.by_x += wave_by_x.xyz;
     bend.by_z += wave_by_z;
     bend.variance += wave_by_x.w;
+    add_detail(bend, body, rest, footprint);
     vec3 up = water_to_world(water, water_normal(bend));
     float roughness = sqrt(sqrt(kSmooth + bend.variance));  // a normal distribution's alpha is the root of this
     bool above = gl_FrontFacing;

@@ -22,16 +22,21 @@ constexpr float kFinest = 0.25f;        ///< side of a patch [m]
 struct Moments {
     float now = 0;
     float before = 0;
+    double time = 0;  ///< at the end of the last step [s]
 };
 
 Moments moments_of(const World& world, const RenderView& view) {
     const auto* const time = world.find_resource<FrameTime>();
     const float step = time != nullptr ? time->step : 0.0f;
-    return {(view.alpha - 1) * step, (view.alpha_before - 1) * step};
+    return {
+        (view.alpha - 1) * step,
+        (view.alpha_before - 1) * step,
+        time != nullptr ? time->time : 0.0};
 }
 
-void add_waves(const WaveTable& table, const Moments& at, WaterList& list) {
-    for (const WaveLine& line : table.lines) {
+/// The first `lines` of the table, and its rings.
+void add_waves(const WaveTable& table, std::size_t lines, const Moments& at, WaterList& list) {
+    for (const WaveLine& line : std::span(table.lines).first(lines)) {
         list.lines.push_back(
             {.run = Vec4(line.k, line.side),
              .phase = {
@@ -71,16 +76,17 @@ Vec3 reach_of(const WaveTable* table) {
     return reach;
 }
 
-/// Side of the smallest patch that shows all there is.
-float finest_of(const WaveTable* table, const RippleState* ripples, const OceanState* sea) {
+/// Side of the smallest patch that shows all there is; `lines` of the table move vertices.
+float finest_of(
+    const WaveTable* table, std::size_t lines, const RippleState* ripples, const OceanState* sea) {
     float cell = 1e9f;
     if (sea != nullptr) {
         for (const OceanCascade& cascade : sea->cascades) {
             cell = std::min(cell, cascade.patch / static_cast<float>(cascade.size));
         }
     }
-    if (table != nullptr && !table->lines.empty()) {
-        const float k = glm::length(table->lines.back().k);
+    if (table != nullptr && lines > 0) {
+        const float k = glm::length(table->lines[lines - 1].k);
         cell = std::min(cell, 2 * kPi / (std::max(k, 1e-6f) * kCellsPerWave));
     }
     if (table != nullptr) {
@@ -151,6 +157,7 @@ struct Body {
     const WaveTable* table = nullptr;
     WaterFrame frame;
     WaterLook look;
+    const WaterDetail* detail = nullptr;
 };
 
 /// Whether a camera there is in this water, or may be.
@@ -175,13 +182,15 @@ void add_body(
     const Affine& pose = view.world_from_camera;
     const RippleState* const ripples = list.ripples[list.bodies.size()];
     const OceanState* const sea = list.seas[list.bodies.size()].state;
+    const std::size_t lines = list.details.add(
+        body.detail, body.table, kFinest / static_cast<float>(kWaterGrid), at.time, at.now);
     PatchSource source;
     source.half = 0.5f * water.size;
     source.camera = body.frame.local({pose.row[0].w, pose.row[1].w, pose.row[2].w});
     source.margin = reach + reach_of(body.table);
     source.margin.y += ripples != nullptr ? kRippleReach : 0.0f;
     source.frustum = make_frustum(view.clip_from_world * matrix_of(body.frame));
-    source.finest = finest_of(body.table, ripples, sea);
+    source.finest = finest_of(body.table, lines, ripples, sea);
     source.body = static_cast<float>(list.bodies.size());
     append_water_patches(source, list.patches);
     if (!list.around) {
@@ -198,7 +207,7 @@ void add_body(
     const auto first_line = static_cast<float>(list.lines.size());
     const auto first_ring = static_cast<float>(list.rings.size());
     if (body.table != nullptr) {
-        add_waves(*body.table, at, list);
+        add_waves(*body.table, lines, at, list);
     }
     list.bodies.push_back(
         {.origin = Vec4(body.frame.origin, body.frame.along_x.x),
@@ -252,6 +261,7 @@ void collect_waters(
     list.entities.clear();
     list.caustics.clear();
     list.heights.clear();
+    list.details.clear();
     list.looks = list.planar = list.traced = false;
     const Moments at = moments_of(world, view);
     std::vector<Body> bodies;
@@ -260,6 +270,7 @@ void collect_waters(
             const Water,
             const WorldTransform,
             Optional<const WaterLook>,
+            Optional<const WaterDetail>,
             Optional<const WaveTable>,
             Optional<const RippleState>,
             Optional<const OceanState>,
@@ -269,6 +280,7 @@ void collect_waters(
                   const Water& water,
                   const WorldTransform& place,
                   const WaterLook* look,
+                  const WaterDetail* detail,
                   const WaveTable* table,
                   const RippleState* rippling,
                   const OceanState* sea,
@@ -277,7 +289,11 @@ void collect_waters(
             list.entities.push_back(entity);
             list.caustics.push_back(caustics);
             bodies.push_back(
-                {&water, table, water_frame(place.world), served_look(look, entity == planar)});
+                {&water,
+                 table,
+                 water_frame(place.world),
+                 served_look(look, entity == planar),
+                 detail});
             list.ripples.push_back(rippling);
             list.seas.push_back({sea, foam, at.now, at.before});
         });

@@ -7,6 +7,7 @@
 #include "render/shaders/water_gpu.h"
 #include "render/water/ocean_textures.h"
 #include "render/water/ripple_atlas.h"
+#include "render/water/water_details.h"
 #include "render/water/water_patches.h"
 
 #include <optional>
@@ -36,9 +37,10 @@ struct WaterList {
     std::vector<Entity> entities;
     std::vector<const Caustics*> caustics;  ///< of each body, or null
     std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
-    bool looks = false;                     ///< some body is not drawn as usual (WaterLook)
-    bool planar = false;                    ///< a body has the planar reflection
-    bool traced = false;                    ///< some body mirrors what the picture shows
+    WaterDetails details;
+    bool looks = false;   ///< some body is not drawn as usual (WaterLook)
+    bool planar = false;  ///< a body has the planar reflection
+    bool traced = false;  ///< some body mirrors what the picture shows
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };

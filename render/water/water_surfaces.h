@@ -20,6 +20,9 @@ struct WaterSurfaces {
     WaterList list{};
     BufferTexture bodies = BufferTexture("waters", GL_RGBA32F);
     BufferTexture lines = BufferTexture("wave lines", GL_RGBA32F);
+    gpu::Texture wave_tiles{};  ///< slopes of waves that fit into a tile (texture_waves.frag)
+    BufferTexture details = BufferTexture("water details", GL_RGBA32F);
+    BufferTexture texture_waves = BufferTexture("texture waves", GL_RGBA32F);
     BufferTexture rings = BufferTexture("wave rings", GL_RGBA32F);
 };
 

@@ -3,6 +3,7 @@
 #include "ecs/commands.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
+#include "ecs/components/water_detail.h"
 #include "ecs/components/water_waves.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
@@ -19,6 +20,7 @@ void age_wave_packets(Query<WaterWaves> waters, Res<const FrameTime> time);
 
 /// Fills the tables for the end of the step.
 void fill_wave_tables(
-    Query<const Water, const WaterWaves, WaveTable> waters, Res<const FrameTime> time);
+    Query<const Water, const WaterWaves, WaveTable, Optional<const WaterDetail>> waters,
+    Res<const FrameTime> time);
 
 }  // namespace limn

@@ -206,6 +206,22 @@ void fill_wave_table(const Water& water, const WaterWaves& waves, double time, W
     }
 }
 
+void snap_waves(const WaterDetail& detail, WaveTable& table) {
+    const float turns = detail.tile / (2 * kPi);
+    for (std::size_t i = 0; i < table.lines.size(); ++i) {
+        WaveLine& line = table.lines[i];
+        const float k = glm::length(line.k);
+        if (i < std::size_t{kMaxGeometricWaves} && 2 * kPi >= detail.split * k) {
+            continue;
+        }
+        Vec2 whole = glm::round(line.k * turns);
+        if (whole == Vec2(0)) {
+            (std::abs(line.k.x) >= std::abs(line.k.y) ? whole.x : whole.y) = 1;
+        }
+        line.k = whole / turns;
+    }
+}
+
 WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest) {
     const auto too_short = [&](float k) { return k * shortest > 2 * kPi; };
     WavePoint sum;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/components/water.h"
+#include "ecs/components/water_detail.h"
 #include "ecs/components/water_waves.h"
 
 #include <vector>
@@ -27,6 +28,10 @@ struct WavePoint {
 /// Waves without length, or with numbers that are not finite, are left out. Keeps the table's
 /// memory.
 void fill_wave_table(const Water& water, const WaterWaves& waves, double time, WaveTable& table);
+
+/// Turns and stretches the waves that are drawn into a texture (WaterDetail::split) a little, so
+/// that all fit into its tile a whole number of times. They run as fast as before.
+void snap_waves(const WaterDetail& detail, WaveTable& table);
 
 /// Of all waves of at least the length `shortest` [m] at (x, z) in the water's own space.
 [[nodiscard]] WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest = 0);
