@@ -57,6 +57,7 @@ struct RippleState {
     std::vector<RippleImpulse> impulses;  ///< of the next step; others add to it
     double level = 0;                     ///< mean height that bodies and walls make [m]
     std::uint32_t steps = 0;              ///< since it was made
+    std::uint32_t dropped = 0;            ///< impulses that were too many, since it was made
     std::int32_t wet = 0;                 ///< cells that are no wall
 
     // What stands in it; all empty where nothing does.
@@ -178,6 +179,7 @@ void visit_fields(RippleState& state, Visitor&& visit) {
     visit("impulses", state.impulses, {.doc = "of the next step"});
     visit("level", state.level, {.doc = "mean height that bodies and walls make", .unit = "m"});
     visit("steps", state.steps, {.doc = "since it was made"});
+    visit("dropped", state.dropped, {.doc = "impulses that were too many"});
     visit("wet", state.wet, {.doc = "cells that are no wall"});
     visit("walls", state.walls, {.doc = "that stand in it"});
     visit(

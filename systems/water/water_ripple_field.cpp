@@ -1,12 +1,14 @@
 #include "systems/water/water_ripple_field.h"
 
 #include "ecs/base/jobs.h"
+#include "ecs/base/log.h"
 #include "systems/water/water_ripple_grid.h"
 #include "systems/water/water_ripple_kernels.h"
 #include "systems/water/water_ripple_walls.h"
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace limn {
 
@@ -14,10 +16,12 @@ namespace {
 
 constexpr std::size_t kRowGrain = 32;
 constexpr float kCourant = 0.7f;           ///< of a cell that a wave may go in a sub-step
-constexpr std::uint32_t kLevelEvery = 32;  ///< steps between corrections of rounding
-constexpr int kSpongeCells = 12;
-constexpr float kSponge = 0.12f;       ///< share that the outermost cell of a sponge takes
-constexpr float kLargestPush = 10.0f;  ///< [m]
+constexpr std::uint32_t kLevelEvery = 16;  ///< steps between corrections of rounding
+constexpr float kShortestStep = 1e-5f;     ///< a change of heights is lost in rounding else [s]
+constexpr float kLongestSubstep = 0.1f;    ///< of the slowest waves too [s]
+constexpr int kSpongeCells = 40;           ///< narrower ones send long waves back
+constexpr float kSponge = 0.15f;           ///< share that the outermost cell of a sponge takes
+constexpr float kLargestPush = 10.0f;      ///< [m]
 
 Vec2 extent_of(const Water& water, const WaterRipples& ripples) {
     return {
@@ -89,9 +93,11 @@ void open_border(
 void fill_keep(std::vector<float>& keep, int cells, float base, bool absorbing) {
     keep.assign(static_cast<std::size_t>(cells), base);
     const int width = std::min(kSpongeCells, cells / 4);
+    const float strength =
+        kSponge * square(static_cast<float>(width) / static_cast<float>(kSpongeCells));
     for (int i = 0; absorbing && i < width; ++i) {
         const float depth = 1.0f - static_cast<float>(i) / static_cast<float>(width);
-        const float share = 1.0f - kSponge * depth * depth;
+        const float share = 1.0f - strength * depth * depth;
         keep[static_cast<std::size_t>(i)] *= share;
         keep[static_cast<std::size_t>(cells - 1 - i)] *= share;
     }
@@ -114,8 +120,8 @@ void keep_level(const RippleState& state, std::vector<float>& field) {
         return;
     }
     const auto drift = static_cast<float>(sum_of(state, field) / state.wet - state.level);
-    for (float& h : field) {
-        h -= drift;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        field[i] -= is_dry(state, i) ? 0.0f : drift;
     }
 }
 
@@ -155,11 +161,11 @@ bool fits(const RippleState& state, const Water& water, const WaterRipples& ripp
     return state.cells == grid.cells && state.cell == grid.cell;
 }
 
-void push_ripples(RippleState& state, const RippleImpulse& impulse) {
+std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse) {
     const float check = impulse.center.x + impulse.center.y + impulse.radius + impulse.height;
     if (state.cells.x == 0 || !std::isfinite(check) || !is_over(state, impulse.center)
         || is_dry(state, cell_at(state, impulse.center))) {
-        return;
+        return 0;
     }
     const Vec2 extent = state.size();
     const Vec2 radius(std::clamp(
@@ -177,8 +183,11 @@ void push_ripples(RippleState& state, const RippleImpulse& impulse) {
         weights += static_cast<double>(weight);
         sum += static_cast<double>(crater(weight, x, z));
     });
+    const CellBox box = box_around(state, impulse.center, radius);
+    const std::int64_t cells =
+        static_cast<std::int64_t>(box.last.x - box.first.x) * (box.last.y - box.first.y);
     if (!(weights > 0)) {
-        return;
+        return cells;
     }
     const auto excess = static_cast<float>(sum / weights);
     each_bump_cell(state, impulse.center, radius, [&](std::size_t at, float weight, int x, int z) {
@@ -186,6 +195,7 @@ void push_ripples(RippleState& state, const RippleImpulse& impulse) {
         state.height[at] += push;
         state.before[at] += push;
     });
+    return cells;
 }
 
 void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
@@ -234,23 +244,47 @@ void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
     state.level = state.wet > 0 ? (volume + state.walled) / covered : 0;
 }
 
-void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
-    if (state.cells.x == 0 || !(step > 0) || !std::isfinite(step)) {
-        return;
-    }
-    for (const RippleImpulse& impulse : state.impulses) {
-        push_ripples(state, impulse);
+namespace {
+
+void push_all(RippleState& state) {
+    std::int64_t cells = 0;
+    for (std::size_t i = 0; i < state.impulses.size(); ++i) {
+        if (cells > kMaxPushedCells) {
+            state.dropped += static_cast<std::uint32_t>(state.impulses.size() - i);
+            static std::once_flag said;
+            std::call_once(said, [&] {
+                log_warn(
+                    "ripples: {} impulses of one step dropped, all others push {} cells "
+                    "(kMaxPushedCells)",
+                    state.dropped,
+                    cells);
+            });
+            break;
+        }
+        cells += push_ripples(state, state.impulses[i]);
     }
     state.impulses.clear();
+}
+
+}  // namespace
+
+void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
+    if (state.cells.x == 0 || !(step >= kShortestStep) || !std::isfinite(step)) {
+        return;
+    }
+    push_all(state);
 
     const bool absorbing = ripples.border == RippleBorder::Absorbing;
     const float speed = std::isfinite(ripples.speed) ? std::max(ripples.speed, 0.0f) : 0.0f;
     const float wanted = std::ceil(speed * step / (kCourant * state.cell));
     const int substeps =
         static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxRippleSubsteps)));
-    const float dt = step / static_cast<float>(substeps);
+    const float dt = std::min(step / static_cast<float>(substeps), kLongestSubstep);
     if (dt != state.substep) {  // heights one sub-step earlier, of the new length
-        const float ratio = state.substep > 0 ? dt / state.substep : 0.0f;
+        // In the time of waves, which are slowed down where they would be too quick.
+        const float longest = kCourant * state.cell / std::max(speed, 1e-6f);
+        const float last = std::min(state.substep, longest);
+        const float ratio = last > 0 ? std::min(dt, longest) / last : 0.0f;
         for (std::size_t i = 0; i < state.height.size(); ++i) {
             state.before[i] = state.height[i] - (state.height[i] - state.before[i]) * ratio;
         }
@@ -259,8 +293,10 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
     state.substep = dt;
 
     const float courant = std::min(speed * dt / state.cell, kCourant);
-    const float fade = std::clamp(ripples.damping * dt, 0.0f, 1.0f);
-    const float base = (1 - fade) / (1 + fade);  // of the motion: its root of the height
+    // Friction is that of the mean of both velocities around now: stable however strong it is.
+    const float fade = std::max(ripples.damping * dt, 0.0f);
+    const float base = (1 - fade) / (1 + fade);
+    const float courant2 = courant * courant / (1 + fade);
     thread_local std::vector<float> keep_x;
     thread_local std::vector<float> keep_z;
     fill_keep(keep_x, state.cells.x, base, absorbing);
@@ -286,9 +322,9 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
                         {state.before.data() + state.at(0, row), width},
                         columns,
                         row_keeps[z],
-                        courant * courant);
+                        courant2);
                 }
-                close_faces(state, begin, end, courant * courant / 6.0f);
+                close_faces(state, begin, end, courant2 / 6.0f);
             });
         fill_rims(state, state.before);
         if (absorbing) {

@@ -15,6 +15,8 @@ namespace limn {
 inline constexpr int kMaxRippleCells = 2048 * 2048;
 /// Sub-steps of a step, at most; quicker waves are slowed down.
 inline constexpr int kMaxRippleSubsteps = 16;
+/// Cells that the impulses of a step push, at most, all together; those left then are dropped.
+inline constexpr std::int64_t kMaxPushedCells = 30'000'000;
 
 /// At rest. A Water without end needs a window; without one: no cells.
 [[nodiscard]] RippleState make_ripples(const Water& water, const WaterRipples& ripples, float step);
@@ -22,9 +24,10 @@ inline constexpr int kMaxRippleSubsteps = 16;
 /// Whether `state` is the one that make_ripples makes now, but for what has moved in it.
 [[nodiscard]] bool fits(const RippleState& state, const Water& water, const WaterRipples& ripples);
 
-/// Pushes the water as `impulse` says. The middle of it must be over the grid; numbers that are not
-/// finite do nothing; a radius of less than 1.5 cells is as large.
-void push_ripples(RippleState& state, const RippleImpulse& impulse);
+/// Pushes the water as `impulse` says; returns how many cells that were looked at. The middle of it
+/// must be over the grid; numbers that are not finite do nothing; a radius of less than 1.5 cells
+/// is as large.
+std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse);
 
 /// What a body pushes up: `volume` [m^3] spread over an ellipse.
 struct WaterBulge {
@@ -37,7 +40,8 @@ struct WaterBulge {
 /// they were. Only those whose middle is over the grid count.
 void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges);
 
-/// Moves the field on by `step` [s]: impulses first.
+/// Moves the field on by `step` [s]: impulses first. Without a step, > 0, they wait. A sub-step
+/// is a tenth of a second at most, so a longer step may pass for a shorter one.
 void step_ripples(RippleState& state, const WaterRipples& ripples, float step);
 
 struct RipplePoint {

@@ -7,6 +7,8 @@
 #include "systems/water/water_ripple_walls.h"
 #include "systems/water/water_touch.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,10 +19,45 @@ namespace {
 constexpr float kDropCells = 3.0f;       ///< radius of what a rain drop disturbs
 constexpr float kMostDrops = 100000.0f;  ///< in a step
 
+/// Sorted along x of the world, so that a pool looks at those near it alone.
+struct Touching {
+    float x = 0;
+    std::size_t order = 0;
+    TouchingShape shape;
+};
 struct Wall {
+    float x = 0;
+    std::size_t order = 0;
     const WaterWall* wall = nullptr;
     const Affine* place = nullptr;
 };
+
+/// Of all bodies and walls.
+struct Surroundings {
+    std::vector<Touching> bodies;
+    std::vector<Wall> walls;
+    float widest = 0;  ///< radius of a wall [m]
+};
+
+template <typename T>
+void sort_along_x(std::vector<T>& all) {
+    all.erase(
+        std::remove_if(all.begin(), all.end(), [](const T& one) { return !std::isfinite(one.x); }),
+        all.end());
+    std::sort(all.begin(), all.end(), [](const T& a, const T& b) {
+        return a.x != b.x ? a.x < b.x : a.order < b.order;
+    });
+}
+
+/// Those with x within `reach` [m] of `middle`.
+template <typename T>
+std::span<const T> near_x(const std::vector<T>& sorted, float middle, float reach) {
+    const auto below = [](const T& one, float x) { return one.x < x; };
+    const auto first = std::lower_bound(sorted.begin(), sorted.end(), middle - reach, below);
+    const auto last = std::upper_bound(
+        first, sorted.end(), middle + reach, [](float x, const T& one) { return x < one.x; });
+    return {first, last};
+}
 
 struct Pool {
     Entity entity;
@@ -43,12 +80,13 @@ void let_rain(const WaterRipples& ripples, Random& random, float step, RippleSta
     }
 }
 
-void stand_walls(const Pool& pool, std::span<const Wall> walls, const WaterFrame& frame) {
+void stand_walls(const Pool& pool, std::span<const Wall> walls) {
     thread_local std::vector<PlacedWall> placed;
     placed.clear();
+    const WaterSurface& surface = pool.surface;
     for (const Wall& wall : walls) {
         const auto one = place_wall(
-            *wall.wall, *wall.place, frame, pool.surface.water.depth, pool.state->size());
+            *wall.wall, *wall.place, surface.frame, surface.water.depth, pool.state->size());
         if (one) {
             placed.push_back(*one);
         }
@@ -56,24 +94,21 @@ void stand_walls(const Pool& pool, std::span<const Wall> walls, const WaterFrame
     set_ripple_walls(*pool.state, placed, pool.ripples->border);
 }
 
-void step_pool(
-    const Pool& pool,
-    std::span<const TouchingShape> bodies,
-    std::span<const Wall> walls,
-    Random& random,
-    float step) {
+void step_pool(const Pool& pool, const Surroundings& around, Random& random, float step) {
     RippleState& state = *pool.state;
     if (!fits(state, pool.surface.water, *pool.ripples)) {
         state = make_ripples(pool.surface.water, *pool.ripples, step);
     }
-    thread_local std::vector<WaterBulge> bulges;
-    bulges.clear();
-    stand_walls(pool, walls, pool.surface.frame);
+    const float x = pool.surface.frame.origin.x;
+    const float reach = 0.5f * glm::length(state.size()) + state.cell;
+    stand_walls(pool, near_x(around.walls, x, reach + around.widest));
     // Open water is too large to rise.
     const bool rises = pool.ripples->border == RippleBorder::Reflecting;
     const float level = rises ? static_cast<float>(state.level) : 0.0f;
-    for (const TouchingShape& body : bodies) {
-        bulges.push_back(bulge_of(body, pool.surface, level, state.size()));
+    thread_local std::vector<WaterBulge> bulges;
+    bulges.clear();
+    for (const Touching& body : near_x(around.bodies, x, reach)) {
+        bulges.push_back(bulge_of(body.shape, pool.surface, level, state.size()));
     }
     displace_ripples(state, bulges);
     let_rain(*pool.ripples, random, step, state);
@@ -109,12 +144,14 @@ void update_water_ripples(
     Res<const Assets> assets,
     Res<const RandomSeed> seed,
     Res<const FrameTime> time) {
-    thread_local std::vector<TouchingShape> touching;  // all keep their memory from step to step
-    thread_local std::vector<Wall> standing;
+    thread_local Surroundings surroundings;  // all keep their memory from step to step
+    thread_local std::vector<TouchingShape> shapes;
     thread_local std::vector<Pool> pools;
-    touching.clear();
-    standing.clear();
+    surroundings.bodies.clear();
+    surroundings.walls.clear();
+    surroundings.widest = 0;
     pools.clear();
+    shapes.clear();
     bodies.each([&](const WaterTouch& touch,
                     const WorldTransform& place,
                     const TouchParts* parts,
@@ -126,11 +163,24 @@ void update_water_ripples(
             parts,
             skinned ? &assets->skins[deformed->skin.index] : nullptr,
             skinned ? poses.find<const Pose>(deformed->character) : nullptr,
-            touching);
+            shapes);
     });
+    for (const TouchingShape& shape : shapes) {
+        const float x = transform_point(shape.world, shape.offset).x;
+        surroundings.bodies.push_back({x, surroundings.bodies.size(), shape});
+    }
     walls.each([&](const WaterWall& wall, const WorldTransform& place) {
-        standing.push_back({&wall, &place.world});
+        const float x = transform_point(place.world, wall.offset).x;
+        surroundings.walls.push_back({x, surroundings.walls.size(), &wall, &place.world});
+        float square_sum = 0;
+        for (const Vec4& row : place.world.row) {
+            const Vec3 side = Vec3(row) * wall.half;
+            square_sum += glm::dot(side, side);
+        }
+        surroundings.widest = std::max(surroundings.widest, std::sqrt(square_sum));
     });
+    sort_along_x(surroundings.bodies);
+    sort_along_x(surroundings.walls);
     waters.each([&](Entity entity,
                     const Water& water,
                     const WaterRipples& ripples,
@@ -141,14 +191,13 @@ void update_water_ripples(
         const WaterSurface surface = {water_frame(place.world), water, ocean, waves};
         pools.push_back({entity, &ripples, surface, &state});
     });
-    const std::vector<TouchingShape>& all_bodies = touching;
-    const std::vector<Wall>& all_walls = standing;
+    const Surroundings& around = surroundings;
     const std::vector<Pool>& all_pools = pools;
     parallel_for(all_pools.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (const Pool& pool : std::span(all_pools).subspan(begin, end - begin)) {
             Random random(
                 seed->seed, pool.entity.bits(), name_hash("update_water_ripples"), time->frame);
-            step_pool(pool, all_bodies, all_walls, random, time->step);
+            step_pool(pool, around, random, time->step);
         }
     });
 }

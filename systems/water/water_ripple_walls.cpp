@@ -189,9 +189,9 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
     }
 }
 
-/// Water in cells that have become dry, and none in those that no longer are: cells beside those
-/// share the difference, so that none is made or lost. In `field`, which has the heights of water
-/// between the walls of `was`.
+/// Cells that have become dry lose their water, those that no longer are get it as high as beside
+/// them: the cells beside them share the difference, so that none is made or lost. In `field`,
+/// which has the heights of water between the walls of `was`.
 void move_water(
     const RippleState& state, const std::vector<std::uint8_t>& was, std::vector<float>& field) {
     if (was == state.dry) {
@@ -199,44 +199,39 @@ void move_water(
     }
     const auto was_dry = [&](std::size_t at) { return !was.empty() && was[at] != 0; };
     std::vector<std::size_t> beside;
-    double homeless = 0;
+    std::vector<std::size_t> comes;
+    std::vector<std::size_t> goes;
     for (int z = 0; z < state.cells.y; ++z) {
-        const auto row = static_cast<std::ptrdiff_t>(state.at(0, z));
-        if (was.size() == state.dry.size()
-            && std::equal(
-                was.begin() + row, was.begin() + row + state.cells.x, state.dry.begin() + row)) {
-            continue;
-        }
         for (int x = 0; x < state.cells.x; ++x) {
             const std::size_t at = state.at(x, z);
-            const bool comes = is_dry(state, at) && !was_dry(at);
-            const bool goes = !is_dry(state, at) && was_dry(at);
-            if (!comes && !goes) {
+            if (is_dry(state, at) == was_dry(at)) {
                 continue;
             }
-            float sum = 0;
-            int count = 0;
+            (is_dry(state, at) ? comes : goes).push_back(at);
             for (const IVec2& to : kAround) {
                 const IVec2 cell = IVec2(x, z) + to;
                 const std::size_t other = state.at(cell.x, cell.y);
                 if (is_on_grid(state, cell) && !is_dry(state, other) && !was_dry(other)) {
-                    sum += field[other];
-                    ++count;
                     beside.push_back(other);
                 }
-            }
-            if (comes) {
-                homeless += static_cast<double>(field[at]);
-                field[at] = 0;
-            } else {
-                field[at] = count > 0 ? sum / static_cast<float>(count) : 0.0f;
-                homeless -= static_cast<double>(field[at]);
             }
         }
     }
     std::sort(beside.begin(), beside.end());
     beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-    if (beside.empty() && homeless != 0) {
+    double level = 0;
+    for (const std::size_t at : beside) {
+        level += static_cast<double>(field[at]) / static_cast<double>(beside.size());
+    }
+    double homeless = 0;
+    for (const std::size_t at : comes) {
+        homeless += static_cast<double>(std::exchange(field[at], 0.0f));
+    }
+    for (const std::size_t at : goes) {
+        field[at] = static_cast<float>(level);
+        homeless -= static_cast<double>(field[at]);
+    }
+    if (beside.empty()) {
         each_wet(state, [&](int, int, std::size_t at) { beside.push_back(at); });
     }
     for (const std::size_t at : beside) {

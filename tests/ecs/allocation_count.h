@@ -1,6 +1,7 @@
 #pragma once
 
-#include <atomic>
+#include "tests/ecs/allocated_bytes.h"
+
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -9,8 +10,6 @@
 // program may include it.
 
 namespace limn::test {
-
-inline std::atomic<std::size_t> allocated_bytes = 0;
 
 inline void* count_allocation(std::size_t size, std::size_t align) {
     allocated_bytes.fetch_add(size, std::memory_order_relaxed);
@@ -26,14 +25,6 @@ inline void* count_allocation(std::size_t size, std::size_t align) {
 /// Apart, so that no compiler takes the pair of it and operator new for a mistake.
 [[gnu::noinline]] inline void give_back(void* memory) {
     std::free(memory);
-}
-
-/// Bytes asked for while `work` ran, by all threads, whether they were given back or not.
-template <typename Work>
-std::size_t bytes_allocated_by(const Work& work) {
-    const std::size_t before = allocated_bytes.load(std::memory_order_relaxed);
-    work();
-    return allocated_bytes.load(std::memory_order_relaxed) - before;
 }
 
 }  // namespace limn::test

@@ -48,6 +48,24 @@ TEST_CASE("water noise: it and its slope have no jumps, at the borders of its ce
     }
 }
 
+TEST_CASE("water noise: each octave is half as high, twice as fine and twice as fast") {
+    NoiseSurface one;
+    one.octaves = 1;
+    NoiseSurface two = one;
+    two.octaves = 2;
+    NoiseSurface next = one;
+    next.seed += 1;
+    next.amplitude *= 0.5f;
+    next.frequency *= 2;
+    next.speed *= 2;
+    for (int i = 0; i < 50; ++i) {
+        const Vec2 at = {0.37f * static_cast<float>(i), std::sin(static_cast<float>(i))};
+        const double time = 0.11 * i;
+        const float sum = noise_height(one, at, time) + noise_height(next, at, time);
+        CHECK(noise_height(two, at, time) == doctest::Approx(sum).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("water noise: heights lie between the least and the greatest, normals look up") {
     NoiseField field;
     fill_noise_field({}, 2.5, field);

@@ -1,9 +1,13 @@
 #include "ecs/base/jobs.h"
+#include "ecs/components/buoyancy.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_kernels.h"
+#include "systems/water/water_ripple_system.h"
+#include "tests/ecs/allocated_bytes.h"
 
 #include <doctest/doctest.h>
 
@@ -205,6 +209,18 @@ TEST_CASE("water ripples: walls send waves back, open borders let them go") {
     CHECK(left[1] < 0.05f * left[0]);
 }
 
+TEST_CASE("water ripples: less than a twentieth of a crest comes back from open borders") {
+    const WaterRipples ripples = {
+        .cell = 0.05f, .speed = 1.5f, .damping = 0, .border = RippleBorder::Absorbing};
+    RippleState state = make_ripples(pool(8, 8), ripples, kStep);
+    push_ripples(state, {.radius = 1, .height = 0.1f});
+    run(state, ripples, 130);  // 3.3 m: before it is at the borders
+    const float crest = reach(state);
+    run(state, ripples, 170);  // beyond the corners
+    CHECK(crest > 0.005f);
+    CHECK(reach(state) < 0.04f * crest);
+}
+
 TEST_CASE("water ripples: a stone on the ground raises the water by its volume over the area") {
     Pond pond({.cell = 0.05f, .damping = 1});
     pond.world.create(Transform{.position = {0.5f, -1, 0.2f}}, WaterTouch{.half = Vec3(0.3f)});
@@ -291,6 +307,139 @@ TEST_CASE("water ripples: rain falls as often as it should, the same for every n
     set_thread_count(2);
 }
 
+TEST_CASE("water ripples: as many drops fall as it rains, everywhere, in each pool others") {
+    // Waves that stand still keep each drop's mark.
+    World world;
+    Schedule schedule = make_world_schedule();
+    const WaterRipples ripples = {.speed = 0, .damping = 0, .rain = 8, .rain_height = 0.01f};
+    const Entity first = world.create(Transform{}, pool(6, 4), ripples);
+    const Entity second = world.create(Transform{}, pool(6, 4), ripples);
+    for (int i = 0; i < 120; ++i) {
+        step_world(world, schedule);
+    }
+    const RippleState& state = world.get<RippleState>(first);
+    RippleState drop = make_ripples(pool(6, 4), ripples, kStep);
+    push_ripples(drop, {.radius = 3 * drop.cell, .height = -0.01f});
+    double marks = 0;
+    double mark = 0;
+    Vec2 spread(0);
+    for (int z = 0; z < state.cells.y; ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            const float square_height = square(state.height[state.at(x, z)]);
+            const Vec2 share = (Vec2(x, z) + 0.5f) / Vec2(state.cells) - 0.5f;
+            marks += static_cast<double>(square_height);
+            mark += static_cast<double>(square(drop.height[drop.at(x, z)]));
+            spread += square_height * share * share;
+        }
+    }
+    CHECK(marks / mark == doctest::Approx(8 * 24 * 2).epsilon(0.15));
+    for (int axis = 0; axis < 2; ++axis) {
+        CHECK(static_cast<double>(spread[axis]) / marks == doctest::Approx(1.0 / 12).epsilon(0.15));
+    }
+    CHECK(state.height != world.get<RippleState>(second).height);
+}
+
+TEST_CASE("water ripples: another size or cell begins another grid, at rest") {
+    Pond pond({}, pool(2, 6));
+    pond.run(1);
+    push_ripples(pond.world.get<RippleState>(pond.entity), {.center = {0, 2.5f}});
+    pond.run(1);
+    // It has two ends, one of which is nearer.
+    CHECK(reach(pond.state()) > 0.01f);
+    push_ripples(pond.world.get<RippleState>(pond.entity), {.center = {2.5f, 0}, .height = 9});
+    CHECK(reach(pond.state()) < 1);
+    CHECK(sample_ripples(pond.state(), {0, 2.5f}).height != 0);
+    CHECK(sample_ripples(pond.state(), {2.5f, 0}).height == 0);
+    const IVec2 cells = pond.state().cells;
+    pond.world.get<WaterRipples>(pond.entity).cell = 0.1f;
+    pond.run(1);
+    CHECK(pond.state().cells == cells / 2);
+    CHECK(reach(pond.state()) == 0);
+    pond.world.get<Water>(pond.entity).size.x = 4;
+    pond.run(1);
+    CHECK(pond.state().cells == IVec2(cells.x, cells.y / 2));
+    pond.world.get<Water>(pond.entity).size.x = 0;
+    pond.run(1);
+    CHECK(pond.state().cells == IVec2(0));
+}
+
+TEST_CASE("water ripples: steps of any length, none, backward or not a number") {
+    const float inf = std::numeric_limits<float>::infinity();
+    for (const float damping : {0.0f, 0.4f, 100.0f}) {
+        for (const float speed : {0.0f, 0.01f, 1.2f, 1000.0f}) {
+            const WaterRipples ripples = {.cell = 0.1f, .speed = speed, .damping = damping};
+            RippleState state = make_ripples(pool(2, 2), ripples, kStep);
+            CAPTURE(speed);
+            CAPTURE(damping);
+            push_ripples(state, {.radius = 0.5f, .height = -0.1f});
+            run(state, ripples, 5);
+            for (const float step : {1e-9f, 1e6f, 0.5f, 1e30f, kStep, 1e-30f, 3600.0f}) {
+                step_ripples(state, ripples, step);
+                step_ripples(state, ripples, step);
+                CAPTURE(step);
+                CHECK(reach(state) < 1);
+                CHECK(std::isfinite(sample_ripples(state, {0, 0}).velocity));
+            }
+            const std::vector<float> before = state.height;
+            state.impulses.push_back({});
+            for (const float step : {0.0f, -1.0f, -inf, inf, std::nanf("")}) {
+                step_ripples(state, ripples, step);
+            }
+            CHECK(state.height == before);
+            CHECK(state.impulses.size() == 1);
+        }
+    }
+}
+
+TEST_CASE("water ripples: cells of any size, and water of none or of negative depth") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float cell : {0.0f, -1.0f, nan}) {
+        CHECK(make_ripples(pool(4, 3), {.cell = cell}, kStep).cells == IVec2(0));
+    }
+    for (const float cell : {1e-30f, 1e-6f, 1e6f, 1e30f}) {
+        const RippleState state = make_ripples(pool(4, 3), {.cell = cell}, kStep);
+        CHECK(state.cells.x >= 4);
+        CHECK(state.cells.y >= 4);
+        CHECK(state.cells.x * state.cells.y <= kMaxRippleCells);
+    }
+    World world;
+    Schedule schedule = make_world_schedule();
+    const WaterRipples rain = {.cell = 1e6f, .rain = 50};
+    const Entity deep = world.create(
+        Transform{}, Water{.size = {4, 3}, .depth = -2}, WaterWaves{.waves = {{}}}, rain);
+    const Entity none = world.create(Transform{}, Water{.size = {-4, 0}, .depth = nan}, rain);
+    world.create(Transform{.position = {0, -1, 0}}, WaterTouch{}, Floating{});
+    for (int i = 0; i < 30; ++i) {
+        step_world(world, schedule);
+    }
+    CHECK(reach(world.get<RippleState>(deep)) < 1);
+    CHECK(world.get<RippleState>(none).cells == IVec2(0));
+    for (const WaveLine& line : world.get<WaveTable>(deep).lines) {
+        CHECK(std::isfinite(line.frequency));
+    }
+}
+
+TEST_CASE("water ripples: a hundred thousand impulses as wide as the pool end in their time") {
+    RippleState state = make_ripples(pool(10, 10), {}, kStep);
+    for (int i = 0; i < 100000; ++i) {
+        state.impulses.push_back({.radius = 1e9f, .height = 1e-4f});
+    }
+    run(state, {}, 1);
+    CHECK(state.impulses.empty());
+    CHECK(state.dropped > 99000);
+    CHECK(state.dropped < 100000);
+    CHECK(reach(state) < 10);
+    // As many drops are none too many.
+    RippleState rained = make_ripples(pool(10, 10), {}, kStep);
+    for (int i = 0; i < 100000; ++i) {
+        const float turn = static_cast<float>(i);
+        rained.impulses.push_back(
+            {.center = 5.0f * Vec2(std::sin(turn), std::cos(1.3f * turn)), .radius = 0.15f});
+    }
+    run(rained, {}, 1);
+    CHECK(rained.dropped == 0);
+}
+
 TEST_CASE("water ripples: too quick, too many, too small, not a number: never NaN") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     // A step that no grid can take is taken in pieces; waves that are quicker still are slowed.
@@ -358,20 +507,77 @@ TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") 
     CHECK(sample_ripples(state, {2.1f, 0}).height == 0);
 }
 
-TEST_CASE("water ripples: a hundred pools are stepped, each on its own grid") {
+TEST_CASE("water ripples: a hundred pools are a hundred times one, to the bit") {
     World world;
     Schedule schedule = make_world_schedule();
+    std::vector<Entity> pools;
+    std::vector<RippleState> alone;
+    const WaterRipples ripples = {.cell = 0.1f};
+    const RippleImpulse splash = {.center = {0.1f, 0.1f}, .radius = 0.5f, .height = -0.1f};
     for (int i = 0; i < 100; ++i) {
-        const float size = 0.5f + 0.03f * static_cast<float>(i);
-        world.create(Transform{}, pool(size, 2 * size), WaterRipples{.rain = 50});
+        const float size = 1.5f + 0.03f * static_cast<float>(i);
+        const Vec3 place = {
+            8.0f * static_cast<float>(i % 10), 0, 15.0f * static_cast<float>(i / 10)};
+        pools.push_back(world.create(Transform{.position = place}, pool(size, 2 * size), ripples));
+        if (i % 3 == 0) {
+            world.create(
+                Transform{.position = place + Vec3(0.2f, -0.3f, 0)},
+                WaterTouch{.half = Vec3(0.2f)});
+        }
+        if (i % 4 == 0) {
+            world.create(
+                Transform{.position = place + Vec3(-0.4f, 0, 0.3f)}, WaterWall{.half = Vec3(0.2f)});
+        }
     }
-    for (int i = 0; i < 30; ++i) {
+    for (const Entity entity : pools) {
+        if (!world.has<RippleState>(entity)) {
+            step_world(world, schedule);
+        }
+    }
+    for (std::size_t i = 0; i < pools.size(); ++i) {
+        RippleState& state = world.get<RippleState>(pools[i]);
+        alone.push_back(state);
+        state.impulses.push_back(splash);
+        CHECK(state.body.empty() == (i % 3 != 0));
+        CHECK(state.walls.size() == (i % 4 == 0 ? 1 : 0));
+    }
+    for (int i = 0; i < 20; ++i) {
         step_world(world, schedule);
     }
-    int moved = 0;
-    world.query<const RippleState>().each(
-        [&](const RippleState& state) { moved += reach(state) > 0 ? 1 : 0; });
-    CHECK(moved == 100);
+    for (std::size_t i = 0; i < pools.size(); ++i) {
+        push_ripples(alone[i], splash);
+        const RippleState& state = world.get<RippleState>(pools[i]);
+        if (i % 3 != 0) {  // the level of the others is one step behind
+            run(alone[i], ripples, 20);
+            CHECK(state.height == alone[i].height);
+        }
+        CHECK(reach(state) > 0);
+    }
+}
+
+TEST_CASE("water ripples: pools at work ask for no memory, however many there are") {
+    World world;
+    Schedule schedule;
+    schedule.add<update_water_ripples>();
+    for (int i = 0; i < 100; ++i) {
+        const Vec3 place = {6.0f * static_cast<float>(i), 0, 0};
+        const float size = 1 + 0.03f * static_cast<float>(i);
+        world.create(
+            Transform{.position = place}, pool(size, size), WaterRipples{.cell = 0.1f, .rain = 5});
+        world.create(Transform{.position = place + Vec3(0, -0.3f, 0)}, WaterTouch{});
+        world.create(Transform{.position = place + Vec3(0.3f, 0, 0)}, WaterWall{});
+    }
+    start_world(world);
+    set_thread_count(1);
+    const auto steps = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            step_world(world, schedule);
+        }
+    };
+    steps(120);  // lists of drops grow to what they need
+    const std::size_t few = test::bytes_allocated_by([&] { steps(10); });
+    CHECK(few < 2000);
+    set_thread_count(2);
 }
 
 }  // namespace limn

@@ -217,10 +217,15 @@ TEST_CASE(
         CHECK(std::abs(evaluate_waves(table, {edge - 1e-3f, 0}).by_x.y) < 1e-3f);
         CHECK(std::abs(evaluate_waves(table, {edge + 1e-3f, 0}).by_x.y) < 1e-3f);
     }
+    WaterWaves later = waves;
+    later.packets[0].age += 1e-3f;
+    const WaveTable after = table_of(later, 0);
     const float h = 1e-3f;
     for (float r = ring.first + 0.1f; r < ring.last - 0.1f; r += 0.13f) {
         const float slope = (height_of(table, {r + h, 0}) - height_of(table, {r - h, 0})) / (2 * h);
         CHECK(std::abs(evaluate_waves(table, {r, 0}).by_x.y - slope) < 1e-3f);
+        const float rise = (height_of(after, {r, 0}) - height_of(table, {r, 0})) / 1e-3f;
+        CHECK(std::abs(evaluate_waves(table, {r, 0}).velocity.y - rise) < 1e-3f);
     }
 }
 
@@ -239,6 +244,9 @@ TEST_CASE("water waves: a group is within its bounds, and the same for the same 
         longest = std::max(longest, wave.length);
     }
     CHECK(longest - shortest > 2);
+    const auto aside = std::count_if(
+        waves.begin(), waves.end(), [](const WaterWave& wave) { return wave.direction < 2; });
+    CHECK((aside > 70 && aside < 130));
     const std::vector<WaterWave> again = draw_waves(group);
     CHECK(again[77].phase == waves[77].phase);
     WaveGroup other = group;
@@ -432,6 +440,23 @@ TEST_CASE("water waves: at many points at once they are the same, and vectors ar
             CHECK(found[axis][i] == plain[axis][i]);
             CHECK(std::abs(found[axis][i] - expected[axis]) < 2e-5f);
         }
+    }
+}
+
+TEST_CASE("water waves: far from the origin, where phases are large, vectors are as exact") {
+    const WaveTable table = table_of(WaterWave{.amplitude = 1, .length = 3}, 0);
+    std::vector<float> x;
+    for (int i = 0; i < 64; ++i) {
+        x.push_back(3000.0f + 1.7f * static_cast<float>(i));
+    }
+    const std::vector<float> z(x.size());
+    std::vector<float> found[3] = {z, z, z};
+    sum_waves(table.lines, x, z, {found[0], found[1], found[2]});
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const WaveLine& line = table.lines[0];
+        const float phase = (line.k.x * x[i] + line.k.y * z[i]) + line.phase;
+        const double expected = std::sin(static_cast<double>(phase));
+        CHECK(std::abs(static_cast<double>(found[1][i]) - expected) < 1e-5);
     }
 }
 
