@@ -14,6 +14,7 @@ constexpr unsigned kReflectionMapUnit = 22;
 constexpr unsigned kDetailMapUnit = 23;
 constexpr unsigned kDetailWavesUnit = 24;
 constexpr unsigned kDetailsUnit = 25;
+constexpr unsigned kDistanceUnit = 26;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
 constexpr std::uint32_t kLooksKey = 1u << 29;
@@ -21,16 +22,18 @@ constexpr std::uint32_t kPlanarKey = 1u << 28;
 constexpr std::uint32_t kDetailKey = 1u << 26;
 constexpr std::uint32_t kDetailMapKey = 1u << 25;
 constexpr std::uint32_t kUntracedKey = 1u << 27;
-constexpr int kSide = kWaterGrid + 1;
-constexpr int kIndices = 6 * kWaterGrid * kWaterGrid;
+constexpr std::uint32_t kFromBelowKey = 1u << 24;
+constexpr int kCells = layout::kWaterGrid;
+constexpr int kSide = kCells + 1;
+constexpr int kIndices = 6 * kCells * kCells;
 
 /// Two triangles a cell, their diagonals in turn so that vertices that slide onto their neighbors
 /// leave whole squares.
 std::array<std::uint16_t, kIndices> grid_indices() {
     std::array<std::uint16_t, kIndices> indices{};
     std::size_t next = 0;
-    for (int z = 0; z < kWaterGrid; ++z) {
-        for (int x = 0; x < kWaterGrid; ++x) {
+    for (int z = 0; z < kCells; ++z) {
+        for (int x = 0; x < kCells; ++x) {
             const int a = z * kSide + x;
             const int corners[4] = {a, a + 1, a + kSide, a + kSide + 1};
             const bool turned = (x + z) % 2 != 0;
@@ -67,6 +70,7 @@ Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool ve
     add(!waters.seas.empty(), "OCEAN", kOceanKey);
     add(list.looks, "LOOKS", kLooksKey);
     add(list.planar, "PLANAR", kPlanarKey);
+    add(list.seen_from_below, "FROM_BELOW", kFromBelowKey);
     add(!list.traced, "UNTRACED", kUntracedKey);
     add(list.details.needed, "DETAIL", kDetailKey);
     add(detail_map(scene, waters) != nullptr, "DETAIL_MAP", kDetailMapKey);
@@ -98,22 +102,31 @@ void draw_behind(
     context.device().draw_fullscreen();
 }
 
-/// The scene as the water sees it: radiance and distance.
-TextureId copy_behind(
+/// The scene as the water sees it.
+struct Behind {
+    TextureId radiance;
+    TextureId distance;  ///< along the view axis [m], 0: nothing
+};
+
+Behind copy_behind(
     FrameGraph& graph,
     const WaterPass& pass,
     const FrameScene& scene,
     TextureId radiance,
     const Gbuffer& gbuffer) {
-    const TextureId behind = graph.create(
-        {.name = "behind water",
-         .format = GL_RGBA32F,
-         .width = scene.view.width,
-         .height = scene.view.height});
+    const auto create = [&](const char* name, GLenum format) {
+        return graph.create(
+            {.name = name,
+             .format = format,
+             .width = scene.view.width,
+             .height = scene.view.height});
+    };
+    const Behind behind = {
+        create("behind water", scene.radiance_format), create("distance behind water", GL_R32F)};
     graph.add_pass(
         "behind water",
         {radiance, gbuffer.depth},
-        {discarded(behind)},
+        {discarded(behind.radiance), discarded(behind.distance)},
         [&pass, &scene, radiance, gbuffer](PassContext& context) {
             draw_behind(context, pass, scene, radiance, gbuffer.depth);
         });
@@ -174,9 +187,9 @@ TextureId draw_water(
     if (pass.surfaces.list.empty()) {
         return radiance;
     }
-    const TextureId behind = copy_behind(graph, pass, scene, radiance, gbuffer);
+    const Behind behind = copy_behind(graph, pass, scene, radiance, gbuffer);
     const bool velocity = gbuffer.velocity.valid();
-    const std::vector<Use> reads = lighting_reads(scene, {behind});
+    const std::vector<Use> reads = lighting_reads(scene, {behind.radiance, behind.distance});
     std::vector<Use> writes = {radiance, gbuffer.depth};
     if (velocity) {
         writes.emplace_back(gbuffer.velocity);
@@ -196,7 +209,8 @@ TextureId draw_water(
             bind_lighting(device, scene);
             pass.patches.bind(device, kPatchesUnit);
             bind_water_surfaces(device, pass.surfaces);
-            context.bind_texture(kBehindUnit, behind);
+            context.bind_texture(kBehindUnit, behind.radiance);
+            context.bind_texture(kDistanceUnit, behind.distance);
             if (pass.surfaces.list.planar) {
                 device.bind_texture(kReflectionMapUnit, pass.reflection);
             }

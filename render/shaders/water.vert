@@ -14,7 +14,7 @@ layout(location = 4) out vec3 wave_by_z;
 layout(location = 2) out vec3 clip_before;    // x, y, w
 #endif
 
-const float kGrid = 16.0;  // kWaterGrid
+const int kCorners = kWaterGrid + 1;  // of a patch, along a side
 
 vec3 surface_ws(WaterRecord water, vec2 q, float spacing, bool before) {
     return water.origin.xyz + water_to_world(water, vec3(q.x, 0.0, q.y) + water_offset(water, q, spacing, before));
@@ -23,13 +23,13 @@ vec3 surface_ws(WaterRecord water, vec2 q, float spacing, bool before) {
 void main() {
     vec4 square = texelFetch(patches, 2 * gl_InstanceID);
     vec2 morph = texelFetch(patches, 2 * gl_InstanceID + 1).xy;
-    vec2 grid = vec2(gl_VertexID % 17, gl_VertexID / 17);
+    vec2 grid = vec2(gl_VertexID % kCorners, gl_VertexID / kCorners);
     body = int(square.w);
     WaterRecord water = water_record(body);
 
     vec2 half_size = water.shape.yz;
     vec2 bounds = mix(vec2(1e9), half_size, greaterThan(half_size, vec2(0.0)));
-    float cell = square.z / kGrid;
+    float cell = square.z / float(kWaterGrid);
     vec2 q = square.xy + grid * cell;
     vec3 eye = world_to_water(water, view.camera_ws.xyz - water.origin.xyz);
     float away = distance(eye, vec3(q.x, 0.0, q.y));

@@ -1,4 +1,5 @@
-// The scene before the water: its radiance and, in w, its distance along the view axis [m], 0 where nothing is.
+// The scene before the water: its radiance and, in w and beside it, its distance along the view axis [m], 0 where
+// nothing is.
 #version 450
 #include "lib/view.glsl"
 
@@ -6,9 +7,11 @@ layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1) uniform sampler2D depth;
 
 layout(location = 0) out vec4 scene;
+layout(location = 1) out float distance;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float d = texelFetch(depth, pixel, 0).r;
-    scene = vec4(texelFetch(radiance, pixel, 0).rgb, d > 0.0 ? view_distance(d) : 0.0);
+    distance = d > 0.0 ? view_distance(d) : 0.0;
+    scene = vec4(texelFetch(radiance, pixel, 0).rgb, distance);
 }

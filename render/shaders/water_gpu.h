@@ -32,6 +32,8 @@ struct WaveRingRecord {
     vec4 fade;   // radius from which it fades [m], 0 = none; 1: smooth edges; zw: front's way between the moments [m], 0
 };
 
+const int kWaterGrid = 8;  // cells along a side of a patch; even
+
 const uint kWaterTexels = 10u;
 const uint kWaveLineTexels = 2u;
 const uint kWaveRingTexels = 3u;

@@ -16,7 +16,9 @@ namespace {
 constexpr float kRippleReach =
     0.5f;  ///< of ripples up and down, at most [m]; higher ones may be cut
 constexpr float kCellsPerWave = 16.0f;  ///< that the finest grid has for the shortest wave
-constexpr float kFinest = 0.25f;        ///< side of a patch [m]
+constexpr float kFinest = 0.125f;       ///< side of a patch [m]
+constexpr float kCellPixels = 28.0f;    ///< of the picture that a cell of a patch takes, at most
+constexpr float kMostDetail = 12.0f;    ///< of very large pictures
 
 /// Seconds from the end of the last step to the moments of a view.
 struct Moments {
@@ -97,7 +99,16 @@ float finest_of(
     if (ripples != nullptr && ripples->cells.x > 0) {
         cell = std::min(cell, ripples->cell);
     }
-    return std::max(kFinest, cell * static_cast<float>(kWaterGrid));
+    return std::max(kFinest, cell * static_cast<float>(layout::kWaterGrid));
+}
+
+/// PatchSource::detail that makes the cells of patches small in the picture.
+float detail_of(const RenderView& view) {
+    const Mat4& m = view.clip_from_world;
+    const float radian = 0.5f * static_cast<float>(view.width)
+                         * glm::length(Vec3(m[0][0], m[1][0], m[2][0]));  // [px]
+    const float cell = kCellPixels * static_cast<float>(layout::kWaterGrid);
+    return glm::clamp(radian / cell, kLeastDetail, kMostDetail);
 }
 
 Mat4 matrix_of(const WaterFrame& frame) {
@@ -183,7 +194,7 @@ void add_body(
     const RippleState* const ripples = list.ripples[list.bodies.size()];
     const OceanState* const sea = list.seas[list.bodies.size()].state;
     const std::size_t lines = list.details.add(
-        body.detail, body.table, kFinest / static_cast<float>(kWaterGrid), at.time, at.now);
+        body.detail, body.table, kFinest / static_cast<float>(layout::kWaterGrid), at.time, at.now);
     PatchSource source;
     source.half = 0.5f * water.size;
     source.camera = body.frame.local({pose.row[0].w, pose.row[1].w, pose.row[2].w});
@@ -191,8 +202,10 @@ void add_body(
     source.margin.y += ripples != nullptr ? kRippleReach : 0.0f;
     source.frustum = make_frustum(view.clip_from_world * matrix_of(body.frame));
     source.finest = finest_of(body.table, lines, ripples, sea);
+    source.detail = detail_of(view);
     source.body = static_cast<float>(list.bodies.size());
     append_water_patches(source, list.patches);
+    list.seen_from_below |= !(source.camera.y > source.margin.y);
     if (!list.around) {
         list.around = find_around(source, body.water->depth, view.near);
     }
@@ -258,6 +271,7 @@ void collect_waters(
     list.ripples.clear();
     list.seas.clear();
     list.around.reset();
+    list.seen_from_below = false;
     list.entities.clear();
     list.caustics.clear();
     list.heights.clear();

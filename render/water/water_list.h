@@ -34,6 +34,7 @@ struct WaterList {
     std::vector<const RippleState*> ripples;  ///< of each body, or null
     std::vector<OceanSource> seas;            ///< of each body, in the same order
     std::optional<WaterAroundView> around{};  ///< the first there is
+    bool seen_from_below = false;  ///< some surface may be: the camera is no higher than its waves
     std::vector<Entity> entities;
     std::vector<const Caustics*> caustics;  ///< of each body, or null
     std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
