@@ -29,6 +29,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/walker.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_look.h"
@@ -98,6 +99,8 @@ void register_all_components() {
     register_component<Floating>();
     register_component<Sailboat>();
     register_component<Boom>();
+    register_component<Walker>();
+    register_component<Footing>();
     register_component<StoneThrower>();
     register_component<ThrownStone>();
     register_component<Camera>();
