@@ -30,15 +30,17 @@ struct KeyHelp {
 
 constexpr std::array kKeys = {
     KeyHelp{nullptr, "Move"},
-    KeyHelp{"W A S D", "forward, left, back, right; or drive"},
-    KeyHelp{"Q  E", "down, up"},
-    KeyHelp{"Shift", "faster; or boost"},
+    KeyHelp{"W A S D", "forward, left, back, right; drive, sail, walk"},
+    KeyHelp{"Q  E", "down, up; dive, rise"},
+    KeyHelp{"Shift", "faster; boost; the sail trims itself"},
     KeyHelp{"Drag", "look around, or circle the target"},
     KeyHelp{"Wheel", "speed when flying, distance when circling"},
-    KeyHelp{"C", "camera: level, fly, orbit"},
+    KeyHelp{"C", "camera: those of the level, fly, orbit"},
     KeyHelp{"[  ]", "pull focus nearer, farther"},
     KeyHelp{"-  =", "close, open the aperture"},
     KeyHelp{"9  0", "shutter: shorter, longer"},
+    KeyHelp{"I K  J L", "wind: stronger, weaker; backs, veers"},
+    KeyHelp{"O  U", "more, less rain"},
     KeyHelp{"Click", "select what is under the pointer, throw a stone into water"},
     KeyHelp{nullptr, "Time and levels"},
     KeyHelp{"Space", "pause, go on"},
@@ -190,6 +192,9 @@ void Hud::draw_status(const HudStatus& status) {
                     status.window_size.x,
                     status.window_size.y,
                     status.scale_auto ? " (auto)" : ""));
+        if (*status.weather != '\0') {
+            ImGui::TextColored(kHudText, "%s", status.weather);
+        }
         if (status.software_gl) {
             ImGui::TextColored(kHudAccent, "software OpenGL: the processor draws");
         }

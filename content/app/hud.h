@@ -17,6 +17,7 @@ class Window;
 struct HudStatus {
     const char* level = "";
     const char* camera = "";     ///< how the camera moves
+    const char* weather = "";    ///< wind and rain, where there is any
     double time = 0.0;           ///< of the simulation [s]
     double frame_ms = 0.0;       ///< median of the last second
     IVec2 render_size = {0, 0};  ///< pixels drawn

@@ -6,9 +6,13 @@
 #include "content/load/image_write.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
+#include "ecs/components/name.h"
 #include "ecs/components/racer.h"
+#include "ecs/components/sailing.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/walker.h"
+#include "ecs/components/weather.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
 
@@ -54,11 +58,55 @@ std::vector<std::uint8_t> read_window(const IVec2& size) {
     return pixels;
 }
 
-/// Whether somebody in the level is driven by the keys that otherwise move the camera.
-bool has_driver(World& world) {
-    bool any = false;
-    world.query<const Racer>().each([&](const Racer& racer) { any = any || racer.player; });
-    return any;
+/// What in the level has the keys that otherwise move the camera.
+enum class Driver : std::uint8_t { None, Racer, Sailor, Walker };
+
+/// While the level is seen through `camera`.
+Driver driver_of(World& world, Entity camera) {
+    Driver driver = Driver::None;
+    world.query<const Racer>().each(
+        [&](const Racer& racer) { driver = racer.player ? Driver::Racer : driver; });
+    world.query<const Sailboat>().each([&](const Sailboat& boat) {
+        const bool seen = boat.camera == Entity{} || boat.camera == camera;
+        driver = boat.player && seen ? Driver::Sailor : driver;
+    });
+    world.query<const Walker>().each(
+        [&](const Walker& walker) { driver = walker.camera == camera ? Driver::Walker : driver; });
+    return driver;
+}
+
+/// Its keys, in a line.
+const char* driver_keys(Driver driver) {
+    switch (driver) {
+    case Driver::Racer:
+        return "drive: W A S D, Shift boosts";
+    case Driver::Sailor:
+        return "sail: A D rudder, W S sheet in and out, Shift: it trims itself";
+    case Driver::Walker:
+        return "on foot: W A S D, drag to look, Q dives, E rises";
+    case Driver::None:
+        break;
+    }
+    return "";
+}
+
+/// "wind 7.0 m/s from SW, rain 30 %"; nothing where a level has no weather. -z is north.
+std::string describe_weather(const World& world) {
+    const auto* weather = world.find_resource<Weather>();
+    if (weather == nullptr) {
+        return {};
+    }
+    constexpr std::array kPoints = {"E", "SE", "S", "SW", "W", "NW", "N", "NE"};
+    const float from = weather->wind_direction + kPi;
+    const int point = static_cast<int>(std::lround(from / (kPi / 4))) % 8;
+    std::string line = fmt::format(
+        "wind {:.1f} m/s from {}",
+        weather->wind_speed,
+        kPoints[static_cast<std::size_t>((point + 8) % 8)]);
+    if (weather->rain > 0) {
+        line += fmt::format(", rain {:.0f} %", 100 * weather->rain);
+    }
+    return line;
 }
 
 }  // namespace
@@ -287,6 +335,10 @@ Input Player::read_input(const WindowEvents& events) {
             turn(GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT_BRACKET),
             turn(GLFW_KEY_EQUAL, GLFW_KEY_MINUS),
             turn(GLFW_KEY_0, GLFW_KEY_9)};
+        input.weather = {
+            turn(GLFW_KEY_L, GLFW_KEY_J),
+            turn(GLFW_KEY_I, GLFW_KEY_K),
+            turn(GLFW_KEY_O, GLFW_KEY_U)};
         input.fast =
             window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
     }
@@ -295,8 +347,10 @@ Input Player::read_input(const WindowEvents& events) {
     input.pointing = on_panel ? Vec3(0) : ray.direction;
     input.click = events.left_clicked && !on_panel;
     // The level's camera gives way to whoever takes hold of it.
+    const Driver driver = driver_of(stage_->world, stage_->scene.camera);
+    const bool turns = driver == Driver::Sailor || driver == Driver::Walker;
     const bool moved =
-        input.look != Vec2(0) || (input.move != Vec3(0) && !has_driver(stage_->world));
+        (input.look != Vec2(0) && !turns) || (input.move != Vec3(0) && driver == Driver::None);
     if (camera_.mode == CameraMode::Level && camera_.started && moved) {
         start_fly(camera_, camera_.pose);
     }
@@ -306,6 +360,9 @@ Input Player::read_input(const WindowEvents& events) {
 void Player::cycle_camera() {
     switch (camera_.mode) {
     case CameraMode::Level:
+        if (next_level_camera()) {
+            return;
+        }
         start_fly(camera_, camera_.pose);
         break;
     case CameraMode::Fly: {
@@ -320,9 +377,42 @@ void Player::cycle_camera() {
     }
     case CameraMode::Orbit:
         camera_.mode = CameraMode::Level;
+        look_through(0);
         break;
     }
     hud_->toast(camera_mode_name(camera_.mode));
+}
+
+bool Player::next_level_camera() {
+    const std::vector<Entity> cameras = level_cameras();
+    const auto now = std::find(cameras.begin(), cameras.end(), stage_->scene.camera);
+    const auto next = static_cast<std::size_t>(now - cameras.begin()) + 1;
+    if (next >= cameras.size()) {
+        return false;
+    }
+    look_through(next);
+    const auto* name = std::as_const(stage_->world).find<Name>(stage_->scene.camera);
+    const char* keys = driver_keys(driver_of(stage_->world, stage_->scene.camera));
+    hud_->toast(*keys != '\0' ? keys : name != nullptr ? name->text : "level camera");
+    return true;
+}
+
+std::vector<Entity> Player::level_cameras() {
+    std::vector<Entity> cameras;
+    stage_->world.query<const Camera>().each(
+        [&](Entity entity, const Camera&) { cameras.push_back(entity); });
+    std::sort(cameras.begin(), cameras.end(), [](Entity a, Entity b) { return a.index < b.index; });
+    return cameras;
+}
+
+void Player::look_through(std::size_t index) {
+    const std::vector<Entity> cameras = level_cameras();
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        stage_->world.get<Camera>(cameras[i]).active = i == index;
+    }
+    if (index < cameras.size()) {
+        stage_->scene.camera = cameras[index];
+    }
 }
 
 Ray Player::pointer_ray() const {
@@ -344,8 +434,10 @@ void Player::simulate(float dt, const Input& input) {
         const bool waiting = resource->click;  // for a step, which a frame need not have
         *resource = input;
         resource->click = input.click || waiting;
-        if (camera_.mode != CameraMode::Level && has_driver(stage_->world)) {
+        const bool driven = driver_of(stage_->world, stage_->scene.camera) != Driver::None;
+        if (camera_.mode != CameraMode::Level && driven) {
             resource->move = Vec3(0);  // the camera has them
+            resource->look = Vec2(0);
             resource->fast = false;
         }
     }
@@ -437,9 +529,11 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     if (inspector_.open || camera_.mode == CameraMode::Orbit) {
         draw_outline(view);
     }
+    const std::string weather = describe_weather(stage_->world);
     hud_->draw_status(
         {.level = stage_->scene.name.c_str(),
          .camera = camera_mode_name(camera_.mode),
+         .weather = weather.c_str(),
          .time = shown_time_,
          .frame_ms = profiler_.median_frame_ms(),
          .render_size = {view.width, view.height},

@@ -56,6 +56,10 @@ class Player {
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events);
     void cycle_camera();
+    /// False where the level's last camera is looked through.
+    bool next_level_camera();
+    [[nodiscard]] std::vector<Entity> level_cameras();
+    void look_through(std::size_t index);
     [[nodiscard]] Ray pointer_ray() const;
     void select_under_pointer();
 

@@ -75,6 +75,27 @@ float height_at(const TerrainShape& shape, float level, float x, float z) {
     return share * (wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level);
 }
 
+/// What grows or lies at a height, where the ground is so level: 1 = flat.
+Vec4 ground_color(const TerrainShape& shape, const Vec3& at, float level) {
+    constexpr Vec3 kRock = {0.21f, 0.17f, 0.14f};
+    constexpr Vec3 kDarkRock = {0.11f, 0.095f, 0.085f};
+    constexpr Vec3 kScrub = {0.075f, 0.085f, 0.035f};
+    constexpr Vec3 kSand = {0.40f, 0.33f, 0.24f};
+    const Vec2 place = Vec2(at.x, at.z) / shape.feature_size;
+    const auto seed = static_cast<std::uint32_t>(shape.seed);
+    const float patches = gradient_noise(9.0f * place, seed);
+    const float layers = std::sin(0.9f * at.y + 3.0f * patches);
+    const Vec3 rock = glm::mix(kDarkRock, kRock, 0.5f + 0.35f * layers + 0.3f * patches);
+    const float grows = glm::smoothstep(0.70f, 0.88f, level + 0.12f * patches);
+    Vec3 color = glm::mix(rock, kScrub * (1.0f + 0.5f * patches), grows);
+    if (shape.shore > 0) {
+        const float low = 0.05f * shape.height;
+        color =
+            glm::mix(kSand, color, glm::smoothstep(0.8f * low, 1.6f * low, at.y + low * patches));
+    }
+    return Vec4(glm::max(color, Vec3(0)), 1);
+}
+
 }  // namespace
 
 float terrain_height(const TerrainShape& shape, float x, float z) {
@@ -117,6 +138,9 @@ MeshData make_terrain(const TerrainShape& shape) {
         vertex.normal = glm::normalize(Vec3(-rise_x, 1, -rise_z));
         vertex.tangent = glm::normalize(Vec3(1, rise_x, 0));
         vertex.uv = Vec2(i, j) / static_cast<float>(n);
+        if (shape.colors) {
+            mesh.colors.push_back(ground_color(shape, vertex.position, vertex.normal.y));
+        }
         return vertex;
     });
     return mesh;

@@ -27,13 +27,15 @@ struct TerrainShape {
     float clearing = 0.0f;       ///< radius of a level place in the middle [m], 0 = none
     float shore = 0.0f;          ///< an island: sinks to 0 over so far from its coast [m], 0 = no
     int seed = 1;                ///< another landscape
+    bool colors = false;         ///< of rock, scrub and sand at the vertices
 };
 
 /// Height above y = 0 [m], between 0 and `height` give or take a tenth.
 [[nodiscard]] float terrain_height(const TerrainShape& shape, float x, float z);
 
 /// A grid centered at the origin; the texture covers it once, its top at -z. Normals are central
-/// differences over one quad.
+/// differences over one quad. With colors, scrub grows where it is not steep, and sand lies where
+/// an island meets the sea; they are meant for a white material.
 [[nodiscard]] MeshData make_terrain(const TerrainShape& shape);
 
 template <typename Visitor>
@@ -72,6 +74,7 @@ void visit_fields(TerrainShape& shape, Visitor&& visit) {
          .unit = "m",
          .min = 0,
          .max = 1e5});
+    visit("colors", shape.colors, {.doc = "of rock, scrub and sand at the vertices"});
     visit("seed", shape.seed, {.doc = "another landscape", .min = 0, .max = 2147483647});
 }
 
