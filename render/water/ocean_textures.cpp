@@ -56,6 +56,34 @@ void fill(int size, std::vector<T>& texels, Texel&& texel) {
     });
 }
 
+/// The mean of each four texels of a square of even side, in place.
+template <typename T>
+void halve(int size, std::vector<T>& texels) {
+    const auto side = static_cast<std::size_t>(size);
+    const std::size_t half = side / 2;
+    for (std::size_t z = 0; z < half; ++z) {
+        const T* const above = texels.data() + 2 * z * side;
+        const T* const below = above + side;
+        T* const to = texels.data() + z * half;
+        for (std::size_t x = 0; x < half; ++x) {
+            to[x] = 0.25f * (above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1]);
+        }
+    }
+    texels.resize(half * half);
+}
+
+/// Uploads a square, and what it is when seen from afar; leaves the last in `texels`. A software
+/// OpenGL takes several times as long to make these levels itself.
+template <typename T>
+void upload_levels(
+    gpu::Texture& texture, int size, int layer, GLenum format, std::vector<T>& texels) {
+    texture.upload<T>(texels, format, GL_FLOAT, 0, layer);
+    for (int level = 1; size > 1; ++level, size /= 2) {
+        halve(size, texels);
+        texture.upload<T>(texels, format, GL_FLOAT, level, layer);
+    }
+}
+
 void make_array(
     gpu::Texture& texture, const char* label, GLenum format, int size, int layers, int levels) {
     if (texture && texture.width() == size && texture.layers() == layers) {
@@ -148,10 +176,10 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) 
             const float step = sea.state->step;
             const auto share = [&](float seconds) { return step > 0 ? 1 + seconds / step : 1.0f; };
             fill_shift(c, size_, share(sea.now), texels_);
-            shift_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+            upload_levels(shift_, size_, layer, GL_RGBA, texels_);
             if (with_before) {
                 fill_shift(c, size_, share(sea.before), texels_);
-                shift_before_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+                upload_levels(shift_before_, size_, layer, GL_RGBA, texels_);
             }
             const PlaneReader planes[5] = {
                 {c.slope_x, c.size, size_},
@@ -163,7 +191,7 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) 
                 return Vec4(
                     planes[0].at(x, z), planes[1].at(x, z), planes[2].at(x, z), planes[3].at(x, z));
             });
-            slope_.upload<Vec4>(texels_, GL_RGBA, GL_FLOAT, 0, layer);
+            upload_levels(slope_, size_, layer, GL_RGBA, texels_);
             const auto points = static_cast<std::size_t>(c.size) * static_cast<std::size_t>(c.size);
             const std::size_t first = static_cast<std::size_t>(p) * points;
             const bool foams = sea.foam != nullptr && sea.foam->coverage.size() >= first + points;
@@ -175,17 +203,11 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) 
                     + static_cast<std::size_t>(x / ratio);
                 return Vec2(planes[4].at(x, z), cover != nullptr ? cover[at] : 0.0f);
             });
-            foam_.upload<Vec2>(pairs_, GL_RG, GL_FLOAT, 0, layer);
+            upload_levels(foam_, size_, layer, GL_RG, pairs_);
             places_[i].reach += reach_of(c);
             places_[i].variance[p] = slope_variance(c);
         }
     }
-    shift_.generate_mipmaps();
-    if (with_before) {
-        shift_before_.generate_mipmaps();
-    }
-    slope_.generate_mipmaps();
-    foam_.generate_mipmaps();
 }
 
 }  // namespace limn

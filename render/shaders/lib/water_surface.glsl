@@ -153,16 +153,19 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
     WaterBend bend = WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0);
 #ifdef OCEAN
     int patches = int(water.ocean.y);
-    for (int i = 0; i < patches; ++i) {
+    int i = 0;
+    float share = patches > 0 ? 1.0 : 0.0;
+    // Asks after its body, see add_directional().
+    do {
         vec3 place = ocean_place(water, i, q);
         float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
         vec4 slope = textureLod(ocean_slope, place, level);
         vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
-        bend.by_x += vec3(slope.z, slope.x, cross_foam.x);
-        bend.by_z += vec3(cross_foam.x, slope.y, slope.w);
-        bend.foam += cross_foam.y;
+        bend.by_x += share * vec3(slope.z, slope.x, cross_foam.x);
+        bend.by_z += share * vec3(cross_foam.x, slope.y, slope.w);
+        bend.foam += share * cross_foam.y;
         bend.variance += water.variance[i] * clamp(level * 0.3, 0.0, 1.0);
-    }
+    } while (++i < patches);
     bend.foam = min(bend.foam, 1.0);
 #endif
     vec2 slopes = ripples_at(water, q).zw;
