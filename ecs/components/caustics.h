@@ -24,7 +24,11 @@ struct Caustics {
     std::int32_t spacing = 2;       ///< texels from ray to ray
     float strength = 1;             ///< 1: as it is; 0: as flat water; a straight line between
     float reach = 20;               ///< depth down to which light is followed [m]
-    float window = 40;       ///< of water without end: side of the square about the camera [m]
+    float window = 40;          ///< of water without end: side of the square about the camera [m]
+    std::int32_t cascades = 1;  ///< of water without end: maps, each with a window four times as
+                                ///< wide as the one before
+    std::int32_t shaft_steps = 0;  ///< looks along each ray of sight of a camera in the water, for
+                                   ///< shafts of light; 0: none are seen
     float mirror_reach = 0;  ///< height up to which light that the water mirrors is followed [m];
                              ///< 0: none is
     std::int32_t mirror_resolution = 256;  ///< texels of a side of its map, a power of two
@@ -57,6 +61,18 @@ void visit_fields(Caustics& caustics, Visitor&& visit) {
          .unit = "m",
          .min = 0.1,
          .max = 10000});
+    visit(
+        "cascades",
+        caustics.cascades,
+        {.doc = "of water without end: maps, each window four times as wide as the one before",
+         .min = 1,
+         .max = 3});
+    visit(
+        "shaft_steps",
+        caustics.shaft_steps,
+        {.doc = "looks along a ray of sight under water, for shafts of light; 0: none",
+         .min = 0,
+         .max = 64});
     visit(
         "mirror_reach",
         caustics.mirror_reach,

@@ -9,10 +9,14 @@ namespace limn {
 // What water takes and adds between a camera in it and what it sees: light is lost on the way and
 // scattered into it (Beer-Lambert). Where the surface cuts through the picture, only what is below.
 //
-// Reads    radiance, depth with that of the water, light clusters, environment
+// Reads    radiance, depth with that of the water, light clusters, environment, caustic maps
 // Writes   a new radiance
 // Order    after water, where the camera is in it or may be
-// Shaders  water_veil.frag, lib/water_surface.glsl
+// Shaders  water_veil.frag, lib/water_surface.glsl, lib/water_shafts.glsl
+//
+// With Caustics::shaft_steps the sun's share of what is scattered is its mean along the ray of sight
+// in the light that waves gather: shafts, and shadows of what stands in the way. Over the map that
+// mean is 1, so no light is made or lost.
 
 struct WaterVeilPass {
     SurfacePrograms veil;

@@ -8,7 +8,9 @@ namespace limn::layout {
 
 // What stands before the records of a frame's waters (lib/under_water.glsl).
 struct WaterLightHead {
-    vec4 counts;  // of SunkenRecord; of MirrorRecord after those; of CausticPlace; 0
+    vec4 counts;  // of SunkenRecord; of MirrorRecord after those; of CausticPlace after those; first texel of the cells
+    vec4 grid;    // of cells over the world: its least x and z [m]; cells a meter along both
+    vec4 cells;   // along x and z; each is a texel: where its list of waters begins, a texel a water, and ends
 };
 
 // A body of water as what lies in it is lit.
@@ -26,15 +28,15 @@ struct SunkenRecord {
 struct MirrorRecord {
     vec4 origin;  // world [m]; w: x of the water's x axis in the world
     vec4 shape;   // z of that axis; its CausticPlace; whose light: index of the record; height below which it is seen [m]
-    vec4 bent;    // how far the flat water's light goes along the water's x and z on a meter up; share that it mirrors;
-                  // height up to which it is followed [m]
+    vec4 bent;    // how far the flat water's light goes along the water's x and z on a meter up; share that it mirrors; 0
 };
 
 // A map where it is read.
 struct CausticPlace {
     vec4 window;  // least x and z in the water's own space [m]; 1 / size of it
     vec4 rect;    // first texel of the atlas along both; texels of a side; 1: there is a map, 0: light is even
-    vec4 view;    // shadow view of what its light meets, or -1; share of the map at its edge that gives way to the next one
+    vec4 view;    // shadow view of what its light meets, or -1; share of the map at its edge that gives way to the next
+                  // one; how far its light is followed [m]
 };
 
 // A map to be made (caustics_rays.comp and those after it).
@@ -50,7 +52,7 @@ struct CausticRecord {
     vec4 place;    // first texel of the atlas along both; first ray; Caustics::strength
 };
 
-const uint kHeadTexels = 1u;
+const uint kHeadTexels = 3u;
 const uint kSunkenTexels = 5u;
 const uint kMirrorTexels = 3u;
 const uint kPlaceTexels = 3u;

@@ -1,11 +1,15 @@
 // What a camera in the water sees through it: light is lost on the way, and light that falls in is scattered toward it.
-// At the surface, only below the line at which it meets the lens.
+// At the surface, only below the line at which it meets the lens. Where waves gather light, the sun's comes in shafts.
 #version 450
 #define UNMASKED
+#include "lib/noise.glsl"
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
+#ifdef UNDER_WATER
+#include "lib/water_shafts.glsl"
+#endif
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 5) uniform sampler2D scene_depth;
@@ -42,6 +46,15 @@ void main() {
     float way = depth > 0.0 ? view_distance(depth) * length(ray) : kEndless;
     vec3 left = exp(-water_extinction(water) * way);
     float below = max(water.origin.y - view.camera_ws.y, 0.0);
-    vec3 veiled = seen * left + scattered_light(water, below, normalize(ray)) * (1.0 - left);
+#ifdef UNDER_WATER
+    Sunken around = sunken_at(lens);
+    vec3 to_sun = texelFetch(lights, max(int(around.maps.z), 0) * int(kLightTexels)).xyz;
+    vec3 bent = bent_to_light(around, to_sun);
+    float shafts = shafts_along(around, bent, normalize(ray), way, water_extinction(water), gl_FragCoord.xy);
+    vec3 falling_in = light_falling_in(water, int(around.maps.z), shafts);
+#else
+    vec3 falling_in = light_falling_in(water);
+#endif
+    vec3 veiled = seen * left + scattered_light(water, falling_in, below, normalize(ray)) * (1.0 - left);
     radiance = vec4(is_under(water, lens) ? veiled : seen, 1.0);
 }

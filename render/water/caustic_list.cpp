@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -19,7 +20,13 @@ constexpr float kLowestSun = 0.02f;    ///< sine of the height above the horizon
 constexpr float kRim = 0.03f;          ///< of the map, beyond a rectangle of water
 constexpr float kEndlessRim = 0.1f;    ///< of the map of endless water
 constexpr float kBelowBottom = 0.05f;  ///< how far below the bottom light still lands [m]
-constexpr float kMirrorRim = 0.2f;     ///< of the cells of a map of mirrored light, on each side
+constexpr int kLeastSide = 32;         ///< of maps that are far away [texels]
+constexpr float kFullWithin = 2;  ///< sides of its window: nearer, a map is as large as asked for
+constexpr int kMostCells = 64;    ///< of the grid over the world, along a side
+constexpr std::size_t kFewWaters = 4;  ///< need no grid
+constexpr float kCascadeRatio = 4;     ///< of the windows of endless water
+constexpr int kMostCascades = 3;
+constexpr float kMirrorRim = 0.2f;  ///< of the cells of a map of mirrored light, on each side
 
 WaterFrame frame_of(const layout::WaterRecord& body) {
     return {Vec3(body.origin), {body.origin.w, body.shape.x}};
@@ -62,6 +69,8 @@ Caustics make_sane(const Caustics& caustics) {
     Caustics sane = caustics;
     sane.resolution = power_of_two(caustics.resolution, 64);
     sane.mirror_resolution = power_of_two(caustics.mirror_resolution, 32);
+    sane.cascades = std::clamp(caustics.cascades, 1, kMostCascades);
+    sane.shaft_steps = std::clamp(caustics.shaft_steps, 0, 64);
     sane.mirror_reach = std::clamp(finite_or(caustics.mirror_reach, 0.0f), 0.0f, 1000.0f);
     sane.spacing = std::clamp(caustics.spacing, 1, 8);
     sane.strength = std::clamp(finite_or(caustics.strength, 1.0f), 0.0f, 4.0f);
@@ -171,12 +180,13 @@ struct Source {
     Vec3 to_sun;  ///< in the water's own space
 };
 
-enum class Part : std::uint8_t { Below, Above };
+/// Number of a map of its water: cascades below the surface, or
+constexpr int kAbove = kMostCascades;
 
 /// A map, its place and its view.
 void add_map(
     const Source& source,
-    Part part,
+    int part,
     const Window& window,
     const Vec2& slant,
     float way,
@@ -184,14 +194,14 @@ void add_map(
     CausticList& list,
     ShadowList& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
-    const bool above = part == Part::Above;
+    const bool above = part == kAbove;
     const int side = above ? source.caustics.mirror_resolution : source.caustics.resolution;
     const float share = fresnel(source.to_sun.y, body.shape.w);
     const Vec2 heights = source.waters.heights[source.body];
     list.places.push_back(
         {.window = Vec4(window.corner, 1.0f / window.size),
          .rect = {0, 0, static_cast<float>(side), make ? 1.0f : 0.0f},
-         .view = {-1, window.rim / std::max(window.size.x, window.size.y), 0, 0}});
+         .view = {-1, window.rim / std::max(window.size.x, window.size.y), way, 0}});
     list.maps.push_back(
         {.window = Vec4(window.corner, window.size),
          .to_sun = Vec4(source.to_sun, static_cast<float>(source.body)),
@@ -229,11 +239,20 @@ void add_below(
     const Vec2 slant = flat_slant(source.to_sun, body.shape.w);
     const float bottom = body.absorption.w > 0 ? body.absorption.w + kBelowBottom : 1e9f;
     const float depth = std::min(bottom, caustics.reach);
+    const bool endless = body.shape.y <= 0 || body.shape.z <= 0;
+    const int count = endless ? caustics.cascades : 1;
     sunken.maps = {
-        static_cast<float>(list.places.size()), 1, static_cast<float>(light), 0.999f * depth};
-    sunken.bent = Vec4(slant, caustics.strength, 0);
-    const Window window = window_of(body, caustics, camera, caustics.resolution);
-    add_map(source, Part::Below, window, slant, depth, make, list, shadows);
+        static_cast<float>(list.places.size()),
+        static_cast<float>(count),
+        static_cast<float>(light),
+        0.999f * depth};
+    sunken.bent = Vec4(slant, caustics.strength, static_cast<float>(caustics.shaft_steps));
+    Caustics ring = caustics;
+    for (int i = 0; i < count; ++i) {
+        const Window window = window_of(body, ring, camera, caustics.resolution);
+        add_map(source, i, window, slant, depth, make, list, shadows);
+        ring.window *= kCascadeRatio;
+    }
 }
 
 /// The light that it mirrors.
@@ -250,9 +269,9 @@ void add_above(
               static_cast<float>(list.places.size()),
               static_cast<float>(light),
               0.999f * caustics.mirror_reach},
-         .bent = Vec4(slant, fresnel(source.to_sun.y, body.shape.w), caustics.mirror_reach)});
+         .bent = Vec4(slant, fresnel(source.to_sun.y, body.shape.w), 0)});
     const Window window = mirror_window(body, caustics, camera, slant, cells);
-    add_map(source, Part::Above, window, slant, caustics.mirror_reach, true, list, shadows);
+    add_map(source, kAbove, window, slant, caustics.mirror_reach, true, list, shadows);
 }
 
 /// Gives every map its square of the atlas and its rays: the largest first, along a curve of Z, so
@@ -316,6 +335,115 @@ Vec2 mirrored_slant(const Vec3& to_sun) {
     return -Vec2(to_sun.x, to_sun.z) / std::max(to_sun.y, kLowestSun);
 }
 
+namespace {
+
+/// Smaller by halves for what is far away for its size.
+void adapt(Caustics& caustics, const layout::WaterRecord& body, float distance) {
+    const float across = 2 * std::max(body.shape.y, body.shape.z);
+    float within = kFullWithin * (across > 0 ? across : INFINITY);
+    while (distance > within && caustics.resolution > kLeastSide) {
+        caustics.resolution /= 2;
+        caustics.mirror_resolution = std::max(caustics.mirror_resolution / 2, kLeastSide);
+        within *= 2;
+    }
+}
+
+/// Waters with maps, the nearest first, with as many texels as all may have.
+struct Wanted {
+    std::size_t body = 0;
+    Caustics caustics;
+};
+std::vector<Wanted>
+choose_waters(const WaterList& waters, const std::vector<std::size_t>& order, const Vec3& camera) {
+    std::vector<Wanted> chosen;
+    std::int64_t texels = 0;
+    const auto size_of = [](const Caustics& c) {
+        return std::int64_t{c.resolution} * c.resolution * c.cascades;
+    };
+    for (const std::size_t i : order) {
+        if (waters.caustics[i] != nullptr && chosen.size() < kMaxCausticMaps) {
+            Wanted wanted = {i, make_sane(*waters.caustics[i])};
+            adapt(wanted.caustics, waters.bodies[i], distance_to(waters.bodies[i], camera));
+            texels += size_of(wanted.caustics);
+            chosen.push_back(wanted);
+        }
+    }
+    for (bool more = true; texels > kMostCausticTexels && more;) {
+        more = false;
+        for (std::size_t i = chosen.size(); i-- > 0 && texels > kMostCausticTexels;) {
+            Caustics& caustics = chosen[i].caustics;
+            if (caustics.resolution > kLeastSide) {
+                texels -= size_of(caustics);
+                caustics.resolution /= 2;
+                texels += size_of(caustics);
+                more = true;
+            }
+        }
+    }
+    return chosen;
+}
+
+/// The grid over the world, and the waters that each cell may be in.
+void append_grid(CausticList& list) {
+    Vec2 low(1e9f);
+    Vec2 high(-1e9f);
+    std::vector<std::array<Vec2, 2>> boxes;
+    std::size_t bounded = 0;
+    for (const layout::SunkenRecord& sunken : list.sunken) {
+        const Vec2 middle(finite_or(sunken.origin.x, 0), finite_or(sunken.origin.z, 0));
+        const Vec2 axis = glm::abs(Vec2(sunken.origin.w, sunken.shape.x));
+        const Vec2 half(sunken.shape.y, sunken.shape.z);
+        const Vec2 reach =
+            half.x > 0 && half.y > 0
+                ? Vec2(axis.x * half.x + axis.y * half.y, axis.y * half.x + axis.x * half.y) + 0.01f
+                : Vec2(1e9f);
+        boxes.push_back({middle - reach, middle + reach});
+        if (reach.x < 1e9f) {
+            low = glm::min(low, boxes.back()[0]);
+            high = glm::max(high, boxes.back()[1]);
+            ++bounded;
+        }
+    }
+    const int side =
+        bounded <= kFewWaters
+            ? 1
+            : std::min(kMostCells, static_cast<int>(2 * std::sqrt(static_cast<float>(bounded))));
+    const Vec2 origin = bounded > 0 ? low : Vec2(0);
+    const Vec2 extent = bounded > 0 ? glm::max(high - low, Vec2(1e-3f)) : Vec2(1);
+    const Vec2 per_meter = static_cast<float>(side) / extent;
+    const std::size_t first = list.texels.size();
+    list.texels[0].w = static_cast<float>(first);
+    list.texels[1] = Vec4(origin, per_meter);
+    list.texels[2] = Vec4(static_cast<float>(side), static_cast<float>(side), 0, 0);
+    const auto cell_of = [&](const Vec2& at) {
+        return IVec2(
+            glm::clamp((at - origin) * per_meter, Vec2(0), Vec2(static_cast<float>(side - 1))));
+    };
+    std::vector<std::vector<std::size_t>> cells(static_cast<std::size_t>(side * side));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const IVec2 from = cell_of(boxes[i][0]);
+        const IVec2 to = cell_of(boxes[i][1]);
+        for (int z = from.y; z <= to.y; ++z) {
+            for (int x = from.x; x <= to.x; ++x) {
+                cells[static_cast<std::size_t>(z * side + x)].push_back(i);
+            }
+        }
+    }
+    std::size_t at = first + cells.size();
+    for (const std::vector<std::size_t>& cell : cells) {
+        list.texels.emplace_back(
+            static_cast<float>(at), static_cast<float>(at + cell.size()), 0, 0);
+        at += cell.size();
+    }
+    for (const std::vector<std::size_t>& cell : cells) {
+        for (const std::size_t i : cell) {
+            list.texels.emplace_back(static_cast<float>(i), 0, 0, 0);
+        }
+    }
+}
+
+}  // namespace
+
 void collect_caustics(
     const WaterList& waters,
     const LightList& lights,
@@ -334,25 +462,24 @@ void collect_caustics(
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return distance_to(waters.bodies[a], camera) < distance_to(waters.bodies[b], camera);
     });
-    order.resize(std::min(order.size(), kMaxSunkenWaters));
-
     const int sun = brightest_sun(lights);
-    std::size_t mapped = 0;
+    const std::vector<Wanted> chosen =
+        sun >= 0 ? choose_waters(waters, order, camera) : std::vector<Wanted>{};
+    std::size_t next = 0;
     for (const std::size_t i : order) {
         layout::SunkenRecord& sunken = list.sunken.emplace_back(sunken_of(waters.bodies[i]));
-        if (sun < 0 || waters.caustics[i] == nullptr || mapped == kMaxCausticMaps) {
+        if (next == chosen.size() || chosen[next].body != i) {
             continue;
         }
-        ++mapped;
         const layout::LightRecord& light = lights.records[static_cast<std::size_t>(sun)];
         const Source source = {
             waters,
             i,
-            make_sane(*waters.caustics[i]),
+            chosen[next++].caustics,
             light,
             frame_of(waters.bodies[i]).turned_in(Vec3(light.position))};
         add_below(source, camera, sun, maps, sunken, list, shadows);
-        if (maps && source.caustics.mirror_reach > 0) {
+        if (maps && source.caustics.mirror_reach > 0 && list.mirrors.size() < kMaxMirrorMaps) {
             add_above(source, camera, sun, list, shadows);
         }
     }
@@ -371,14 +498,18 @@ void place_caustics(const LightList& lights, const ShadowList& shadows, CausticL
     std::reverse(list.sunken.begin(), list.sunken.end());  // of several, the last one counts
     list.texels.clear();
     const layout::WaterLightHead head = {
-        {static_cast<float>(list.sunken.size()),
-         static_cast<float>(list.mirrors.size()),
-         static_cast<float>(list.places.size()),
-         0}};
+        .counts =
+            {static_cast<float>(list.sunken.size()),
+             static_cast<float>(list.mirrors.size()),
+             static_cast<float>(list.places.size()),
+             0},
+        .grid = Vec4(0),
+        .cells = Vec4(0)};
     append(list.texels, std::vector{head});
     append(list.texels, list.sunken);
     append(list.texels, list.mirrors);
     append(list.texels, list.places);
+    append_grid(list);
 }
 
 }  // namespace limn

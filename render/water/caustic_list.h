@@ -21,10 +21,14 @@ namespace limn {
 // Light that the water mirrors is the same upside down: a point at height h lies where its ray left
 // the water, xz - bent h. There the map is 1 above flat water and 0 beside it.
 //
-// All maps lie in one atlas, the largest first, and the rays of all of them are one list.
+// All maps lie in one atlas, the largest first, and the rays of all of them are one list, so that a
+// hundred pools are as many dispatches as one. Maps of waters that are far away for their size are
+// smaller, and those farthest are smaller still where all would be too much. A grid over the world
+// tells which waters a place may be in.
 
-inline constexpr std::size_t kMaxSunkenWaters = 16;  ///< the nearest ones
-inline constexpr std::size_t kMaxCausticMaps = 4;
+inline constexpr std::size_t kMaxCausticMaps = 1024;  ///< of the nearest waters
+inline constexpr std::size_t kMaxMirrorMaps = 4;      ///< every surface looks at all of them
+inline constexpr std::int64_t kMostCausticTexels = 1 << 20;
 
 struct CausticList {
     std::vector<layout::SunkenRecord> sunken;  ///< nearest to the camera last

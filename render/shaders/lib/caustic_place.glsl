@@ -18,3 +18,23 @@ float caustic_texel(CausticPlace place, vec2 uv) {
     vec2 texel = place.rect.xy + clamp(uv * place.rect.z, 0.5, place.rect.z - 0.5);
     return textureLod(caustic_maps, texel / vec2(textureSize(caustic_maps, 0)), 0.0).r;
 }
+
+const float kWaySlack = 2e-3;
+
+// Share of the light of a map that meets nothing before it is `length` [m] below or above the water. After
+// lib/shadow.glsl.
+float way_is_open(CausticPlace place, vec2 uv, float length) {
+    float way = length / place.view.z;
+#ifdef SHADOW_MAPS
+    vec4 rect = texelFetch(shadow_views, max(int(place.view.x), 0) * int(kShadowViewTexels) + 7);
+    vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
+    vec2 corner = floor(texel - 0.5);
+    vec2 part = texel - 0.5 - corner;
+    vec4 depths = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+    vec4 open = vec4(lessThanEqual(depths, vec4(1.0 + kWaySlack - way)));
+    float share = mix(mix(open.w, open.z, part.x), mix(open.x, open.y, part.x), part.y);
+    return place.view.x >= 0.0 ? share : 1.0;
+#else
+    return 1.0;
+#endif
+}

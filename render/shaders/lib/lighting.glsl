@@ -83,7 +83,28 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     return Incoming(to_light, irradiance);
 }
 
-Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
+// Extinction of the water around a point [1/m]; w: its depth there [m], < 0 in no water.
+vec4 water_about(vec3 position_ws) {
+#ifdef UNDER_WATER
+    Sunken water = sunken_at(position_ws);
+    return vec4(water.extinction, water.depth);
+#else
+    return vec4(0.0, 0.0, 0.0, -1.0);
+#endif
+}
+
+// What water leaves of a lamp's light that goes straight to a point in it, `offset` away, and goes in by flat water.
+vec3 lamp_through_water(vec4 about, vec3 offset) {
+    const float kIndex = 1.333;
+    float way = length(offset);
+    bool above = offset.y > about.w;
+    float inside = above ? about.w / offset.y : 1.0;
+    float let_in = above ? 1.0 - fresnel(offset.y / max(way, 1e-6), kIndex) : 1.0;
+    return about.w >= 0.0 ? let_in * exp(-about.rgb * (way * inside)) : vec3(1.0);
+}
+
+// `about` as water_about() has it.
+Incoming incoming_local(int index, vec3 position_ws, vec3 normal, vec4 about) {
     vec4 place = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
@@ -95,7 +116,7 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal) {
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
     fade *= spot_attenuation(to_light, axis.xyz, axis.w, polynomial.w);
 #endif
-    return Incoming(to_light, color.rgb * fade);
+    return Incoming(to_light, color.rgb * (fade * lamp_through_water(about, offset)));
 }
 
 // Cell of the light clusters that a pixel at a distance along the view axis belongs to.
@@ -128,6 +149,7 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 // them not at all. Lights with shadows or images come last, in a loop of their own.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
+    vec4 about = water_about(position_ws);
     int i = int(list.x);
     int end = int(list.x + list.y);
     int index = int(texelFetch(light_indices, i).x);
@@ -138,7 +160,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
 #endif
     index = list.y > 0u ? index : kNoLight;
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal);
+        Incoming light = incoming_local(index, position_ws, r.normal, about);
         light.irradiance *= index < first_shadowed ? 1.0 : 0.0;
         add_light(sum, r, light);
         i += index < first_shadowed ? 1 : 0;
@@ -146,7 +168,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
     } while (index < first_shadowed);
 #ifdef LIGHT_PASSING
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal);
+        Incoming light = incoming_local(index, position_ws, r.normal, about);
         vec3 passing = light_passing(index, position_ws, r.normal, light.to_light, pixel);
         light.irradiance *= i < end ? passing : vec3(0.0);
         add_light(sum, r, light);

@@ -9,7 +9,7 @@ vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
 #ifdef DIRECTIONAL_LIGHT
     Incoming light = incoming_directional(light_index, position_ws, r.normal, pixel);
 #else
-    Incoming light = incoming_local(light_index, position_ws, r.normal);
+    Incoming light = incoming_local(light_index, position_ws, r.normal, water_about(position_ws));
     light.irradiance *= light_passing(light_index, position_ws, r.normal, light.to_light, pixel);
 #endif
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));

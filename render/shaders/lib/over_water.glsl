@@ -3,22 +3,6 @@
 
 const float kAside = 1.5;  // texels of the map along the normal, from where a surface asks what is before it
 
-// Share of the mirrored light that meets nothing before it is `way` along, 0 .. 1 of the map's reach.
-float way_is_open(CausticPlace place, vec2 uv, float way) {
-#ifdef SHADOW_MAPS
-    vec4 rect = texelFetch(shadow_views, max(int(place.view.x), 0) * int(kShadowViewTexels) + 7);
-    vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
-    vec2 corner = floor(texel - 0.5);
-    vec2 part = texel - 0.5 - corner;
-    vec4 depths = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
-    vec4 open = vec4(lessThanEqual(depths, vec4(1.0 - way)));
-    float share = mix(mix(open.w, open.z, part.x), mix(open.x, open.y, part.x), part.y);
-    return place.view.x >= 0.0 ? share : 1.0;
-#else
-    return 1.0;
-#endif
-}
-
 // Light that comes from water number n, as bright as its waves make it.
 vec3 mirrored_by(int n, vec3 position_ws, vec3 normal) {
     int at = int(kHeadTexels) + int(texelFetch(water_lights, 0).x) * int(kSunkenTexels) + n * int(kMirrorTexels);
@@ -35,7 +19,7 @@ vec3 mirrored_by(int n, vec3 position_ws, vec3 normal) {
     vec2 local = vec2(origin.w * from.x + shape.x * from.z, origin.w * from.z - shape.x * from.x);
     vec2 uv = (local - bent.xy * from.y - place.window.xy) * place.window.zw;
     bool inside = from.y > 0.0 && from.y < shape.w && all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
-    float share = bent.z * facing * caustic_texel(place, uv) * way_is_open(place, uv, from.y / bent.w);
+    float share = bent.z * facing * caustic_texel(place, uv) * way_is_open(place, uv, from.y);
     return inside ? texelFetch(lights, light + 1).rgb * share : vec3(0.0);
 }
 

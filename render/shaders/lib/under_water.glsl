@@ -19,10 +19,14 @@ struct Sunken {
 // In which water a point is.
 Sunken sunken_at(vec3 position_ws) {
     Sunken found = Sunken(-1.0, vec2(0.0), vec2(1.0, 0.0), vec3(0.0), 1.333, vec4(0.0), vec4(0.0));
-    int count = int(texelFetch(water_lights, 0).x);
-    int i = 0;
+    vec4 grid = texelFetch(water_lights, 1);
+    vec2 cells = texelFetch(water_lights, 2).xy;
+    vec2 cell = clamp(floor((position_ws.xz - grid.xy) * grid.zw), vec2(0.0), cells - 1.0);
+    vec2 list = texelFetch(water_lights, int(texelFetch(water_lights, 0).w + cell.y * cells.x + cell.x)).xy;
+    int i = int(list.x);
+    int end = int(list.y);
     do {
-        int at = int(kHeadTexels) + i * int(kSunkenTexels);
+        int at = int(kHeadTexels) + int(texelFetch(water_lights, i).x) * int(kSunkenTexels);
         vec4 origin = texelFetch(water_lights, at);
         vec4 shape = texelFetch(water_lights, at + 1);
         vec4 extinction = texelFetch(water_lights, at + 2);
@@ -31,7 +35,7 @@ Sunken sunken_at(vec3 position_ws) {
         vec2 place = vec2(axis.x * from.x + axis.y * from.z, axis.x * from.z - axis.y * from.x);
         vec2 bounds = mix(vec2(1e9), shape.yz, greaterThan(shape.yz, vec2(0.0)));
         float bottom = extinction.w > 0.0 ? 1.001 * extinction.w + 0.01 : 1e9;
-        bool inside = from.y < 0.0 && -from.y <= bottom && all(lessThanEqual(abs(place), bounds + 1e-3));
+        bool inside = i < end && from.y < 0.0 && -from.y <= bottom && all(lessThanEqual(abs(place), bounds + 1e-3));
         if (inside) {
             found = Sunken(
                 -from.y,
@@ -42,7 +46,7 @@ Sunken sunken_at(vec3 position_ws) {
                 texelFetch(water_lights, at + 3),
                 texelFetch(water_lights, at + 4));
         }
-    } while (++i < count);
+    } while (++i < end);
     return found;
 }
 

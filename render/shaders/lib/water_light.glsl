@@ -8,8 +8,9 @@ vec3 water_extinction(WaterRecord water) {
     return water.absorption.rgb + water.scattering.rgb;
 }
 
-// Irradiance over pi that falls through the surface: of the sun, and of all around.
-vec3 light_falling_in(WaterRecord water) {
+// Irradiance over pi that falls through the surface: of the lights, and of all around. Of light number `sun` there is
+// `share` as much as falls through flat water.
+vec3 light_falling_in(WaterRecord water, int sun, float share) {
     vec3 sum = irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
@@ -18,18 +19,24 @@ vec3 light_falling_in(WaterRecord water) {
         vec3 to_light = texelFetch(lights, n * int(kLightTexels)).xyz;
         vec3 irradiance = texelFetch(lights, n * int(kLightTexels) + 1).rgb;
         float down = max(to_light.y, 0.0);
-        sum += irradiance * (down * (1.0 - fresnel(down, water.shape.w)) / kPi);
+        sum += irradiance * (n == sun ? share : 1.0) * (down * (1.0 - fresnel(down, water.shape.w)) / kPi);
     } while (++n < directional);
 #endif
     return sum;
 }
+vec3 light_falling_in(WaterRecord water) {
+    return light_falling_in(water, -1, 1.0);
+}
 
-// Radiance of endless water at `depth` [m] that comes from `direction`: from above there is three times as much as
-// from below (by eye, after Mobley 1994).
-vec3 scattered_light(WaterRecord water, float depth, vec3 direction) {
+// Radiance of endless water at `depth` [m] that comes from `direction`, where so much light falls in: from above there
+// is three times as much as from below (by eye, after Mobley 1994).
+vec3 scattered_light(WaterRecord water, vec3 falling_in, float depth, vec3 direction) {
     vec3 extinction = max(water_extinction(water), vec3(1e-6));
-    vec3 here = light_falling_in(water) * exp(-extinction * (kDimming * depth));
+    vec3 here = falling_in * exp(-extinction * (kDimming * depth));
     return here * (kUpwelling * water.scattering.rgb / extinction) * (2.0 + direction.y);
+}
+vec3 scattered_light(WaterRecord water, float depth, vec3 direction) {
+    return scattered_light(water, light_falling_in(water), depth, direction);
 }
 
 // Of water that is not deep: radiance of a bottom that the picture does not show, of mean albedo, and the way there
