@@ -146,7 +146,8 @@ class Renderer {
     FrameTextures draw_image(const FrameRequest& request, bool attributes, bool velocity);
     /// What lies where; `attributes`: also of what kind, which forward lighting has no need of.
     Gbuffer draw_surfaces(bool attributes, bool velocity);
-    TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer);
+    /// `attributes`: water leaves its own in the G-buffer, too.
+    TextureId draw_radiance(FrameGraph& into, const Gbuffer& gbuffer, bool attributes = false);
     /// From its radiance through the lens to the display; once a picture, as the eye adapts.
     void develop_image(const World& world, const LensSettings& lens, FrameTextures& made);
     void finish(FrameGraph& drawn);
@@ -532,7 +533,7 @@ Gbuffer Renderer::draw_surfaces(bool attributes, bool velocity) {
     return draw_gbuffer(graph, passes.gbuffer, scene, velocity);
 }
 
-TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
+TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer, bool attributes) {
     const bool by_clusters =
         scene.method == LightMethod::Clustered || !scene.instances.blended.empty();
     scene.lists = by_clusters ? build_clusters(into, passes.clusters, scene) : ClusterLists{};
@@ -554,7 +555,7 @@ TextureId Renderer::draw_radiance(FrameGraph& into, const Gbuffer& gbuffer) {
     radiance = draw_sky(into, passes.lights, scene, radiance, gbuffer);
     draw_mirror_caustics(into, device, passes.mirrors, scene, radiance, gbuffer);
     draw_texture_waves(into, passes.texture_waves, passes.water.surfaces);
-    radiance = draw_water(into, passes.water, scene, radiance, gbuffer);
+    radiance = draw_water(into, passes.water, scene, radiance, gbuffer, attributes);
     radiance = draw_water_veil(into, passes.veil, passes.water.surfaces, scene, radiance, gbuffer);
     radiance =
         draw_blended(into, passes.blend, scene, radiance, gbuffer);  // after sky: seen through
@@ -566,7 +567,7 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool attributes,
     FrameTextures made;
     made.gbuffer = draw_surfaces(attributes || velocity || !request.aovs.empty(), velocity);
     const Gbuffer& gbuffer = made.gbuffer;
-    made.radiance = draw_radiance(graph, gbuffer);
+    made.radiance = draw_radiance(graph, gbuffer, !request.aovs.empty());
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
             != request.aovs.end()) {

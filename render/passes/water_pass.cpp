@@ -15,14 +15,18 @@ constexpr unsigned kDetailMapUnit = 23;
 constexpr unsigned kDetailWavesUnit = 24;
 constexpr unsigned kDetailsUnit = 25;
 constexpr unsigned kDistanceUnit = 26;
+constexpr unsigned kFloorMapUnit = 27;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
 constexpr std::uint32_t kLooksKey = 1u << 29;
 constexpr std::uint32_t kPlanarKey = 1u << 28;
+constexpr std::uint32_t kUntracedKey = 1u << 27;
 constexpr std::uint32_t kDetailKey = 1u << 26;
 constexpr std::uint32_t kDetailMapKey = 1u << 25;
-constexpr std::uint32_t kUntracedKey = 1u << 27;
 constexpr std::uint32_t kFromBelowKey = 1u << 24;
+constexpr std::uint32_t kFloorMapKey = 1u << 23;
+constexpr std::uint32_t kUnbentKey = 1u << 22;
+constexpr std::uint32_t kAttributesKey = 1u << 21;
 constexpr int kCells = layout::kWaterGrid;
 constexpr int kSide = kCells + 1;
 constexpr int kIndices = 6 * kCells * kCells;
@@ -57,7 +61,13 @@ const gpu::Texture* detail_map(const FrameScene& scene, const WaterSurfaces& wat
     return scene.materials->find_image(waters.list.details.normal_map);
 }
 
-Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool velocity) {
+const gpu::Texture* floor_map(const FrameScene& scene, const WaterSurfaces& waters) {
+    const WaterLook* look = waters.list.floor;
+    return look != nullptr ? scene.materials->find_image(look->floor_map) : nullptr;
+}
+
+Variant
+variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool velocity, bool attributes) {
     Variant variant = {lighting_defines(scene), lighting_key(scene)};
     const auto add = [&](bool wanted, const char* name, std::uint32_t key) {
         if (wanted) {
@@ -67,6 +77,7 @@ Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool ve
     };
     const WaterList& list = waters.list;
     add(velocity, "VELOCITY", kVelocityKey);
+    add(attributes, "ATTRIBUTES", kAttributesKey);
     add(!waters.seas.empty(), "OCEAN", kOceanKey);
     add(list.looks, "LOOKS", kLooksKey);
     add(list.planar, "PLANAR", kPlanarKey);
@@ -74,6 +85,8 @@ Variant variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool ve
     add(!list.traced, "UNTRACED", kUntracedKey);
     add(list.details.needed, "DETAIL", kDetailKey);
     add(detail_map(scene, waters) != nullptr, "DETAIL_MAP", kDetailMapKey);
+    add(floor_map(scene, waters) != nullptr, "FLOOR_MAP", kFloorMapKey);
+    add(!list.bent, "UNBENT", kUnbentKey);
     return variant;
 }
 
@@ -183,7 +196,8 @@ TextureId draw_water(
     WaterPass& pass,
     const FrameScene& scene,
     TextureId radiance,
-    const Gbuffer& gbuffer) {
+    const Gbuffer& gbuffer,
+    bool attributes) {
     if (pass.surfaces.list.empty()) {
         return radiance;
     }
@@ -194,12 +208,15 @@ TextureId draw_water(
     if (velocity) {
         writes.emplace_back(gbuffer.velocity);
     }
+    if (attributes) {
+        writes.emplace_back(gbuffer.surface);
+    }
     graph.add_pass(
         "water",
         std::span<const Use>(reads),
         std::span<const Use>(writes),
-        [&pass, &scene, behind, velocity](PassContext& context) {
-            const Variant variant = variant_of(scene, pass.surfaces, velocity);
+        [&pass, &scene, behind, velocity, attributes](PassContext& context) {
+            const Variant variant = variant_of(scene, pass.surfaces, velocity, attributes);
             const gpu::Program* program = pass.surface.get(0, variant.key, variant.defines);
             if (program == nullptr) {
                 return;
@@ -216,6 +233,10 @@ TextureId draw_water(
             }
             if (pass.surfaces.list.details.needed) {
                 bind_details(device, pass, scene);
+            }
+            if (const gpu::Texture* floor = floor_map(scene, pass.surfaces)) {
+                device.bind_texture(kFloorMapUnit, *floor, &pass.repeat);
+                program->set("floor_tile", pass.surfaces.list.floor->floor_tile);
             }
             device.bind_vertex_array(pass.grid);
             device.draw_indexed(

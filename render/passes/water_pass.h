@@ -10,10 +10,10 @@ namespace limn {
 // Draws bodies of water over the lit scene: all of them with one draw.
 //
 // Reads    WaterList, radiance, depth, light clusters, environment
-// Writes   radiance, depth and velocity of what is water now
+// Writes   radiance, depth, velocity and, where asked for, attributes of what is water now
 // Order    after lights and sky, before blended surfaces
 // Shaders  water_behind.frag, water.vert, water.frag, lib/water_surface.glsl,
-//          lib/water_reflection.glsl
+//          lib/water_reflection.glsl, lib/water_refraction.glsl
 //
 // A body may ask for a planar reflection (WaterLook): render_frame() draws it before the picture,
 // in a smaller one of its own, and keep_reflection() keeps it for the water.
@@ -43,12 +43,13 @@ void keep_reflection(
     const Gbuffer& gbuffer);
 
 /// Radiance with the water; the same where there is none. The G-buffer's depth and velocity become
-/// those of the water.
+/// those of the water; with `attributes` its surface, too.
 [[nodiscard]] TextureId draw_water(
     FrameGraph& graph,
     WaterPass& pass,
     const FrameScene& scene,
     TextureId radiance,
-    const Gbuffer& gbuffer);
+    const Gbuffer& gbuffer,
+    bool attributes);
 
 }  // namespace limn

@@ -1,7 +1,7 @@
 // The surface of water, seen from above or from below: what it mirrors and what is seen through it, by the Fresnel
-// equations; light is lost and scattered on its way through the water (Beer-Lambert). Definitions VELOCITY; FROM_BELOW:
-// the camera may see the surface from below (a software OpenGL runs both sides of every if); and those of
-// lib/water_detail.glsl and lib/water_reflection.glsl.
+// equations; light is lost and scattered on its way through the water (Beer-Lambert). Definitions VELOCITY; ATTRIBUTES:
+// of the G-buffer, too; FROM_BELOW: the camera may see the surface from below (a software OpenGL runs both sides of
+// every if); and those of lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
 #version 450
 #define UNMASKED  // the masks of shadow volumes are of the surfaces behind
 #define ON_WATER
@@ -13,6 +13,7 @@
 #include "lib/water_detail.glsl"
 #include "lib/water_reflection.glsl"
 #include "lib/water_tracing.glsl"
+#include "lib/water_refraction.glsl"
 
 layout(location = 0) in vec2 rest;
 layout(location = 1) flat in int body;
@@ -21,6 +22,13 @@ layout(location = 4) in vec3 wave_by_z;
 #ifdef VELOCITY
 layout(location = 2) in vec3 clip_before;
 layout(location = 1) out vec2 velocity;
+#endif
+#ifdef ATTRIBUTES
+#ifdef VELOCITY
+layout(location = 2) out uvec4 surface;
+#else
+layout(location = 1) out uvec4 surface;
+#endif
 #endif
 layout(location = 0) out vec4 radiance;
 
@@ -76,7 +84,7 @@ void main() {
     vec3 bent = share < 1.0 ? refract(-to_camera, normal, 1.0 / index) : -normal;
     float depth = water.absorption.w + position.y - water.origin.y;
     float most = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kEndless;
-    Seen through = seen_through(position, bent, most);
+    Seen through = look_through(water, position, normal, bent, most, above);
     vec3 left = exp(-extinction * through.way);
     vec3 seen = through.color * left + glow * (1.0 - left);
     vec3 away = reflect(-to_camera, normal);
@@ -114,6 +122,9 @@ void main() {
 #endif
     vec3 color = mix(seen, mirror, share) + glints;
     radiance = vec4(mix(color, kFoamAlbedo * falling, above ? smoothstep(0.3, 0.9, bend.foam) : 0.0), 1.0);
+#ifdef ATTRIBUTES
+    surface = pack_surface(s);
+#endif
 #ifdef VELOCITY
     vec2 now = 2.0 * gl_FragCoord.xy * view.size.zw - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now, clip_before);

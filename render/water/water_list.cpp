@@ -216,6 +216,7 @@ void add_body(
 
     list.looks = list.looks || pack_look(body.look) != 0;
     list.planar = list.planar || body.look.reflection == WaterReflection::Planar;
+    list.bent = list.bent || body.look.refraction == WaterRefraction::Traced;
     list.traced = list.traced || body.look.reflection == WaterReflection::Picture;
     const auto first_line = static_cast<float>(list.lines.size());
     const auto first_ring = static_cast<float>(list.rings.size());
@@ -239,9 +240,14 @@ void add_body(
          .variance = Vec4(0)});
 }
 
-/// One body has the planar reflection; another that asks for it makes do with the picture.
-WaterLook served_look(const WaterLook* look, bool planar) {
+/// One body has the planar reflection; another that asks for it makes do with the picture, as does
+/// one with a floor that is not there.
+WaterLook served_look(const Water& water, const WaterLook* look, bool planar) {
     WaterLook served = look != nullptr ? *look : WaterLook{};
+    const bool floor = served.floor_map.index != kNoAsset && water.depth > 0;
+    if (served.refraction == WaterRefraction::Floor && !floor) {
+        served.refraction = WaterRefraction::Traced;
+    }
     if (served.reflection == WaterReflection::Planar && !planar) {
         served.reflection = WaterReflection::Picture;
     }
@@ -252,7 +258,8 @@ WaterLook served_look(const WaterLook* look, bool planar) {
 
 float pack_look(const WaterLook& look) {
     return static_cast<float>(
-        static_cast<int>(look.fresnel) + 4 * static_cast<int>(look.reflection));
+        static_cast<int>(look.fresnel) + 4 * static_cast<int>(look.reflection)
+        + 16 * static_cast<int>(look.refraction));
 }
 
 void collect_waters(
@@ -276,7 +283,8 @@ void collect_waters(
     list.caustics.clear();
     list.heights.clear();
     list.details.clear();
-    list.looks = list.planar = list.traced = false;
+    list.looks = list.planar = list.traced = list.bent = false;
+    list.floor = nullptr;
     const Moments at = moments_of(world, view);
     std::vector<Body> bodies;
     world
@@ -301,12 +309,15 @@ void collect_waters(
                   const OceanFoam* foam,
                   const Caustics* caustics) {
             list.entities.push_back(entity);
+            if (list.floor == nullptr && look != nullptr && look->floor_map.index != kNoAsset) {
+                list.floor = look;
+            }
             list.caustics.push_back(caustics);
             bodies.push_back(
                 {&water,
                  table,
                  water_frame(place.world),
-                 served_look(look, entity == planar),
+                 served_look(water, look, entity == planar),
                  detail});
             list.ripples.push_back(rippling);
             list.seas.push_back({sea, foam, at.now, at.before});

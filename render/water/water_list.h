@@ -23,7 +23,7 @@ struct WaterAroundView {
     bool at_surface = false;  ///< the surface may cut through the picture
 };
 
-/// How a body is drawn, in WaterRecord::scattering.w: fresnel + 4 reflection.
+/// How a body is drawn, in WaterRecord::scattering.w: fresnel + 4 reflection + 16 refraction.
 [[nodiscard]] float pack_look(const WaterLook& look);
 
 struct WaterList {
@@ -39,9 +39,11 @@ struct WaterList {
     std::vector<const Caustics*> caustics;  ///< of each body, or null
     std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
     WaterDetails details;
-    bool looks = false;   ///< some body is not drawn as usual (WaterLook)
-    bool planar = false;  ///< a body has the planar reflection
-    bool traced = false;  ///< some body mirrors what the picture shows
+    bool looks = false;                ///< some body is not drawn as usual (WaterLook)
+    bool planar = false;               ///< a body has the planar reflection
+    bool traced = false;               ///< some body mirrors what the picture shows
+    bool bent = false;                 ///< some body shows the picture where bent rays go
+    const WaterLook* floor = nullptr;  ///< the first with a map of its floor
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };
