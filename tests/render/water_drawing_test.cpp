@@ -1,4 +1,5 @@
 #include "ecs/base/optics.h"
+#include "ecs/components/ocean.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_ripples.h"
@@ -339,6 +340,29 @@ TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, wh
             }
         }
     }
+}
+
+TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with a sea in the world as without") {
+    surround({0.5f, 0.7f, 1});
+    shine(DirectionalLight{.illuminance = 2}, look_at({1, 1, 0}, Vec3(0)));
+    const Entity pool = pour({.size = {8, 8}, .depth = 2});
+    world.add(pool, make_rough({.size = {8, 8}}, 0.1f));
+    const RenderView view = look({0, 1, 0.3f}, {0, 0, 0}, 64, 36);
+    const gpu::FloatImage alone = radiance(view);
+
+    const Ocean ocean = {.wind_speed = 5, .cascades = 2, .resolution = 32};
+    OceanState state;
+    step_ocean(ocean, kNow, kStep, state);
+    world.add(pour({}, at({0, -40, 0})), state);
+    const gpu::FloatImage beside = radiance(view);
+    int same = 0;
+    int shown = 0;
+    for (std::size_t i = 0; i < alone.pixels.size(); i += 4) {
+        shown += alone.pixels[i] > 0 ? 1 : 0;
+        same += std::abs(beside.pixels[i] - alone.pixels[i]) <= 1e-3f ? 1 : 0;
+    }
+    CHECK(shown == 64 * 36);
+    CHECK(same == 64 * 36);
 }
 
 TEST_CASE_FIXTURE(Lake, "water: a hundred rippling pools are as many calls as one") {

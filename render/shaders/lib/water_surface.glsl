@@ -157,7 +157,7 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
     float share = patches > 0 ? 1.0 : 0.0;
     // Asks after its body, see add_directional().
     do {
-        vec3 place = ocean_place(water, i, q);
+        vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
         float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
         vec4 slope = textureLod(ocean_slope, place, level);
         vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
