@@ -2,6 +2,7 @@
 
 #include "bench/oracles/water_oracle.h"
 #include "content/app/quality_scene.h"
+#include "content/app/quality_water_reflection.h"
 #include "render/gpu/readback.h"
 #include "render/graph/frame_graph.h"
 #include "render/water/ocean_fft.h"
@@ -309,6 +310,7 @@ Result<QualityReport> measure_water(HeadlessRenderer& headless) {
     measure_speed(500.0f, "deep water", report);
     measure_speed(1.0f, "shallow water", report);
     measure_volume(report);
+    measure_water_reflections(headless, report);
     return report;
 }
 
