@@ -160,13 +160,6 @@ void visit_fields(RippleImpulse& impulse, Visitor&& visit) {
 }
 
 template <typename Visitor>
-void visit_fields(RippleLink& link, Visitor&& visit) {
-    visit("at", link.at, {.doc = "place of a cell"});
-    visit("other", link.other, {.doc = "place of the one that it depends on"});
-    visit("weight", link.weight, {.doc = "how much"});
-}
-
-template <typename Visitor>
 void visit_fields(RippleState& state, Visitor&& visit) {
     visit("cells", state.cells, {.doc = "of the grid"});
     visit("stride", state.stride, {.doc = "floats from row to row"});
@@ -187,9 +180,6 @@ void visit_fields(RippleState& state, Visitor&& visit) {
         state.wall_border,
         {.doc = "that the faces are made for", .values = "reflecting absorbing"});
     visit("dry", state.dry, {.doc = "1 of cells that are wall"});
-    visit("faces", state.faces, {.doc = "what walls change of the Laplacian"});
-    visit("row", state.row, {.doc = "first face of each row"});
-    visit("rims", state.rims, {.doc = "what cells of walls repeat"});
     visit("walled", state.walled, {.doc = "what walls have displaced", .unit = "m^3"});
 }
 

@@ -158,7 +158,15 @@ RippleState make_ripples(const Water& water, const WaterRipples& ripples, float 
 
 bool fits(const RippleState& state, const Water& water, const WaterRipples& ripples) {
     const Grid grid = grid_of(water, ripples);
-    return state.cells == grid.cells && state.cell == grid.cell;
+    const std::size_t floats = state.height.size();
+    return state.cells == grid.cells && state.cell == grid.cell
+           && state.stride >= state.cells.x + (state.cells.x > 0 ? 2 : 0)
+           && (state.cells.x == 0
+               || floats
+                      == static_cast<std::size_t>(state.stride)
+                             * static_cast<std::size_t>(state.cells.y + 2))
+           && state.before.size() == floats && (state.body.empty() || state.body.size() == floats)
+           && (state.dry.empty() || state.dry.size() == floats);
 }
 
 std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse) {

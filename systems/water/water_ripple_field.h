@@ -21,7 +21,8 @@ inline constexpr std::int64_t kMaxPushedCells = 30'000'000;
 /// At rest. A Water without end needs a window; without one: no cells.
 [[nodiscard]] RippleState make_ripples(const Water& water, const WaterRipples& ripples, float step);
 
-/// Whether `state` is the one that make_ripples makes now, but for what has moved in it.
+/// Whether `state` is the one that make_ripples makes now, but for what has moved in it: as large,
+/// and whole, whatever file it has come from.
 [[nodiscard]] bool fits(const RippleState& state, const Water& water, const WaterRipples& ripples);
 
 /// Pushes the water as `impulse` says; returns how many cells that were looked at. The middle of it

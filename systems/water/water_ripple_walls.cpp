@@ -189,6 +189,23 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
     }
 }
 
+std::vector<IVec2> cells_that_are_dry(const RippleState& state) {
+    std::vector<IVec2> dry;
+    for (int z = 0; z < state.cells.y && !state.dry.empty(); ++z) {
+        for (int x = 0; x < state.cells.x; ++x) {
+            if (state.dry[state.at(x, z)] != 0) {
+                dry.push_back({x, z});
+            }
+        }
+    }
+    return dry;
+}
+
+void make_lists(RippleState& state, std::span<const IVec2> dry) {
+    make_faces(state, dry);
+    make_rims(state, dry);
+}
+
 /// Cells that have become dry lose their water, those that no longer are get it as high as beside
 /// them: the cells beside them share the difference, so that none is made or lost. In `field`,
 /// which has the heights of water between the walls of `was`.
@@ -317,19 +334,15 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
     if (state.cells.x == 0
         || (state.walls.size() == walls.size() && state.wall_border == border
             && std::equal(walls.begin(), walls.end(), state.walls.begin(), same))) {
+        if (!state.dry.empty() && state.row.empty()) {
+            make_lists(state, cells_that_are_dry(state));  // it comes from a snapshot
+        }
         return;
     }
     lower_bodies(state);
     const std::vector<std::uint8_t> was = std::exchange(state.dry, dry_cells(state, walls));
     const std::int32_t were_wet = state.wet;
-    std::vector<IVec2> dry;
-    for (int z = 0; z < state.cells.y && !state.dry.empty(); ++z) {
-        for (int x = 0; x < state.cells.x; ++x) {
-            if (state.dry[state.at(x, z)] != 0) {
-                dry.push_back({x, z});
-            }
-        }
-    }
+    const std::vector<IVec2> dry = cells_that_are_dry(state);
     state.wet = state.cells.x * state.cells.y - static_cast<std::int32_t>(dry.size());
     state.wall_border = border;
     move_water(state, was, state.height);
@@ -359,8 +372,7 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
         }
     }
     state.walls.assign(walls.begin(), walls.end());
-    make_faces(state, dry);
-    make_rims(state, dry);
+    make_lists(state, dry);
     fill_rims(state, state.height);
     fill_rims(state, state.before);
 }

@@ -227,6 +227,44 @@ TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the mom
     }
 }
 
+TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the query has") {
+    // Black water under an even sky: what is mirrored is what the Fresnel equations say.
+    surround({1, 1, 1});
+    const Water water = {.absorption = Vec3(1000), .scattering = Vec3(0)};
+    WaveTable table;
+    fill_wave_table(
+        water,
+        {.waves = {{.amplitude = 0.12f, .length = 3, .direction = 0.8f, .lean = 0.8f}},
+         .radial = {{.amplitude = 0.02f, .length = 2}}},
+        kNow,
+        table);
+    world.add(pour(water), table);
+    WaterSurface surface;
+    surface.water = water;
+    surface.waves = &table;
+    const RenderView view = look({0, 2.5f, 2}, {0, 0, 0}, 96, 64);
+    const gpu::FloatImage depth = aov(view, "depth");
+    const gpu::FloatImage seen = radiance(view);
+    double squares = 0;
+    int count = 0;
+    for (int y = 20; y < 64; y += 3) {
+        for (int x = 2; x < 96; x += 3) {
+            const Vec3 p = ray_through(view, x, y) * depth.at(x, y, 0) + eye_of(view);
+            const WaterPoint point = sample_water(surface, {p.x, p.z});
+            const Vec3 to_camera = glm::normalize(eye_of(view) - p);
+            const float cosine = glm::dot(point.normal, to_camera);
+            if (cosine > 0.3f) {
+                const double expected = static_cast<double>(fresnel(cosine, 1.333f));
+                const double off = static_cast<double>(seen.at(x, y, 1)) / expected - 1;
+                squares += off * off;
+                ++count;
+            }
+        }
+    }
+    CHECK(count > 200);
+    CHECK(std::sqrt(squares / count) < 0.05);  // slopes are those of the vertices around
+}
+
 TEST_CASE_FIXTURE(Lake, "water: where patches of two sizes meet there is no crack to see through") {
     surround({0, 0, 0});
     place(
