@@ -559,7 +559,7 @@ TEST_CASE("ripple walls: a snapshot goes on as the world does") {
     CHECK(again.get<RippleState>(pool).height == world.get<RippleState>(pool).height);
     CHECK(!again.get<RippleState>(pool).faces.empty());
     // One that is broken begins anew.
-    for (int part = 0; part < 4; ++part) {
+    for (int part = 0; part < 5; ++part) {
         RippleState& state = again.get<RippleState>(pool);
         if (part == 0) {
             state.height.resize(7);
@@ -567,6 +567,8 @@ TEST_CASE("ripple walls: a snapshot goes on as the world does") {
             state.dry.resize(3);
         } else if (part == 2) {
             state.stride = 2;
+        } else if (part == 3) {
+            state.before.clear();
         } else {
             state.body.assign(2, 1.0f);
         }
