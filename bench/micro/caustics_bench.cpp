@@ -133,7 +133,7 @@ void pools(benchmark::State& state) {
     }
     measure(state, scene);
     state.counters["ms_per_pool"] = benchmark::Counter(
-        static_cast<double>(state.range(0)) * 1e3,
+        static_cast<double>(state.range(0)) * 1e-3,
         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
