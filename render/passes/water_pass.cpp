@@ -1,6 +1,7 @@
 #include "render/passes/water_pass.h"
 
 #include "render/gpu/shader_library.h"
+#include "render/water/foam_pattern.h"
 
 #include <array>
 
@@ -15,6 +16,7 @@ constexpr unsigned kDetailMapUnit = 23;
 constexpr unsigned kDetailWavesUnit = 24;
 constexpr unsigned kDetailsUnit = 25;
 constexpr unsigned kDistanceUnit = 26;
+constexpr unsigned kFoamUnit = 29;
 constexpr unsigned kFloorMapUnit = 27;
 constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
 constexpr std::uint32_t kOceanKey = 1u << 30;
@@ -99,6 +101,19 @@ void bind_details(gpu::Device& device, const WaterPass& pass, const FrameScene& 
     if (waters.wave_tiles) {
         device.bind_texture(kDetailWavesUnit, waters.wave_tiles);
     }
+}
+
+void bind_foam(gpu::Device& device, WaterPass& pass) {
+    if (!pass.foam) {
+        constexpr int side = kFoamPatternSide;
+        pass.foam =
+            gpu::Texture("foam", {.format = GL_R8, .width = side, .height = side, .levels = 0});
+        pass.foam.set_wrap(GL_REPEAT);
+        const std::vector<std::uint8_t> pattern = make_foam_pattern();
+        pass.foam.upload(std::as_bytes(std::span(pattern)));
+        pass.foam.generate_mipmaps();
+    }
+    device.bind_texture(kFoamUnit, pass.foam);
 }
 
 /// Draws radiance and distance of the scene.
@@ -228,6 +243,9 @@ TextureId draw_water(
             bind_water_surfaces(device, pass.surfaces);
             context.bind_texture(kBehindUnit, behind.radiance);
             context.bind_texture(kDistanceUnit, behind.distance);
+            if (!pass.surfaces.seas.empty()) {
+                bind_foam(device, pass);
+            }
             if (pass.surfaces.list.planar) {
                 device.bind_texture(kReflectionMapUnit, pass.reflection);
             }

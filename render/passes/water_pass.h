@@ -13,7 +13,8 @@ namespace limn {
 // Writes   radiance, depth, velocity and, where asked for, attributes of what is water now
 // Order    after lights and sky, before blended surfaces
 // Shaders  water_behind.frag, water.vert, water.frag, lib/water_surface.glsl,
-//          lib/water_reflection.glsl, lib/water_refraction.glsl
+//          lib/water_reflection.glsl, lib/water_refraction.glsl,
+//          lib/water_tracing.glsl, lib/water_foam.glsl
 //
 // A body may ask for a planar reflection (WaterLook): render_frame() draws it before the picture,
 // in a smaller one of its own, and keep_reflection() keeps it for the water.
@@ -28,6 +29,7 @@ struct WaterPass {
     gpu::Buffer indices{};
     WaterSurfaces surfaces{};
     gpu::Sampler repeat{};      ///< of normal maps
+    gpu::Texture foam{};        ///< make_foam_pattern(), once there is a sea
     gpu::Texture reflection{};  ///< radiance and distance, upside down, and blurred levels of it
     BufferTexture patches = BufferTexture("water patches", GL_RGBA32F);
 };

@@ -11,6 +11,9 @@
 #include "lib/water_surface.glsl"
 #include "lib/water_light.glsl"
 #include "lib/water_detail.glsl"
+#ifdef OCEAN
+#include "lib/water_foam.glsl"
+#endif
 #include "lib/water_reflection.glsl"
 #include "lib/water_tracing.glsl"
 #include "lib/water_refraction.glsl"
@@ -33,7 +36,6 @@ layout(location = 1) out uvec4 surface;
 layout(location = 0) out vec4 radiance;
 
 const float kSmooth = 1e-5;  // variance of the slopes of ripples that nothing else has
-const float kFoamAlbedo = 0.8;
 const float kThrough = 0.54;    // of upwelling radiance the surface lets out (Mobley 1999)
 
 void main() {
@@ -120,8 +122,14 @@ void main() {
         mirror = found.way < kEndless ? mix(scattered, found.color, exp(-extinction * found.way)) : around;
     }
 #endif
+#ifdef OCEAN
+    seen = above ? with_bubbles(seen, bend.foam, falling, extinction) : seen;
+#endif
     vec3 color = mix(seen, mirror, share) + glints;
-    radiance = vec4(mix(color, kFoamAlbedo * falling, above ? smoothstep(0.3, 0.9, bend.foam) : 0.0), 1.0);
+#ifdef OCEAN
+    color = above ? with_foam(color, bend.foam, rest, footprint, falling) : color;
+#endif
+    radiance = vec4(color, 1.0);
 #ifdef ATTRIBUTES
     surface = pack_surface(s);
 #endif

@@ -17,6 +17,7 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kFoamGrain = 16384;  ///< points a task
+constexpr float kShortestBreaker = 2.0f;   ///< shorter waves break without white water [m]
 
 /// Made once a size; threads that ask at the same time wait for it.
 const FftPlan& plan_of_size(std::size_t size) {
@@ -154,8 +155,10 @@ void step_ocean_foam(const Ocean& ocean, const OceanState& state, float step, Oc
     for (const OceanCascade& cascade : state.cascades) {
         const std::size_t count = cascade.height.size();
         const std::span<float> coverage = std::span(foam.coverage).subspan(first, count);
+        const bool breaks = cascade.band_low * kShortestBreaker < 2 * kPi;
+        const float added = breaks ? gain : 0.0f;
         parallel_for(count, kFoamGrain, [&](std::size_t begin, std::size_t end) {
-            step_foam(cascade, limited.foam_threshold, gain, fade, coverage, begin, end);
+            step_foam(cascade, limited.foam_threshold, added, fade, coverage, begin, end);
         });
         first += count;
     }

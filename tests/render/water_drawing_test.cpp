@@ -5,6 +5,7 @@
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_waves.h"
 #include "render/gpu/readback.h"
+#include "render/water/foam_pattern.h"
 #include "render/water/ripple_atlas.h"
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_query.h"
@@ -15,6 +16,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 // Water at moments between steps, its ripples on the GPU, and light that it gives back.
@@ -401,6 +403,67 @@ TEST_CASE_FIXTURE(Lake, "water: a pool looks the same with a sea in the world as
     }
     CHECK(shown == 64 * 36);
     CHECK(same == 64 * 36);
+}
+
+TEST_CASE("foam pattern: every value is as frequent as any other, and there is no seam") {
+    const std::vector<std::uint8_t> pattern = make_foam_pattern();
+    constexpr auto side = static_cast<std::size_t>(kFoamPatternSide);
+    REQUIRE(pattern.size() == side * side);
+    std::array<std::size_t, 256> counts{};
+    for (const std::uint8_t value : pattern) {
+        ++counts[value];
+    }
+    CHECK(std::all_of(counts.begin(), counts.end(), [&](std::size_t n) { return n == side; }));
+    // How much neighbors differ, in the mean, over each row and each column.
+    const auto step_after = [&](std::size_t line, std::size_t along, std::size_t across) {
+        int sum = 0;
+        for (std::size_t i = 0; i < side; ++i) {
+            const std::size_t here = line * across + i * along;
+            const std::size_t next = (line + 1) % side * across + i * along;
+            sum += std::abs(int{pattern[here]} - int{pattern[next]});
+        }
+        return sum;
+    };
+    for (const auto& [along, across] :
+         {std::pair(std::size_t{1}, side), std::pair(side, std::size_t{1})}) {
+        int most = 0;
+        for (std::size_t line = 0; line + 1 < side; ++line) {
+            most = std::max(most, step_after(line, along, across));
+        }
+        CHECK(step_after(side - 1, along, across) <= most);
+    }
+}
+
+TEST_CASE_FIXTURE(Lake, "water: foam that covers a share of the sea whitens as much of it") {
+    surround({1, 1, 1});
+    const Ocean calm = {.wind_speed = 0, .cascades = 1, .resolution = 32};
+    OceanState state;
+    step_ocean(calm, kNow, kStep, state);
+    const Entity sea = world.create(
+        Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)},
+        WorldTransform{at({0, 0, 0})},
+        state,
+        OceanFoam{});
+    for (const float height : {6.0f, 20.0f, 60.0f}) {
+        const RenderView view = look({0, height, 0.1f}, {0, 0, 0}, 96, 96);
+        const auto mean_with = [&](float cover) {
+            world.get<OceanFoam>(sea).coverage.assign(32 * 32, cover);
+            const gpu::FloatImage seen = radiance(view);
+            double sum = 0;
+            for (std::size_t i = 0; i < seen.pixels.size(); i += 4) {
+                sum += seen.pixels[i];
+            }
+            return sum / (96 * 96);
+        };
+        const double bare = mean_with(0);
+        for (const float cover : {0.05f, 0.3f, 0.6f, 1.0f}) {
+            CAPTURE(height);
+            CAPTURE(cover);
+            const double white = cover * (0.4 + 0.6 * cover);
+            const double expected = bare + white * (0.7 - bare);
+            CHECK(mean_with(cover) == doctest::Approx(expected).epsilon(0.06));
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(Lake, "water: a hundred rippling pools are as many calls as one") {

@@ -485,6 +485,19 @@ TEST_CASE("ocean: foam grows by how little area the determinant of the shift lea
     CHECK(growing > 20);
 }
 
+TEST_CASE("ocean: waves shorter than two meters break without foam") {
+    OceanCascade steep = lone_wave(16, 40, 1, 0, 1000, 5.0f);
+    synthesize_waves(steep, 1.0f, 0.0);
+    for (const float longest : {1.9f, 2.1f}) {
+        steep.band_low = 2 * kPi / longest;
+        OceanState state;
+        state.cascades = {steep};
+        OceanFoam foam;
+        step_ocean_foam({}, state, kStep, foam);
+        CHECK((largest(foam.coverage) > 0) == (longest > 2));
+    }
+}
+
 TEST_CASE("ocean: foam stays between 0 and 1 for steps of any length") {
     Ocean ocean = kSmall;
     ocean.choppiness = 4;
