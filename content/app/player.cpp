@@ -167,6 +167,7 @@ Status Player::load(const std::string& scene) {
         return stage.error();
     }
     stage_ = *std::move(stage);
+    first_camera_ = stage_->scene.camera;
     options_.scene = scene;
     inspector_.reset();
     camera_ = {};
@@ -402,6 +403,10 @@ std::vector<Entity> Player::level_cameras() {
     stage_->world.query<const Camera>().each(
         [&](Entity entity, const Camera&) { cameras.push_back(entity); });
     std::sort(cameras.begin(), cameras.end(), [](Entity a, Entity b) { return a.index < b.index; });
+    const auto first = std::find(cameras.begin(), cameras.end(), first_camera_);
+    if (first != cameras.end()) {
+        std::rotate(cameras.begin(), first, first + 1);
+    }
     return cameras;
 }
 

@@ -58,6 +58,7 @@ class Player {
     void cycle_camera();
     /// False where the level's last camera is looked through.
     bool next_level_camera();
+    /// The one that it starts with first.
     [[nodiscard]] std::vector<Entity> level_cameras();
     void look_through(std::size_t index);
     [[nodiscard]] Ray pointer_ray() const;
@@ -83,6 +84,8 @@ class Player {
     std::unique_ptr<Hud> hud_;
     std::optional<BufferViewer> buffers_;
     std::unique_ptr<Stage> stage_;
+
+    Entity first_camera_{};
 
     Inspector inspector_;
     ProfilerPanel profiler_;

@@ -27,6 +27,7 @@ struct Sailboat {
 
     bool player = false;    ///< obeys Input, from the moment that there is some
     Entity camera{};        ///< only while this one is active; none: always
+    Entity lookout{};       ///< goes with it, upright: for cameras to follow; none: nobody
     bool taken = false;     ///< somebody steers it
     PathId course{};        ///< that it follows by itself; none: as it is steered
     double distance = 0.0;  ///< along the course, of the point that it makes for [m]
@@ -57,6 +58,7 @@ void visit_fields(Sailboat& boat, Visitor&& visit) {
     visit("trims_itself", boat.trims_itself, {.doc = "the sheet follows the wind"});
     visit("player", boat.player, {.doc = "obeys the input, once there is some"});
     visit("camera", boat.camera, {.doc = "only while this one is active, by name"});
+    visit("lookout", boat.lookout, {.doc = "goes with it, upright: for cameras to follow"});
     visit("taken", boat.taken, {.doc = "somebody steers it"});
     visit("course", boat.course, {.doc = "a path of the level that it follows by itself"});
     visit(

@@ -122,6 +122,7 @@ void turn_booms(World& world) {
         return;
     }
     const Vec3 wind = wind_of(world);
+    std::vector<std::pair<Entity, const Transform*>> lookouts;
     world.query<Boom, Transform, const Parent>().each(
         [&](Boom& boom, Transform& transform, const Parent& parent) {
             const auto* boat = others.find<Sailboat>(parent.entity);
@@ -142,6 +143,20 @@ void turn_booms(World& world) {
             transform.scale.x = boom.fullness < 0 ? std::min(boom.fullness, -kFlattest)
                                                   : std::max(boom.fullness, kFlattest);
         });
+    world.query<const Sailboat, const Transform>().each(
+        [&](const Sailboat& boat, const Transform& hull) {
+            if (boat.lookout != Entity{}) {
+                lookouts.push_back({boat.lookout, &hull});
+            }
+        });
+    for (const auto& [lookout, hull] : lookouts) {
+        if (auto* transform = world.find<Transform>(lookout)) {
+            transform->position = hull->position;
+            // +z toward heading `a`, which is from +x toward +z.
+            const float heading = heading_of(unit_or_none(hull->rotation));
+            transform->rotation = rotation_about({0, 1, 0}, 0.5f * kPi - heading);
+        }
+    }
 }
 
 }  // namespace limn

@@ -14,7 +14,7 @@ class World;
 /// update_floating_bodies.
 void update_sailboats(World& world);
 
-/// Turns every Boom as its Sailboat has it. After update_sailboats.
+/// Turns every Boom as its Sailboat has it, and takes lookouts along. After update_floating_bodies.
 void turn_booms(World& world);
 
 /// One step of somebody at the helm.

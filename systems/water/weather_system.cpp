@@ -13,8 +13,10 @@
 namespace limn {
 namespace {
 
-constexpr float kWindPace = 2.0f;   // [m/s^2]; all by eye
-constexpr float kTurnPace = 0.5f;   // [rad/s]
+constexpr float kWindPace = 1.0f;   // [m/s^2]; all by eye
+constexpr float kTurnPace = 0.25f;  // [rad/s]
+// From one drawing of the spectra to the next: it costs some 30 ms.
+constexpr std::uint64_t kSpectrumSteps = 4;
 constexpr float kRainPace = 0.35f;  // [1/s]
 constexpr float kDrops = 14.0f;     // that a downpour lets fall [1/(m^2 s)]
 constexpr float kWetLens = 0.45f;   // of LensRain::amount
@@ -45,7 +47,11 @@ void update_weather(World& world) {
         const Vec3 turn = glm::clamp(input->weather, Vec3(-1), Vec3(1));
         *world.find_resource<Weather>() = turn_weather(*weather, turn, time->step);
     }
+    const bool draws = time->frame % kSpectrumSteps == 0;
     world.query<Ocean>().each([&](Ocean& ocean) {
+        if (!draws) {
+            return;
+        }
         ocean.wind_speed = weather->wind_speed;
         ocean.wind_direction = weather->wind_direction;
     });

@@ -390,6 +390,20 @@ TEST_CASE("sailing: a boom swings to leeward and its sail fills to the same side
     CHECK(swung.scale.x > 0.5f);
 }
 
+TEST_CASE("sailing: a lookout goes with its boat and stays upright") {
+    Bay bay({.wind_speed = 11, .wind_direction = 0});
+    const Entity lookout = bay.world.create(Transform{});
+    const Entity boat = bay.add_boat({0, 0, 0}, {.lookout = lookout});
+    start_world(bay.world);
+    bay.run(120);
+    const auto& hull = bay.world.get<Transform>(boat);
+    const auto& upright = bay.world.get<Transform>(lookout);
+    CHECK((hull.rotation * Vec3(0, 1, 0)).y < 0.999f);  // it heels
+    CHECK((upright.rotation * Vec3(0, 1, 0)).y == doctest::Approx(1));
+    CHECK(upright.position == hull.position);
+    CHECK(heading_of(upright.rotation) == doctest::Approx(heading_of(hull.rotation)));
+}
+
 TEST_CASE("sailing: any number of threads sails fifty boats to the same places, to the bit") {
     const auto sail = [](int threads) {
         const int before = thread_count();
