@@ -29,6 +29,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/shadow_volume_pass.h"
 #include "render/passes/speed_line_pass.h"
+#include "render/passes/texture_combine_pass.h"
 #include "render/passes/texture_wave_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
@@ -92,6 +93,7 @@ struct Passes {
     ProbePass probes;
     ShadowPass shadows;
     ShadowVolumePass volumes;
+    TextureCombinePass combine;
     TextureWavePass texture_waves;
     WaterPass water;
     WaterVeilPass veil;
@@ -133,7 +135,8 @@ class Renderer {
   public:
     Renderer(gpu::Device& device, const RenderSettings& settings, Passes passes);
 
-    /// Draws what probes see, where that is due: before the image that shows it.
+    /// Draws combined textures, and what probes see, where that is due: before the image that shows
+    /// them.
     void draw_probes(const World& world, const RenderView& view);
     /// Draws what a water mirrors that asks for it, before the image of `view` that shows it.
     void draw_water_reflection(const World& world, const RenderView& view);
@@ -295,6 +298,11 @@ void Renderer::update_environment(const World& world) {
 
 void Renderer::draw_probes(const World& world, const RenderView& view) {
     update_assets(world);
+    probe_graph_.begin_frame();
+    if (combine_textures(probe_graph_, passes.combine, world, materials_, shown_time(world, view))
+        > 0) {
+        probe_graph_.execute();
+    }
     if (!environment_ || !same_light(*environment_, shown_environment(world))) {
         probes_.forget();
     }
@@ -709,6 +717,10 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!volumes) {
         return volumes.error();
     }
+    Result<TextureCombinePass> combine = create_texture_combine_pass(device);
+    if (!combine) {
+        return combine.error();
+    }
     Result<TextureWavePass> texture_waves = create_texture_wave_pass(device);
     if (!texture_waves) {
         return texture_waves.error();
@@ -730,14 +742,30 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
     if (!accumulate) {
         return accumulate.error();
     }
-    Passes passes = {*std::move(deform),   *std::move(gbuffer),    *std::move(lights),
-                     *std::move(clusters), *std::move(light_each), *std::move(forward),
-                     *std::move(blend),    *std::move(developer),  *std::move(aovs),
-                     *std::move(panorama), *std::move(reflection), *std::move(probes),
-                     *std::move(shadows),  *std::move(volumes),    *std::move(texture_waves),
-                     *std::move(water),    *std::move(veil),       *std::move(caustics),
-                     MirrorCausticPass{},  SpeedLinePass{},        LensPasses(device),
-                     *accumulate};
+    Passes passes = {
+        *std::move(deform),
+        *std::move(gbuffer),
+        *std::move(lights),
+        *std::move(clusters),
+        *std::move(light_each),
+        *std::move(forward),
+        *std::move(blend),
+        *std::move(developer),
+        *std::move(aovs),
+        *std::move(panorama),
+        *std::move(reflection),
+        *std::move(probes),
+        *std::move(shadows),
+        *std::move(volumes),
+        *std::move(combine),
+        *std::move(texture_waves),
+        *std::move(water),
+        *std::move(veil),
+        *std::move(caustics),
+        MirrorCausticPass{},
+        SpeedLinePass{},
+        LensPasses(device),
+        *accumulate};
     return RendererPtr(new Renderer(device, settings, std::move(passes)));
 }
 

@@ -28,6 +28,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "ecs/components/texture_combine.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/walker.h"
 #include "ecs/components/water.h"
@@ -84,6 +85,7 @@ void register_all_components() {
     register_component<ScreenRipple>();
     register_component<Water>();
     register_component<WaterLook>();
+    register_component<TextureCombine>();
     register_component<WaterDetail>();
     register_component<WaterWaves>();
     register_component<WaterRipples>();
