@@ -470,7 +470,16 @@ TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {
 TEST_CASE_FIXTURE(Pool, "caustics: numbers that mean nothing give a picture") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const Entity water = wave(
-        fill({.resolution = -7, .spacing = 0, .strength = kNan, .reach = -1, .window = INFINITY}),
+        fill(
+            {.resolution = -7,
+             .spacing = 0,
+             .strength = kNan,
+             .reach = -1,
+             .window = INFINITY,
+             .cascades = -3,
+             .shaft_steps = -1,
+             .mirror_reach = INFINITY,
+             .mirror_resolution = 0}),
         some_waves());
     const auto all_finite = [&] {
         const gpu::FloatImage seen = radiance(from_below());
@@ -479,6 +488,10 @@ TEST_CASE_FIXTURE(Pool, "caustics: numbers that mean nothing give a picture") {
         });
     };
     const Entity light = sun(sun_at(radians(30)));
+    CHECK(all_finite());
+    world.get<Caustics>(water).mirror_reach = 1e30f;
+    world.get<Caustics>(water).shaft_steps = 1 << 30;
+    world.get<Caustics>(water).cascades = 1000;
     CHECK(all_finite());
     world.get<Water>(water).size = {0, 0};
     CHECK(all_finite());
