@@ -1,4 +1,5 @@
 #include "ecs/base/optics.h"
+#include "ecs/components/caustics.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
@@ -338,6 +339,30 @@ TEST_CASE_FIXTURE(
     CHECK(lit.at(32, 32, 0) > dark.at(32, 32, 0) + 0.5f);
     CHECK(largest_difference(sun_toward({0, -1, -1}), dark) == 0);
     CHECK(largest_difference(sun_toward({0.2f, -0.001f, -1}), dark) == 0);
+}
+
+TEST_CASE_FIXTURE(Lake, "caustics: of a sun at the horizon or below it there are none") {
+    surround({0.1f, 0.1f, 0.1f});
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Blinn}),
+        affine_from({0, -1.5f, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(4)));
+    const Entity pool = pour({.size = {8, 8}, .depth = 1.5f});
+    world.add(pool, table_at({.size = {8, 8}, .depth = 1.5f}, 0));
+    const RenderView view = look({0, -0.3f, 0}, {0.5f, -1.5f, 0}, 64, 64);
+    for (const Vec3 from :
+         {Vec3(1, -0.5f, 0), Vec3(0, -1, 0.01f), Vec3(1, -1e-4f, 0), Vec3(1, 0, 0)}) {
+        const Entity sun = shine(DirectionalLight{.illuminance = 3}, look_at(from, Vec3(0)));
+        const gpu::FloatImage without = radiance(view);
+        world.add(pool, Caustics{.resolution = 64});
+        const gpu::FloatImage with = radiance(view);
+        for (const float value : with.pixels) {
+            REQUIRE(std::isfinite(value));
+        }
+        CHECK(largest_difference(with, without) < 1e-4f);
+        world.remove<Caustics>(pool);
+        world.destroy(sun);
+    }
 }
 
 TEST_CASE_FIXTURE(Lake, "water veil: aside of the middle the way through the water is longer") {
