@@ -96,15 +96,21 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
     // Far behind what hides it, it meets something that the picture does not show.
     float gap = hit.z - distance_at(pixel);
     vec2 edge = min(hit.xy, view.size.xy - hit.xy) * view.size.zw;
-    float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0) * clamp(2.0 - gap / (2.0 * (high - low) + 0.05), 0.0, 1.0);
+    float shown = side.up > 0.0 ? clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0) : 1.0;
+    float trust = shown * clamp(2.0 - gap / (2.0 * (high - low) + 0.05), 0.0, 1.0);
     trust = met ? trust : 0.0;
 #ifdef FROM_BELOW
-    // Under water there is no sky to see instead: what is at the edge of the picture goes on.
-    float seen = distance_at(pixel);
-    bool goes_on = side.up < 0.0 && !met && !inside && at.z > view.camera_ws.w && seen > 0.0
-                   && height_of(pixel, seen) < side.level;
-    if (goes_on) {
-        return Seen(color, low);
+    // Under water there is no sky to see instead: what is where it leaves the picture goes on.
+    if (side.up < 0.0 && !met && !inside && at.z > view.camera_ws.w) {
+        vec3 start = picture_of(ray, 0.0);
+        vec2 out_of = at.xy - start.xy;
+        vec2 room = mix(view.size.xy - 1.0 - start.xy, 1.0 - start.xy, lessThan(out_of, vec2(0.0)));
+        vec2 shares = room / mix(out_of, vec2(1e-3), lessThan(abs(out_of), vec2(1e-3)));
+        vec2 leaves = into_picture(start.xy + clamp(min(shares.x, shares.y), 0.0, 1.0) * out_of);
+        float seen = distance_at(leaves);
+        if (seen > 0.0 && height_of(leaves, seen) < side.level) {
+            return Seen(radiance_at(leaves), low);
+        }
     }
 #endif
     return Seen(mix(around, color, trust), trust > 0.5 ? high : kEndless);
