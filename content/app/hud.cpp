@@ -31,7 +31,7 @@ struct KeyHelp {
 constexpr std::array kKeys = {
     KeyHelp{nullptr, "Move"},
     KeyHelp{"W A S D", "forward, left, back, right; drive, sail, walk"},
-    KeyHelp{"Q  E", "down, up; dive, rise"},
+    KeyHelp{"Q  E", "down, up; duck and dive, rise"},
     KeyHelp{"Shift", "faster; boost; the sail trims itself"},
     KeyHelp{"Drag", "look around, or circle the target"},
     KeyHelp{"Wheel", "speed when flying, distance when circling"},

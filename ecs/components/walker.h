@@ -19,6 +19,7 @@ struct Walker {
     float pitch = 0.0f;         ///< up [rad]
     Vec3 velocity = {0, 0, 0};  ///< [m/s]
     float depth = 0.0f;         ///< of the water above its feet [m], < 0: none
+    float duck = 0.0f;          ///< 0 upright .. 1 its head as low as it gets, under water
     bool stands = false;        ///< on something
 };
 
@@ -40,6 +41,7 @@ void visit_fields(Walker& walker, Visitor&& visit) {
     visit("pitch", walker.pitch, {.doc = "up", .unit = "rad", .min = -1.5, .max = 1.5});
     visit("velocity", walker.velocity, {.doc = "", .unit = "m/s"});
     visit("depth", walker.depth, {.doc = "of the water above its feet", .unit = "m"});
+    visit("duck", walker.duck, {.doc = "0 upright, 1 head under water", .min = 0, .max = 1});
     visit("stands", walker.stands, {.doc = "on something"});
 }
 

@@ -30,6 +30,8 @@ constexpr float kDiveSpeed = 1.2f;   // [m/s]
 constexpr float kSink = 1.0f;        // [m/s] at most, in water
 constexpr float kFastest = 30.0f;    // [m/s] of a fall
 constexpr float kDeepest = -1e3f;    // where nobody falls on [m]
+constexpr float kDuck = 3.0f;        // [1/s] at which it ducks
+constexpr float kDucked = 0.55f;     // of its height that a ducked head is lower
 constexpr float kSnap = 0.12f;       // [m] down to the next step without a fall
 constexpr float kClimb = 8.0f;       // [1/s] at which it steps up
 
@@ -133,6 +135,8 @@ void step_walker(
 
     // Who has lost the ground gets it back where it is shallow.
     const bool swims = walker.depth > walker.eye + (walker.stands ? kAfloat : -2 * kEyesAbove);
+    const bool ducks = walker.depth > 0.5f * walker.eye && move.y < 0;
+    walker.duck += ((ducks ? 1.0f : 0.0f) - walker.duck) * (1 - std::exp(-kDuck * step));
     const bool dives = walker.depth > 0.5f * walker.eye && move.y != 0;
     if (dives) {
         velocity.y += (kDiveSpeed * move.y - velocity.y) * share;
@@ -206,7 +210,8 @@ void update_walkers(World& world) {
         step_walker(
             grounds, waters, listens ? *input : Input{}, time->step, walker, transform.position);
         transform.rotation = rotation_about({0, 1, 0}, walker.yaw);
-        eyes.push_back({walker.camera, {0, walker.eye, 0}, walker.pitch});
+        eyes.push_back(
+            {walker.camera, {0, walker.eye * (1 - kDucked * walker.duck), 0}, walker.pitch});
     });
     for (const Eyes& look : eyes) {
         if (auto* transform = world.find<Transform>(look.camera)) {

@@ -16,7 +16,8 @@ class World;
 // Upright boxes (Footing) carry and stop: the highest top that is not more than a step above the
 // feet is the ground, what is higher pushes back the shorter way. In water it is slower the deeper
 // it stands, and falls slower; where the water is deeper than it can stand in it swims with its
-// eyes above the surface, and dives while Input::move.y is down. Boxes that lean count as upright.
+// eyes above the surface, and dives while Input::move.y is down; where it stands deep enough it
+// ducks. Boxes that lean count as upright.
 
 /// A Footing where it is.
 struct Ground {

@@ -89,12 +89,17 @@ TEST_CASE("walker: goes down the steps, the slower the deeper, until its eyes ar
     CHECK(pool.feet.y == doctest::Approx(-1.6).epsilon(0.01));
     CHECK(pool.walker.depth == doctest::Approx(1.5).epsilon(0.02));
     CHECK(glm::length(pool.walker.velocity) < 0.45f * pool.walker.speed);
+    pool.input.move = {0, -1, 0};
+    pool.run(2);
+    CHECK(pool.walker.duck > 0.95f);  // its head under water
+    CHECK(pool.feet.y == doctest::Approx(-1.6).epsilon(0.01));
     // And up again.
     pool.input.move = {0, 0, -1};
     for (int i = 0; i < 60 * 14 && pool.feet.z < 1.5f; ++i) {
         pool.run(1.5f * kStep);
     }
     CHECK(std::abs(pool.feet.y) < 0.05f);
+    CHECK(pool.walker.duck < 0.01f);
     CHECK(pool.feet.z > 1);
 }
 
