@@ -423,14 +423,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         water.seas,
         water.list);
     CausticList& caustics = passes.caustics.list;
-    const auto& pose = view.world_from_camera.row;
-    collect_caustics(
-        water.list,
-        scene.lights,
-        {pose[0].w, pose[1].w, pose[2].w},
-        !for_probe,
-        caustics,
-        scene.shadows);
+    collect_caustics(water.list, scene.lights, view, for_picture, caustics, scene.shadows);
     shadow_collector_.collect(
         world, view, meshes_, materials_, shapes_, assets_, ring_, scene.lights, scene.shadows);
     shapes_.write_jobs(ring_);

@@ -2,8 +2,10 @@
 
 #include "ecs/base/optics.h"
 #include "ecs/components/water_frame.h"
+#include "render/culling.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -348,20 +350,40 @@ void adapt(Caustics& caustics, const layout::WaterRecord& body, float distance) 
     }
 }
 
+/// Whether anything that lies in the water may be.
+bool may_be_seen(const layout::WaterRecord& body, const Frustum& frustum) {
+    if (body.shape.y <= 0 || body.shape.z <= 0 || body.absorption.w <= 0) {
+        return true;
+    }
+    const WaterFrame frame = frame_of(body);
+    const Vec3 half(body.shape.y, 0.5f * body.absorption.w + kBelowBottom, body.shape.z);
+    const Vec3 middle = frame.world({0, -0.5f * body.absorption.w, 0});
+    return std::none_of(
+        std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
+            const Vec3 normal = frame.turned_in(Vec3(plane));
+            const float reach = glm::dot(glm::abs(normal), half);
+            return glm::dot(Vec3(plane), middle) + plane.w < -reach;
+        });
+}
+
 /// Waters with maps, the nearest first, with as many texels as all may have.
 struct Wanted {
     std::size_t body = 0;
     Caustics caustics;
 };
-std::vector<Wanted>
-choose_waters(const WaterList& waters, const std::vector<std::size_t>& order, const Vec3& camera) {
+std::vector<Wanted> choose_waters(
+    const WaterList& waters,
+    const std::vector<std::size_t>& order,
+    const Vec3& camera,
+    const Frustum& frustum) {
     std::vector<Wanted> chosen;
     std::int64_t texels = 0;
     const auto size_of = [](const Caustics& c) {
         return std::int64_t{c.resolution} * c.resolution * c.cascades;
     };
     for (const std::size_t i : order) {
-        if (waters.caustics[i] != nullptr && chosen.size() < kMaxCausticMaps) {
+        if (waters.caustics[i] != nullptr && chosen.size() < kMaxCausticMaps
+            && (waters.caustics[i]->mirror_reach > 0 || may_be_seen(waters.bodies[i], frustum))) {
             Wanted wanted = {i, make_sane(*waters.caustics[i])};
             adapt(wanted.caustics, waters.bodies[i], distance_to(waters.bodies[i], camera));
             texels += size_of(wanted.caustics);
@@ -447,10 +469,12 @@ void append_grid(CausticList& list) {
 void collect_caustics(
     const WaterList& waters,
     const LightList& lights,
-    const Vec3& camera,
+    const RenderView& view,
     bool maps,
     CausticList& list,
     ShadowList& shadows) {
+    const auto& pose = view.world_from_camera.row;
+    const Vec3 camera(pose[0].w, pose[1].w, pose[2].w);
     list.sunken.clear();
     list.mirrors.clear();
     list.places.clear();
@@ -464,7 +488,8 @@ void collect_caustics(
     });
     const int sun = brightest_sun(lights);
     const std::vector<Wanted> chosen =
-        sun >= 0 ? choose_waters(waters, order, camera) : std::vector<Wanted>{};
+        sun >= 0 ? choose_waters(waters, order, camera, make_frustum(view.clip_from_world))
+                 : std::vector<Wanted>{};
     std::size_t next = 0;
     for (const std::size_t i : order) {
         layout::SunkenRecord& sunken = list.sunken.emplace_back(sunken_of(waters.bodies[i]));

@@ -42,11 +42,12 @@ struct CausticList {
     std::vector<Vec4> texels;  ///< of the records, as lib/caustic_place.glsl reads them
 };
 
-/// Chooses waters and maps and asks `shadows` for the views they need. `maps`: also make maps.
+/// Chooses waters and maps and asks `shadows` for the views they need: of waters of which `view`
+/// may see what lies in them or, where they mirror, what stands above. `maps`: also make maps.
 void collect_caustics(
     const WaterList& waters,
     const LightList& lights,
-    const Vec3& camera,
+    const RenderView& view,
     bool maps,
     CausticList& list,
     ShadowList& shadows);

@@ -150,4 +150,24 @@ TEST_CASE_FIXTURE(
     }
 }
 
+TEST_CASE_FIXTURE(Floor, "caustics: a pool that is not seen has no map") {
+    const Entity pool = fill({.size = {4, 4}, .depth = 2}, {0, 0, 0}, {.resolution = 64});
+    FrameGraph& graph = frame_graph(shared_renderer());
+    const auto is_made = [&](const Vec3& eye, const Vec3& target) {
+        const Affine pose = look_at(eye, target);
+        draw(make_render_view(
+            {.fov_y = radians(40.0f), .near = 0.01f},
+            pose,
+            pose,
+            {.width = kSize, .height = kSize}));
+        return graph.was_run("caustic rays");
+    };
+    CHECK(is_made({6, 1, 0}, {0, 0, 0}));
+    CHECK(!is_made({6, 1, 0}, {12, 0, 0}));
+    CHECK(!is_made({6, 1, 0}, {6, 0, 9}));
+    CHECK(is_made({6, 1, 0}, {2.5f, 0, 3}));     // its corner
+    world.get<Caustics>(pool).mirror_reach = 1;  // what it lights may be anywhere
+    CHECK(is_made({6, 1, 0}, {12, 0, 0}));
+}
+
 }  // namespace limn::test

@@ -274,10 +274,10 @@ TEST_CASE_FIXTURE(
     const Vec2 aside = mirrored_slant(to_sun) * kCeiling;
     CHECK(above({aside.x, 0.2f, aside.y}) == 0);
     FrameGraph& graph = frame_graph(shared_renderer());
-    CHECK(graph.texture(graph.find("caustics"))->width() == 64);
+    CHECK(!graph.was_run("caustic rays"));  // nor does anybody look into the water
     world.get<Caustics>(water).mirror_reach = kCeiling - 0.1f;
     CHECK(above({aside.x, 0.2f, aside.y}) == 0);
-    CHECK(graph.texture(graph.find("caustics"))->width() > 64);
+    CHECK(graph.was_run("caustic rays"));
     world.get<Caustics>(water).mirror_reach = kCeiling + 0.1f;
     CHECK(above({aside.x, 0.2f, aside.y}) > 0);
 }

@@ -77,8 +77,8 @@ class Pool : public Scene {
     }
 
     /// The map of the first water; rows run along z.
-    gpu::FloatImage map() {
-        draw(from_below());
+    gpu::FloatImage map(const Vec3& eye = {0, -0.1f, 0}) {
+        draw(from_below(eye));
         FrameGraph& graph = frame_graph(shared_renderer());
         const gpu::Texture* const texture = graph.texture(graph.find("caustics"));
         REQUIRE(texture != nullptr);
@@ -354,11 +354,11 @@ TEST_CASE_FIXTURE(Pool, "caustics: those of the book are as bright as the water 
     const Entity water = fill({.method = CausticMethod::Pool, .resolution = 256});
     world.get<Water>(water).depth = 0.01f;  // where it lands is where it comes from
     sun(sun_at(radians(89.9f)));
-    const gpu::FloatImage still = map();
+    const gpu::FloatImage still = map({0, 0.5f, 0});
     CHECK(*std::max_element(still.pixels.begin(), still.pixels.end()) == 0);
     const float amplitude = 0.1f;
     wave(water, {.waves = {{.amplitude = amplitude, .length = 1.7f, .direction = 0.5f}}});
-    const gpu::FloatImage found = map();
+    const gpu::FloatImage found = map({0, 0.5f, 0});
     for (int i = 20; i < 236; i += 9) {
         const double place =
             (i + 0.5) / 256 * 2.12 * static_cast<double>(kHalf) - 1.06 * static_cast<double>(kHalf);
