@@ -52,9 +52,9 @@ void main() {
     bvec2 walled = greaterThan(water.shape.yz, vec2(0.0));
     vec2 bounds = mix(vec2(1e9), water.shape.yz - 0.5 * cell, walled);
     vec2 inner = clamp(q, -bounds, bounds);
-    vec3 offset = water_offset(water, inner, cell.x, false);
-    WaterBend bend = water_bend(water, inner, cell.x);
-    vec3 area = cross(vec3(0.0, 0.0, 1.0) + bend.by_z, vec3(1.0, 0.0, 0.0) + bend.by_x);
+    WaterMotion motion = water_motion(water, inner, cell.x);
+    vec3 offset = motion.offset;
+    vec3 area = cross(vec3(0.0, 0.0, 1.0) + motion.bend.by_z, vec3(1.0, 0.0, 0.0) + motion.bend.by_x);
     vec3 normal = normalize(area);
     vec3 to_sun = record.to_sun.xyz;
     float facing = dot(normal, to_sun);

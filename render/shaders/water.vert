@@ -16,8 +16,8 @@ layout(location = 2) out vec3 clip_before;    // x, y, w
 
 const int kCorners = kWaterGrid + 1;  // of a patch, along a side
 
-vec3 surface_ws(WaterRecord water, vec2 q, float spacing, bool before) {
-    return water.origin.xyz + water_to_world(water, vec3(q.x, 0.0, q.y) + water_offset(water, q, spacing, before));
+vec3 surface_ws(WaterRecord water, vec2 q, vec3 offset) {
+    return water.origin.xyz + water_to_world(water, vec3(q.x, 0.0, q.y) + offset);
 }
 
 void main() {
@@ -39,12 +39,13 @@ void main() {
 
     rest = q;
     float spacing = cell * (1.0 + slid);
-    WaterBend bend = wave_bend(water, q, spacing);
-    wave_by_x = vec4(bend.by_x, bend.variance);
-    wave_by_z = bend.by_z;
-    gl_Position = view.clip_from_world * vec4(surface_ws(water, q, spacing, false), 1.0);
+    WaterMotion waves = wave_motion(water, q, spacing, false);
+    wave_by_x = vec4(waves.bend.by_x, waves.bend.variance);
+    wave_by_z = waves.bend.by_z;
+    vec3 offset = waves.offset + field_offset(water, q, spacing, false);
+    gl_Position = view.clip_from_world * vec4(surface_ws(water, q, offset), 1.0);
 #ifdef VELOCITY
-    vec4 before = view.previous_from_world * vec4(surface_ws(water, q, spacing, true), 1.0);
-    clip_before = before.xyw;
+    vec3 offset_before = water_offset(water, q, spacing, true);
+    clip_before = (view.previous_from_world * vec4(surface_ws(water, q, offset_before), 1.0)).xyw;
 #endif
 }

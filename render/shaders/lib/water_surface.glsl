@@ -56,45 +56,6 @@ float wave_share(float k, float spacing) {
     return 1.0 - smoothstep(0.25, 0.5, spacing * k * 0.159154943);
 }
 
-// Where the point at rest at q is, as points `spacing` [m] apart show it; at the moment shown or the moment `before`.
-vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
-    vec3 offset = vec3(0.0);
-#ifdef OCEAN
-    int patches = int(water.ocean.y);
-    for (int i = 0; i < patches; ++i) {
-        vec3 place = ocean_place(water, i, q);
-        float level = log2(max(spacing * water.patches[i] * water.ocean.z, 1.0));
-        offset += (before ? textureLod(ocean_shift_before, place, level) : textureLod(ocean_shift, place, level)).xyz;
-    }
-#endif
-    int line = int(water.waves.x);
-    int end = line + int(water.waves.y);
-    for (; line < end; ++line) {
-        vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
-        vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
-        float share = wave_share(length(run.xy), spacing);
-        float phase = dot(run.xy, q) + (before ? wave.y : wave.x);
-        float leaning = wave.w * max(sin(phase), 0.0);
-        offset += share * vec3(run.z * cos(phase), wave.z * sin(phase - leaning), run.w * cos(phase));
-    }
-    int ring = int(water.waves.z);
-    end = ring + int(water.waves.w);
-    for (; ring < end; ++ring) {
-        vec4 place = texelFetch(wave_rings, ring * int(kWaveRingTexels));
-        vec4 wave = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 1);
-        vec4 fade = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 2);
-        vec2 edges = place.zw + (before ? fade.z : 0.0);
-        float r = distance(q, place.xy);
-        float window = fade.y > 0.5 ? sin(kPi * (r - edges.x) / (edges.y - edges.x)) : 1.0;
-        float faded = fade.x > 0.0 ? sqrt(min(fade.x / max(r, 1e-6), 1.0)) : 1.0;
-        float height = wave.w * wave_share(wave.z, spacing) * faded * window * window * sin(wave.z * r + (before ? wave.y : wave.x));
-        offset.y += r >= edges.x && r <= edges.y ? height : 0.0;
-    }
-    vec4 ripples = ripples_at(water, q);
-    offset.y += ripples.x + ripples.y * (before ? water.rippling.w : water.rippling.z);
-    return offset;
-}
-
 // How the offset changes along x and along z.
 struct WaterBend {
     vec3 by_x;
@@ -103,49 +64,95 @@ struct WaterBend {
     float foam;      // 0 .. 1
 };
 
-// By waves of closed form, as points `spacing` [m] apart show them.
-WaterBend wave_bend(WaterRecord water, vec2 q, float spacing) {
-    WaterBend bend = WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0);
+struct WaterMotion {
+    vec3 offset;  // from the point at rest [m]
+    WaterBend bend;
+};
+
+// Adds a wave with straight crests, at the moment shown or the moment `before`; `there`: 1, or 0: no wave.
+void add_line(inout WaterMotion motion, int line, float there, vec2 q, float spacing, bool before) {
+    vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
+    vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
+    float k = length(run.xy);
+    float share = there * wave_share(k, spacing);
+    float phase = dot(run.xy, q) + (before ? wave.y : wave.x);
+    float s = sin(phase);
+    float c = cos(phase);
+    float lean = s > 0.0 ? wave.w : 0.0;
+    float leaning = phase - lean * s;
+    motion.offset += share * vec3(run.z * c, wave.z * sin(leaning), run.w * c);
+    vec3 by_phase = share * vec3(-run.z * s, wave.z * cos(leaning) * (1.0 - lean * c), -run.w * s);
+    motion.bend.by_x += run.x * by_phase;
+    motion.bend.by_z += run.y * by_phase;
+    motion.bend.variance += (there - share * share) * 0.5 * wave.z * wave.z * k * k;
+}
+
+// Adds a wave around a point.
+void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spacing, bool before) {
+    vec4 place = texelFetch(wave_rings, ring * int(kWaveRingTexels));
+    vec4 wave = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 1);
+    vec4 fade = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 2);
+    vec2 edges = place.zw + (before ? fade.z : 0.0);
+    vec2 out_from = q - place.xy;
+    float r = max(length(out_from), 1e-6);
+    float rate = fade.y > 0.5 ? kPi / max(edges.y - edges.x, 1e-6) : 0.0;
+    float u = rate * (r - edges.x);
+    float s = sin(u);
+    float window = fade.y > 0.5 ? s * s : 1.0;
+    float window_slope = 2.0 * rate * s * cos(u);
+    bool fading = fade.x > 0.0 && r > fade.x;
+    float faded = fading ? sqrt(fade.x / r) : 1.0;
+    float phase = wave.z * r + (before ? wave.y : wave.x);
+    float height = sin(phase);
+    float size = r >= edges.x && r <= edges.y ? there * wave.w * wave_share(wave.z, spacing) * faded : 0.0;
+    motion.offset.y += size * window * height;
+    float slope = size * (wave.z * cos(phase) * window + height * window_slope
+                          - height * window * (fading ? 0.5 / r : 0.0));
+    motion.bend.by_x.y += slope * out_from.x / r;
+    motion.bend.by_z.y += slope * out_from.y / r;
+}
+
+// By waves of closed form, as points `spacing` [m] apart show them, at the moment shown or the moment `before`.
+WaterMotion wave_motion(WaterRecord water, vec2 q, float spacing, bool before) {
+    WaterMotion motion = WaterMotion(vec3(0.0), WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0));
+    // The loops ask after their body, see add_directional().
     int line = int(water.waves.x);
     int end = line + int(water.waves.y);
-    for (; line < end; ++line) {
-        vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
-        vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
-        float k = length(run.xy);
-        float share = wave_share(k, spacing);
-        float phase = dot(run.xy, q) + wave.x;
-        float s = sin(phase);
-        float c = cos(phase);
-        float lean = s > 0.0 ? wave.w : 0.0;
-        float rise = wave.z * cos(phase - lean * s) * (1.0 - lean * c);
-        vec3 by_phase = share * vec3(-run.z * s, rise, -run.w * s);
-        bend.by_x += run.x * by_phase;
-        bend.by_z += run.y * by_phase;
-        bend.variance += (1.0 - share * share) * 0.5 * wave.z * wave.z * k * k;
-    }
+    float there = water.waves.y > 0.0 ? 1.0 : 0.0;
+    do {
+        add_line(motion, line, there, q, spacing, before);
+    } while (++line < end);
     int ring = int(water.waves.z);
     end = ring + int(water.waves.w);
-    for (; ring < end; ++ring) {
-        vec4 place = texelFetch(wave_rings, ring * int(kWaveRingTexels));
-        vec4 wave = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 1);
-        vec4 fade = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 2);
-        vec2 out_from = q - place.xy;
-        float r = max(length(out_from), 1e-6);
-        float rate = fade.y > 0.5 ? kPi / (place.w - place.z) : 0.0;
-        float u = rate * (r - place.z);
-        float window = fade.y > 0.5 ? sin(u) * sin(u) : 1.0;
-        float window_slope = rate * sin(2.0 * u);
-        bool fading = fade.x > 0.0 && r > fade.x;
-        float faded = fading ? sqrt(fade.x / r) : 1.0;
-        float phase = wave.z * r + wave.x;
-        float slope = wave.w * wave_share(wave.z, spacing) * faded
-                      * (wave.z * cos(phase) * window + sin(phase) * window_slope
-                         - sin(phase) * window * (fading ? 0.5 / r : 0.0));
-        slope = r >= place.z && r <= place.w ? slope : 0.0;
-        bend.by_x.y += slope * out_from.x / r;
-        bend.by_z.y += slope * out_from.y / r;
-    }
-    return bend;
+    there = water.waves.w > 0.0 ? 1.0 : 0.0;
+    do {
+        add_ring(motion, ring, there, q, spacing, before);
+    } while (++ring < end);
+    return motion;
+}
+
+// By ripples and seas, as points `spacing` [m] apart show them.
+vec3 field_offset(WaterRecord water, vec2 q, float spacing, bool before) {
+    vec3 offset = vec3(0.0);
+#ifdef OCEAN
+    int patches = int(water.ocean.y);
+    float there = patches > 0 ? 1.0 : 0.0;
+    int i = 0;
+    do {
+        vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
+        float level = log2(max(spacing * water.patches[i] * water.ocean.z, 1.0));
+        offset += there
+                  * (before ? textureLod(ocean_shift_before, place, level) : textureLod(ocean_shift, place, level)).xyz;
+    } while (++i < patches);
+#endif
+    vec4 ripples = ripples_at(water, q);
+    offset.y += ripples.x + ripples.y * (before ? water.rippling.w : water.rippling.z);
+    return offset;
+}
+
+// Where the point at rest at q is.
+vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
+    return wave_motion(water, q, spacing, before).offset + field_offset(water, q, spacing, before);
 }
 
 // By ripples and seas; of seas the mean over `footprint` [m].
@@ -154,16 +161,16 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
 #ifdef OCEAN
     int patches = int(water.ocean.y);
     int i = 0;
-    float share = patches > 0 ? 1.0 : 0.0;
+    float there = patches > 0 ? 1.0 : 0.0;
     // Asks after its body, see add_directional().
     do {
         vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
         float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
         vec4 slope = textureLod(ocean_slope, place, level);
         vec2 cross_foam = textureLod(ocean_foam, place, level).xy;
-        bend.by_x += share * vec3(slope.z, slope.x, cross_foam.x);
-        bend.by_z += share * vec3(cross_foam.x, slope.y, slope.w);
-        bend.foam += share * cross_foam.y;
+        bend.by_x += there * vec3(slope.z, slope.x, cross_foam.x);
+        bend.by_z += there * vec3(cross_foam.x, slope.y, slope.w);
+        bend.foam += there * cross_foam.y;
         bend.variance += water.variance[i] * clamp(level * 0.3, 0.0, 1.0);
     } while (++i < patches);
     bend.foam = min(bend.foam, 1.0);
@@ -174,13 +181,14 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
     return bend;
 }
 
-// By all; of seas the mean over `footprint` [m].
-WaterBend water_bend(WaterRecord water, vec2 q, float footprint) {
-    WaterBend waves = wave_bend(water, q, 0.0);
-    WaterBend bend = field_bend(water, q, footprint);
-    bend.by_x += waves.by_x;
-    bend.by_z += waves.by_z;
-    return bend;
+// By all, at the moment shown, as points `spacing` [m] apart show it; of seas the mean over as much.
+WaterMotion water_motion(WaterRecord water, vec2 q, float spacing) {
+    WaterMotion motion = wave_motion(water, q, spacing, false);
+    WaterBend bend = field_bend(water, q, spacing);
+    motion.offset += field_offset(water, q, spacing, false);
+    motion.bend.by_x += bend.by_x;
+    motion.bend.by_z += bend.by_z;
+    return motion;
 }
 
 // Up, unit, in the water's own space.
