@@ -42,11 +42,17 @@ struct Boom {
 
 template <typename Visitor>
 void visit_fields(Sailboat& boat, Visitor&& visit) {
-    visit("sail_area", boat.sail_area, {.doc = "", .unit = "m^2", .min = 0, .max = 1e4});
+    visit("sail_area", boat.sail_area, {.doc = "of the sail", .unit = "m^2", .min = 0, .max = 1e4});
     visit("sail_center", boat.sail_center, {.doc = "where the wind's force attacks", .unit = "m"});
-    visit("keel_area", boat.keel_area, {.doc = "", .unit = "m^2", .min = 0, .max = 1e4});
+    visit(
+        "keel_area",
+        boat.keel_area,
+        {.doc = "of the keel, under water", .unit = "m^2", .min = 0, .max = 1e4});
     visit("keel_center", boat.keel_center, {.doc = "where the water's force attacks", .unit = "m"});
-    visit("rudder_area", boat.rudder_area, {.doc = "", .unit = "m^2", .min = 0, .max = 1e4});
+    visit(
+        "rudder_area",
+        boat.rudder_area,
+        {.doc = "of the rudder", .unit = "m^2", .min = 0, .max = 1e4});
     visit("rudder_center", boat.rudder_center, {.doc = "likewise", .unit = "m"});
     visit(
         "wave_drag",

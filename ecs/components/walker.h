@@ -39,7 +39,7 @@ void visit_fields(Walker& walker, Visitor&& visit) {
     visit("camera", walker.camera, {.doc = "its eyes: a child, by name"});
     visit("yaw", walker.yaw, {.doc = "to the left", .unit = "rad"});
     visit("pitch", walker.pitch, {.doc = "up", .unit = "rad", .min = -1.5, .max = 1.5});
-    visit("velocity", walker.velocity, {.doc = "", .unit = "m/s"});
+    visit("velocity", walker.velocity, {.doc = "of its feet", .unit = "m/s"});
     visit("depth", walker.depth, {.doc = "of the water above its feet", .unit = "m"});
     visit("duck", walker.duck, {.doc = "0 upright, 1 head under water", .min = 0, .max = 1});
     visit("stands", walker.stands, {.doc = "on something"});
