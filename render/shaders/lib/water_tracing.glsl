@@ -5,7 +5,11 @@ layout(binding = 26) uniform sampler2D behind_distance;
 
 const int kMirrorSteps = 10;
 const int kBendSteps = 8;
+#ifdef FROM_BELOW
+const int kHalvings = 7;  // all of what is seen is mirrored there: steps would show
+#else
 const int kHalvings = 4;
+#endif
 const float kEndless = 1e4;  // way through water [m]
 
 // A ray in the picture: at way t, from + t along is (pixel x w, pixel y w, w), w its distance along the view axis [m].
@@ -93,12 +97,12 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
     vec3 hit = picture_of(ray, high);
     vec2 pixel = into_picture(met ? hit.xy : at.xy);
     vec3 color = radiance_at(pixel);
-    // Far behind what hides it, it meets something that the picture does not show.
+    // Far behind what hides it, it meets something that the picture does not show. Under water, where there is no sky
+    // to see instead, what hides it is a better guess.
     float gap = hit.z - distance_at(pixel);
     vec2 edge = min(hit.xy, view.size.xy - hit.xy) * view.size.zw;
-    float shown = side.up > 0.0 ? clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0) : 1.0;
-    float trust = shown * clamp(2.0 - gap / (2.0 * (high - low) + 0.05), 0.0, 1.0);
-    trust = met ? trust : 0.0;
+    float trust = clamp(min(edge.x, edge.y) * 12.0, 0.0, 1.0) * clamp(2.0 - gap / (2.0 * (high - low) + 0.05), 0.0, 1.0);
+    trust = !met ? 0.0 : side.up > 0.0 ? trust : 1.0;
 #ifdef FROM_BELOW
     // Under water there is no sky to see instead: what is where it leaves the picture goes on.
     if (side.up < 0.0 && !met && !inside && at.z > view.camera_ws.w) {
@@ -107,7 +111,12 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
         vec2 room = mix(view.size.xy - 1.0 - start.xy, 1.0 - start.xy, lessThan(out_of, vec2(0.0)));
         vec2 shares = room / mix(out_of, vec2(1e-3), lessThan(abs(out_of), vec2(1e-3)));
         vec2 leaves = into_picture(start.xy + clamp(min(shares.x, shares.y), 0.0, 1.0) * out_of);
+        // What stands out of the water there is followed down into it.
         float seen = distance_at(leaves);
+        float over = max(height_of(leaves, seen) - side.level + 0.2, 0.0);
+        leaves.y -= seen > 0.0 ? over / (seen * 2.0 * view.size.w * max(view.ray_up.y, 1e-3)) : 0.0;
+        leaves = into_picture(leaves);
+        seen = distance_at(leaves);
         if (seen > 0.0 && height_of(leaves, seen) < side.level) {
             return Seen(radiance_at(leaves), low);
         }
