@@ -36,6 +36,15 @@ bool is_under(WaterRecord water, vec3 lens) {
     return p.y < offset.y;
 }
 
+// Way on which a ray from the camera stays between the sides of the water [m]: past them it is in the air.
+float way_to_side(WaterRecord water, vec3 direction) {
+    vec3 p = world_to_water(water, view.camera_ws.xyz - water.origin.xyz);
+    vec3 d = world_to_water(water, direction);
+    vec2 ways = (water.shape.yz - sign(d.xz) * p.xz) / max(abs(d.xz), vec2(1e-6));
+    ways = mix(vec2(kEndless), ways, greaterThan(water.shape.yz, vec2(0.0)));
+    return max(min(ways.x, ways.y), 0.0);
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 seen = texelFetch(scene_radiance, pixel, 0).rgb;
@@ -44,6 +53,7 @@ void main() {
     vec3 ray = view_ray(gl_FragCoord.xy);
     vec3 lens = view.camera_ws.xyz + ray * view.camera_ws.w;
     float way = depth > 0.0 ? view_distance(depth) * length(ray) : kEndless;
+    way = min(way, way_to_side(water, normalize(ray)));
     vec3 left = exp(-water_extinction(water) * way);
     float below = max(water.origin.y - view.camera_ws.y, 0.0);
 #ifdef UNDER_WATER

@@ -381,6 +381,18 @@ TEST_CASE_FIXTURE(Lake, "water veil: aside of the middle the way through the wat
     }
 }
 
+TEST_CASE_FIXTURE(
+    Lake, "water veil: where water ends at its side, what is beyond is seen through the air") {
+    surround({1, 1, 1});
+    pour({.size = {4, 6}, .absorption = {0.3f, 0.3f, 0.3f}, .scattering = Vec3(0)});
+    for (const Vec3 toward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+        const Vec3 eye = {0.5f, -5, -1};
+        const gpu::FloatImage seen = radiance(look(eye, eye + toward, 33, 33));
+        const float way = toward.x != 0 ? 2 - toward.x * eye.x : 3 - toward.z * eye.z;
+        CHECK(seen.at(16, 16, 0) == doctest::Approx(std::exp(-0.3f * way)).epsilon(0.002).scale(0));
+    }
+}
+
 TEST_CASE_FIXTURE(Lake, "water: a camera exactly on the surface sees numbers, whatever moves it") {
     surround({0.5f, 0.7f, 1});
     shine(DirectionalLight{.illuminance = 2}, look_at({1, 0.0f, 0}, Vec3(0)));
