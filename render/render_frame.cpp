@@ -568,7 +568,7 @@ FrameTextures Renderer::draw_image(const FrameRequest& request, bool attributes,
     FrameTextures made;
     made.gbuffer = draw_surfaces(attributes || velocity || !request.aovs.empty(), velocity);
     const Gbuffer& gbuffer = made.gbuffer;
-    made.radiance = draw_radiance(graph, gbuffer, !request.aovs.empty());
+    made.radiance = draw_radiance(graph, gbuffer, attributes || !request.aovs.empty());
     for (int i = 0; i < kAovCount; ++i) {
         if (std::find(request.aovs.begin(), request.aovs.end(), kAovs[i].name)
             != request.aovs.end()) {

@@ -68,7 +68,7 @@ Schedule make_world_schedule() {
     schedule.add<update_sailboats>();        // after all that moves water
     schedule.add<update_floating_bodies>();  // after sailboats, which push theirs
     schedule.add<turn_booms>();
-    schedule.add<update_walkers>();  // after all that moves water: wades in it as it is now
+    schedule.add<update_walkers>();     // after all that moves water: wades in it as it is now
     schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
     schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now
     schedule.add<update_env_probes>();     // after transforms: looks around from where it is now

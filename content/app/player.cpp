@@ -70,8 +70,10 @@ Driver driver_of(World& world, Entity camera) {
         const bool seen = boat.camera == Entity{} || boat.camera == camera;
         driver = boat.player && seen ? Driver::Sailor : driver;
     });
-    world.query<const Walker>().each(
-        [&](const Walker& walker) { driver = walker.camera == camera ? Driver::Walker : driver; });
+    world.query<const Walker>().each([&](const Walker& walker) {
+        const bool seen = walker.camera == Entity{} || walker.camera == camera;
+        driver = seen ? Driver::Walker : driver;
+    });
     return driver;
 }
 

@@ -128,7 +128,8 @@ double psnr_of(
             }
         }
     }
-    return -10 * std::log10(std::max(squares / std::max(samples, 1.0), 1e-12));
+    LIMN_CHECK(samples > kWidth * kHeight / 10);  // else there is nothing to compare
+    return -10 * std::log10(std::max(squares / samples, 1e-12));
 }
 
 }  // namespace

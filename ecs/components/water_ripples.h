@@ -81,7 +81,8 @@ struct RippleState {
 enum class TouchShape : std::uint8_t {
     Ball,
     Box,
-    Mesh,  ///< what its mesh is, joint by joint where a pose moves it; `half` says nothing
+    Mesh,  ///< what its mesh is, joint by joint where a pose moves it; of `half` it
+           ///< has nothing, but what is Floating beside it floats as a box of that
 };
 
 /// An entity that pushes water aside where it is in it.

@@ -3,12 +3,14 @@
 #include "ecs/base/math.h"
 #include "ecs/reflect.h"
 
+#include <cmath>
+
 namespace limn {
 
 /// Resource: wind and rain of the whole level. Sails feel the wind; every Ocean has its waves from
 /// it, every WaterRipples its drops, and the lens, if there is LensRain, gets wet.
 struct Weather {
-    float wind_speed = 7.0f;      ///< 10 m above the water [m/s], 0 .. kStrongestWind
+    float wind_speed = 7.0f;      ///< 10 m above the water [m/s], 0 .. 60
     float wind_direction = 0.0f;  ///< where to, from +x toward +z [rad]
     float rain = 0.0f;            ///< 0 = none .. 1 = a downpour
 

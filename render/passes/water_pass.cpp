@@ -109,9 +109,10 @@ void bind_foam(gpu::Device& device, WaterPass& pass) {
         pass.foam =
             gpu::Texture("foam", {.format = GL_R8, .width = side, .height = side, .levels = 0});
         pass.foam.set_wrap(GL_REPEAT);
-        const std::vector<std::uint8_t> pattern = make_foam_pattern();
-        pass.foam.upload(std::as_bytes(std::span(pattern)));
-        pass.foam.generate_mipmaps();
+        int level = 0;
+        for (const std::vector<std::uint8_t>& pattern : make_foam_pattern()) {
+            pass.foam.upload(std::as_bytes(std::span(pattern)), level++);
+        }
     }
     device.bind_texture(kFoamUnit, pass.foam);
 }

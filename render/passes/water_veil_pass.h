@@ -14,9 +14,9 @@ namespace limn {
 // Order    after water, where the camera is in it or may be
 // Shaders  water_veil.frag, lib/water_surface.glsl, lib/water_shafts.glsl
 //
-// With Caustics::shaft_steps the sun's share of what is scattered is its mean along the ray of sight
-// in the light that waves gather: shafts, and shadows of what stands in the way. Over the map that
-// mean is 1, so no light is made or lost.
+// With Caustics::shaft_steps the sun's share of what is scattered is its mean along the ray of
+// sight in the light that waves gather: shafts, and shadows of what stands in the way. Over the map
+// that mean is 1, so no light is made or lost.
 
 struct WaterVeilPass {
     SurfacePrograms veil;

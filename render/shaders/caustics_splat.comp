@@ -1,6 +1,6 @@
 // Sums the light of a map: an invocation a cell of the grid of rays, which is cut along both sides into so many that
-// they lie half a texel from each other or less where they land, or a whole one above the water; each gives its light to the nearest four texels. None
-// is lost, however the water folds, and whole numbers add up to the same in any order.
+// they lie half a texel from each other or less where they land, or a whole one above the water; each gives its light
+// to the nearest four texels. None is lost, however the water folds, and whole numbers add up to the same in any order.
 #version 450
 #include "lib/caustic_record.glsl"
 

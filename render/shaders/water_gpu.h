@@ -15,8 +15,8 @@ struct WaterRecord {
     vec4 ripples;     // texture coordinates = xz * xy + zw
     vec4 rippling;    // half extents of the grid [m], 0 = none; zw: seconds from the last step to the moment
                       // shown and to the moment before
-    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; w: distortion of a
-                      // planar reflection
+    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; w: how far waves
+                      // shift a planar reflection or what is seen through
     vec4 patches;     // 1 / side of each patch [1/m]
     vec4 variance;    // of the slopes of each patch
 };

@@ -16,7 +16,6 @@ namespace limn {
 // share a texel, walls have theirs like floors, and where the water is flat the map is 1
 // everywhere. A shadow view with the same places tells how deep the ground is and what stands
 // before it.
-
 //
 // Light that the water mirrors is the same upside down: a point at height h lies where its ray left
 // the water, xz - bent h. There the map is 1 above flat water and 0 beside it.

@@ -49,8 +49,9 @@ void add_pair(std::uint32_t* texels, float left, float right) {
 }
 
 void add(const Sheet& sheet, float x, float y, float amount) {
-    const float u = std::clamp(x + (kAside - 0.5f), 0.0f, sheet.most);
-    const float v = std::clamp(y + (kAside - 0.5f), 0.0f, sheet.most);
+    // What is not a number goes to the corner, too.
+    const float u = std::min(std::max(0.0f, x + (kAside - 0.5f)), sheet.most);
+    const float v = std::min(std::max(0.0f, y + (kAside - 0.5f)), sheet.most);
     const int column = static_cast<int>(u);
     const int row = static_cast<int>(v);
     const float s = u - static_cast<float>(column);

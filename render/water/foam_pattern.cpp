@@ -48,9 +48,34 @@ class CellPoints {
     std::vector<Vec2> points_;
 };
 
+/// 0 .. 255 by rank, the deepest first.
+std::vector<std::uint8_t> make_even(const std::vector<float>& depths) {
+    std::vector<std::uint32_t> order(depths.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return depths[a] != depths[b] ? depths[a] > depths[b] : a < b;
+    });
+    std::vector<std::uint8_t> even(depths.size());
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        even[order[rank]] = static_cast<std::uint8_t>((2 * rank + 1) * 128 / order.size());
+    }
+    return even;
+}
+
+/// The mean of each four texels of a square, in place; nothing of one texel.
+void halve(int side, std::vector<float>& texels) {
+    const auto from = static_cast<std::size_t>(side);
+    const std::size_t to = from / 2;
+    for (std::size_t i = 0; i < to * to; ++i) {
+        const float* const at = texels.data() + 2 * (i / to) * from + 2 * (i % to);
+        texels[i] = 0.25f * (at[0] + at[1] + at[from] + at[from + 1]);
+    }
+    texels.resize(to * to);
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> make_foam_pattern() {
+std::vector<std::vector<std::uint8_t>> make_foam_pattern() {
     constexpr int kCells[] = {7, 17, 41};
     constexpr float kWeights[] = {1.0f, 0.6f, 0.35f};
     const CellPoints lattices[] = {{kCells[0], 1}, {kCells[1], 2}, {kCells[2], 3}};
@@ -64,16 +89,12 @@ std::vector<std::uint8_t> make_foam_pattern() {
             depths[i] += kWeights[octave] * lattices[octave].depth_in_cell(scale * Vec2(x, z));
         }
     }
-    std::vector<std::uint32_t> order(kTexels);
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return depths[a] != depths[b] ? depths[a] > depths[b] : a < b;
-    });
-    std::vector<std::uint8_t> pattern(kTexels);
-    for (std::size_t rank = 0; rank < kTexels; ++rank) {
-        pattern[order[rank]] = static_cast<std::uint8_t>(rank * 256 / kTexels);
+    std::vector<std::vector<std::uint8_t>> levels;
+    for (int side = kFoamPatternSide; side > 0; side /= 2) {
+        levels.push_back(make_even(depths));
+        halve(side, depths);
     }
-    return pattern;
+    return levels;
 }
 
 }  // namespace limn

@@ -11,9 +11,9 @@ namespace limn {
 // cover c the share c of all texels exceeds 1 - c.
 
 inline constexpr int kFoamPatternSide = 256;  ///< [texels]
-inline constexpr float kFoamTile = 6.0f;      ///< side [m]; lib/water_foam.glsl has it too
 
-/// Square of kFoamPatternSide texels, 0 .. 255; repeats without a seam.
-[[nodiscard]] std::vector<std::uint8_t> make_foam_pattern();
+/// Squares of kFoamPatternSide texels a side, half as many and so on to one, 0 .. 255: each is the
+/// mean of the one before, with values made even again. They repeat without a seam.
+[[nodiscard]] std::vector<std::vector<std::uint8_t>> make_foam_pattern();
 
 }  // namespace limn

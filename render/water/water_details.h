@@ -33,7 +33,7 @@ split_waves(std::span<const WaveLine> lines, const WaterDetail& detail, float sp
 
 /// Of the bodies of a frame; keeps its memory.
 struct WaterDetails {
-    std::vector<layout::WaterDetailRecord> records;  ///< of each body, if any() at all
+    std::vector<layout::WaterDetailRecord> records;  ///< of each body
     std::vector<layout::TextureWaveRecord> waves;
     std::vector<std::size_t> ends;  ///< of each tile: of its waves
     ImageId normal_map;

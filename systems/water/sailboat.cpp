@@ -155,8 +155,12 @@ float heading_of(const Quat& rotation) {
 }
 
 float apparent_wind_angle(
-    const Sailboat& boat, const Floating& floating, const Quat& rotation, const Vec3& wind) {
-    const Vec3 arm = rotation * boat.sail_center;
+    const Sailboat& boat,
+    const Floating& floating,
+    const Quat& rotation,
+    const Vec3& scale,
+    const Vec3& wind) {
+    const Vec3 arm = rotation * ((boat.sail_center - floating.balance) * scale);
     const Vec3 past =
         glm::conjugate(rotation) * (wind - floating.velocity - glm::cross(floating.spin, arm));
     return past.x == 0 && past.z == 0 ? 0.0f : std::atan2(past.x, -past.z);
@@ -191,7 +195,7 @@ void step_sailboat(
     const Vec3 center = transform.position + body.rotation * body.mass.center;
 
     const float limit = glm::mix(kTightestBoom, kSlackestBoom, boat.sheet);
-    const float blows = apparent_wind_angle(boat, floating, body.rotation, air);
+    const float blows = apparent_wind_angle(boat, floating, body.rotation, transform.scale, air);
     const float swing = std::clamp(blows, -limit, limit) - boat.boom;
     boat.boom += std::clamp(swing, -kBoomRate * step, kBoomRate * step);
 
@@ -228,8 +232,13 @@ void step_sailboat(
 }
 
 void trim_sail(
-    const Floating& floating, const Quat& rotation, const Vec3& wind, float step, Sailboat& boat) {
-    const float blows = std::abs(apparent_wind_angle(boat, floating, rotation, wind));
+    const Floating& floating,
+    const Quat& rotation,
+    const Vec3& scale,
+    const Vec3& wind,
+    float step,
+    Sailboat& boat) {
+    const float blows = std::abs(apparent_wind_angle(boat, floating, rotation, scale, wind));
     const float wanted = (blows - kBest - kTightestBoom) / (kSlackestBoom - kTightestBoom);
     const float change = std::clamp(wanted, 0.0f, 1.0f) - boat.sheet;
     boat.sheet += std::clamp(change, -kSheetRate * step, kSheetRate * step);

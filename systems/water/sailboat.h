@@ -36,9 +36,14 @@ struct FoilForce {
 /// Heading of the boat's +z in the world, from +x toward +z [rad]; turning to starboard adds to it.
 [[nodiscard]] float heading_of(const Quat& rotation);
 
-/// Where the wind blows to as seen from the boat: 0 from ahead to astern, > 0 to port [rad].
+/// Where the wind blows to as seen from the boat's sail: 0 from ahead to astern, > 0 to port
+/// [rad]. `scale` of the boat.
 [[nodiscard]] float apparent_wind_angle(
-    const Sailboat& boat, const Floating& floating, const Quat& rotation, const Vec3& wind);
+    const Sailboat& boat,
+    const Floating& floating,
+    const Quat& rotation,
+    const Vec3& scale,
+    const Vec3& wind);
 
 /// Lets the boom swing for `step` [s] as far as the sheet lets it, and adds to `floating` what
 /// sail, keel and rudder do in it.
@@ -53,7 +58,12 @@ void step_sailboat(
 
 /// Hauls in and lets out the sheet as the wind wants it.
 void trim_sail(
-    const Floating& floating, const Quat& rotation, const Vec3& wind, float step, Sailboat& boat);
+    const Floating& floating,
+    const Quat& rotation,
+    const Vec3& scale,
+    const Vec3& wind,
+    float step,
+    Sailboat& boat);
 
 /// Steers along `course`: straight at it where the wind lets it, else by tacks.
 void follow_course(

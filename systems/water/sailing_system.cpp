@@ -108,7 +108,13 @@ void update_sailboats(World& world) {
                 follow_course(course, touch, floating, transform, wind, boat);
             }
             if (boat.trims_itself) {
-                trim_sail(floating, unit_or_none(transform.rotation), wind, time->step, boat);
+                trim_sail(
+                    floating,
+                    unit_or_none(transform.rotation),
+                    transform.scale,
+                    wind,
+                    time->step,
+                    boat);
             }
             step_sailboat(surfaces, wind, touch, transform, time->step, boat, floating);
         }
@@ -132,7 +138,7 @@ void turn_booms(World& world) {
                 return;
             }
             const Quat rotation = unit_or_none(hull->rotation);
-            const float blows = apparent_wind_angle(*boat, *floating, rotation, wind);
+            const float blows = apparent_wind_angle(*boat, *floating, rotation, hull->scale, wind);
             const float across = glm::length(wind) * std::sin(blows - boat->boom);
             const float fills = std::clamp(across / kFillWind, -1.0f, 1.0f);
             boom.fullness += (fills - boom.fullness) * (1 - std::exp(-kFillRate * time->step));

@@ -24,9 +24,23 @@ bool same(const PlacedWall& a, const PlacedWall& b) {
            && a.shape_from_water.row[2] == b.shape_from_water.row[2] && a.volume == b.volume;
 }
 
-bool has(std::span<const PlacedWall> walls, const PlacedWall& wall) {
-    return std::any_of(
-        walls.begin(), walls.end(), [&](const PlacedWall& other) { return same(other, wall); });
+/// How many of the first `count` walls, or of all, are the same as this one.
+std::ptrdiff_t
+count_of(std::span<const PlacedWall> walls, const PlacedWall& wall, std::size_t count = SIZE_MAX) {
+    const std::span<const PlacedWall> first = walls.first(std::min(count, walls.size()));
+    return std::count_if(
+        first.begin(), first.end(), [&](const PlacedWall& other) { return same(other, wall); });
+}
+
+/// Calls `each` with the walls of `these` that are not among `those`, equal ones one for one.
+template <typename Each>
+void each_missing(
+    std::span<const PlacedWall> these, std::span<const PlacedWall> those, Each&& each) {
+    for (std::size_t i = 0; i < these.size(); ++i) {
+        if (count_of(these, these[i], i + 1) > count_of(those, these[i])) {
+            each(these[i]);
+        }
+    }
 }
 
 /// How far from its middle a section counts, along the axes of the shape: 1, or half a cell's
@@ -339,6 +353,9 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
         }
         return;
     }
+    const double texel = static_cast<double>(state.cell) * state.cell;
+    const double displaced =  // by bodies
+        state.wet > 0 ? state.level * texel * state.wet - state.walled : 0;
     lower_bodies(state);
     const std::vector<std::uint8_t> was = std::exchange(state.dry, dry_cells(state, walls));
     const std::int32_t were_wet = state.wet;
@@ -348,19 +365,11 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
     move_water(state, was, state.height);
     move_water(state, was, state.before);
     if (state.steps > 0) {
-        for (const PlacedWall& wall : state.walls) {
-            if (!has(walls, wall)) {
-                raise(state, wall, -1);
-            }
-        }
-        for (const PlacedWall& wall : walls) {
-            if (!has(state.walls, wall)) {
-                raise(state, wall, 1);
-            }
-        }
+        const std::vector<PlacedWall>& old = state.walls;
+        each_missing(old, walls, [&](const PlacedWall& wall) { raise(state, wall, -1); });
+        each_missing(walls, old, [&](const PlacedWall& wall) { raise(state, wall, 1); });
     }
-    const double area = static_cast<double>(state.cell) * state.cell * state.wet;
-    state.level = state.wet > 0 ? state.walled / area : 0;
+    state.level = state.wet > 0 ? (displaced + state.walled) / (texel * state.wet) : 0;
     for (std::vector<float>* const field : {&state.height, &state.before}) {
         for (const IVec2& cell : dry) {
             (*field)[state.at(cell.x, cell.y)] = 0;

@@ -43,7 +43,8 @@ void update_weather(World& world) {
     if (weather == nullptr || input == nullptr || time == nullptr) {
         return;
     }
-    if (input->weather != Vec3(0)) {
+    const Vec3& keys = input->weather;
+    if (keys != Vec3(0) && std::isfinite(keys.x + keys.y + keys.z)) {
         const Vec3 turn = glm::clamp(input->weather, Vec3(-1), Vec3(1));
         *world.find_resource<Weather>() = turn_weather(*weather, turn, time->step);
     }

@@ -230,7 +230,7 @@ TEST_CASE("quality: caustics are those of ten million photons") {
     CHECK(run.exit_code == 0);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     const auto& rows = json["effects"][0]["rows"];
-    CHECK(rows.size() == 2 + 3 + 1 + 2);
+    CHECK(rows.size() == 2 + 3 + 1 + 2 + 1);
     int told = 0;
     for (const auto& row : rows) {
         CAPTURE(row.dump());
@@ -248,7 +248,7 @@ TEST_CASE("quality: open water is the sum of its waves, as high and as fast as t
     CHECK(run.exit_code == 0);
     const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
     const auto& rows = json["effects"][0]["rows"];
-    CHECK(rows.size() == 3 * 2 + 2 + 2 + 1);
+    CHECK(rows.size() == 3 * 2 + 2 + 2 + 1 + 3);
     for (const auto& row : rows) {
         CAPTURE(row.dump());
         CHECK(row["holds"] == true);

@@ -41,7 +41,7 @@ struct Boat {
 
     void step() {
         if (boat.trims_itself) {
-            trim_sail(body, place.rotation, wind, kStep, boat);
+            trim_sail(body, place.rotation, place.scale, wind, kStep, boat);
         }
         step_sailboat({&surface, 1}, wind, touch, place, kStep, boat, body);
         (void)step_floating_body({&surface, 1}, touch, kStep, body, place);

@@ -420,6 +420,28 @@ TEST_CASE("ripple walls: one that comes raises the water by its volume, one that
     CHECK(std::abs(sample_ripples(state, {0.5f, 0.2f}).height) < 1e-3f);
 }
 
+TEST_CASE("ripple walls: whatever moves, the water stays as high as all that is in it") {
+    RippleState state = make_ripples({.size = {4, 3}, .depth = 0.8f}, {}, kStep);
+    run(state, {}, 1);
+    const WaterWall wall = {.half = {0.3f, 5, 0.4f}};
+    const double walled = 0.6 * 0.8 * 0.8;
+    const WaterBulge body = {.center = {-1, 0}, .radius = {0.4f, 0.4f}, .volume = 0.2f};
+    for (const float x : {0.5f, 0.6f, 0.9f}) {
+        const auto placed = place_wall(wall, at({x, 0, 0.2f}), {}, 0.8f, state.size());
+        // Two in one place are two.
+        const PlacedWall walls[] = {*placed, *placed};
+        const std::size_t standing = x == 0.6f ? 2 : 1;
+        set_ripple_walls(state, {walls, standing}, RippleBorder::Reflecting);
+        const double bodies = x == 0.5f ? 0 : 0.2;
+        const double area = static_cast<double>(state.cell) * state.cell * state.wet;
+        const double told = state.level * area;
+        run(state, {}, 1);
+        const double walls_now = static_cast<double>(standing) * walled;
+        CHECK(told == doctest::Approx(walls_now + bodies).epsilon(1e-4).scale(0));
+        displace_ripples(state, {&body, 1});
+    }
+}
+
 TEST_CASE("ripple walls: of one that is in the water by half, half makes room") {
     RippleState state = make_ripples({.size = {4, 3}}, {}, kStep);
     run(state, {}, 1);

@@ -2,7 +2,8 @@
 
 #include "caustics_gpu.h"
 
-layout(binding = 20) uniform samplerBuffer caustics;  // a texel a work group of rays: its map, its first ray; then CausticRecord
+// A texel a work group of rays: its map, its first ray; then CausticRecord.
+layout(binding = 20) uniform samplerBuffer caustics;
 
 uniform int groups;  // of rays, in all maps together
 

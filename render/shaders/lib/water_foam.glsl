@@ -14,10 +14,10 @@ const float kBubbleDepth = 1.5;
 float foam_share(float cover, vec2 q, float footprint) {
     float level = log2(max(footprint * float(textureSize(foam_pattern, 0).x) / kFoamTile, 1.0));
     float stays = textureLod(foam_pattern, q / kFoamTile, level).r;
-    // Where the values are even from 0 to 1, the mean of what is white is the cover; what is blurred of them lies
-    // around their mean.
+    // Where the values are even from 0 to 1, the mean of what is white is the cover. Cells smaller than pixels are
+    // taken for a gray of both.
     float edge = min(kFoamEdge, min(cover, 1.0 - cover));
-    float blurred = min(0.5 * clamp(level * 0.2, 0.0, 1.0), min(stays, 1.0 - stays));
+    float blurred = min(0.5 * clamp(0.4 * level - 0.8, 0.0, 1.0), min(stays, 1.0 - stays));
     edge = max(max(edge, blurred), 1e-4);
     return clamp((stays - 1.0 + cover + edge) / (2.0 * edge), 0.0, 1.0);
 }

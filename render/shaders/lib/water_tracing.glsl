@@ -35,7 +35,8 @@ bool in_picture(vec3 at) {
 
 // Distance along the view axis of what the picture shows [m]; 0: nothing, or beyond the picture's edge.
 float distance_at(vec2 pixel) {
-    return texelFetch(behind_distance, ivec2(pixel), 0).r;
+    bool shown = all(lessThan(abs(pixel - 0.5 * view.size.xy), 0.5 * view.size.xy));
+    return shown ? texelFetch(behind_distance, ivec2(pixel), 0).r : 0.0;
 }
 vec2 into_picture(vec2 pixel) {
     return clamp(pixel, vec2(0.5), view.size.xy - 0.5);
@@ -72,7 +73,6 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
     PictureRay ray = picture_ray(position, direction);
     float low = 0.0;
     float high = 0.02 * distance(position, view.camera_ws.xyz) + 0.05;
-    float step = high;
     int steps = 0;
     vec3 at;
     bool inside;
@@ -81,12 +81,12 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
         at = picture_of(ray, high);
         inside = in_picture(at);
         hidden = inside && is_hidden(at, side);
-        step = high - low;
         low = hidden ? low : high;
         high = hidden ? high : 1.7 * high;
     } while (inside && !hidden && ++steps < kMirrorSteps);
     // Between the last step and this one it went behind something: where?
     bool met = hidden;
+    float followed = low;
     steps = 0;
     do {
         float middle = 0.5 * (low + high);
@@ -118,7 +118,7 @@ Seen mirrored(vec3 position, vec3 direction, vec3 around, Side side) {
         leaves = into_picture(leaves);
         seen = distance_at(leaves);
         if (seen > 0.0 && height_of(leaves, seen) < side.level) {
-            return Seen(radiance_at(leaves), low);
+            return Seen(radiance_at(leaves), followed);
         }
     }
 #endif
