@@ -21,7 +21,7 @@ layout(std430, binding = 0) writeonly buffer Rays {
 };
 
 const int kSteps = 5;
-const float kLeastSlope = 0.05;  // of light that is mirrored up [m/m]
+const float kLeastSlope = 0.02;  // of light that is mirrored up [m/m]; the lowest sun has as much
 
 #ifdef SHADOWS
 // How far below a place of the map something lies, or above it: 0 .. 1 of the way that light is followed.

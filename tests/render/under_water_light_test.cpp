@@ -150,14 +150,18 @@ TEST_CASE_FIXTURE(Pool, "under water: lamps lose light on their way, and where t
         {.fov_y = radians(20.0f), .near = 0.01f}, pose, pose, {.width = kSize, .height = kSize});
     const auto floor_below = [&] { return radiance(view).at(kSize / 2, kSize / 2, 1); };
     const float veil = std::exp(-extinction * 0.5f);
-    for (const float height : {1.0f, -2.0f}) {
+    for (const Vec2 heights_and_index : {Vec2(1, 1.333f), Vec2(-2, 1.333f), Vec2(1, 1.8f)}) {
+        const float height = heights_and_index.x;
+        const float index = heights_and_index.y;
         CAPTURE(height);
+        CAPTURE(index);
+        world.get<Water>(water_).refractive_index = index;
         const Entity lamp = shine(PointLight{.radius = 0}, at({0, height, 0}));
         const float wet = floor_below();
         world.get<WorldTransform>(water_).world = at({100, 0, 0});
         const float bare = floor_below();
         world.get<WorldTransform>(water_).world = at({0, 0, 0});
-        const float let_in = height > 0 ? 1 - fresnel(1, 1.333f) : 1;
+        const float let_in = height > 0 ? 1 - fresnel(1, index) : 1;
         const float way = height > 0 ? kDepth : kDepth + height;
         CHECK(
             wet / (bare * let_in * std::exp(-extinction * way) * veil)

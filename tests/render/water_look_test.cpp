@@ -405,6 +405,59 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, flat water shows the picture
     }
 }
 
+TEST_CASE_FIXTURE(Look, "water refraction: shifted, the picture moves as far as normals lean") {
+    for (int i = 0; i < 24; ++i) {
+        const float share = static_cast<float>(i) / 24;
+        const Vec3 middle(static_cast<float>(i % 6) - 2.5f, -0.7f, -static_cast<float>(i / 6));
+        ball(middle, 0.45f, {share, 1 - share, static_cast<float>(i % 2)});
+    }
+    const RenderView view = look({0, 3, 1}, {0, 0, -1.5f});
+    const gpu::FloatImage below = radiance(view);
+    const Water water = {.size = {30, 30}, .absorption = Vec3(0), .scattering = Vec3(0)};
+    const Entity pond = pour(water);
+    WaveTable table;
+    fill_wave_table(
+        water, {.waves = {{.amplitude = 0.1f, .length = 2, .direction = 0.6f}}}, 2.5, table);
+    world.add(pond, table);
+    const auto& pose = view.world_from_camera.row;
+    const Vec3 right(pose[0].x, pose[1].x, pose[2].x);
+    const Vec3 ahead(-pose[0].z, -pose[1].z, -pose[2].z);
+    for (const float distortion : {0.0f, 4.0f}) {
+        CAPTURE(distortion);
+        world.add(
+            pond,
+            WaterLook{
+                .reflection = WaterReflection::Environment,
+                .refraction = WaterRefraction::Shifted,
+                .distortion = distortion});
+        const gpu::FloatImage seen = radiance(view);
+        const gpu::FloatImage normals = aov(view, "normal");
+        int tested = 0;
+        int as_expected = 0;
+        int moved = 0;
+        for (int y = 8; y < 56; ++y) {
+            for (int x = 8; x < 56; ++x) {
+                const Vec3 normal = rgb_at(normals, x, y);
+                const float share = fresnel(-glm::dot(ray_through(view, x, y), normal), 1.333f);
+                // A fiftieth of the picture where a normal lies flat.
+                const Vec2 lean = {
+                    normal.x * right.x + normal.z * right.z,
+                    normal.x * ahead.x + normal.z * ahead.z};
+                const Vec2 shift = 0.02f * distortion * 64.0f * lean;
+                const int from_x = static_cast<int>(static_cast<float>(x) + 0.5f + shift.x);
+                const int from_y = static_cast<int>(static_cast<float>(y) + 0.5f - shift.y);
+                const Vec3 expected = share * 0.5f + (1 - share) * rgb_at(below, from_x, from_y);
+                const float off = glm::distance(rgb_at(seen, x, y), expected);
+                ++tested;
+                as_expected += off < 0.03f ? 1 : 0;
+                moved += from_x != x || from_y != y ? 1 : 0;
+            }
+        }
+        CHECK(as_expected > 0.95 * tested);  // at edges rounding may tell pixels apart
+        CHECK((moved > tested / 2) == (distortion > 0));
+    }
+}
+
 TEST_CASE_FIXTURE(
     Look, "water refraction: however waves shift it, what is above is not seen in the water") {
     ball({0, 1.2f, -2}, 0.7f, {0, 90, 0});

@@ -83,28 +83,31 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     return Incoming(to_light, irradiance);
 }
 
-// Extinction of the water around a point [1/m]; w: its depth there [m], < 0 in no water.
-vec4 water_about(vec3 position_ws) {
+// The water around a point.
+struct WaterAbout {
+    vec3 extinction;  // [1/m]
+    float depth;      // [m]; < 0: in no water
+    float index;      // of refraction
+};
+WaterAbout water_about(vec3 position_ws) {
 #ifdef UNDER_WATER
     Sunken water = sunken_at(position_ws);
-    return vec4(water.extinction, water.depth);
+    return WaterAbout(water.extinction, water.depth, water.index);
 #else
-    return vec4(0.0, 0.0, 0.0, -1.0);
+    return WaterAbout(vec3(0.0), -1.0, 1.333);
 #endif
 }
 
 // What water leaves of a lamp's light that goes straight to a point in it, `offset` away, and goes in by flat water.
-vec3 lamp_through_water(vec4 about, vec3 offset) {
-    const float kIndex = 1.333;
+vec3 lamp_through_water(WaterAbout about, vec3 offset) {
     float way = length(offset);
-    bool above = offset.y > about.w;
-    float inside = above ? about.w / offset.y : 1.0;
-    float let_in = above ? 1.0 - fresnel(offset.y / max(way, 1e-6), kIndex) : 1.0;
-    return about.w >= 0.0 ? let_in * exp(-about.rgb * (way * inside)) : vec3(1.0);
+    bool above = offset.y > about.depth;
+    float inside = above ? about.depth / offset.y : 1.0;
+    float let_in = above ? 1.0 - fresnel(offset.y / max(way, 1e-6), about.index) : 1.0;
+    return about.depth >= 0.0 ? let_in * exp(-about.extinction * (way * inside)) : vec3(1.0);
 }
 
-// `about` as water_about() has it.
-Incoming incoming_local(int index, vec3 position_ws, vec3 normal, vec4 about) {
+Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterAbout about) {
     vec4 place = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
@@ -149,7 +152,7 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 // them not at all. Lights with shadows or images come last, in a loop of their own.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
-    vec4 about = water_about(position_ws);
+    WaterAbout about = water_about(position_ws);
     int i = int(list.x);
     int end = int(list.x + list.y);
     int index = int(texelFetch(light_indices, i).x);
