@@ -102,7 +102,9 @@ struct TouchPart {
 /// Beside a WaterTouch of a mesh: follows from it.
 struct TouchParts {
     std::vector<TouchPart> parts;
-    float fill = 1;  ///< volume of the mesh over that of the ellipsoids
+    float fill = 1;          ///< volume of the mesh over that of the ellipsoids
+    std::int32_t mesh = -1;  ///< whose they are: its index
+    std::int32_t skin = -1;  ///< by which: its index, -1: none
 };
 
 template <>
@@ -195,6 +197,8 @@ template <typename Visitor>
 void visit_fields(TouchParts& parts, Visitor&& visit) {
     visit("parts", parts.parts, {.doc = "the ellipsoids"});
     visit("fill", parts.fill, {.doc = "volume of the mesh over theirs"});
+    visit("mesh", parts.mesh, {.doc = "whose they are: its index", .min = -1});
+    visit("skin", parts.skin, {.doc = "by which: its index, -1: none", .min = -1});
 }
 
 template <typename Visitor>

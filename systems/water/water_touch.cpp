@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace limn {
 
@@ -78,23 +79,34 @@ TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin) {
 }
 
 void add_touch_parts(
-    Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Without<TouchParts>>
+    Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Optional<TouchParts>>
         bodies,
     Res<const Assets> assets,
     Commands commands) {
     bodies.each([&](Entity entity,
                     const WaterTouch& touch,
                     const MeshInstance& instance,
-                    const Deformed* deformed) {
+                    const Deformed* deformed,
+                    TouchParts* parts) {
         if (touch.shape != TouchShape::Mesh || instance.mesh.index >= assets->meshes.size()) {
             return;
         }
         const bool skinned = deformed != nullptr && deformed->skin.index < assets->skins.size();
-        commands.add(
-            entity,
-            make_touch_parts(
-                assets->meshes[instance.mesh.index],
-                skinned ? &assets->skins[deformed->skin.index] : nullptr));
+        const auto mesh = static_cast<std::int32_t>(instance.mesh.index);
+        const auto skin = skinned ? static_cast<std::int32_t>(deformed->skin.index) : -1;
+        if (parts != nullptr && parts->mesh == mesh && parts->skin == skin) {
+            return;
+        }
+        TouchParts made = make_touch_parts(
+            assets->meshes[instance.mesh.index],
+            skinned ? &assets->skins[deformed->skin.index] : nullptr);
+        made.mesh = mesh;
+        made.skin = skin;
+        if (parts != nullptr) {
+            *parts = std::move(made);
+        } else {
+            commands.add(entity, std::move(made));
+        }
     });
 }
 

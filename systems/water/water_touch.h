@@ -38,10 +38,10 @@ struct TouchingShape {
 /// The ellipsoids of a mesh, by the joints of its skin or, without one, by its bounds.
 [[nodiscard]] TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin);
 
-/// Gives TouchParts to what touches with its mesh. Before update_water_ripples, with a sync point
-/// between.
+/// Gives TouchParts to what touches with its mesh, and others when it has another mesh or skin.
+/// Before update_water_ripples, with a sync point between.
 void add_touch_parts(
-    Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Without<TouchParts>>
+    Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Optional<TouchParts>>
         bodies,
     Res<const Assets> assets,
     Commands commands);

@@ -235,6 +235,17 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
     CHECK(raised({1, 0}) > 0.02f);
     CHECK(raised({-1, 0}) == 0);
     CHECK(raised({0, 1}) == 0);
+
+    // Another mesh is another body.
+    MeshData trunk;
+    add_box(trunk, {0, 0, 0}, {0.2f, 0.5f, 0.2f}, 0);
+    assets.meshes.push_back(trunk);
+    world.get<MeshInstance>(body).mesh = MeshId{1};
+    for (int i = 0; i < 3; ++i) {
+        step_world(world, schedule);
+    }
+    CHECK(world.get<TouchParts>(body).parts.size() == 1);
+    CHECK(ripple_volume(state) == doctest::Approx(kTrunk).epsilon(1e-3).scale(0));
 }
 
 TEST_CASE("water touch: a mesh without joints is its bounds; an open one fills its ellipsoid") {
