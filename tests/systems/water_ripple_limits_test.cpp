@@ -7,6 +7,7 @@
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_system.h"
 #include "tests/ecs/allocated_bytes.h"
+#include "tests/systems/water_ripple_pool.h"
 
 #include <doctest/doctest.h>
 
@@ -18,48 +19,7 @@
 
 namespace limn {
 
-namespace {
-
-constexpr float kStep = 1.0f / 60;
-
-Water pool(float width, float length) {
-    return {.size = {width, length}, .depth = 2};
-}
-
-/// Largest height, up or down; not a number if one is none.
-float reach(const RippleState& state) {
-    float most = 0;
-    for (int z = 0; z < state.cells.y; ++z) {
-        for (int x = 0; x < state.cells.x; ++x) {
-            const float height = std::abs(state.height[state.at(x, z)]);
-            most = height <= most ? most : height;
-            if (std::isnan(most)) {
-                return most;
-            }
-        }
-    }
-    return most;
-}
-
-void run(RippleState& state, const WaterRipples& ripples, int steps) {
-    for (int i = 0; i < steps; ++i) {
-        step_ripples(state, ripples, kStep);
-    }
-}
-
-/// Height of the standing wave cos(pi (i + 1/2) / n) of walls, along x.
-void fill_standing_wave(RippleState& state, float amplitude) {
-    for (int z = 0; z < state.cells.y; ++z) {
-        for (int x = 0; x < state.cells.x; ++x) {
-            const float share = (static_cast<float>(x) + 0.5f) / static_cast<float>(state.cells.x);
-            const float h = amplitude * std::cos(kPi * share);
-            state.height[state.at(x, z)] = h;
-            state.before[state.at(x, z)] = h;
-        }
-    }
-}
-
-}  // namespace
+using namespace test;
 
 TEST_CASE("water ripples: steps of any length, none, backward or not a number") {
     const float inf = std::numeric_limits<float>::infinity();

@@ -4,6 +4,7 @@
 #include "systems/update_world.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_kernels.h"
+#include "tests/systems/water_ripple_pool.h"
 
 #include <doctest/doctest.h>
 
@@ -13,46 +14,9 @@
 
 namespace limn {
 
+using namespace test;
+
 namespace {
-
-constexpr float kStep = 1.0f / 60;
-
-Water pool(float width, float length) {
-    return {.size = {width, length}, .depth = 2};
-}
-
-/// Largest height, up or down; not a number if one is none.
-float reach(const RippleState& state) {
-    float most = 0;
-    for (int z = 0; z < state.cells.y; ++z) {
-        for (int x = 0; x < state.cells.x; ++x) {
-            const float height = std::abs(state.height[state.at(x, z)]);
-            most = height <= most ? most : height;
-            if (std::isnan(most)) {
-                return most;
-            }
-        }
-    }
-    return most;
-}
-
-void run(RippleState& state, const WaterRipples& ripples, int steps) {
-    for (int i = 0; i < steps; ++i) {
-        step_ripples(state, ripples, kStep);
-    }
-}
-
-/// Height of the standing wave cos(pi (i + 1/2) / n) of walls, along x.
-void fill_standing_wave(RippleState& state, float amplitude) {
-    for (int z = 0; z < state.cells.y; ++z) {
-        for (int x = 0; x < state.cells.x; ++x) {
-            const float share = (static_cast<float>(x) + 0.5f) / static_cast<float>(state.cells.x);
-            const float h = amplitude * std::cos(kPi * share);
-            state.height[state.at(x, z)] = h;
-            state.before[state.at(x, z)] = h;
-        }
-    }
-}
 
 struct Pond {
     explicit Pond(const WaterRipples& ripples = {}, const Water& water = pool(4, 3)) {
