@@ -82,8 +82,7 @@ void relocate_values(
     const ComponentInfo& info, void* destination, void* source, std::size_t count) {
     if (info.trivially_relocatable) {
         move_bytes(
-            static_cast<std::byte*>(destination),
-            static_cast<std::byte*>(source),
+            static_cast<std::byte*>(destination), static_cast<std::byte*>(source),
             count * info.size);
     } else {
         info.ops.relocate(destination, source, count);
@@ -93,8 +92,7 @@ void relocate_values(
 void relocate_elements(const Column& column, void* destination, void* source, std::size_t count) {
     if (column.info->trivially_relocatable) {
         move_bytes(
-            static_cast<std::byte*>(destination),
-            static_cast<std::byte*>(source),
+            static_cast<std::byte*>(destination), static_cast<std::byte*>(source),
             count * column.size);
     } else {
         column.info->ops.relocate(destination, source, count);
@@ -132,9 +130,7 @@ void fill_values(Column* lanes, std::uint32_t row, std::size_t count, const void
 }
 
 Archetype::Archetype(
-    std::uint32_t index,
-    std::span<const ComponentId> components,
-    BlockPool& blocks,
+    std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks,
     std::span<const SharedValue> shared)
     : index_(index), components_(components.begin(), components.end()),
       shared_(shared.begin(), shared.end()), blocks_(blocks) {
@@ -248,15 +244,13 @@ void Archetype::promote(std::uint32_t rows) {
     entity_range_ = VirtualRange(kMaxRows * sizeof(Entity), 0, rows * sizeof(Entity));
     entity_range_.commit(std::size_t{rows} * sizeof(Entity));
     move_bytes(
-        entity_range_.data(),
-        reinterpret_cast<const std::byte*>(entities_),
+        entity_range_.data(), reinterpret_cast<const std::byte*>(entities_),
         size_ * sizeof(Entity));
     entities_ = reinterpret_cast<Entity*>(entity_range_.data());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         Column& column = columns_[i];
         column.range = VirtualRange(
-            std::size_t{kMaxRows} * column.size,
-            skew_of(i + 1, alignment(column)),
+            std::size_t{kMaxRows} * column.size, skew_of(i + 1, alignment(column)),
             std::size_t{rows} * column.size);
         column.range.commit(std::size_t{rows} * column.size);
         relocate_elements(column, column.range.data(), column.data, size_);

@@ -115,9 +115,7 @@ class Archetype {
     /// `components` ascending, none of Storage::Sparse.
     /// `shared` has the values of those of Storage::Shared, in the same order.
     Archetype(
-        std::uint32_t index,
-        std::span<const ComponentId> components,
-        BlockPool& blocks,
+        std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks,
         std::span<const SharedValue> shared = {});
     Archetype(const Archetype&) = delete;
     Archetype& operator=(const Archetype&) = delete;

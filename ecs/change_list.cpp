@@ -18,11 +18,8 @@ void ChangeList::clear() {
 }
 
 void ChangeList::add_shared(
-    ChangePlans& plans,
-    const ChangePlan& plan,
-    RowRange rows,
-    std::span<std::byte* const> first_records,
-    std::uint32_t key) {
+    ChangePlans& plans, const ChangePlan& plan, RowRange rows,
+    std::span<std::byte* const> first_records, std::uint32_t key) {
     const auto stride_of = [&](std::size_t command) {
         return shares_records ? std::size_t{0} : plan.commands[command].layout->stride;
     };
@@ -35,8 +32,7 @@ void ChangeList::add_shared(
                 const auto command = static_cast<std::size_t>(change.command);
                 const std::byte* values = first_records[command] + change.offset;
                 return std::memcmp(
-                           values + a * stride_of(command),
-                           values + b * stride_of(command),
+                           values + a * stride_of(command), values + b * stride_of(command),
                            change.info->size)
                        == 0;
             });
@@ -202,14 +198,8 @@ namespace {
 /// Copies values of kSize bytes: those of range i lie `stride` apart from records[i * step] on.
 template <std::size_t kSize>
 void copy_values_of(
-    std::byte* data,
-    std::span<const RowRange> ranges,
-    std::uint32_t first,
-    bool in_place,
-    std::byte* const* records,
-    std::size_t step,
-    std::size_t offset,
-    std::size_t stride) {
+    std::byte* data, std::span<const RowRange> ranges, std::uint32_t first, bool in_place,
+    std::byte* const* records, std::size_t step, std::size_t offset, std::size_t stride) {
     constexpr std::size_t kAhead = 16;
     std::uint32_t row = first;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -334,9 +324,7 @@ void ChangeApplier::set_enabled(
         const std::uint32_t begin = in_place ? range.first : row;
         for (std::uint32_t k = 0; k < range.count; ++k) {
             target.set_enabled(
-                change.info->id,
-                begin + k,
-                change.enabling == Enabling::Enable,
+                change.info->id, begin + k, change.enabling == Enabling::Enable,
                 world_.core_.now());
         }
         row += range.count;
@@ -512,9 +500,7 @@ void ChangeApplier::notify_added() {
             // An observer before this one may have undone it.
             told_.clear();
             std::copy_if(
-                added.entities.begin(),
-                added.entities.end(),
-                std::back_inserter(told_),
+                added.entities.begin(), added.entities.end(), std::back_inserter(told_),
                 [&](Entity entity) { return world_.has(entity, added.component); });
             if (!told_.empty()) {
                 observer.function(world_, told_);

@@ -33,11 +33,8 @@ class ChangeList {
     /// those of the first row, one for every command of the plan. `key` orders the entities for
     /// observers. If the plan sets shared components, rows of equal values get the plan for those.
     void
-    add(ChangePlans& plans,
-        const ChangePlan& plan,
-        RowRange rows,
-        std::span<std::byte* const> first_records,
-        std::uint32_t key) {
+    add(ChangePlans& plans, const ChangePlan& plan, RowRange rows,
+        std::span<std::byte* const> first_records, std::uint32_t key) {
         if (plan.sets_shared) {
             add_shared(plans, plan, rows, first_records, key);
         } else {
@@ -57,9 +54,7 @@ class ChangeList {
 
   private:
     void append(
-        const ChangePlan& plan,
-        RowRange rows,
-        std::span<std::byte* const> first_records,
+        const ChangePlan& plan, RowRange rows, std::span<std::byte* const> first_records,
         std::uint32_t key) {
         if (batches.empty() || batches.back().plan != &plan) {
             batches.push_back({&plan, 0, 0, ranges.size(), records.size()});
@@ -72,11 +67,8 @@ class ChangeList {
         keys.push_back(key);
     }
     void add_shared(
-        ChangePlans& plans,
-        const ChangePlan& plan,
-        RowRange rows,
-        std::span<std::byte* const> first_records,
-        std::uint32_t key);
+        ChangePlans& plans, const ChangePlan& plan, RowRange rows,
+        std::span<std::byte* const> first_records, std::uint32_t key);
 };
 
 /// Applies a list: tells observers of what goes, moves the rows, and gives back whom to tell of

@@ -28,9 +28,7 @@ bool has_value(const ComponentInfo& info, const CommandKind& kind) {
 
 /// `id` in all the commands, in order.
 ComponentChange fold(
-    std::span<const CommandKind> commands,
-    ComponentId id,
-    bool was_present,
+    std::span<const CommandKind> commands, ComponentId id, bool was_present,
     std::vector<DroppedValue>& dropped) {
     const ComponentInfo& info = component_info(id);
     ComponentChange change{&info};

@@ -87,9 +87,7 @@ std::uint32_t CommandOrder::number_of(const CommandBuffer& buffer, Entity placeh
         return kNone;
     }
     const auto after = std::upper_bound(
-        creations_.begin(),
-        creations_.end(),
-        placeholder.index,
+        creations_.begin(), creations_.end(), placeholder.index,
         [stream](std::uint32_t index, const Creation& creation) {
             return creation.stream != stream ? stream->number < creation.stream->number
                                              : index < creation.placeholder;
@@ -188,8 +186,7 @@ void CommandOrder::locate_entities(std::uint32_t run) {
             // Two neighbors: there may be many more, and rows are quicker to compare than to find.
             const Archetype& rows = *core_.archetypes[place.archetype];
             const std::uint32_t more = common_length(
-                entities + i + 1,
-                rows.entities().data() + place.row + 1,
+                entities + i + 1, rows.entities().data() + place.row + 1,
                 std::min(count - i - 1, rows.size() - place.row - 1));
             open.count += more;
             i += more;
@@ -350,10 +347,8 @@ void CommandOrder::emit(std::uint64_t begin, std::uint64_t end) {
     const std::uint32_t key =
         runs_[first.run].key + first.first + static_cast<std::uint32_t>(begin - first.begin());
     list_->add(
-        *plans_,
-        plans_->find(source_of(first), kinds_),
-        {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)},
-        records_,
+        *plans_, plans_->find(source_of(first), kinds_),
+        {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)}, records_,
         key);
 }
 

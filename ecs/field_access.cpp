@@ -16,8 +16,7 @@ template <typename T>
 T load(const void* from, int lane = 0) {
     T value;
     std::memcpy(
-        &value,
-        static_cast<const char*>(from) + sizeof(T) * static_cast<std::size_t>(lane),
+        &value, static_cast<const char*>(from) + sizeof(T) * static_cast<std::size_t>(lane),
         sizeof value);
     return value;
 }
@@ -209,11 +208,8 @@ Result<FieldRef> field_at(const ComponentInfo& info, void* component, std::strin
             if (error != std::errc{} || end != step.data() + step.size()
                 || index >= element_count(*field, data)) {
                 return fail(
-                    "{}: {}: found index \"{}\", expected less than {}",
-                    info.name,
-                    field->name,
-                    step,
-                    element_count(*field, data));
+                    "{}: {}: found index \"{}\", expected less than {}", info.name, field->name,
+                    step, element_count(*field, data));
             }
         }
         const bool is_there = index < element_count(*field, data);
@@ -337,9 +333,7 @@ Status set_enum(const FieldInfo& field, void* element, std::string_view name) {
     if (found == field.values.end()) {
         const std::string nearest = nearest_name(name, field.values);
         return fail(
-            "found \"{}\", expected {}{}",
-            name,
-            type_text(field),
+            "found \"{}\", expected {}{}", name, type_text(field),
             nearest.empty() ? "" : " (did you mean " + nearest + "?)");
     }
     set_unsigned(field, element, static_cast<std::uint64_t>(found - field.values.begin()));

@@ -161,9 +161,8 @@ bool Hierarchy::open_cycle() {
         open.begin(), open.end(), [](const Link& a, const Link& b) { return a.child < b.child; });
     const auto link_of = [&open](Entity child) {
         return std::lower_bound(
-            open.begin(), open.end(), child, [](const Link& link, Entity entity) {
-                return link.child < entity;
-            });
+            open.begin(), open.end(), child,
+            [](const Link& link, Entity entity) { return link.child < entity; });
     };
     // As many steps up as there are links lead onto the cycle; once around finds its lowest entity.
     Entity on_cycle = open.front().child;
@@ -204,10 +203,8 @@ Status set_parent(World& world, Entity child, Entity parent) {
     for (Entity above = parent; !above.is_null(); above = parent_of(world, above)) {
         if (above == child) {
             return fail(
-                "set_parent: {} cannot be the parent of {}: it is {}",
-                name_of(parent),
-                name_of(child),
-                parent == child ? "the same" : "below it");
+                "set_parent: {} cannot be the parent of {}: it is {}", name_of(parent),
+                name_of(child), parent == child ? "the same" : "below it");
         }
         if (++steps > world.entity_count()) {
             return fail("set_parent: {} is below itself already", name_of(parent));

@@ -33,8 +33,7 @@ void World::refresh_observer_flags() {
 }
 
 void World::notify(
-    ObserverEvent event,
-    std::span<const ComponentId> components,
+    ObserverEvent event, std::span<const ComponentId> components,
     std::span<const Entity> entities) {
     bool called = false;
     std::vector<Entity> left;
@@ -56,9 +55,8 @@ void World::notify(
             // Those before may have destroyed entities or taken the component again.
             left.clear();
             std::copy_if(
-                entities.begin(), entities.end(), std::back_inserter(left), [&](Entity entity) {
-                    return has(entity, observer.component);
-                });
+                entities.begin(), entities.end(), std::back_inserter(left),
+                [&](Entity entity) { return has(entity, observer.component); });
             told = left;
         }
         if (!told.empty()) {

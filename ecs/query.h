@@ -365,9 +365,8 @@ class Query {
         static_assert(!kTakes, "each: TakeRows comes by chunk; use chunks or par_chunks");
         static_assert(
             std::is_invocable_v<
-                F&,
-                detail::RowArgument<
-                    Ts>...> || std::is_invocable_v<F&, Entity, detail::RowArgument<Ts>...>,
+                F&, detail::RowArgument<
+                        Ts>...> || std::is_invocable_v<F&, Entity, detail::RowArgument<Ts>...>,
             "each: the function takes the query's components in order (const A&, B&, Optional as "
             "C*), "
             "before them an Entity if it wants one");
@@ -595,10 +594,7 @@ class Query {
 
     template <typename List>
     static void touch(
-        const QueryMatch& match,
-        std::uint32_t begin,
-        std::uint32_t end,
-        std::uint32_t version,
+        const QueryMatch& match, std::uint32_t begin, std::uint32_t end, std::uint32_t version,
         List list) {
         each_written(
             match,
@@ -629,9 +625,9 @@ class Query {
                 RowBits& bits = match.archetype->bits();
                 if (TrackedRows* track = bits.track(component_id<Value>); track != nullptr) {
                     mark(
-                        *track,
-                        detail::TermTraits<Term>::is_optional ? bits.toggle(component_id<Value>)
-                                                              : nullptr);
+                        *track, detail::TermTraits<Term>::is_optional
+                                    ? bits.toggle(component_id<Value>)
+                                    : nullptr);
                 }
             }
         };
@@ -675,12 +671,8 @@ class Query {
 
     template <typename F, typename... Ts, std::size_t... Positions>
     void run_rows(
-        const QueryMatch& match,
-        std::uint32_t begin,
-        std::uint32_t end,
-        [[maybe_unused]] std::uint32_t version,
-        F& function,
-        detail::TypeList<Ts...>,
+        const QueryMatch& match, std::uint32_t begin, std::uint32_t end,
+        [[maybe_unused]] std::uint32_t version, F& function, detail::TypeList<Ts...>,
         std::index_sequence<Positions...>) const {
         const Entity* entities = match.archetype->entities().data();
         constexpr bool kFiltersHere = kFiltersRows && !kFollowsSparse;
@@ -708,12 +700,8 @@ class Query {
     /// The rows of the chunk at `begin` that are in `rows`.
     template <typename F, typename... Ts, std::size_t... Positions>
     void run_masked(
-        const QueryMatch& match,
-        std::uint32_t begin,
-        const RowMask& rows,
-        [[maybe_unused]] std::uint32_t version,
-        F& function,
-        detail::TypeList<Ts...>,
+        const QueryMatch& match, std::uint32_t begin, const RowMask& rows,
+        [[maybe_unused]] std::uint32_t version, F& function, detail::TypeList<Ts...>,
         std::index_sequence<Positions...>) const {
         const Entity* entities = match.archetype->entities().data();
         if constexpr (!kFiltersRows) {
@@ -751,11 +739,8 @@ class Query {
     /// Not inlined: the loop of the function would have to share its registers with the loops here.
     template <typename F, typename... Ts, std::size_t... Positions>
     [[gnu::noinline]] void run_chunk(
-        const ChunkTask& task,
-        std::uint32_t version,
-        Handed<F> function,
-        detail::TypeList<Ts...> list,
-        std::index_sequence<Positions...>) const {
+        const ChunkTask& task, std::uint32_t version, Handed<F> function,
+        detail::TypeList<Ts...> list, std::index_sequence<Positions...>) const {
         const QueryMatch& match = *task.match;
         const std::uint32_t begin = task.chunk * kChunkRows;
         const std::uint32_t size = chunk_end(begin, match.archetype->size()) - begin;

@@ -24,8 +24,7 @@ bool wants_enabled(TermKind kind) {
 /// Whether test(term) holds for some Changed term of every group.
 template <typename Test>
 bool all_groups(
-    const std::vector<std::uint8_t>& groups,
-    const std::vector<QueryTerm>& terms,
+    const std::vector<std::uint8_t>& groups, const std::vector<QueryTerm>& terms,
     const Test& test) {
     return std::all_of(groups.begin(), groups.end(), [&](std::uint8_t group) {
         return std::any_of(terms.begin(), terms.end(), [&](const QueryTerm& term) {
@@ -158,9 +157,7 @@ bool QueryState::chunk_changed(
 }
 
 bool QueryState::row_changed(
-    const WorldCore& core,
-    const Archetype& archetype,
-    std::uint32_t row,
+    const WorldCore& core, const Archetype& archetype, std::uint32_t row,
     std::uint32_t since) const {
     return all_groups(sparse_groups_, terms_, [&](const QueryTerm& term) {
         if (!term.is_sparse) {

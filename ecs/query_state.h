@@ -108,9 +108,7 @@ class QueryState {
     [[nodiscard]] bool
     chunk_changed(const Archetype& archetype, std::uint32_t chunk, std::uint32_t since) const;
     [[nodiscard]] bool row_changed(
-        const WorldCore& core,
-        const Archetype& archetype,
-        std::uint32_t row,
+        const WorldCore& core, const Archetype& archetype, std::uint32_t row,
         std::uint32_t since) const;
     /// Whether the entity, of that archetype, has the required sparse components and none of the
     /// excluded.

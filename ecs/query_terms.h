@@ -251,8 +251,7 @@ struct DataTermsOf {
 template <typename... Found, typename Term, typename... Rest>
 struct DataTermsOf<TypeList<Found...>, Term, Rest...>
     : std::conditional_t<
-          TermTraits<Term>::is_data,
-          DataTermsOf<TypeList<Found..., Term>, Rest...>,
+          TermTraits<Term>::is_data, DataTermsOf<TypeList<Found..., Term>, Rest...>,
           DataTermsOf<TypeList<Found...>, Rest...>> {};
 template <typename... Terms>
 using DataTerms = typename DataTermsOf<TypeList<>, Terms...>::Type;
@@ -372,8 +371,7 @@ auto access_term(
     if constexpr (is_sparse<T>) {
         const SparseOptionalAccess<T> access{
             core.sparse_set(component_id<std::remove_const_t<T>>),
-            match.archetype->entities().data(),
-            version};
+            match.archetype->entities().data(), version};
         if constexpr (Traits::is_optional) {
             return access;
         } else {
@@ -417,16 +415,14 @@ auto access_term(
 /// What the function of each() is given for a term: const T&, T& or T*.
 template <typename Term>
 using RowArgument = std::conditional_t<
-    TermTraits<Term>::is_optional,
-    typename TermTraits<Term>::Value*,
+    TermTraits<Term>::is_optional, typename TermTraits<Term>::Value*,
     typename TermTraits<Term>::Value&>;
 
 /// What the function of chunks() is given for a term.
 template <typename Term, typename T = typename TermTraits<Term>::Value>
 struct ChunkArgumentOf {
     using Type = std::conditional_t<
-        is_shared<T>,
-        RowArgument<Term>,
+        is_shared<T>, RowArgument<Term>,
         std::conditional_t<is_split<T>, SplitSpan<T>, std::span<T>>>;
 };
 template <typename T>

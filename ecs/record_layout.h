@@ -39,16 +39,16 @@ struct RecordLayoutOf {
         }
         std::size_t position = 0;
         std::uint32_t end = 0;
-        [[maybe_unused]] const auto add =
-            [&](bool empty, std::uint32_t bytes, std::uint32_t align) {
-                if (!empty) {
-                    end = (end + align - 1) / align * align;
-                    places.offsets[position] = end;
-                    end += bytes;
-                    places.align = std::max(places.align, align);
-                }
-                ++position;
-            };
+        [[maybe_unused]] const auto add = [&](bool empty, std::uint32_t bytes,
+                                              std::uint32_t align) {
+            if (!empty) {
+                end = (end + align - 1) / align * align;
+                places.offsets[position] = end;
+                end += bytes;
+                places.align = std::max(places.align, align);
+            }
+            ++position;
+        };
         (add(std::is_empty_v<Ts>, sizeof(Ts), alignof(Ts)), ...);
         places.stride = (end + places.align - 1) / places.align * places.align;
         return places;

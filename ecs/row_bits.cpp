@@ -21,10 +21,7 @@ bool any_disabled(const ToggleBits& toggle, std::uint32_t first, std::uint32_t c
 
 /// Makes the bits from `to` on those from `from` on of `source`, which may be `target`.
 void copy_bits(
-    const ToggleBits& source,
-    std::uint32_t from,
-    ToggleBits& target,
-    std::uint32_t to,
+    const ToggleBits& source, std::uint32_t from, ToggleBits& target, std::uint32_t to,
     std::uint32_t count) {
     if (any_disabled(source, from, count) || any_disabled(target, to, count)) {
         for (std::uint32_t i = 0; i < count; ++i) {

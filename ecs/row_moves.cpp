@@ -148,12 +148,9 @@ Archetype::append_from(Archetype& from, std::span<const RowRange> ranges, std::u
         const auto block = ranges.first(std::min(ranges.size(), kBlockRanges));
         copy_rows(
             reinterpret_cast<std::byte*>(entities_ + row),
-            reinterpret_cast<const std::byte*>(from.entities_),
-            sizeof(Entity),
-            block);
+            reinterpret_cast<const std::byte*>(from.entities_), sizeof(Entity), block);
         match_columns(
-            from,
-            *this,
+            from, *this,
             [&](Column& source, Column& target) { relocate_rows(target, row, source, block); },
             [&](Column& source) {
                 if (!source.info->trivially_destructible) {
@@ -191,8 +188,7 @@ bool Archetype::take_over(Archetype& from, std::uint32_t version) {
     std::swap(entities_, from.entities_);
     std::swap(entity_range_, from.entity_range_);
     match_columns(
-        from,
-        *this,
+        from, *this,
         [&](Column& source, Column& target) {
             std::swap(source.data, target.data);
             std::swap(source.range, target.range);
@@ -241,8 +237,7 @@ void Archetype::close_gaps(
     // `last` walks over the gaps that reach beyond the new end; between them are the rows to move.
     std::size_t last = static_cast<std::size_t>(
         std::partition_point(
-            gaps.begin(),
-            gaps.end(),
+            gaps.begin(), gaps.end(),
             [&](const RowRange& gap) { return gap.first + gap.count <= size_; })
         - gaps.begin());
     std::uint32_t from = size_;

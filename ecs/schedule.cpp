@@ -276,9 +276,7 @@ std::string Schedule::to_text() const {
             const SyncTiming& sync = sync_timings_[stage.sync];
             text += "  " + align_left("commands applied", width)
                     + format_text(
-                        "  {} ms  mean {} ms  {} of them\n",
-                        ms_text(sync.last),
-                        ms_text(sync.mean),
+                        "  {} ms  mean {} ms  {} of them\n", ms_text(sync.last), ms_text(sync.mean),
                         sync.commands);
         }
     }
@@ -306,8 +304,7 @@ std::string Schedule::to_dot() const {
         if (number > 0) {
             dot += format_text(
                 "  s{} -> s{} [style=dashed, label=\"sync\"];\n",
-                stages_[number - 1].first + stages_[number - 1].count - 1,
-                stage.first);
+                stages_[number - 1].first + stages_[number - 1].count - 1, stage.first);
         }
     }
     return dot + "}\n";

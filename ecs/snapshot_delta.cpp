@@ -117,9 +117,7 @@ void write_head_steps(const SnapshotIndex& base, const SnapshotIndex& index, Del
 }
 
 void write_table_steps(
-    const SnapshotPlan& plan,
-    const SnapshotIndex& base,
-    const SnapshotIndex& index,
+    const SnapshotPlan& plan, const SnapshotIndex& base, const SnapshotIndex& index,
     DeltaWriter& out) {
     std::size_t piece = 0;
     for (std::size_t s = 0; s < plan.sections().size(); ++s) {

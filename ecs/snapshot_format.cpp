@@ -49,8 +49,7 @@ Result<SnapshotParts> open_snapshot(std::span<const std::byte> bytes) {
         || header.piece_count > left / sizeof(SnapshotPiece)
         || header.total_size() != bytes.size()) {
         return fail(
-            "found {} bytes, expected {} and what the header says",
-            bytes.size(),
+            "found {} bytes, expected {} and what the header says", bytes.size(),
             kSnapshotHeaderSize);
     }
     const std::span<const std::byte> directory =

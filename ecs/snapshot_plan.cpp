@@ -293,29 +293,29 @@ void for_each_part(
 
 void SnapshotPlan::write_rows(
     const SnapshotSection& section, std::uint32_t first, std::uint32_t end, ByteWriter& out) const {
-    const auto write =
-        [&](const Archetype& rows, std::uint32_t row, std::uint32_t count, std::uint32_t) {
-            if (section.kind == SectionKind::Entities) {
-                out.bytes(rows.entities().data() + row, count * sizeof(Entity));
-            } else {
-                limn::write_rows(rows.column(rows.column_of(section.info->id)), row, count, out);
-            }
-        };
+    const auto write = [&](const Archetype& rows, std::uint32_t row, std::uint32_t count,
+                           std::uint32_t) {
+        if (section.kind == SectionKind::Entities) {
+            out.bytes(rows.entities().data() + row, count * sizeof(Entity));
+        } else {
+            limn::write_rows(rows.column(rows.column_of(section.info->id)), row, count, out);
+        }
+    };
     for_each_part(groups_[section.owner], first, end, write);
 }
 
 void SnapshotPlan::write_disabled(
     const SnapshotSection& section, std::uint32_t first, std::uint32_t end, ByteWriter& out) const {
     RowMask disabled{};
-    const auto collect =
-        [&](const Archetype& rows, std::uint32_t row, std::uint32_t count, std::uint32_t place) {
-            const ToggleBits& toggle = *rows.bits().toggle(section.info->id);
-            for (std::uint32_t i = 0; i < count; ++i) {
-                if (!toggle.is_enabled(row + i)) {
-                    disabled.set(place + i);
-                }
+    const auto collect = [&](const Archetype& rows, std::uint32_t row, std::uint32_t count,
+                             std::uint32_t place) {
+        const ToggleBits& toggle = *rows.bits().toggle(section.info->id);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (!toggle.is_enabled(row + i)) {
+                disabled.set(place + i);
             }
-        };
+        }
+    };
     for_each_part(groups_[section.owner], first, end, collect);
     if (disabled.any()) {
         out.bytes(disabled.words.data(), disabled_size(end - first));
@@ -419,17 +419,17 @@ bool SnapshotPlan::is_same_rows(
     const std::uint32_t begin = piece * kPieceRows;
     const std::uint32_t end = begin + rows_of_piece(section.rows, piece);
     bool is_same = true;
-    const auto look =
-        [&](const Archetype& rows, std::uint32_t row, std::uint32_t count, std::uint32_t place) {
-            is_same = is_same && rows.index() < base.first_rows.size()
-                      && base.first_rows[rows.index()] + row == begin + place;
-            for (std::uint32_t chunk = row / kChunkRows; chunk < chunks_of(row + count); ++chunk) {
-                const std::uint32_t version = section.kind == SectionKind::Entities
-                                                  ? rows.structure_version(chunk)
-                                                  : rows.version_of(section.info->id, chunk);
-                is_same = is_same && !is_newer(version, base.version);
-            }
-        };
+    const auto look = [&](const Archetype& rows, std::uint32_t row, std::uint32_t count,
+                          std::uint32_t place) {
+        is_same = is_same && rows.index() < base.first_rows.size()
+                  && base.first_rows[rows.index()] + row == begin + place;
+        for (std::uint32_t chunk = row / kChunkRows; chunk < chunks_of(row + count); ++chunk) {
+            const std::uint32_t version = section.kind == SectionKind::Entities
+                                              ? rows.structure_version(chunk)
+                                              : rows.version_of(section.info->id, chunk);
+            is_same = is_same && !is_newer(version, base.version);
+        }
+    };
     for_each_part(groups_[section.owner], begin, end, look);
     return is_same;
 }

@@ -129,14 +129,10 @@ class SnapshotPlan {
         const SnapshotSection& section, std::uint32_t piece, const SnapshotIndex& base) const;
     /// Rows first .. end - 1 of the group, which may be those of several archetypes.
     void write_rows(
-        const SnapshotSection& section,
-        std::uint32_t first,
-        std::uint32_t end,
+        const SnapshotSection& section, std::uint32_t first, std::uint32_t end,
         ByteWriter& out) const;
     void write_disabled(
-        const SnapshotSection& section,
-        std::uint32_t first,
-        std::uint32_t end,
+        const SnapshotSection& section, std::uint32_t first, std::uint32_t end,
         ByteWriter& out) const;
 
     const World* world_;

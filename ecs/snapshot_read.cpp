@@ -47,15 +47,10 @@ class SnapshotReader {
 
     Status check() {
         for (const auto step :
-             {&SnapshotReader::read_names,
-              &SnapshotReader::read_resources,
-              &SnapshotReader::read_slots,
-              &SnapshotReader::read_groups,
-              &SnapshotReader::read_sets,
-              &SnapshotReader::place_sections,
-              &SnapshotReader::check_slots,
-              &SnapshotReader::check_groups,
-              &SnapshotReader::check_sets,
+             {&SnapshotReader::read_names, &SnapshotReader::read_resources,
+              &SnapshotReader::read_slots, &SnapshotReader::read_groups, &SnapshotReader::read_sets,
+              &SnapshotReader::place_sections, &SnapshotReader::check_slots,
+              &SnapshotReader::check_groups, &SnapshotReader::check_sets,
               &SnapshotReader::check_values}) {
             if (Status status = (this->*step)(); !status) {
                 return status;
@@ -87,9 +82,7 @@ class SnapshotReader {
     // -----------------------------------------------------------------------------
 
     Status check_type(
-        const ComponentInfo* info,
-        std::string_view kind,
-        std::string_view name,
+        const ComponentInfo* info, std::string_view kind, std::string_view name,
         std::uint64_t layout) const {
         if (info == nullptr) {
             return fail("{} {}: unknown to this program", kind, name);
@@ -105,8 +98,7 @@ class SnapshotReader {
 
     /// The types that follow, each once.
     Status read_types(
-        std::string_view kind,
-        const ComponentInfo* (*find)(std::string_view),
+        std::string_view kind, const ComponentInfo* (*find)(std::string_view),
         std::vector<const ComponentInfo*>& types) {
         const bool has_storage = find == find_component;
         const std::uint32_t count = in_.count(sizeof(std::uint32_t) + sizeof(std::uint64_t));
@@ -322,8 +314,7 @@ class SnapshotReader {
         for (const std::uint32_t generation : image_.generations) {
             if ((generation & kPlaceholderBit) != 0) {
                 return fail(
-                    "slots: found generation {}, expected less than {}",
-                    generation,
+                    "slots: found generation {}, expected less than {}", generation,
                     kPlaceholderBit);
             }
         }
@@ -333,8 +324,7 @@ class SnapshotReader {
         for (std::uint32_t i = 0; i < free_count_; ++i) {
             if (slot >= uses_.size() || uses_[slot] == SlotUse::Free) {
                 return fail(
-                    "slots: found free slot {} twice or beyond the {} there are",
-                    slot,
+                    "slots: found free slot {} twice or beyond the {} there are", slot,
                     uses_.size());
             }
             uses_[slot] = SlotUse::Free;
@@ -362,9 +352,7 @@ class SnapshotReader {
             for (const Entity entity : entities_of(groups_[i].first_section)) {
                 if (!is_handle(entity) || uses_[entity.index] != SlotUse::Unknown) {
                     return fail(
-                        "group {}: entity {} v{} is not alive or twice there",
-                        i,
-                        entity.index,
+                        "group {}: entity {} v{} is not alive or twice there", i, entity.index,
                         entity.generation);
                 }
                 uses_[entity.index] = SlotUse::Placed;
@@ -379,10 +367,8 @@ class SnapshotReader {
             for (const Entity entity : entities) {
                 if (!is_handle(entity) || uses_[entity.index] != SlotUse::Placed) {
                     return fail(
-                        "component {}: entity {} v{} is not alive or twice there",
-                        set.info->name,
-                        entity.index,
-                        entity.generation);
+                        "component {}: entity {} v{} is not alive or twice there", set.info->name,
+                        entity.index, entity.generation);
                 }
                 uses_[entity.index] = SlotUse::InSet;
             }
@@ -435,8 +421,7 @@ class SnapshotReader {
                 const auto piece = static_cast<std::uint32_t>(i);
                 call(
                     parts_.data.subspan(offsets[i], parts_.pieces[section.first_piece + i].size),
-                    piece * kPieceRows,
-                    rows_of_piece(section.rows, piece));
+                    piece * kPieceRows, rows_of_piece(section.rows, piece));
             }
         });
     }
@@ -484,10 +469,8 @@ class SnapshotReader {
             if (!info->is_tag && info->storage != Storage::Shared) {
                 Column& column = rows.column(rows.column_of(info->id));
                 for_each_piece(
-                    sections_[++section],
-                    [&](std::span<const std::byte> bytes,
-                        std::uint32_t first,
-                        std::uint32_t count) {
+                    sections_[++section], [&](std::span<const std::byte> bytes, std::uint32_t first,
+                                              std::uint32_t count) {
                         ByteReader in(bytes);
                         LIMN_CHECK(read_rows(column, first, count, in));
                     });

@@ -41,8 +41,7 @@ Result<std::vector<std::byte>> save_snapshot(const World& world, SnapshotMark* m
     }
     header.data_size = out.size() - data;
     out.overwrite(
-        data - pieces.size() * sizeof(SnapshotPiece),
-        pieces.data(),
+        data - pieces.size() * sizeof(SnapshotPiece), pieces.data(),
         pieces.size() * sizeof(SnapshotPiece));
     header.checksum = hash_bytes(out.data() + kSnapshotHeaderSize, header.directory_size());
     ByteWriter front;

@@ -53,8 +53,7 @@ class StateHasher {
         for (const ToggleChunk& chunk : std::span(toggle.chunks).first(chunks)) {
             static_assert(sizeof(RowMask) % sizeof(Entity) == 0);
             pieces_.push_back(
-                {nullptr,
-                 reinterpret_cast<const std::byte*>(&chunk.disabled),
+                {nullptr, reinterpret_cast<const std::byte*>(&chunk.disabled),
                  sizeof(RowMask) / sizeof(Entity)});
         }
         parts_.push_back({pieces_.size(), hash_combine(hash_text(info.name), 1), false});

@@ -29,23 +29,18 @@ std::string ms(double time) {
 
 std::string query_line(const QueryStats& query) {
     return format_text(
-        "{} calls {} rows {} chunks {} archetypes  {}\n",
-        align_right(query.calls, 9),
-        align_right(query.rows, 9),
-        align_right(query.chunks, 6),
-        align_right(query.archetypes, 4),
+        "{} calls {} rows {} chunks {} archetypes  {}\n", align_right(query.calls, 9),
+        align_right(query.rows, 9), align_right(query.chunks, 6), align_right(query.archetypes, 4),
         query.terms);
 }
 
 std::string archetype_lines(const ArchetypeStats& archetype) {
     std::string text = format_text(
         "{} rows {} chunks {} B/row {} % filled {} moved in {} out  {}\n",
-        align_right(archetype.rows, 9),
-        align_right(archetype.chunks, 6),
+        align_right(archetype.rows, 9), align_right(archetype.chunks, 6),
         align_right(archetype.row_bytes, 5),
         align_right(fixed_text(100.0 * archetype.fill(), 1), 5),
-        align_right(archetype.rows_moved_in, 7),
-        align_right(archetype.rows_moved_out, 7),
+        align_right(archetype.rows_moved_in, 7), align_right(archetype.rows_moved_out, 7),
         join_text(labels_of(archetype), " "));
     for (const auto& [component, rows] : archetype.disabled) {
         text += format_text("{} of them with {} disabled\n", align_right(rows, 9), component);
@@ -71,22 +66,13 @@ std::string to_text(const WorldStats& stats) {
             "{} flushes of {} commands: {} entities created, {} destroyed; {} rows moved in "
             "ranges, "
             "{} singly, {} with their columns\n",
-            flush.flushes,
-            flush.commands,
-            flush.entities_created,
-            flush.entities_destroyed,
-            flush.rows_moved_in_ranges,
-            flush.rows_moved_singly,
-            flush.rows_handed_over);
+            flush.flushes, flush.commands, flush.entities_created, flush.entities_destroyed,
+            flush.rows_moved_in_ranges, flush.rows_moved_singly, flush.rows_handed_over);
     }
     text += format_text(
         "{} KiB: columns {}, blocks {}, handles {}, sparse {}, versions {}\n",
-        kib(stats.memory.total()),
-        kib(stats.memory.archetypes),
-        kib(stats.memory.blocks),
-        kib(stats.memory.slots),
-        kib(stats.memory.sparse),
-        kib(stats.memory.versions));
+        kib(stats.memory.total()), kib(stats.memory.archetypes), kib(stats.memory.blocks),
+        kib(stats.memory.slots), kib(stats.memory.sparse), kib(stats.memory.versions));
     return text;
 }
 
@@ -98,11 +84,8 @@ std::string to_text(const ScheduleStats& stats) {
     std::string text;
     for (const SystemStats& system : stats.systems) {
         text += format_text(
-            "{}  {} ms  mean {} ms {} runs {} commands\n",
-            align_left(system.name, width),
-            ms(system.last),
-            ms(system.mean),
-            align_right(system.runs, 7),
+            "{}  {} ms  mean {} ms {} runs {} commands\n", align_left(system.name, width),
+            ms(system.last), ms(system.mean), align_right(system.runs, 7),
             align_right(system.commands, 8));
         for (const QueryStats& query : system.queries) {
             text += query_line(query);
@@ -110,11 +93,8 @@ std::string to_text(const ScheduleStats& stats) {
         for (const SyncStats& sync : stats.syncs) {
             if (sync.after == system.name && sync.runs > 0) {
                 text += format_text(
-                    "{}  {} ms  mean {} ms {} runs {} commands\n",
-                    align_left("  sync", width),
-                    ms(sync.last),
-                    ms(sync.mean),
-                    align_right(sync.runs, 7),
+                    "{}  {} ms  mean {} ms {} runs {} commands\n", align_left("  sync", width),
+                    ms(sync.last), ms(sync.mean), align_right(sync.runs, 7),
                     align_right(sync.commands, 8));
             }
         }

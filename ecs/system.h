@@ -174,8 +174,7 @@ template <typename F>
         detail::SystemFunction<F>, "a system is a function or a lambda without auto parameters");
     using Parameters = typename detail::FunctionTraits<F>::Parameters;
     return System(
-        std::move(name),
-        detail::access_of_parameters(Parameters{}),
+        std::move(name), detail::access_of_parameters(Parameters{}),
         std::make_unique<detail::SystemBody<F, Parameters>>(std::move(function)));
 }
 

@@ -280,8 +280,7 @@ std::vector<ComponentId> World::components_of(Entity entity) const {
     }
     std::sort(components.begin() + static_cast<std::ptrdiff_t>(table.size()), components.end());
     std::inplace_merge(
-        components.begin(),
-        components.begin() + static_cast<std::ptrdiff_t>(table.size()),
+        components.begin(), components.begin() + static_cast<std::ptrdiff_t>(table.size()),
         components.end());
     return components;
 }
@@ -664,8 +663,7 @@ void World::begin_restore(const EntityTableImage& image) {
 }
 
 Archetype& World::restore_rows(
-    std::span<const ComponentId> components,
-    std::span<const Entity> entities,
+    std::span<const ComponentId> components, std::span<const Entity> entities,
     std::span<const void* const> shared) {
     std::vector<SharedValue> values;
     for (const ComponentId id : components) {
@@ -695,10 +693,8 @@ void World::reuse_memory(Archetype& rows) {
     std::vector<std::unique_ptr<Archetype>>& spare = internals_->spare_archetypes;
     const auto found = std::find_if(spare.begin(), spare.end(), [&](const auto& archetype) {
         return std::equal(
-            archetype->components().begin(),
-            archetype->components().end(),
-            rows.components().begin(),
-            rows.components().end());
+            archetype->components().begin(), archetype->components().end(),
+            rows.components().begin(), rows.components().end());
     });
     if (found != spare.end()) {
         rows.take_memory(**found);

@@ -259,8 +259,7 @@ class World {
     /// others have their default value.
     /// `shared` are the values of those of Storage::Shared, in the order of `components`.
     Archetype& restore_rows(
-        std::span<const ComponentId> components,
-        std::span<const Entity> entities,
+        std::span<const ComponentId> components, std::span<const Entity> entities,
         std::span<const void* const> shared = {});
     /// The entities have been placed by restore_rows.
     SparseSet& restore_sparse(ComponentId id, std::span<const Entity> entities);
@@ -364,8 +363,7 @@ class World {
         return id < observed_.size() && (observed_[id] & (1u << static_cast<unsigned>(event))) != 0;
     }
     void notify(
-        ObserverEvent event,
-        std::span<const ComponentId> components,
+        ObserverEvent event, std::span<const ComponentId> components,
         std::span<const Entity> entities);
     void notify_all_removed();
     void drop_all_rows();

@@ -111,9 +111,7 @@ void World::create_many(std::span<Entity> entities, const Ts&... components) {
             // The archetype has it.
         } else if constexpr (detail::is_split<T>) {
             fill_values(
-                &bundle.archetype->column(bundle.columns[position]),
-                first,
-                entities.size(),
+                &bundle.archetype->column(bundle.columns[position]), first, entities.size(),
                 &component);
         } else if constexpr (!std::is_empty_v<T>) {
             T* rows = reinterpret_cast<T*>(bundle.archetype->column(bundle.columns[position]).data)
@@ -359,8 +357,7 @@ void World::add_all(const Query<Terms...>& query, const T& component) {
     static_assert(std::is_copy_constructible_v<T>, "add_all: every entity gets a copy");
     change_rows(
         {&record_layout<T>, CommandOp::Add},
-        reinterpret_cast<std::byte*>(const_cast<T*>(&component)),
-        detail::rows_of(query));
+        reinterpret_cast<std::byte*>(const_cast<T*>(&component)), detail::rows_of(query));
 }
 
 template <typename T, typename... Terms>
@@ -424,10 +421,9 @@ void World::run(F&& system) {
         }
         System* known = SystemCache::find(*this, type, address);
         run_system(
-            *this,
-            known != nullptr
-                ? *known
-                : SystemCache::insert(*this, type, address, make_system<Function>("", system)));
+            *this, known != nullptr ? *known
+                                    : SystemCache::insert(
+                                        *this, type, address, make_system<Function>("", system)));
     } else {
         System once = make_system<Function>("", std::forward<F>(system));
         run_system(*this, once);

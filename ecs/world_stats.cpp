@@ -181,10 +181,7 @@ ScheduleStats schedule_stats(const Schedule& schedule) {
     }
     for (const SyncTiming& timing : schedule.sync_timings()) {
         stats.syncs.push_back(
-            {schedule.timings()[timing.system].name,
-             timing.last,
-             timing.mean,
-             timing.runs,
+            {schedule.timings()[timing.system].name, timing.last, timing.mean, timing.runs,
              timing.commands});
     }
     return stats;

@@ -20,10 +20,7 @@ void BufferTexture::set(const gpu::RingSlice& slice) {
     // A list may be empty; a view of a buffer may not.
     const std::size_t size = slice.size > 0 ? slice.size : 16;
     glTextureBufferRange(
-        object_.id(),
-        format_,
-        slice.buffer,
-        static_cast<GLintptr>(slice.offset),
+        object_.id(), format_, slice.buffer, static_cast<GLintptr>(slice.offset),
         static_cast<GLsizeiptr>(size));
 }
 

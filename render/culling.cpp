@@ -64,9 +64,7 @@ Frustum make_frustum(const Mat4& clip_from_world) {
     const Mat4 rows = glm::transpose(clip_from_world);
     Frustum frustum = {{
         rows[3] + rows[0],  // x >= -w
-        rows[3] - rows[0],
-        rows[3] + rows[1],
-        rows[3] - rows[1],
+        rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
         rows[3] - rows[2],  // depth <= 1: beyond the near plane
     }};
     for (Vec4& plane : frustum.planes) {
@@ -82,10 +80,7 @@ void cull_boxes(
 }
 
 void cull_boxes_by_distance(
-    const Vec3& middle,
-    float radius,
-    const BoxBlock& boxes,
-    int count,
+    const Vec3& middle, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible) {
     for (int i = 0; i < count; ++i) {
         const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};

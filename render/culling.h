@@ -67,10 +67,7 @@ void cull_boxes(
 
 /// visible[i] = 0 where the ball does not touch box i.
 void cull_boxes_by_distance(
-    const Vec3& middle,
-    float radius,
-    const BoxBlock& boxes,
-    int count,
+    const Vec3& middle, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible);
 
 /// visible[i] = 0 where box i lies outside `frustum`, too.

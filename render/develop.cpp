@@ -26,10 +26,7 @@ Result<Developer> create_developer(gpu::Device& device) {
 }
 
 TextureId develop(
-    FrameGraph& graph,
-    Developer& developer,
-    const Exposure& exposure,
-    std::optional<float> seconds,
+    FrameGraph& graph, Developer& developer, const Exposure& exposure, std::optional<float> seconds,
     TextureId radiance) {
     ToneMapInput input{.radiance = radiance};
     const bool metered = exposure.metering != Metering::Manual;
@@ -37,9 +34,7 @@ TextureId develop(
     if (metered || exposure.defog > 0.0f) {
         const bool follows = adapts && developer.adapting && seconds.has_value();
         input.measure = measure_picture(
-            graph,
-            developer.statistics,
-            radiance,
+            graph, developer.statistics, radiance,
             {.key = metered ? exposure.key : 0.0f,
              .follow = follows ? eye_follows(exposure.adaptation, *seconds) : 1.0f,
              .adaptable = {exposure.darkest, std::max(exposure.darkest, exposure.brightest)}});

@@ -25,10 +25,7 @@ struct Developer {
 /// Adds the passes to this frame; returns the display, RGBA8. `seconds` since the picture before
 /// let the eye of Metering::Auto follow; nothing means a cut, after which it is at home at once.
 [[nodiscard]] TextureId develop(
-    FrameGraph& graph,
-    Developer& developer,
-    const Exposure& exposure,
-    std::optional<float> seconds,
+    FrameGraph& graph, Developer& developer, const Exposure& exposure, std::optional<float> seconds,
     TextureId radiance);
 
 /// Tells a cut from pictures that follow one another.

@@ -77,15 +77,10 @@ void EnvProbeList::collect(const World& world, float alpha) {
     };
     world
         .query<
-            const EnvProbe,
-            const WorldTransform,
-            Optional<const PreviousWorldTransform>,
+            const EnvProbe, const WorldTransform, Optional<const PreviousWorldTransform>,
             Optional<const EnvProbeState>>()
-        .each([&](Entity entity,
-                  const EnvProbe& probe,
-                  const WorldTransform& now,
-                  const PreviousWorldTransform* before,
-                  const EnvProbeState* state) {
+        .each([&](Entity entity, const EnvProbe& probe, const WorldTransform& now,
+                  const PreviousWorldTransform* before, const EnvProbeState* state) {
             const Affine pose = before == nullptr || alpha == 1.0f
                                     ? now.world
                                     : mix_affine(before->world, now.world, alpha);
@@ -116,8 +111,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
     if (served < added.size() && !told_) {
         log_warn(
             "env_probe: {} probes found, expected at most {}; the rest shows nothing",
-            layout::kMaxProbes + added.size() - served,
-            layout::kMaxProbes);
+            layout::kMaxProbes + added.size() - served, layout::kMaxProbes);
         told_ = true;
     }
 }
@@ -153,9 +147,7 @@ layout::ProbeBlock EnvProbeList::make_block() const {
 RenderView make_probe_view(const ProbeSlot& slot, int face, float alpha) {
     const Affine pose = cube_face_pose(face, slot.seen_from);
     RenderView view = make_render_view(
-        {.fov_y = radians(90.0f), .near = slot.near},
-        pose,
-        pose,
+        {.fov_y = radians(90.0f), .near = slot.near}, pose, pose,
         {.width = slot.resolution, .height = slot.resolution});
     view.alpha = alpha;
     view.hidden = slot.entity;

@@ -72,16 +72,15 @@ Vec3 studio(const layout::EnvironmentBlock& b, const Vec3& d) {
 
 /// The nine real spherical harmonics without their constants, in the order of the block.
 std::array<float, 9> harmonics(const Vec3& n) {
-    return {
-        1,
-        n.y,
-        n.z,
-        n.x,
-        n.x * n.y,
-        n.y * n.z,
-        3 * n.z * n.z - 1,
-        n.x * n.z,
-        n.x * n.x - n.y * n.y};
+    return {1,
+            n.y,
+            n.z,
+            n.x,
+            n.x * n.y,
+            n.y * n.z,
+            3 * n.z * n.z - 1,
+            n.x * n.z,
+            n.x * n.x - n.y * n.y};
 }
 /// Squares of the constants, times what convolution with the clamped cosine does to each band / pi.
 constexpr std::array<float, 9> kHarmonicFactors = {

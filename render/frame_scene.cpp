@@ -35,10 +35,7 @@ constexpr FeatureName kFeatureNames[] = {
 void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) {
     const GLuint id = vertices.id();
     glVertexArrayVertexBuffer(
-        id,
-        kInstanceStream,
-        list.instances.buffer,
-        static_cast<GLintptr>(list.instances.offset),
+        id, kInstanceStream, list.instances.buffer, static_cast<GLintptr>(list.instances.offset),
         sizeof(layout::InstanceRecord));
     glVertexArrayBindingDivisor(id, kInstanceStream, 1);
     // Nobody reads this stream when it is empty, but something must be bound.
@@ -66,8 +63,7 @@ void draw_run(
     gpu::Device& device, const FrameScene& scene, const InstanceList& list, const DrawRun& run) {
     bind_vertices(device, scene, run);
     device.draw_indexed_indirect(
-        GL_TRIANGLES,
-        GL_UNSIGNED_INT,
+        GL_TRIANGLES, GL_UNSIGNED_INT,
         list.commands.offset + run.first_command * sizeof(DrawCommand),
         static_cast<int>(run.command_count));
 }
@@ -82,12 +78,8 @@ gpu::PipelineState seen_sides(gpu::PipelineState state, const DrawRun& run) {
 /// Draws a run for its depth: `programs` get no more features than decide where its points are and
 /// where there are holes.
 void draw_depth(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const InstanceList& list,
-    const DrawRun& run,
-    SurfacePrograms& programs,
-    const gpu::PipelineState& state) {
+    gpu::Device& device, const FrameScene& scene, const InstanceList& list, const DrawRun& run,
+    SurfacePrograms& programs, const gpu::PipelineState& state) {
     constexpr std::uint32_t kHoles = kAlphaMask | kBaseColorMap | kUvMap | kUvMaps | kVertexColor;
     const bool holes = (run.features & kAlphaMask) != 0;
     const gpu::Program* program =
@@ -269,15 +261,9 @@ Status SurfacePrograms::load(
 }
 
 void draw_runs(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const std::vector<DrawRun>& runs,
-    SurfacePrograms& programs,
-    std::uint32_t more_features,
-    std::uint32_t more_key,
-    const std::vector<gpu::ShaderDefine>& more,
-    const gpu::PipelineState& state,
-    int light) {
+    gpu::Device& device, const FrameScene& scene, const std::vector<DrawRun>& runs,
+    SurfacePrograms& programs, std::uint32_t more_features, std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more, const gpu::PipelineState& state, int light) {
     if (runs.empty()) {
         return;
     }
@@ -297,12 +283,8 @@ void draw_runs(
 }
 
 void draw_light_runs(
-    gpu::Device& device,
-    const FrameScene& scene,
-    std::span<const LightRun> runs,
-    SurfacePrograms& programs,
-    std::uint32_t more_key,
-    const std::vector<gpu::ShaderDefine>& more,
+    gpu::Device& device, const FrameScene& scene, std::span<const LightRun> runs,
+    SurfacePrograms& programs, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more,
     const gpu::PipelineState& state) {
     bind_instances(device, scene, scene.instances);
     device.bind_indirect(scene.light_commands.buffer);
@@ -317,8 +299,7 @@ void draw_light_runs(
         scene.materials->bind_textures(run.textures);
         bind_vertices(device, scene, run);
         device.draw_indexed_indirect(
-            GL_TRIANGLES,
-            GL_UNSIGNED_INT,
+            GL_TRIANGLES, GL_UNSIGNED_INT,
             scene.light_commands.offset + lit.first_command * sizeof(DrawCommand),
             static_cast<int>(lit.command_count));
     }
@@ -332,11 +313,8 @@ void draw_depths(gpu::Device& device, const FrameScene& scene, SurfacePrograms& 
 }
 
 void draw_casters(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const InstanceList& casters,
-    SurfacePrograms& programs,
-    const gpu::PipelineState& state) {
+    gpu::Device& device, const FrameScene& scene, const InstanceList& casters,
+    SurfacePrograms& programs, const gpu::PipelineState& state) {
     bind_instances(device, scene, casters);
     for (const DrawRun& run : casters.opaque) {
         draw_depth(device, scene, casters, run, programs, state);
@@ -344,11 +322,8 @@ void draw_casters(
 }
 
 void draw_motions(
-    gpu::Device& device,
-    const FrameScene& scene,
-    SurfacePrograms& programs,
-    const gpu::PipelineState& state,
-    const std::function<void(const gpu::Program&)>& set) {
+    gpu::Device& device, const FrameScene& scene, SurfacePrograms& programs,
+    const gpu::PipelineState& state, const std::function<void(const gpu::Program&)>& set) {
     bind_instances(device, scene, scene.instances);
     for (const DrawRun& run : scene.instances.opaque) {
         const gpu::Program* program =

@@ -169,24 +169,14 @@ class SurfacePrograms {
 /// Draws the runs; `state` gets the winding and sides of each. Programs that light with one light
 /// get its index.
 void draw_runs(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const std::vector<DrawRun>& runs,
-    SurfacePrograms& programs,
-    std::uint32_t more_features,
-    std::uint32_t more_key,
-    const std::vector<gpu::ShaderDefine>& more,
-    const gpu::PipelineState& state,
-    int light = -1);
+    gpu::Device& device, const FrameScene& scene, const std::vector<DrawRun>& runs,
+    SurfacePrograms& programs, std::uint32_t more_features, std::uint32_t more_key,
+    const std::vector<gpu::ShaderDefine>& more, const gpu::PipelineState& state, int light = -1);
 
 /// Draws the objects of lights: `runs` of `scene.light_draws`.
 void draw_light_runs(
-    gpu::Device& device,
-    const FrameScene& scene,
-    std::span<const LightRun> runs,
-    SurfacePrograms& programs,
-    std::uint32_t more_key,
-    const std::vector<gpu::ShaderDefine>& more,
+    gpu::Device& device, const FrameScene& scene, std::span<const LightRun> runs,
+    SurfacePrograms& programs, std::uint32_t more_key, const std::vector<gpu::ShaderDefine>& more,
     const gpu::PipelineState& state);
 
 /// Draws the opaque instances for their depth alone, as draw_casters() does, seen sides only.
@@ -195,19 +185,13 @@ void draw_depths(gpu::Device& device, const FrameScene& scene, SurfacePrograms& 
 /// Draws casters for their depth alone, both sides: `programs` get no more features than decide
 /// where a surface has holes.
 void draw_casters(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const InstanceList& casters,
-    SurfacePrograms& programs,
-    const gpu::PipelineState& state);
+    gpu::Device& device, const FrameScene& scene, const InstanceList& casters,
+    SurfacePrograms& programs, const gpu::PipelineState& state);
 
 /// Draws the opaque instances for where they are and were, without their materials, seen sides
 /// only; needs the velocity of instances. `set` gives each program what it wants.
 void draw_motions(
-    gpu::Device& device,
-    const FrameScene& scene,
-    SurfacePrograms& programs,
-    const gpu::PipelineState& state,
-    const std::function<void(const gpu::Program&)>& set);
+    gpu::Device& device, const FrameScene& scene, SurfacePrograms& programs,
+    const gpu::PipelineState& state, const std::function<void(const gpu::Program&)>& set);
 
 }  // namespace limn

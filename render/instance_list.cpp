@@ -23,11 +23,7 @@ static_assert(kChunkRows <= kCullBlock);
 // A key: blended last, then inflated, deformed, batch, mirrored, mesh or deformed instance. Sorting
 // keys sorts draws.
 constexpr std::uint64_t make_key(
-    bool blend,
-    bool inflated,
-    bool deformed,
-    std::uint32_t batch,
-    bool mirrored,
+    bool blend, bool inflated, bool deformed, std::uint32_t batch, bool mirrored,
     std::uint32_t what) {
     return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(inflated) << 62
            | static_cast<std::uint64_t>(deformed) << 61 | static_cast<std::uint64_t>(batch) << 33
@@ -117,21 +113,12 @@ class InstanceCollector::KeyTable {
 };
 
 void InstanceCollector::collect(
-    const World& world,
-    const RenderView& view,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
-    DeformedList& shapes,
-    bool velocity,
-    gpu::RingBuffer& ring,
-    InstanceList& list,
-    bool boxes) {
+    const World& world, const RenderView& view, const MeshPool& meshes,
+    const MaterialPool& materials, DeformedList& shapes, bool velocity, gpu::RingBuffer& ring,
+    InstanceList& list, bool boxes) {
     const auto query = world.query<
-        const MeshInstance,
-        const WorldTransform,
-        Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>,
-        Optional<const Deformed>>();
+        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>, Optional<const Deformed>>();
     const auto& camera = view.world_from_camera.row;
     const Selection seen = {
         .frustum = make_frustum(view.clip_from_world),
@@ -147,21 +134,12 @@ void InstanceCollector::collect(
 }
 
 void InstanceCollector::collect_casters(
-    const World& world,
-    const CasterVolume& volume,
-    float alpha,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
-    DeformedList& shapes,
-    gpu::RingBuffer& ring,
+    const World& world, const CasterVolume& volume, float alpha, const MeshPool& meshes,
+    const MaterialPool& materials, DeformedList& shapes, gpu::RingBuffer& ring,
     InstanceList& list) {
     const auto query = world.query<
-        const MeshInstance,
-        const WorldTransform,
-        Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>,
-        Optional<const Deformed>,
-        Without<NoShadow>>();
+        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>, Optional<const Deformed>, Without<NoShadow>>();
     const Selection casters = {
         .frustum = volume.frustum,
         .shading = volume.shading,
@@ -174,10 +152,7 @@ void InstanceCollector::collect_casters(
 
 template <typename Instances>
 void InstanceCollector::collect_from(
-    const Instances& query,
-    const Selection& selection,
-    const Sources& from,
-    gpu::RingBuffer& ring,
+    const Instances& query, const Selection& selection, const Sources& from, gpu::RingBuffer& ring,
     InstanceList& list) {
     const std::vector<MeshRange>& meshes = from.meshes.meshes();
     const MaterialPool& materials = from.materials;
@@ -185,19 +160,17 @@ void InstanceCollector::collect_from(
     list.total = static_cast<int>(query.count());
     chunks_.resize(query.chunk_count());
 
-    query.par_chunks([&](ChunkView chunk,
-                         std::span<const MeshInstance> surfaces,
+    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate,
-                         std::span<const Deformed> deformed) {
+                         std::span<const Inflate> inflate, std::span<const Deformed> deformed) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         const auto count = static_cast<int>(chunk.size());
         ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {
-            surfaces, now, before, inflate, deformed, chunk.entities(), from.shapes};
+        const InstanceRows rows = {surfaces,         now,        before, inflate, deformed,
+                                   chunk.entities(), from.shapes};
         fill_boxes(rows, selection.alpha, meshes, boxes, mirrored);
         cull_boxes(selection.frustum, boxes, count, visible);
         if (selection.casters) {
@@ -225,11 +198,7 @@ void InstanceCollector::collect_from(
             const std::uint32_t shape = rows.shape(i);
             const bool own = shape != DeformedList::kNone;
             const std::uint64_t key = make_key(
-                blend,
-                !inflate.empty(),
-                own,
-                batch,
-                mirrored[i] != 0,
+                blend, !inflate.empty(), own, batch, mirrored[i] != 0,
                 own ? shape : surfaces[i].mesh.index);
             work.local[i] = table.count(key, far_side);
         }
@@ -249,15 +218,13 @@ void InstanceCollector::collect_from(
 
     auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
     auto* moments_before = reinterpret_cast<Affine*>(list.before.data);
-    query.par_chunks([&](ChunkView chunk,
-                         std::span<const MeshInstance> surfaces,
+    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate,
-                         std::span<const Deformed> deformed) {
+                         std::span<const Inflate> inflate, std::span<const Deformed> deformed) {
         ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {
-            surfaces, now, before, inflate, deformed, chunk.entities(), from.shapes};
+        const InstanceRows rows = {surfaces,         now,        before, inflate, deformed,
+                                   chunk.entities(), from.shapes};
         for (std::uint32_t i = 0; i < chunk.size(); ++i) {
             if (work.local[i] == kHidden) {
                 continue;
@@ -274,8 +241,7 @@ void InstanceCollector::collect_from(
                 inflate.empty() ? 0.0f : inflate[i].distance};
             if (selection.boxes) {
                 set_box(
-                    list.boxes[place / kCullBlock],
-                    place % kCullBlock,
+                    list.boxes[place / kCullBlock], place % kCullBlock,
                     transform_bounds(a, rows.bounds(i, meshes)));
             }
             if (velocity) {
@@ -365,11 +331,7 @@ void InstanceCollector::order_blended(const Sources& from, bool velocity, Instan
 }
 
 void InstanceCollector::add_command(
-    std::uint64_t key,
-    std::uint32_t first,
-    std::uint32_t count,
-    const Sources& from,
-    bool velocity,
+    std::uint64_t key, std::uint32_t first, std::uint32_t count, const Sources& from, bool velocity,
     InstanceList& list) {
     std::vector<DrawRun>& runs = is_blended(key) ? list.blended : list.opaque;
     const bool own = is_deformed(key);

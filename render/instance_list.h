@@ -68,24 +68,13 @@ class InstanceCollector {
   public:
     /// Culls, sorts and writes into `ring`. `velocity`: fills `before`, too; `boxes`: the boxes.
     void collect(
-        const World& world,
-        const RenderView& view,
-        const MeshPool& meshes,
-        const MaterialPool& materials,
-        DeformedList& shapes,
-        bool velocity,
-        gpu::RingBuffer& ring,
-        InstanceList& list,
-        bool boxes = false);
+        const World& world, const RenderView& view, const MeshPool& meshes,
+        const MaterialPool& materials, DeformedList& shapes, bool velocity, gpu::RingBuffer& ring,
+        InstanceList& list, bool boxes = false);
     /// The same of what casts shadows from where `volume` is: no blended surfaces, no NoShadow.
     void collect_casters(
-        const World& world,
-        const CasterVolume& volume,
-        float alpha,
-        const MeshPool& meshes,
-        const MaterialPool& materials,
-        DeformedList& shapes,
-        gpu::RingBuffer& ring,
+        const World& world, const CasterVolume& volume, float alpha, const MeshPool& meshes,
+        const MaterialPool& materials, DeformedList& shapes, gpu::RingBuffer& ring,
         InstanceList& list);
 
   private:
@@ -143,21 +132,14 @@ class InstanceCollector {
 
     template <typename Instances>
     void collect_from(
-        const Instances& query,
-        const Selection& selection,
-        const Sources& from,
-        gpu::RingBuffer& ring,
-        InstanceList& list);
+        const Instances& query, const Selection& selection, const Sources& from,
+        gpu::RingBuffer& ring, InstanceList& list);
     void group_keys();
     void place_keys(const Sources& from, bool velocity, InstanceList& list);
     void order_blended(const Sources& from, bool velocity, InstanceList& list);
     void add_command(
-        std::uint64_t key,
-        std::uint32_t first,
-        std::uint32_t count,
-        const Sources& from,
-        bool velocity,
-        InstanceList& list);
+        std::uint64_t key, std::uint32_t first, std::uint32_t count, const Sources& from,
+        bool velocity, InstanceList& list);
 
     std::vector<ChunkWork> chunks_;
     std::vector<Entry> entries_;

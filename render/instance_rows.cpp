@@ -13,10 +13,7 @@ float determinant(const Affine& a) {
 }  // namespace
 
 void fill_boxes(
-    const InstanceRows& rows,
-    float alpha,
-    const std::vector<MeshRange>& meshes,
-    BoxBlock& boxes,
+    const InstanceRows& rows, float alpha, const std::vector<MeshRange>& meshes, BoxBlock& boxes,
     std::uint8_t* mirrored) {
     for (std::size_t i = 0; i < rows.now.size(); ++i) {
         const std::uint32_t mesh = rows.surfaces[i].mesh.index;

@@ -45,10 +45,7 @@ struct InstanceRows {
 /// World boxes of the rows; what has no triangles or is not finite gets a box that is nowhere.
 /// `mirrored` gets the sign of each determinant.
 void fill_boxes(
-    const InstanceRows& rows,
-    float alpha,
-    const std::vector<MeshRange>& meshes,
-    BoxBlock& boxes,
+    const InstanceRows& rows, float alpha, const std::vector<MeshRange>& meshes, BoxBlock& boxes,
     std::uint8_t* mirrored);
 
 }  // namespace limn

@@ -60,12 +60,8 @@ void forget_pictures(LensPasses& passes, bool open, MotionBlurMode mode) {
 }
 
 TextureId apply_motion_blur(
-    FrameGraph& graph,
-    LensPasses& passes,
-    const MotionBlur& blur,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, LensPasses& passes, const MotionBlur& blur, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     const bool open = opens_shutter(blur);
     forget_pictures(passes, open, blur.mode);
     if (!open) {
@@ -104,12 +100,8 @@ TextureId apply_motion_blur(
 }
 
 TextureId apply_antialiasing(
-    FrameGraph& graph,
-    LensPasses& passes,
-    Antialiasing antialiasing,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, LensPasses& passes, Antialiasing antialiasing, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     if (antialiasing == Antialiasing::Temporal) {
         auto* pass = passes.temporal.get(*passes.device, create_temporal_pass);
         return pass == nullptr ? radiance
@@ -122,10 +114,7 @@ TextureId apply_antialiasing(
 }
 
 TextureId apply_glow(
-    FrameGraph& graph,
-    LensPasses& passes,
-    const Glow& glow,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, LensPasses& passes, const Glow& glow, const Gbuffer& gbuffer,
     TextureId radiance) {
     if (glow.strength > 0 && glow.kind == GlowKind::Lens) {
         const auto* pass = passes.glow.get(*passes.device, create_glow_pass);
@@ -205,12 +194,8 @@ lens_view(LensPasses& passes, const LensSettings& settings, const RenderView& vi
 }
 
 TextureId apply_lens(
-    FrameGraph& graph,
-    LensPasses& passes,
-    const LensSettings& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, LensPasses& passes, const LensSettings& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     radiance = apply_antialiasing(graph, passes, settings.antialiasing, scene, gbuffer, radiance);
     if (!settings.ripples.empty()) {
         if (const auto* pass = passes.ripple.get(*passes.device, create_ripple_pass)) {

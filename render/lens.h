@@ -97,11 +97,7 @@ lens_view(LensPasses& passes, const LensSettings& settings, const RenderView& vi
 /// Adds the passes to this frame; returns the radiance that reaches the film, or `radiance` itself
 /// if nothing is to be done. What is drawn into is always a texture of its own.
 [[nodiscard]] TextureId apply_lens(
-    FrameGraph& graph,
-    LensPasses& passes,
-    const LensSettings& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, LensPasses& passes, const LensSettings& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance);
 
 }  // namespace limn

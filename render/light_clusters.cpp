@@ -19,8 +19,7 @@ constexpr int kMostTiles = 256;     ///< across or up: boxes keep 8 bits for eac
 Vec3 to_view(const Affine& world_from_camera, const Vec3& v) {
     const auto& r = world_from_camera.row;
     return {
-        r[0].x * v.x + r[1].x * v.y + r[2].x * v.z,
-        r[0].y * v.x + r[1].y * v.y + r[2].y * v.z,
+        r[0].x * v.x + r[1].x * v.y + r[2].x * v.z, r[0].y * v.x + r[1].y * v.y + r[2].y * v.z,
         -(r[0].z * v.x + r[1].z * v.y + r[2].z * v.z)};
 }
 
@@ -54,11 +53,7 @@ struct TileRange {
     int end;
 };
 TileRange tiles_between(
-    const Vec2& slopes,
-    float tangent,
-    float jitter,
-    int pixels,
-    const ClusterShape& shape,
+    const Vec2& slopes, float tangent, float jitter, int pixels, const ClusterShape& shape,
     int tiles) {
     const float per_slope = 0.5f * static_cast<float>(pixels) / tangent;
     const auto tile_of = [&](float slope, float slack) {
@@ -125,18 +120,10 @@ bool find_cells(
     box.slice[0] = slice_of(shape, std::max(c.z - radius, view.near) * (1 - kSlack));
     box.slice[1] = slice_of(shape, end);
     const TileRange columns = tiles_between(
-        slopes_of_circle(c.x, c.z, radius),
-        view.tangent.x,
-        view.jitter.x,
-        view.width,
-        shape,
+        slopes_of_circle(c.x, c.z, radius), view.tangent.x, view.jitter.x, view.width, shape,
         shape.columns);
     const TileRange rows = tiles_between(
-        slopes_of_circle(c.y, c.z, radius),
-        view.tangent.y,
-        view.jitter.y,
-        view.height,
-        shape,
+        slopes_of_circle(c.y, c.z, radius), view.tangent.y, view.jitter.y, view.height, shape,
         shape.rows);
     box.column[0] = columns.begin;
     box.column[1] = columns.end;

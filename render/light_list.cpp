@@ -78,19 +78,11 @@ template <typename Light, typename Use>
 void each_light(const World& world, double time, float alpha, Use&& use) {
     world
         .query<
-            const Light,
-            const WorldTransform,
-            Optional<const PreviousWorldTransform>,
-            Optional<const LightPulse>,
-            Optional<const Shadow>,
-            Optional<const Projector>>()
-        .each([&](Entity entity,
-                  const Light& light,
-                  const WorldTransform& now,
-                  const PreviousWorldTransform* before,
-                  const LightPulse* pulse,
-                  const Shadow* shadow,
-                  const Projector* projector) {
+            const Light, const WorldTransform, Optional<const PreviousWorldTransform>,
+            Optional<const LightPulse>, Optional<const Shadow>, Optional<const Projector>>()
+        .each([&](Entity entity, const Light& light, const WorldTransform& now,
+                  const PreviousWorldTransform* before, const LightPulse* pulse,
+                  const Shadow* shadow, const Projector* projector) {
             if (light.enabled) {
                 const Affine world_from_light = alpha == 1.0f || before == nullptr
                                                     ? now.world
@@ -103,10 +95,7 @@ void each_light(const World& world, double time, float alpha, Use&& use) {
 
 /// Notes that the record added last casts shadows or throws an image, if it does.
 void add_extras(
-    LightList& list,
-    const LightEntity& light,
-    LightKind kind,
-    float radius = INFINITY,
+    LightList& list, const LightEntity& light, LightKind kind, float radius = INFINITY,
     float outer_angle = 0) {
     if (light.shadow != nullptr) {
         list.shadowed.push_back(
@@ -123,9 +112,7 @@ void add_extras(
     }
     if (light.projector != nullptr && kind != LightKind::Point) {
         list.projecting.push_back(
-            {static_cast<std::uint32_t>(list.records.size() - 1),
-             kind,
-             *light.projector,
+            {static_cast<std::uint32_t>(list.records.size() - 1), kind, *light.projector,
              light.pose});
     }
 }
@@ -139,8 +126,7 @@ float pulse_factor(const LightPulse& pulse, double time) {
                            : 2.0f
                                      * noise(
                                          static_cast<float>(angle / (2.0 * std::numbers::pi)),
-                                         std::bit_cast<std::uint32_t>(pulse.phase),
-                                         3)
+                                         std::bit_cast<std::uint32_t>(pulse.phase), 3)
                                  - 1.0f;
     return std::max(0.0f, 1.0f + pulse.amplitude * wave);
 }
@@ -236,9 +222,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
                         list.spot_angles || light.profile == SpotProfile::LinearAngle;
                     list.records.push_back(record);
                     list.reach.push_back(
-                        {position_of(its.pose),
-                         reach_radius(record),
-                         axis_of(its.pose),
+                        {position_of(its.pose), reach_radius(record), axis_of(its.pose),
                          std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi))});
                     add_extras(list, its, LightKind::Spot, reach_radius(record), light.outer_angle);
                     ++list.spots;

@@ -9,10 +9,7 @@ namespace {
 
 /// Appends `place` to the light's commands of this kind of draw.
 void add_object(
-    const DrawCommand& kind,
-    std::uint32_t place,
-    std::uint32_t light,
-    std::uint32_t run,
+    const DrawCommand& kind, std::uint32_t place, std::uint32_t light, std::uint32_t run,
     LightDraws& result) {
     if (result.runs.empty() || result.runs.back().light != light || result.runs.back().run != run) {
         result.runs.push_back({light, run, static_cast<std::uint32_t>(result.commands.size()), 0});
@@ -33,9 +30,7 @@ void add_object(
 }  // namespace
 
 void append_objects_of_light(
-    const LightReach& light,
-    std::span<const BoxBlock> boxes,
-    int count,
+    const LightReach& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects) {
     const ReachSphere around = reach_sphere(light);
     std::uint8_t touched[kCullBlock];
@@ -52,9 +47,7 @@ void append_objects_of_light(
 }
 
 void collect_light_objects(
-    const LightList& lights,
-    const ClusterLights& clusters,
-    const InstanceList& list,
+    const LightList& lights, const ClusterLights& clusters, const InstanceList& list,
     LightObjects& found) {
     found.lights.clear();
     found.begin.assign(1, 0);

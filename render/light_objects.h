@@ -35,16 +35,12 @@ struct LightObjects {
 
 /// Appends the objects, of the first `count` boxes, that the light may reach.
 void append_objects_of_light(
-    const LightReach& light,
-    std::span<const BoxBlock> boxes,
-    int count,
+    const LightReach& light, std::span<const BoxBlock> boxes, int count,
     std::vector<std::uint32_t>& objects);
 
 /// Fills `found` for the opaque instances of `list`, collected with boxes.
 void collect_light_objects(
-    const LightList& lights,
-    const ClusterLights& clusters,
-    const InstanceList& list,
+    const LightList& lights, const ClusterLights& clusters, const InstanceList& list,
     LightObjects& found);
 
 /// The same, seen from the objects: the lights of object i are the `lists[i].y` records from

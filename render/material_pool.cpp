@@ -15,10 +15,7 @@ std::uint8_t stored_model(ShadingModel model) {
 
 const TextureSlot* slots_of(const Material& m, int i) {
     const TextureSlot* slots[kMaterialTextures] = {
-        &m.base_color_texture,
-        &m.metal_rough_texture,
-        &m.normal_texture,
-        &m.occlusion_texture,
+        &m.base_color_texture, &m.metal_rough_texture, &m.normal_texture, &m.occlusion_texture,
         &m.emission_texture};
     return slots[i];
 }
@@ -168,11 +165,7 @@ void MaterialPool::upload_image(const ImageData& image) {
         log_error(
             "image {}: {}x{} with {} bytes, expected 1 .. {} pixels a side and all of them; it is "
             "magenta",
-            image.name,
-            image.width,
-            image.height,
-            image.pixels.size(),
-            limit);
+            image.name, image.width, image.height, image.pixels.size(), limit);
         images_.emplace_back();
         return;
     }
@@ -187,14 +180,8 @@ void MaterialPool::upload_image(const ImageData& image) {
         GLuint id = 0;
         glGenTextures(1, &id);
         glTextureView(
-            id,
-            GL_TEXTURE_2D,
-            texture.id(),
-            GL_RGBA8,
-            0,
-            static_cast<GLuint>(texture.desc().levels),
-            0,
-            1);
+            id, GL_TEXTURE_2D, texture.id(), GL_RGBA8, 0,
+            static_cast<GLuint>(texture.desc().levels), 0, 1);
         encoded = gpu::GlObject<gpu::ObjectKind::Texture>(id, image.name);
     }
     images_.push_back({std::move(texture), std::move(encoded)});
@@ -250,12 +237,11 @@ std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) 
     const auto found = std::find(sampler_keys_.begin(), sampler_keys_.end(), key);
     if (found == sampler_keys_.end()) {
         gpu::Sampler sampler(
-            "material",
-            {.minify = static_cast<GLenum>(
-                 trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST),
-             .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
-             .wrap = wrap_mode(slot.wrap_u),
-             .anisotropy = slot.nearest ? 1.0f : anisotropy_});
+            "material", {.minify = static_cast<GLenum>(
+                             trilinear ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST),
+                         .magnify = static_cast<GLenum>(slot.nearest ? GL_NEAREST : GL_LINEAR),
+                         .wrap = wrap_mode(slot.wrap_u),
+                         .anisotropy = slot.nearest ? 1.0f : anisotropy_});
         glSamplerParameteri(
             sampler.id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap_mode(slot.wrap_v)));
         samplers_.push_back(std::move(sampler));

@@ -86,8 +86,7 @@ bool drawable(const MeshData& mesh) {
     }
     if (std::any_of(mesh.indices.begin(), mesh.indices.end(), past)) {
         log_error(
-            "mesh {}: an index is past the {} vertices; it is not drawn",
-            mesh.name,
+            "mesh {}: an index is past the {} vertices; it is not drawn", mesh.name,
             mesh.positions.size());
         return false;
     }
@@ -110,9 +109,7 @@ void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
         positions_ = gpu::grown_buffer(
             "mesh positions", positions_, vertex_count_ * sizeof(Vec3), capacity * sizeof(Vec3));
         attributes_ = gpu::grown_buffer(
-            "mesh attributes",
-            attributes_,
-            vertex_count_ * sizeof(PackedVertex),
+            "mesh attributes", attributes_, vertex_count_ * sizeof(PackedVertex),
             capacity * sizeof(PackedVertex));
         vertex_capacity_ = capacity;
         vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));

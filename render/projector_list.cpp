@@ -107,10 +107,8 @@ layout::ProjectorRecord make_projector_record(
     const int frame = projector_frame(projector, time);
     const Vec2 size = {1.0f / static_cast<float>(columns), 1.0f / static_cast<float>(rows)};
     record.frame = {
-        size.x * static_cast<float>(frame % columns),
-        size.y * static_cast<float>(frame / columns),
-        size.x,
-        size.y};
+        size.x * static_cast<float>(frame % columns), size.y * static_cast<float>(frame / columns),
+        size.x, size.y};
     record.source = {layer, kProjectorImageSize, 0, 0};
     return record;
 }
@@ -134,13 +132,12 @@ int ProjectorPool::layer_of(const Assets& assets, ImageId image) {
     const int layer = static_cast<int>(layers_.size());
     if (layer == 0) {
         images_ = gpu::Texture(
-            "projector images",
-            {.format = GL_RGBA16F,
-             .width = kProjectorImageSize,
-             .height = kProjectorImageSize,
-             .depth = kMaxProjectorImages,
-             .levels = 0,
-             .target = GL_TEXTURE_2D_ARRAY});
+            "projector images", {.format = GL_RGBA16F,
+                                 .width = kProjectorImageSize,
+                                 .height = kProjectorImageSize,
+                                 .depth = kMaxProjectorImages,
+                                 .levels = 0,
+                                 .target = GL_TEXTURE_2D_ARRAY});
     }
     layers_.push_back(image);
     const std::vector<Vec4> texels = resample(assets.images[image.index]);

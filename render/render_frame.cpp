@@ -325,12 +325,11 @@ void Renderer::follow(const World& world, const RenderView& view) {
 void Renderer::draw_probe_face(const World& world, ProbeSlot& slot, int layer, float alpha) {
     if (!slot.cube || slot.cube.width() != slot.resolution) {
         slot.cube = gpu::Texture(
-            "probe cube",
-            {.format = scene.radiance_format,
-             .width = slot.resolution,
-             .height = slot.resolution,
-             .levels = 0,
-             .target = GL_TEXTURE_CUBE_MAP});
+            "probe cube", {.format = scene.radiance_format,
+                           .width = slot.resolution,
+                           .height = slot.resolution,
+                           .levels = 0,
+                           .target = GL_TEXTURE_CUBE_MAP});
     }
     const int face = static_cast<int>(slot.drawn % kCubeFaces);
     probe_graph_.begin_frame();
@@ -393,8 +392,7 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
         log_warn(
             "lights: {} of {} reach over so much of the picture that the clusters have no room for "
             "them (kMaxListEntries, light_clusters.h); they are not shown",
-            scene.clusters.dropped,
-            scene.lights.reach.size());
+            scene.clusters.dropped, scene.lights.reach.size());
         dropped_reported_ = true;
     }
     const Rendering rendering = for_picture ? rendering_of(world) : Rendering{};
@@ -402,26 +400,13 @@ void Renderer::prepare(const World& world, const RenderView& view, bool velocity
     scene.method = scene.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
     shapes_.update(world, meshes_, view.alpha, view.alpha_before);
     collector_.collect(
-        world,
-        view,
-        meshes_,
-        materials_,
-        shapes_,
-        velocity,
-        ring_,
-        scene.instances,
+        world, view, meshes_, materials_, shapes_, velocity, ring_, scene.instances,
         is_forward(scene.method));
     volume_collector_.collect(world, view, shapes_, ring_, scene.lights, scene.volumes);
     WaterSurfaces& water = passes.water.surfaces;
     collect_waters(
-        world,
-        view,
-        velocity,
-        for_picture ? planar_water_ : Entity{},
-        device.caps().max_texture_size,
-        water.ripples,
-        water.seas,
-        water.list);
+        world, view, velocity, for_picture ? planar_water_ : Entity{},
+        device.caps().max_texture_size, water.ripples, water.seas, water.list);
     CausticList& caustics = passes.caustics.list;
     collect_caustics(water.list, scene.lights, view, for_picture, caustics, scene.shadows);
     shadow_collector_.collect(
@@ -622,9 +607,7 @@ void Renderer::add_to_sum(const FrameTextures& made, const LensSettings& lens, f
         apply_lens(graph, passes.lens, lens, scene, made.gbuffer, made.radiance);
     const TextureId target = graph.import("accumulation", sum_);
     graph.add_pass(
-        "accumulate",
-        {picture},
-        {sum_is_empty_ ? cleared(target) : Use(target)},
+        "accumulate", {picture}, {sum_is_empty_ ? cleared(target) : Use(target)},
         [program = passes.accumulate, weight, picture](PassContext& context) {
             gpu::PipelineState add = gpu::kFullscreenState;
             add.blend = gpu::kBlendAdd;
@@ -824,10 +807,7 @@ FrameOutput finish_accumulation(Renderer& renderer, const World& world, const Re
 }
 
 FrameOutput render_accumulated(
-    Renderer& renderer,
-    const World& world,
-    const RenderView& view,
-    int samples,
+    Renderer& renderer, const World& world, const RenderView& view, int samples,
     const FrameRequest& request) {
     LIMN_CHECK(samples >= 1);
     if (samples == 1) {
@@ -836,9 +816,7 @@ FrameOutput render_accumulated(
     begin_accumulation(renderer, {view.width, view.height}, SampleKind::Played);
     for (int i = 0; i < samples; ++i) {
         accumulate(
-            renderer,
-            world,
-            with_jitter(view, sample_jitter(i, samples)),
+            renderer, world, with_jitter(view, sample_jitter(i, samples)),
             1.0f / static_cast<float>(samples));
     }
     accumulate_aovs(renderer, world, view, request);

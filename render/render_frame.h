@@ -97,19 +97,14 @@ create_renderer(gpu::Device& device, const RenderSettings& settings = {});
 
 /// Draws one picture.
 FrameOutput render_frame(
-    Renderer& renderer,
-    const World& world,
-    const RenderView& view,
+    Renderer& renderer, const World& world, const RenderView& view,
     const FrameRequest& request = {});
 
 /// The mean radiance of `samples` >= 1 pictures whose pixels are shifted by sample_jitter: edges
 /// become smooth. Radiance is RGBA32F; AOVs are those of the picture in the middle. One sample is
 /// the picture of render_frame.
 FrameOutput render_accumulated(
-    Renderer& renderer,
-    const World& world,
-    const RenderView& view,
-    int samples,
+    Renderer& renderer, const World& world, const RenderView& view, int samples,
     const FrameRequest& request = {});
 
 // A picture that is the mean of others, of moments and places that the caller chooses; between them

@@ -55,9 +55,7 @@ bool is_cut(const Affine& before, const Affine& now) {
 }
 
 RenderView make_render_view(
-    const Camera& camera,
-    const Affine& world_from_camera,
-    const Affine& its_previous,
+    const Camera& camera, const Affine& world_from_camera, const Affine& its_previous,
     const ViewRequest& request) {
     LIMN_CHECK(request.width > 0 && request.height > 0);
     const Affine& previous =
@@ -144,9 +142,7 @@ RenderView make_render_view(const World& world, Entity camera, const ViewRequest
     const Affine& current = world.get<WorldTransform>(camera).world;
     const auto* previous = world.find<PreviousWorldTransform>(camera);
     RenderView view = make_render_view(
-        world.get<Camera>(camera),
-        current,
-        previous != nullptr ? previous->world : current,
+        world.get<Camera>(camera), current, previous != nullptr ? previous->world : current,
         request);
     view.lens = lens_view(world, camera);
     return view;

@@ -56,9 +56,7 @@ struct ViewRequest {
 /// From a camera that stands at `world_from_camera` (scale is dropped) and was at `previous`, from
 /// where, after a cut, there is no motion.
 [[nodiscard]] RenderView make_render_view(
-    const Camera& camera,
-    const Affine& world_from_camera,
-    const Affine& previous,
+    const Camera& camera, const Affine& world_from_camera, const Affine& previous,
     const ViewRequest& request = {});
 
 /// The same view with its picture moved by `jitter` [px] instead.

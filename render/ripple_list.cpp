@@ -46,8 +46,7 @@ Affine shown(const WorldTransform& now, const PreviousWorldTransform* before, fl
 
 void collect_rings(const World& world, const RenderView& view, float ago, RippleList& list) {
     world.query<const RippleRing, const WorldTransform, Optional<const PreviousWorldTransform>>()
-        .each([&](const RippleRing& last,
-                  const WorldTransform& now,
+        .each([&](const RippleRing& last, const WorldTransform& now,
                   const PreviousWorldTransform* before) {
             RippleRing ring = last;
             ring.age -= ago;
@@ -60,11 +59,7 @@ void collect_rings(const World& world, const RenderView& view, float ago, Ripple
             }
             if (const auto rect = ndc_rect(view, center, radius + ring.wavelength)) {
                 list.rings.push_back(
-                    {*rect,
-                     view_distance(view, center),
-                     center,
-                     radius,
-                     ring.wavelength,
+                    {*rect, view_distance(view, center), center, radius, ring.wavelength,
                      amplitude});
             }
         });
@@ -72,8 +67,7 @@ void collect_rings(const World& world, const RenderView& view, float ago, Ripple
 
 void collect_hazes(const World& world, const RenderView& view, double time, RippleList& list) {
     world.query<const HeatHaze, const WorldTransform, Optional<const PreviousWorldTransform>>()
-        .each([&](const HeatHaze& haze,
-                  const WorldTransform& now,
+        .each([&](const HeatHaze& haze, const WorldTransform& now,
                   const PreviousWorldTransform* before) {
             const Mat4 place = to_mat4(shown(now, before, view.alpha));
             // The box lies within the sphere about its farthest corner.
@@ -89,14 +83,9 @@ void collect_hazes(const World& world, const RenderView& view, double time, Ripp
             const double raised = haze.rise * time / haze.scale;
             if (const auto rect = ndc_rect(view, Vec3(place[3]), reach)) {
                 list.hazes.push_back(
-                    {*rect,
-                     view_distance(view, Vec3(place[3])),
-                     glm::inverse(place),
-                     haze.shape,
-                     haze.strength * static_cast<float>(view.height),
-                     haze.scale,
-                     static_cast<float>(raised),
-                     haze.seed});
+                    {*rect, view_distance(view, Vec3(place[3])), glm::inverse(place), haze.shape,
+                     haze.strength * static_cast<float>(view.height), haze.scale,
+                     static_cast<float>(raised), haze.seed});
             }
         });
 }

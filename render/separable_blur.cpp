@@ -9,19 +9,13 @@ namespace limn {
 namespace {
 
 TextureId blur_axis(
-    FrameGraph& graph,
-    const SeparableBlur& blur,
-    std::string_view name,
-    TextureId source,
-    const BlurKernel& kernel,
-    const IVec2& axis) {
+    FrameGraph& graph, const SeparableBlur& blur, std::string_view name, TextureId source,
+    const BlurKernel& kernel, const IVec2& axis) {
     TextureSpec spec = graph.spec(source);
     spec.name = name;
     const TextureId target = graph.create(spec);
     graph.add_pass(
-        name,
-        {source},
-        {discarded(target)},
+        name, {source}, {discarded(target)},
         [program = blur.program, source, kernel, axis](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("axis", axis);
@@ -46,12 +40,8 @@ Result<SeparableBlur> create_separable_blur(gpu::Device& device) {
 }
 
 TextureId blur_separable(
-    FrameGraph& graph,
-    const SeparableBlur& blur,
-    std::string_view name,
-    TextureId source,
-    const BlurKernel& kernel,
-    BlurOrder order) {
+    FrameGraph& graph, const SeparableBlur& blur, std::string_view name, TextureId source,
+    const BlurKernel& kernel, BlurOrder order) {
     LIMN_CHECK(std::abs(std::accumulate(kernel.begin(), kernel.end(), -1.0)) < 1e-4);
 
     const bool across_first = order == BlurOrder::AcrossFirst;

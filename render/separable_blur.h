@@ -22,8 +22,8 @@ class Program;
 using BlurKernel = std::array<float, 7>;
 
 /// {1, 6, 15, 20, 15, 6, 1} / 64: nearly a Gaussian of standard deviation 1.22 pixels.
-inline constexpr BlurKernel kBinomialKernel = {
-    0.015625f, 0.09375f, 0.234375f, 0.3125f, 0.234375f, 0.09375f, 0.015625f};
+inline constexpr BlurKernel kBinomialKernel = {0.015625f, 0.09375f, 0.234375f, 0.3125f,
+                                               0.234375f, 0.09375f, 0.015625f};
 
 struct SeparableBlur {
     const gpu::Program* program = nullptr;
@@ -35,11 +35,7 @@ struct SeparableBlur {
 enum class BlurOrder : std::uint8_t { AcrossFirst, UpFirst };
 
 [[nodiscard]] TextureId blur_separable(
-    FrameGraph& graph,
-    const SeparableBlur& blur,
-    std::string_view name,
-    TextureId source,
-    const BlurKernel& kernel = kBinomialKernel,
-    BlurOrder order = BlurOrder::AcrossFirst);
+    FrameGraph& graph, const SeparableBlur& blur, std::string_view name, TextureId source,
+    const BlurKernel& kernel = kBinomialKernel, BlurOrder order = BlurOrder::AcrossFirst);
 
 }  // namespace limn

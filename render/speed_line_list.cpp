@@ -17,29 +17,22 @@ Vec4 sound_color(const Vec4& color) {
     constexpr float kMostLight = 65504.0f;
     const auto within = [](float x, float most) { return x > 0.0f ? std::min(x, most) : 0.0f; };
     return {
-        within(color.x, kMostLight),
-        within(color.y, kMostLight),
-        within(color.z, kMostLight),
+        within(color.x, kMostLight), within(color.y, kMostLight), within(color.z, kMostLight),
         within(color.w, 1.0f)};
 }
 
 }  // namespace
 
 void append_speed_lines(
-    const MeshData& mesh,
-    const Affine& now,
-    const Affine& before,
-    float seconds,
-    const SpeedLines& settings,
-    std::vector<SpeedLine>& lines) {
+    const MeshData& mesh, const Affine& now, const Affine& before, float seconds,
+    const SpeedLines& settings, std::vector<SpeedLine>& lines) {
     const auto vertices =
         static_cast<std::int64_t>(std::min(mesh.positions.size(), mesh.normals.size()));
     const std::int64_t count = std::clamp<std::int64_t>(settings.count, 0, vertices);
     // A surface that a matrix mirrors is turned inside out, and its normals with it.
     const Mat3 linear(to_mat4(now));
     const Mat3 cofactor(
-        glm::cross(linear[1], linear[2]),
-        glm::cross(linear[2], linear[0]),
+        glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
         glm::cross(linear[0], linear[1]));
     const float side = glm::determinant(linear) < 0.0f ? -1.0f : 1.0f;
     const Vec4 color = sound_color(settings.color);
@@ -72,21 +65,15 @@ void collect_speed_lines(
     const float seconds = step * (view.alpha - view.alpha_before);
     world
         .query<
-            const SpeedLines,
-            const MeshInstance,
-            const WorldTransform,
+            const SpeedLines, const MeshInstance, const WorldTransform,
             const PreviousWorldTransform>()
-        .each([&](const SpeedLines& settings,
-                  const MeshInstance& instance,
-                  const WorldTransform& now,
-                  const PreviousWorldTransform& before) {
+        .each([&](const SpeedLines& settings, const MeshInstance& instance,
+                  const WorldTransform& now, const PreviousWorldTransform& before) {
             if (instance.mesh.index < assets->meshes.size()) {
                 append_speed_lines(
                     assets->meshes[instance.mesh.index],
                     mix_affine(before.world, now.world, view.alpha),
-                    mix_affine(before.world, now.world, view.alpha_before),
-                    seconds,
-                    settings,
+                    mix_affine(before.world, now.world, view.alpha_before), seconds, settings,
                     lines);
             }
         });

@@ -28,12 +28,8 @@ static_assert(sizeof(SpeedLine) == 48);
 
 /// Appends the lines of one mesh that went from `before` to `now` in `seconds`.
 void append_speed_lines(
-    const MeshData& mesh,
-    const Affine& now,
-    const Affine& before,
-    float seconds,
-    const SpeedLines& settings,
-    std::vector<SpeedLine>& lines);
+    const MeshData& mesh, const Affine& now, const Affine& before, float seconds,
+    const SpeedLines& settings, std::vector<SpeedLine>& lines);
 
 /// All of the world, in world order; replaces what is in `lines`.
 void collect_speed_lines(const World& world, const RenderView& view, std::vector<SpeedLine>& lines);

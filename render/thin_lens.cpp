@@ -54,8 +54,7 @@ Result<LensView> make_lens_view(const Lens& lens, const Camera& camera) {
         return fail("lens: sensor_height is {} m, expected more than 0", lens.sensor_height);
     }
     const double length = focal_length(
-        static_cast<double>(camera.fov_y),
-        static_cast<double>(lens.sensor_height),
+        static_cast<double>(camera.fov_y), static_cast<double>(lens.sensor_height),
         static_cast<double>(lens.focus_distance));
     LensView view;
     view.aperture_radius = static_cast<float>(0.5 * length / static_cast<double>(lens.f_number));

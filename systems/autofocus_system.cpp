@@ -13,10 +13,8 @@ float pull_focus(float focus, float wanted, float response, float dt) {
 }
 
 void update_autofocus(
-    Query<const Autofocus, Lens, const WorldTransform> cameras,
-    Query<const WorldTransform> bodies,
-    Query<const WorldTransform, With<Teleport>> jumping,
-    Res<const FrameTime> time) {
+    Query<const Autofocus, Lens, const WorldTransform> cameras, Query<const WorldTransform> bodies,
+    Query<const WorldTransform, With<Teleport>> jumping, Res<const FrameTime> time) {
     cameras.each(
         [&](Entity entity, const Autofocus& autofocus, Lens& lens, const WorldTransform& camera) {
             if (!autofocus.active || autofocus.target.is_null()) {

@@ -20,10 +20,8 @@ namespace limn {
 /// target was teleported. Where the target is null, gone or not in front of the camera, the focus
 /// stays.
 void update_autofocus(
-    Query<const Autofocus, Lens, const WorldTransform> cameras,
-    Query<const WorldTransform> bodies,
-    Query<const WorldTransform, With<Teleport>> jumping,
-    Res<const FrameTime> time);
+    Query<const Autofocus, Lens, const WorldTransform> cameras, Query<const WorldTransform> bodies,
+    Query<const WorldTransform, With<Teleport>> jumping, Res<const FrameTime> time);
 
 /// Focus after `dt` [s] of a lens focused at `focus` on its way to `wanted` [m], both > 0.
 [[nodiscard]] float pull_focus(float focus, float wanted, float response, float dt);

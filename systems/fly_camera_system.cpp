@@ -58,8 +58,7 @@ void step_fly_camera(Transform& transform, const FlyCamera& fly, const Input& in
 }
 
 void update_fly_cameras(
-    Query<const FlyCamera, Transform, Optional<const Camera>> cameras,
-    Res<const Input> input,
+    Query<const FlyCamera, Transform, Optional<const Camera>> cameras, Res<const Input> input,
     Res<const FrameTime> time) {
     if (input->move == Vec3(0) && input->look == Vec2(0)) {
         return;

@@ -14,8 +14,7 @@ namespace limn {
 /// keys move forward and sideways along the view and up along +y, five times as quick with
 /// Input::fast.
 void update_fly_cameras(
-    Query<const FlyCamera, Transform, Optional<const Camera>> cameras,
-    Res<const Input> input,
+    Query<const FlyCamera, Transform, Optional<const Camera>> cameras, Res<const Input> input,
     Res<const FrameTime> time);
 
 /// One step of one camera. `move` beyond length 1 counts as 1.

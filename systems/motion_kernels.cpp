@@ -88,11 +88,8 @@ HWY_INLINE SinCos sin_cos_of_rest(V x, V quarter) {
 
 /// Takes whole quarter turns off frequency * time + phase, in double precision.
 HWY_INLINE void reduce_half(
-    hn::Vec<HalfFloats> frequency,
-    double time,
-    hn::Vec<HalfFloats> phase,
-    hn::Vec<HalfFloats>& rest,
-    hn::Vec<HalfFloats>& quarter) {
+    hn::Vec<HalfFloats> frequency, double time, hn::Vec<HalfFloats> phase,
+    hn::Vec<HalfFloats>& rest, hn::Vec<HalfFloats>& quarter) {
     const Doubles dd;
     const HalfFloats dh;
     const auto angle =
@@ -144,8 +141,7 @@ HWY_INLINE void load_fields(const float* first, V& a, V& b, V& c, V& e) {
 }
 
 std::size_t compose_worlds_vector(
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
+    std::span<const Transform> local, std::span<WorldTransform> world,
     std::span<PreviousWorldTransform> previous) {
     const std::size_t lanes = hn::Lanes(d);
     HWY_ALIGN float rows[3][4 * hn::MaxLanes(Floats())];
@@ -180,25 +176,15 @@ std::size_t compose_worlds_vector(
         const V wz = hn::Mul(qw, qz);
         hn::StoreInterleaved4(
             hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(yy, zz))), sx),
-            hn::Mul(hn::Mul(two, hn::Sub(xy, wz)), sy),
-            hn::Mul(hn::Mul(two, hn::Add(xz, wy)), sz),
-            px,
-            d,
-            rows[0]);
+            hn::Mul(hn::Mul(two, hn::Sub(xy, wz)), sy), hn::Mul(hn::Mul(two, hn::Add(xz, wy)), sz),
+            px, d, rows[0]);
         hn::StoreInterleaved4(
             hn::Mul(hn::Mul(two, hn::Add(xy, wz)), sx),
             hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(xx, zz))), sy),
-            hn::Mul(hn::Mul(two, hn::Sub(yz, wx)), sz),
-            py,
-            d,
-            rows[1]);
+            hn::Mul(hn::Mul(two, hn::Sub(yz, wx)), sz), py, d, rows[1]);
         hn::StoreInterleaved4(
-            hn::Mul(hn::Mul(two, hn::Sub(xz, wy)), sx),
-            hn::Mul(hn::Mul(two, hn::Add(yz, wx)), sy),
-            hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(xx, yy))), sz),
-            pz,
-            d,
-            rows[2]);
+            hn::Mul(hn::Mul(two, hn::Sub(xz, wy)), sx), hn::Mul(hn::Mul(two, hn::Add(yz, wx)), sy),
+            hn::Mul(hn::Sub(one, hn::Mul(two, hn::Add(xx, yy))), sz), pz, d, rows[2]);
 
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             float* now = &world[first + lane].world.row[0].x;
@@ -354,8 +340,7 @@ float cosine(double angle) {
 }
 
 void compose_worlds_scalar(
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
+    std::span<const Transform> local, std::span<WorldTransform> world,
     std::span<PreviousWorldTransform> previous) {
     for (std::size_t i = 0; i < local.size(); ++i) {
         const Affine next = affine_from(local[i].position, local[i].rotation, local[i].scale);
@@ -399,8 +384,7 @@ void sway_positions_scalar(
 }
 
 void compose_worlds(
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
+    std::span<const Transform> local, std::span<WorldTransform> world,
     std::span<PreviousWorldTransform> previous) {
     LIMN_CHECK(local.size() == world.size() && local.size() == previous.size());
     const std::size_t done = HWY_DYNAMIC_DISPATCH(compose_worlds_vector)(local, world, previous);

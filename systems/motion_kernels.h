@@ -19,12 +19,10 @@ namespace limn {
 /// world_from_local of entities without a parent: previous = world, then world = compose(local). An
 /// entity that never had a world (previous is all 0) gets the new one for both.
 void compose_worlds(
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
+    std::span<const Transform> local, std::span<WorldTransform> world,
     std::span<PreviousWorldTransform> previous);
 void compose_worlds_scalar(
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
+    std::span<const Transform> local, std::span<WorldTransform> world,
     std::span<PreviousWorldTransform> previous);
 
 /// rotation = rotation * (turn by speed * dt about axis), made unit again. An axis of length 0

@@ -39,8 +39,7 @@ void turn_by_hand(OrbitCamera& orbit, const Input& input) {
 OrbitDirection orbit_direction(float azimuth, float elevation) {
     const float across = cosine(static_cast<double>(elevation));
     return {
-        sine(static_cast<double>(azimuth)) * across,
-        cosine(static_cast<double>(azimuth)) * across,
+        sine(static_cast<double>(azimuth)) * across, cosine(static_cast<double>(azimuth)) * across,
         sine(static_cast<double>(elevation))};
 }
 
@@ -88,22 +87,13 @@ Mat3 look_at_frame(const Vec3& z, const Vec3& up) {
 
 void update_orbit_cameras(
     Query<
-        OrbitCamera,
-        Transform,
-        WorldTransform,
-        PreviousWorldTransform,
-        Optional<const Camera>,
-        Without<Parent>> cameras,
-    Query<const WorldTransform> bodies,
-    Query<const WorldTransform, With<Teleport>> jumping,
-    Res<const Input> input,
-    Res<const FrameTime> time) {
-    cameras.each([&](Entity entity,
-                     OrbitCamera& orbit,
-                     Transform& transform,
-                     WorldTransform& world,
-                     PreviousWorldTransform& previous,
-                     const Camera* camera) {
+        OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
+        Without<Parent>>
+        cameras,
+    Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> jumping,
+    Res<const Input> input, Res<const FrameTime> time) {
+    cameras.each([&](Entity entity, OrbitCamera& orbit, Transform& transform, WorldTransform& world,
+                     PreviousWorldTransform& previous, const Camera* camera) {
         if (camera != nullptr && camera->active) {
             turn_by_hand(orbit, *input);
         }

@@ -27,16 +27,11 @@ namespace limn {
 /// stays.
 void update_orbit_cameras(
     Query<
-        OrbitCamera,
-        Transform,
-        WorldTransform,
-        PreviousWorldTransform,
-        Optional<const Camera>,
-        Without<Parent>> cameras,
-    Query<const WorldTransform> bodies,
-    Query<const WorldTransform, With<Teleport>> jumping,
-    Res<const Input> input,
-    Res<const FrameTime> time);
+        OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
+        Without<Parent>>
+        cameras,
+    Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> jumping,
+    Res<const Input> input, Res<const FrameTime> time);
 
 /// Where on the unit sphere about the target: azimuth turns from `ahead` toward `side`, elevation
 /// lifts toward `above`.

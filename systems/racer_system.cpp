@@ -84,8 +84,7 @@ Driving drive_itself(
     const float hold = -kDrift * path_curvature(track, racer.distance) * racer.speed / kSteerRate;
     return {
         std::clamp((wanted - racer.speed) * 0.25f, -1.0f, 1.0f),
-        std::clamp((aim - racer.heading) * 4.0f + hold, -1.0f, 1.0f),
-        false};
+        std::clamp((aim - racer.heading) * 4.0f + hold, -1.0f, 1.0f), false};
 }
 
 void place(const Racer& racer, const PathData& track, Transform& transform) {
@@ -102,8 +101,7 @@ void step_racer(Racer& racer, const PathData& track, const Driving& driving, flo
     // Boosts last while there is energy, which comes back when they end.
     racer.boosting = driving.boost && racer.energy > 0.0f;
     racer.energy = std::clamp(
-        racer.energy + dt * (racer.boosting ? -1.0f / kBoostSeconds : 1.0f / kRefillSeconds),
-        0.0f,
+        racer.energy + dt * (racer.boosting ? -1.0f / kBoostSeconds : 1.0f / kRefillSeconds), 0.0f,
         1.0f);
     const float most = std::max(racer.boosting ? racer.boost_speed : racer.top_speed, 1e-3f);
     const float push = racer.acceleration * (racer.boosting ? kBoost : 1.0f);
@@ -142,9 +140,7 @@ void step_racer(Racer& racer, const PathData& track, const Driving& driving, flo
 }
 
 void update_racers(
-    Query<Racer, Transform> racers,
-    Res<const Assets> assets,
-    Res<const Input> input,
+    Query<Racer, Transform> racers, Res<const Assets> assets, Res<const Input> input,
     Res<const FrameTime> time) {
     std::vector<Place> places;
     racers.each([&](const Racer& racer, const Transform&) {

@@ -24,9 +24,7 @@ class World;
 /// (forward and back, left and right, fast = boost) from the moment that there is some; all others
 /// drive themselves: to their lane, around who is slower, no faster than their grip allows.
 void update_racers(
-    Query<Racer, Transform> racers,
-    Res<const Assets> assets,
-    Res<const Input> input,
+    Query<Racer, Transform> racers, Res<const Assets> assets, Res<const Input> input,
     Res<const FrameTime> time);
 
 /// Puts racers where they are, without moving them on: for the first picture.

@@ -5,9 +5,7 @@
 namespace limn {
 
 void update_ripples(
-    Query<RippleRing> rings,
-    Query<ScreenRipple> screens,
-    Res<const FrameTime> time,
+    Query<RippleRing> rings, Query<ScreenRipple> screens, Res<const FrameTime> time,
     Commands commands) {
     const float step = time->step;
     rings.each([&](Entity entity, RippleRing& ring) {

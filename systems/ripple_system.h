@@ -11,9 +11,7 @@ namespace limn {
 /// Ages every ripple by a step. What has ended is taken from its entity; a ring with a period
 /// begins anew instead.
 void update_ripples(
-    Query<RippleRing> rings,
-    Query<ScreenRipple> screens,
-    Res<const FrameTime> time,
+    Query<RippleRing> rings, Query<ScreenRipple> screens, Res<const FrameTime> time,
     Commands commands);
 
 }  // namespace limn

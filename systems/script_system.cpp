@@ -103,8 +103,7 @@ void run_events(World& world) {
 }
 
 void update_camera_paths(
-    Query<const CameraPath, Transform> cameras,
-    Query<const WorldTransform> targets,
+    Query<const CameraPath, Transform> cameras, Query<const WorldTransform> targets,
     Res<const FrameTime> time) {
     cameras.each([&](const CameraPath& path, Transform& transform) {
         if (!path.enabled || path.keys.empty()) {

@@ -20,8 +20,7 @@ void run_events(World& world);
 /// update_transforms. A target is where it was at the end of the last step, and its position counts
 /// as relative to the camera's parent: cameras that follow one should have none.
 void update_camera_paths(
-    Query<const CameraPath, Transform> cameras,
-    Query<const WorldTransform> targets,
+    Query<const CameraPath, Transform> cameras, Query<const WorldTransform> targets,
     Res<const FrameTime> time);
 
 }  // namespace limn

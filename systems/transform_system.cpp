@@ -98,9 +98,7 @@ class NodeNumbers {
 
 /// A child that became a root without its own components changing: its parent was destroyed.
 bool has_new_orphan(
-    const ChunkView& chunk,
-    const NodeNumbers& numbers,
-    std::span<const Transform> local,
+    const ChunkView& chunk, const NodeNumbers& numbers, std::span<const Transform> local,
     std::span<const WorldTransform> world) {
     const std::span<const Entity> entities = chunk.entities();
     for (std::size_t i = 0; i < entities.size(); ++i) {
@@ -117,14 +115,9 @@ bool has_new_orphan(
 /// One chunk of children: finds the places of those that move, and steps those whose parent is
 /// gone. Returns whether anything moves.
 bool collect_children(
-    std::span<const Entity> entities,
-    const NodeNumbers& numbers,
-    const SlotFlags& flags,
-    bool compute,
-    std::span<const Transform> local,
-    std::span<WorldTransform> world,
-    std::span<PreviousWorldTransform> previous,
-    std::vector<NodeBody>& node_bodies) {
+    std::span<const Entity> entities, const NodeNumbers& numbers, const SlotFlags& flags,
+    bool compute, std::span<const Transform> local, std::span<WorldTransform> world,
+    std::span<PreviousWorldTransform> previous, std::vector<NodeBody>& node_bodies) {
     const bool moves = compute || std::any_of(entities.begin(), entities.end(), [&](Entity entity) {
                            return (flags.get(entity) & kMoved) != 0;
                        });
@@ -147,8 +140,7 @@ bool collect_children(
 
 void add_world_transforms(
     Query<const Transform, Without<WorldTransform>> bare,
-    Query<const Transform, Without<PreviousWorldTransform>> without_past,
-    Commands commands) {
+    Query<const Transform, Without<PreviousWorldTransform>> without_past, Commands commands) {
     bare.each([&](Entity entity, const Transform&) { commands.add(entity, WorldTransform{}); });
     without_past.each(
         [&](Entity entity, const Transform&) { commands.add(entity, PreviousWorldTransform{}); });
@@ -157,10 +149,8 @@ void add_world_transforms(
 void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
-    Query<const WorldTransform> worlds,
-    Query<const Transform, With<Teleport>> teleports,
-    HierarchyRef hierarchy,
-    Commands commands) {
+    Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
+    HierarchyRef hierarchy, Commands commands) {
     const std::span<const HierarchyNode> nodes = hierarchy->nodes();
     const NodeNumbers numbers(nodes);
     SlotFlags flags;
@@ -168,8 +158,7 @@ void update_transforms(
     // What each chunk needs; and, if anything hangs on anything, who moves.
     std::vector<Work> work(versions.chunk_count(), Work::None);
     bool any = false;
-    versions.chunks([&](ChunkView chunk,
-                        std::span<const Transform> local,
+    versions.chunks([&](ChunkView chunk, std::span<const Transform> local,
                         std::span<const WorldTransform> world,
                         std::span<const PreviousWorldTransform>) {
         Work& wanted = work[chunk.index()];
@@ -198,21 +187,14 @@ void update_transforms(
 
     // Roots; and the places of the children that move.
     std::vector<NodeBody> node_bodies(nodes.size());
-    bodies.par_chunks([&](ChunkView chunk,
-                          std::span<const Transform> local,
+    bodies.par_chunks([&](ChunkView chunk, std::span<const Transform> local,
                           std::span<WorldTransform> world,
                           std::span<PreviousWorldTransform> previous) {
         const Work wanted = work[chunk.index()];
         if (chunk.has<Parent>()) {
             if (collect_children(
-                    chunk.entities(),
-                    numbers,
-                    flags,
-                    wanted == Work::Compute,
-                    local,
-                    world,
-                    previous,
-                    node_bodies)) {
+                    chunk.entities(), numbers, flags, wanted == Work::Compute, local, world,
+                    previous, node_bodies)) {
                 return;
             }
         } else if (wanted == Work::Compute) {
@@ -247,8 +229,7 @@ void update_transforms(
                     above = parent != nullptr ? &parent->world : nullptr;
                 }
                 step_body(
-                    body,
-                    above != nullptr ? *above * local : local,
+                    body, above != nullptr ? *above * local : local,
                     (flags.get(node.entity) & kJumped) != 0);
             }
         });

@@ -25,8 +25,7 @@ namespace limn {
 /// the same step.
 void add_world_transforms(
     Query<const Transform, Without<WorldTransform>> bare,
-    Query<const Transform, Without<PreviousWorldTransform>> without_past,
-    Commands commands);
+    Query<const Transform, Without<PreviousWorldTransform>> without_past, Commands commands);
 
 /// What update_transforms looks at to find out what changed.
 using TransformVersions =
@@ -36,9 +35,7 @@ using TransformVersions =
 void update_transforms(
     TransformVersions versions,
     Query<const Transform, WorldTransform, PreviousWorldTransform> bodies,
-    Query<const WorldTransform> worlds,
-    Query<const Transform, With<Teleport>> teleports,
-    HierarchyRef hierarchy,
-    Commands commands);
+    Query<const WorldTransform> worlds, Query<const Transform, With<Teleport>> teleports,
+    HierarchyRef hierarchy, Commands commands);
 
 }  // namespace limn

@@ -110,8 +110,7 @@ void below(benchmark::State& state) {
 void mirrored(benchmark::State& state) {
     Scene scene;
     scene.fill(
-        {12, 9},
-        {0, 0, 0},
+        {12, 9}, {0, 0, 0},
         {.resolution = 64,
          .mirror_reach = 4,
          .mirror_resolution = static_cast<std::int32_t>(state.range(0))});
@@ -120,8 +119,7 @@ void mirrored(benchmark::State& state) {
 void cascades(benchmark::State& state) {
     Scene scene;
     scene.fill(
-        {0, 0},
-        {0, 0, 0},
+        {0, 0}, {0, 0, 0},
         {.resolution = 256, .cascades = static_cast<std::int32_t>(state.range(0))});
     measure(state, scene);
 }

@@ -51,11 +51,8 @@ inline void random_get(Bench& bench, std::size_t count, double limit) {
         return per(time_of_rounds(rounds_for(count), once), count);
     };
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return bench.time_reference(); },
-        [&] { return timed(get_raw); },
-        [&] { return timed(get_ecs); },
-        [&] { return timed(gather); });
+        bench.repeats, [&] { return bench.time_reference(); }, [&] { return timed(get_raw); },
+        [&] { return timed(get_ecs); }, [&] { return timed(gather); });
     bench.check(raw_sum == ecs_sum && raw_sum == gathered_sum, "random get");
     const auto row = [&](int gate, const char* name, const Timing& time, double most) {
         bench.add(
@@ -157,8 +154,7 @@ inline void hash_time(Bench& bench) {
     fill<Position, Velocity, Rotation>(world, kMany);
     const Payload arrays(kMany);
     const auto times = take_turns(
-        bench.slow_repeats,
-        [&] { return per(time_of([&] { keep(state_hash(world)); }), kMany); },
+        bench.slow_repeats, [&] { return per(time_of([&] { keep(state_hash(world)); }), kMany); },
         [&] {
             return per(
                 time_of([&] {

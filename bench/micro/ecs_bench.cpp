@@ -59,12 +59,8 @@ struct Options {
 /// False: not understood.
 bool parse(int argc, char** argv, Options& options) {
     const std::pair<std::string_view, std::string*> words[] = {
-        {"--only", &options.only},
-        {"--from", &options.from},
-        {"--other", &options.other},
-        {"--json", &options.json},
-        {"--csv", &options.csv},
-        {"--svg", &options.svg},
+        {"--only", &options.only},         {"--from", &options.from}, {"--other", &options.other},
+        {"--json", &options.json},         {"--csv", &options.csv},   {"--svg", &options.svg},
         {"--markdown", &options.markdown},
     };
     for (int i = 1; i < argc; ++i) {

@@ -53,11 +53,8 @@ inline void compile_time(Bench& bench) {
         const std::string path = (folder / fmt::format("{}.cpp", stem)).string();
         bench.check(write_file(path, source), "a source file to compile");
         const std::string command = fmt::format(
-            "'{}' -std=c++20 -O2 -I'{}' -c '{}' -o '{}.o'",
-            LIMN_BENCH_COMPILER,
-            LIMN_BENCH_SOURCES,
-            path,
-            path);
+            "'{}' -std=c++20 -O2 -I'{}' -c '{}' -o '{}.o'", LIMN_BENCH_COMPILER, LIMN_BENCH_SOURCES,
+            path, path);
         const double time =
             time_of([&] { bench.check(std::system(command.c_str()) == 0, "the compiler's work"); });
         std::filesystem::remove(path, failed);
@@ -65,8 +62,7 @@ inline void compile_time(Bench& bench) {
         return time * 1e-9;
     };
     const auto times = take_turns(
-        bench.slow_repeats > 3 ? 5 : 1,
-        [&] { return compile("limn_bench_raw", kRawSource); },
+        bench.slow_repeats > 3 ? 5 : 1, [&] { return compile("limn_bench_raw", kRawSource); },
         [&] { return compile("limn_bench_smallest", kSmallestSource); });
     bench.add(
         {22,

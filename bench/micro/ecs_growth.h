@@ -42,54 +42,44 @@ inline std::vector<Operation> bulk_operations(Bench& bench) {
     };
     const auto copy_bytes = [found](std::size_t) { return found->copy; };
     return {
-        {"create, one by one",
-         150,
+        {"create, one by one", 150,
          [&](std::size_t count) {
              return time_create(bench, count, create_one_by_one, Memory::Fresh);
          },
          time_raw_fill},
-        {"create, bulk",
-         150,
+        {"create, bulk", 150,
          [&](std::size_t count) { return time_create(bench, count, create_bulk, Memory::Fresh); },
          time_raw_fill},
-        {"destroy, one by one",
-         100,
+        {"destroy, one by one", 100,
          [&](std::size_t count) { return time_destroy(bench, count, Order::Creation); },
          time_raw_free},
-        {"destroy, all of a query",
-         100,
+        {"destroy, all of a query", 100,
          [&](std::size_t count) { return time_destroy_all(bench, count, destroy_by_query); },
          time_raw_free},
-        {"add, one by one",
-         400,
+        {"add, one by one", 400,
          [&](std::size_t count) { return time_add_and_remove<Extra>(bench, count).add; },
          copy_rows},
-        {"remove, one by one",
-         400,
+        {"remove, one by one", 400,
          [&](std::size_t count) { return time_add_and_remove<Extra>(bench, count).remove; },
          copy_rows},
-        {"add, all of a query",
-         400,
+        {"add, all of a query", 400,
          [&](std::size_t count) {
              return time_add_and_remove_all(bench, count, Target::Occupied).add;
          },
          copy_rows},
-        {"remove, all of a query",
-         400,
+        {"remove, all of a query", 400,
          [&](std::size_t count) {
              return time_add_and_remove_all(bench, count, Target::Occupied).remove;
          },
          copy_rows},
         {"deferred add", 500, deferred_add, copy_rows},
-        {"snapshot, save",
-         300,
+        {"snapshot, save", 300,
          [=](std::size_t count) {
              snapshot(count);
              return found->save;
          },
          copy_bytes},
-        {"snapshot, restore",
-         300,
+        {"snapshot, restore", 300,
          [=](std::size_t count) {
              snapshot(count);
              return found->restore;

@@ -57,8 +57,7 @@ iterate(Bench& bench, const std::string& name, std::size_t count, const Kernel& 
         return per(time_of_rounds(rounds_for(count), once), count);
     };
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return timed([&] { arrays.each(kernel); }); },
+        bench.repeats, [&] { return timed([&] { arrays.each(kernel); }); },
         [&] { return timed([&] { run_each(each_query, kernel); }); },
         [&] { return timed([&] { run_chunks(chunk_query, kernel); }); });
 
@@ -71,11 +70,7 @@ iterate(Bench& bench, const std::string& name, std::size_t count, const Kernel& 
 
 template <typename... Terms, typename Kernel>
 void iteration_rows(
-    Bench& bench,
-    const std::string& name,
-    std::size_t count,
-    const Kernel& kernel,
-    int gate,
+    Bench& bench, const std::string& name, std::size_t count, const Kernel& kernel, int gate,
     double limit) {
     const IterationTimes times = iterate<Terms...>(bench, name, count, kernel);
     bench.add(
@@ -152,8 +147,7 @@ inline void raw_layouts(Bench& bench) {
             return per(time_of_rounds(rounds_for(count), once), count);
         };
         const auto times = take_turns(
-            bench.repeats,
-            [&] { return timed([&] { arrays.each(Move{}); }); },
+            bench.repeats, [&] { return timed([&] { arrays.each(Move{}); }); },
             [&] {
                 return timed([&] {
                     for (int lane = 0; lane < 3; ++lane) {
@@ -216,8 +210,7 @@ inline FragmentTimes iterate_fragments(Bench& bench, std::size_t large) {
         return per(time_of_rounds(rounds_for(count), once), count);
     };
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return timed([&] { grow_all(pieces); }); },
+        bench.repeats, [&] { return timed([&] { grow_all(pieces); }); },
         [&] { return timed([&] { run_each(query, Grow{}); }); });
     std::uint64_t sum = 0;
     arrays.each(RowSum{&sum});
@@ -261,8 +254,7 @@ inline void after_churn(Bench& bench) {
     arrays.start_all();
     const auto query = world.query<const Velocity, Position>();
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return per(time_of([&] { arrays.each(Move{}); }), kMany); },
+        bench.repeats, [&] { return per(time_of([&] { arrays.each(Move{}); }), kMany); },
         [&] { return per(time_of([&] { run_each(query, Move{}); }), kMany); });
     std::uint64_t sum = 0;
     arrays.each(RowSum{&sum});

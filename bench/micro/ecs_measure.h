@@ -57,9 +57,7 @@ struct Bench {
             return true;
         }
         fmt::print(
-            "left out: {} with {} entities, which needs {} MiB of memory\n",
-            name,
-            count,
+            "left out: {} with {} entities, which needs {} MiB of memory\n", name, count,
             bytes >> 20);
         return false;
     }

@@ -26,24 +26,20 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     {2, "mustache 1.09x", ""},
     {3, "flecs 0.88-0.99x", ""},
     {4, "flecs 0.94x", ""},
-    {5,
-     "EnTT raw group 22 ns",
+    {5, "EnTT raw group 22 ns",
      "With its 64 rows. g++ 12 leaves the loop scalar at -O2, where the raw loop alone takes "
      "longer "
      "than the gate; what the call adds is in the table below, and small with either flags."},
-    {6,
-     "flecs 4.8x",
+    {6, "flecs 4.8x",
      "Vectorized, the raw loop spends 1.8 ns on an array of 20 floats; finding the column of an "
      "archetype and noting its version adds 1.1 ns."},
     {7, "flecs 0.97x, EnTT view 13.8x", ""},
     {8, "flecs 15 R", ""},
-    {9,
-     "EnTT 55 R",
+    {9, "EnTT 55 R",
      "Mostly the first touch of fresh memory, which the raw loop pays as well: see the row with "
      "memory used before."},
     {10, "flecs 26 / 15 R", ""},
-    {11,
-     "EnTT 15 R, flecs 52-67 R",
+    {11, "EnTT 15 R, flecs 52-67 R",
      "Two moves of a row, out and into the hole it leaves, bound by instructions and not by "
      "memory, "
      "so that a small R makes the gate hard."},
@@ -51,14 +47,12 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     {13, "none", ""},
     {14, "EnTT by hand 24 R, flecs 112 R", ""},
     {15, "EnTT 37 R, flecs 497 R", ""},
-    {16,
-     "mustache 3.7 R / EnTT 18 R",
+    {16, "mustache 3.7 R / EnTT 18 R",
      "One at a time, a million entities cost two misses each, slot and row; gather() fetches both "
      "ahead."},
     {17, "EnTT, flecs 72.5 B", ""},
     {18, "none", ""},
-    {19,
-     "none",
+    {19, "none",
      "Two cores are what there is. For more of them: ranges are cut once and handed out without a "
      "lock, and what a task adds (below) is less than a hundredth of the work of its chunk."},
     {20, "none", ""},
@@ -89,20 +83,15 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     for (const Row* row : gate_rows(report)) {
         const Row* second = same_row(other, *row);
         text += fmt::format(
-            "| {} | {}{} | {} | {} |",
-            row->gate,
-            row->name,
-            short_count(row->count),
-            gate_text(*row),
-            cell(*row));
+            "| {} | {}{} | {} | {} |", row->gate, row->name, short_count(row->count),
+            gate_text(*row), cell(*row));
         if (other != nullptr) {
             text += fmt::format(" {} |", second != nullptr ? cell(*second) : "");
         }
         const bool first = row->gate != last;
         last = row->gate;
         text += fmt::format(
-            " {} | {} |\n",
-            first ? remark_of(row->gate).peer : "",
+            " {} | {} |\n", first ? remark_of(row->gate).peer : "",
             first ? remark_of(row->gate).text : "");
     }
     return text;
@@ -128,9 +117,7 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
         for (const Row* shown : {&row, second}) {
             if (shown != nullptr) {
                 text += fmt::format(
-                    " {} | {} | {} | {} |",
-                    number(shown->ecs.median),
-                    number(shown->raw.median),
+                    " {} | {} | {} | {} |", number(shown->ecs.median), number(shown->raw.median),
                     number(over(shown->ecs.median, shown->raw.median)),
                     number(over(shown->ecs.median, shown->reference.median)));
             }

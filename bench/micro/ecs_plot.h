@@ -22,58 +22,33 @@ namespace limn::bench {
 class Svg {
   public:
     void text(
-        double x,
-        double y,
-        std::string_view words,
-        std::string_view color = "#333",
-        std::string_view anchor = "start",
-        double size = 12,
-        std::string_view more = "") {
+        double x, double y, std::string_view words, std::string_view color = "#333",
+        std::string_view anchor = "start", double size = 12, std::string_view more = "") {
         body_ += fmt::format(
             "<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\" text-anchor=\"{}\" font-size=\"{}\" "
             "{}>{}</text>\n",
-            x,
-            y,
-            color,
-            anchor,
-            size,
-            more,
-            words);
+            x, y, color, anchor, size, more, words);
     }
     void
     line(double x1, double y1, double x2, double y2, std::string_view color, double width = 1) {
         body_ += fmt::format(
-            "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{}\"/>\n",
-            x1,
-            y1,
-            x2,
-            y2,
-            color,
-            width);
+            "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{}\"/>\n", x1,
+            y1, x2, y2, color, width);
     }
     void
     box(double x, double y, double width, double height, std::string_view color, double opacity) {
         body_ += fmt::format(
             "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
             "fill-opacity=\"{}\"/>\n",
-            x,
-            y,
-            width,
-            height,
-            color,
-            opacity);
+            x, y, width, height, color, opacity);
     }
     void dot(double x, double y, std::string_view color) {
         body_ += fmt::format(
-            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"{}\" stroke=\"white\"/>\n",
-            x,
-            y,
+            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"{}\" stroke=\"white\"/>\n", x, y,
             color);
     }
     void curve(
-        const std::vector<std::array<double, 2>>& points,
-        std::string_view color,
-        double width,
+        const std::vector<std::array<double, 2>>& points, std::string_view color, double width,
         std::string_view dashes = "") {
         std::string path;
         for (const auto& [x, y] : points) {
@@ -82,10 +57,7 @@ class Svg {
         body_ += fmt::format(
             "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
             "stroke-linejoin=\"round\" stroke-linecap=\"{}\" stroke-dasharray=\"{}\"/>\n",
-            path,
-            color,
-            width,
-            dashes.empty() ? "round" : "butt",
+            path, color, width, dashes.empty() ? "round" : "butt",
             dashes.empty() ? "none" : dashes);
     }
     [[nodiscard]] std::string done(double width, double height) const {
@@ -94,9 +66,7 @@ class Svg {
             "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', "
             "sans-serif\">\n"
             "<rect width=\"{0}\" height=\"{1}\" fill=\"#fcfcfa\"/>\n{2}</svg>\n",
-            width,
-            height,
-            body_);
+            width, height, body_);
     }
 
   private:
@@ -173,24 +143,16 @@ inline void draw_axes(Svg& svg, const Panel& panel, std::string_view title) {
         svg.line(x, panel.top, x, bottom, "#efefec");
         svg.line(x, bottom, x, bottom + 4, "#aaa");
         svg.text(
-            x,
-            bottom + 19,
-            fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{:.0f}</tspan>", decade),
-            kFaint,
+            x, bottom + 19,
+            fmt::format("10<tspan dy=\"-5\" font-size=\"9\">{:.0f}</tspan>", decade), kFaint,
             "middle");
     }
     svg.line(panel.left, bottom, right, bottom, "#aaa");
     svg.text(panel.left + panel.width / 2, bottom + 38, "entities", kFaint, "middle");
     svg.text(
-        panel.left - 46,
-        panel.top + panel.height / 2,
-        "time an entity [ns]",
-        kFaint,
-        "middle",
-        12,
+        panel.left - 46, panel.top + panel.height / 2, "time an entity [ns]", kFaint, "middle", 12,
         fmt::format(
-            "transform=\"rotate(-90 {:.1f} {:.1f})\"",
-            panel.left - 46,
+            "transform=\"rotate(-90 {:.1f} {:.1f})\"", panel.left - 46,
             panel.top + panel.height / 2));
 }
 
@@ -226,9 +188,7 @@ inline void draw_labels(Svg& svg, double x, std::vector<EndLabel> labels) {
 
 template <std::size_t size>
 void draw_curves(
-    Svg& svg,
-    const Panel& panel,
-    const Report& report,
+    Svg& svg, const Panel& panel, const Report& report,
     const std::array<CurveStyle, size>& styles) {
     struct Drawn {
         const CurveStyle* style;
@@ -307,12 +267,7 @@ inline double draw_gates(
     const double scale = (width - kLabel - 190) / kMost;
     const double bottom = top + kRow * static_cast<double>(rows.size());
     svg.text(
-        left,
-        top - 34,
-        "Gates: share of what is allowed that is used",
-        kInk,
-        "start",
-        15,
+        left, top - 34, "Gates: share of what is allowed that is used", kInk, "start", 15,
         "font-weight=\"600\"");
     for (int i = 0; i <= 8; ++i) {
         const double x = start + scale * 0.25 * i;
@@ -333,8 +288,7 @@ inline double draw_gates(
                 const double x = start + scale * kMost;
                 svg.curve(
                     {{x + 3, y + from}, {x + 8, y + from + height / 2}, {x + 3, y + from + height}},
-                    color,
-                    1.5);
+                    color, 1.5);
             }
         };
         const Row* second = same_row(other, row);
@@ -345,20 +299,13 @@ inline double draw_gates(
         svg.text(left + 22, y + 16, std::to_string(row.gate), kFaint, "end");
         svg.text(left + 32, y + 16, row.name + short_count(row.count));
         svg.text(
-            start + scale * kMost + 16,
-            y + 16,
-            short_number(figure_of(row, &Timing::median)) + figure_unit(row),
-            kInk,
-            "start",
-            12,
+            start + scale * kMost + 16, y + 16,
+            short_number(figure_of(row, &Timing::median)) + figure_unit(row), kInk, "start", 12,
             "font-weight=\"600\"");
         svg.text(
-            start + scale * kMost + 188,
-            y + 16,
-            fmt::format("{} {:g}", row.figure == Figure::Speedup ? "≥" : "≤", row.limit),
-            kFaint,
-            "end",
-            11);
+            start + scale * kMost + 188, y + 16,
+            fmt::format("{} {:g}", row.figure == Figure::Speedup ? "≥" : "≤", row.limit), kFaint,
+            "end", 11);
     }
     return bottom;
 }
@@ -392,17 +339,10 @@ inline void draw_legend(Svg& svg, double x, double y, const Report& report, cons
     constexpr double kWidth = 1320;
     Svg svg;
     svg.text(
-        60,
-        44,
-        "Limn's ECS beside raw arrays in the same process",
-        kInk,
-        "start",
-        22,
+        60, 44, "Limn's ECS beside raw arrays in the same process", kInk, "start", 22,
         "font-weight=\"600\"");
     svg.text(
-        60,
-        66,
-        fmt::format("{}; curves: best of the repeats, {}", report.machine, report.flags),
+        60, 66, fmt::format("{}; curves: best of the repeats, {}", report.machine, report.flags),
         kFaint);
     draw_legend(svg, 60, 94, report, other);
 

@@ -112,35 +112,17 @@ struct Report {
     };
     return fmt::format(
         "{:>3} {:<50} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<7} {:>7} {:>7}  {:<15} {}\n",
-        row.gate > 0 ? std::to_string(row.gate) : "",
-        row.name,
-        row.count,
-        number(row.ecs.median),
-        number(row.ecs.best),
-        number(row.raw.median),
-        number(over(row.ecs.median, row.raw.median)),
-        number(over(row.ecs.median, row.reference.median)),
-        row.unit,
+        row.gate > 0 ? std::to_string(row.gate) : "", row.name, row.count, number(row.ecs.median),
+        number(row.ecs.best), number(row.raw.median), number(over(row.ecs.median, row.raw.median)),
+        number(over(row.ecs.median, row.reference.median)), row.unit,
         row.limit > 0 ? number(figure_of(row, &Timing::median)) : "",
-        row.limit > 0 ? number(figure_of(row, &Timing::best)) : "",
-        gate_text(row),
-        verdict(row));
+        row.limit > 0 ? number(figure_of(row, &Timing::best)) : "", gate_text(row), verdict(row));
 }
 
 [[nodiscard]] inline std::string table_head() {
     return fmt::format(
-        "{:>3} {:<50} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<7} {:>7} {:>7}  {}\n",
-        "#",
-        "workload",
-        "entities",
-        "median",
-        "best",
-        "raw",
-        "x raw",
-        "x R",
-        "unit",
-        "figure",
-        "best",
+        "{:>3} {:<50} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}  {:<7} {:>7} {:>7}  {}\n", "#",
+        "workload", "entities", "median", "best", "raw", "x raw", "x R", "unit", "figure", "best",
         "gate");
 }
 
@@ -151,21 +133,10 @@ struct Report {
         text += fmt::format(
             "{},\"{}\",{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5g},{:.5g},{:.5g},{:.5g},{},{}"
             "\n",
-            row.gate,
-            row.name,
-            row.count,
-            row.unit,
-            row.ecs.median,
-            row.ecs.best,
-            row.raw.median,
-            row.raw.best,
-            row.reference.median,
-            over(row.ecs.median, row.raw.median),
-            over(row.ecs.median, row.reference.median),
-            figure_of(row, &Timing::median),
-            figure_of(row, &Timing::best),
-            row.limit,
-            verdict(row));
+            row.gate, row.name, row.count, row.unit, row.ecs.median, row.ecs.best, row.raw.median,
+            row.raw.best, row.reference.median, over(row.ecs.median, row.raw.median),
+            over(row.ecs.median, row.reference.median), figure_of(row, &Timing::median),
+            figure_of(row, &Timing::best), row.limit, verdict(row));
     }
     return text;
 }
@@ -173,28 +144,16 @@ struct Report {
 /// A line a row. Names hold nothing that JSON would escape.
 [[nodiscard]] inline std::string to_json(const Report& report) {
     std::string text = fmt::format(
-        "{{\n\"flags\": \"{}\",\n\"machine\": \"{}\",\n\"rows\": [\n",
-        report.flags,
+        "{{\n\"flags\": \"{}\",\n\"machine\": \"{}\",\n\"rows\": [\n", report.flags,
         report.machine);
     for (const Row& row : report.rows) {
         text += fmt::format(
             R"({{"gate": {}, "workload": "{}", "entities": {}, "unit": "{}", "median": {:.6g}, )"
             R"("best": {:.6g}, "raw_median": {:.6g}, "raw_best": {:.6g}, "r_median": {:.6g}, )"
             R"("r_best": {:.6g}, "of": "{}", "limit": {}, "curve": "{}", "verdict": "{}"}}{})",
-            row.gate,
-            row.name,
-            row.count,
-            row.unit,
-            row.ecs.median,
-            row.ecs.best,
-            row.raw.median,
-            row.raw.best,
-            row.reference.median,
-            row.reference.best,
-            kFigureNames[static_cast<std::size_t>(row.figure)],
-            row.limit,
-            row.curve,
-            verdict(row),
+            row.gate, row.name, row.count, row.unit, row.ecs.median, row.ecs.best, row.raw.median,
+            row.raw.best, row.reference.median, row.reference.best,
+            kFigureNames[static_cast<std::size_t>(row.figure)], row.limit, row.curve, verdict(row),
             &row == &report.rows.back() ? "\n" : ",\n");
     }
     return text + "]\n}\n";

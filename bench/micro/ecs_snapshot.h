@@ -44,17 +44,16 @@ inline void snapshot(Bench& bench) {
     const auto restore = [&] {
         return per(time_of([&] { keep(restore_snapshot(world, saved, &mark).ok()); }), kMany);
     };
-    add("restore it",
-        in_turns(
-            [&] {
-                return per(
-                    time_of([&] {
-                        std::memcpy(used.data(), saved.data(), saved.size());
-                        keep(used[0]);
-                    }),
-                    kMany);
-            },
-            restore));
+    add("restore it", in_turns(
+                          [&] {
+                              return per(
+                                  time_of([&] {
+                                      std::memcpy(used.data(), saved.data(), saved.size());
+                                      keep(used[0]);
+                                  }),
+                                  kMany);
+                          },
+                          restore));
     bench.check(state_hash(world) == hash, "restored");
 
     const auto delta = [&](const char* name, std::size_t step) {

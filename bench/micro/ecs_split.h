@@ -64,13 +64,9 @@ struct limn::ComponentTraits<limn::bench::SplitTurn> : limn::DefaultTraits {
 namespace limn::bench {
 
 /// The planes of a view, pointing inwards: normal and distance.
-inline constexpr float kPlanes[6][4] = {
-    {0.9f, 0.1f, 0.2f, 0.4f},
-    {-0.9f, 0.1f, 0.2f, 0.4f},
-    {0.1f, 0.9f, 0.2f, 0.4f},
-    {0.1f, -0.9f, 0.2f, 0.4f},
-    {0.0f, 0.1f, 0.9f, 0.3f},
-    {0.0f, 0.1f, -0.9f, 0.3f}};
+inline constexpr float kPlanes[6][4] = {{0.9f, 0.1f, 0.2f, 0.4f}, {-0.9f, 0.1f, 0.2f, 0.4f},
+                                        {0.1f, 0.9f, 0.2f, 0.4f}, {0.1f, -0.9f, 0.2f, 0.4f},
+                                        {0.0f, 0.1f, 0.9f, 0.3f}, {0.0f, 0.1f, -0.9f, 0.3f}};
 
 inline std::uint32_t is_seen(float x, float y, float z, float radius) {
     float least = INFINITY;
@@ -93,11 +89,7 @@ inline std::uint32_t is_seen(float x, float y, float z, float radius) {
 
 /// Over plain arrays, which is what both a chunk and the raw loop hand it.
 inline void cull_lanes(
-    std::size_t size,
-    const float* x,
-    const float* y,
-    const float* z,
-    const float* radius,
+    std::size_t size, const float* x, const float* y, const float* z, const float* radius,
     Seen* seen) {
     for (std::size_t i = 0; i < size; ++i) {
         seen[i].yes = is_seen(x[i], y[i], z[i], radius[i]);
@@ -107,12 +99,8 @@ inline void cull_lanes(
 [[gnu::noinline]] inline void cull_split(const Query<const SplitSphere, Seen>& query) {
     query.chunks([](ChunkView chunk, SplitSpan<const SplitSphere> spheres, std::span<Seen> seen) {
         cull_lanes(
-            chunk.size(),
-            spheres.lane(0).data(),
-            spheres.lane(1).data(),
-            spheres.lane(2).data(),
-            spheres.lane(3).data(),
-            seen.data());
+            chunk.size(), spheres.lane(0).data(), spheres.lane(1).data(), spheres.lane(2).data(),
+            spheres.lane(3).data(), seen.data());
     });
 }
 
@@ -143,13 +131,8 @@ inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty,
 /// Restricted: seven arrays are too many for the compiler to compare at run time; not inlined,
 /// since g++ 12 forgets the restriction there and leaves the loop scalar.
 [[gnu::noinline]] inline void turn_lanes(
-    std::size_t size,
-    float* __restrict x,
-    float* __restrict y,
-    float* __restrict z,
-    float* __restrict w,
-    const float* __restrict tx,
-    const float* __restrict ty,
+    std::size_t size, float* __restrict x, float* __restrict y, float* __restrict z,
+    float* __restrict w, const float* __restrict tx, const float* __restrict ty,
     const float* __restrict tz) {
     for (std::size_t i = 0; i < size; ++i) {
         turn_one(x[i], y[i], z[i], w[i], tx[i], ty[i], tz[i]);
@@ -160,14 +143,9 @@ inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty,
     query.chunks(
         [](ChunkView chunk, SplitSpan<const SplitTurn> turns, SplitSpan<SplitRotation> rotations) {
             turn_lanes(
-                chunk.size(),
-                rotations.lane(0).data(),
-                rotations.lane(1).data(),
-                rotations.lane(2).data(),
-                rotations.lane(3).data(),
-                turns.lane(0).data(),
-                turns.lane(1).data(),
-                turns.lane(2).data());
+                chunk.size(), rotations.lane(0).data(), rotations.lane(1).data(),
+                rotations.lane(2).data(), rotations.lane(3).data(), turns.lane(0).data(),
+                turns.lane(1).data(), turns.lane(2).data());
         });
 }
 
@@ -243,17 +221,12 @@ inline void split(Bench& bench) {
             return per(time_of_rounds(rounds_for(count), once), count);
         };
         const auto times = take_turns(
-            bench.repeats,
-            [&] { return timed([&] { cull_table(cull_query); }); },
+            bench.repeats, [&] { return timed([&] { cull_table(cull_query); }); },
             [&] { return timed([&] { cull_split(split_cull_query); }); },
             [&] {
                 return timed([&] {
                     cull_lanes(
-                        count,
-                        raw[0].data(),
-                        raw[1].data(),
-                        raw[2].data(),
-                        raw[3].data(),
+                        count, raw[0].data(), raw[1].data(), raw[2].data(), raw[3].data(),
                         raw_seen.column<Seen>());
                 });
             },
@@ -262,14 +235,8 @@ inline void split(Bench& bench) {
             [&] {
                 return timed([&] {
                     turn_lanes(
-                        count,
-                        raw[4].data(),
-                        raw[5].data(),
-                        raw[6].data(),
-                        raw[7].data(),
-                        raw[8].data(),
-                        raw[9].data(),
-                        raw[10].data());
+                        count, raw[4].data(), raw[5].data(), raw[6].data(), raw[7].data(),
+                        raw[8].data(), raw[9].data(), raw[10].data());
                 });
             });
         split_rows(bench, "frustum cull", count, {times[0], times[1], times[2]});

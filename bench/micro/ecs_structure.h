@@ -107,12 +107,9 @@ inline void create(Bench& bench) {
             [&bench, make, memory] { return per(time_create(bench, kMany, make, memory), kMany); };
     };
     const auto times = take_turns(
-        bench.slow_repeats,
-        [&] { return bench.time_reference(); },
-        [&] { return per(time_raw_fill(kMany), kMany); },
-        ecs(create_bulk, Memory::Fresh),
-        ecs(create_bulk, Memory::Used),
-        ecs(create_one_by_one, Memory::Fresh),
+        bench.slow_repeats, [&] { return bench.time_reference(); },
+        [&] { return per(time_raw_fill(kMany), kMany); }, ecs(create_bulk, Memory::Fresh),
+        ecs(create_bulk, Memory::Used), ecs(create_one_by_one, Memory::Fresh),
         ecs(create_one_by_one, Memory::Used));
     const auto row = [&](int gate, const char* name, const Timing& time, double limit) {
         bench.add(
@@ -174,8 +171,7 @@ inline void destroy_by_clear(World& world) {
 
 inline void destroy(Bench& bench) {
     const auto times = take_turns(
-        bench.slow_repeats,
-        [&] { return bench.time_reference(); },
+        bench.slow_repeats, [&] { return bench.time_reference(); },
         [&] { return per(time_raw_free(kMany), kMany); },
         [&] { return per(time_destroy(bench, kMany, Order::Creation), kMany); },
         [&] { return per(time_destroy(bench, kMany, Order::Random), kMany); },
@@ -324,8 +320,7 @@ inline void add_and_remove(Bench& bench) {
     AddTimes empty;
     AddTimes occupied;
     const auto times = take_turns(
-        bench.slow_repeats,
-        [&] { return bench.time_reference(); },
+        bench.slow_repeats, [&] { return bench.time_reference(); },
         [&] { return per(copy.time(), kMany); },
         [&] {
             table = time_add_and_remove<Extra>(bench, kMany);
@@ -348,10 +343,7 @@ inline void add_and_remove(Bench& bench) {
             return per(occupied.add, kMany);
         },
         [&] { return per(occupied.remove, kMany); });
-    const auto row = [&](int gate,
-                         const char* name,
-                         std::size_t count,
-                         const Timing& time,
+    const auto row = [&](int gate, const char* name, std::size_t count, const Timing& time,
                          double limit) {
         bench.add(
             {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});
@@ -451,25 +443,19 @@ inline void deferred(Bench& bench) {
     DeferredTime all;
     DeferredTime chosen;
     const auto times = take_turns(
-        bench.slow_repeats,
-        [&] { return bench.time_reference(); },
+        bench.slow_repeats, [&] { return bench.time_reference(); },
         [&] { return per(copy.time(), kMany); },
         [&] {
             all = systems.time_all(bench, kMany);
             return per(all.both(), kMany);
         },
-        [&] { return per(all.record, kMany); },
-        [&] { return per(all.flush, kMany); },
+        [&] { return per(all.record, kMany); }, [&] { return per(all.flush, kMany); },
         [&] {
             chosen = systems.time_quarter(bench, kMany);
             return per(chosen.both(), kQuarter);
         },
-        [&] { return per(chosen.record, kQuarter); },
-        [&] { return per(chosen.flush, kQuarter); });
-    const auto row = [&](int gate,
-                         const char* name,
-                         std::size_t count,
-                         const Timing& time,
+        [&] { return per(chosen.record, kQuarter); }, [&] { return per(chosen.flush, kQuarter); });
+    const auto row = [&](int gate, const char* name, std::size_t count, const Timing& time,
                          double limit) {
         bench.add(
             {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, limit, ""});

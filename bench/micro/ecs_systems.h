@@ -36,8 +36,7 @@ inline void empty_schedule(Bench& bench) {
     volatile Call raw = [](int number) { keep(number); };
     schedule.run(world);
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return time_of_rounds(100, [&] { schedule.run(world); }); },
+        bench.repeats, [&] { return time_of_rounds(100, [&] { schedule.run(world); }); },
         [&] {
             return time_of_rounds(100, [&] {
                 for (int i = 0; i < static_cast<int>(kSystems); ++i) {
@@ -118,27 +117,15 @@ inline void on_threads(Bench& bench) {
     const auto compute = run_on_threads<Scale>(bench, kComputed, 2, 2 * bench.repeats, Compute{});
     const auto bandwidth =
         run_on_threads<const Velocity, Position>(bench, kMany, 2, 2 * bench.repeats, Move{});
-    const auto row = [&](int gate,
-                         const char* name,
-                         std::size_t count,
-                         const Timing& time,
-                         const Timing& raw,
-                         double limit) {
+    const auto row = [&](int gate, const char* name, std::size_t count, const Timing& time,
+                         const Timing& raw, double limit) {
         bench.add({gate, name, count, "ns", time, raw, {}, Figure::Speedup, limit, ""});
     };
-    row(18,
-        "compute on 2 threads, over 1 thread",
-        kComputed,
-        compute.ecs_threads,
-        compute.ecs,
+    row(18, "compute on 2 threads, over 1 thread", kComputed, compute.ecs_threads, compute.ecs,
         1.85);
     row(0, "    the raw loop, over 1 thread", kComputed, compute.raw_threads, compute.raw, 0);
-    row(19,
-        "2 columns on 2 threads, over the raw loop",
-        kMany,
-        bandwidth.ecs_threads,
-        bandwidth.raw_threads,
-        0.9);
+    row(19, "2 columns on 2 threads, over the raw loop", kMany, bandwidth.ecs_threads,
+        bandwidth.raw_threads, 0.9);
     row(0, "    over 1 thread", kMany, bandwidth.ecs_threads, bandwidth.ecs, 0);
     row(0, "    the raw loop, over 1 thread", kMany, bandwidth.raw_threads, bandwidth.raw, 0);
 

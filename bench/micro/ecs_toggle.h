@@ -52,30 +52,21 @@ inline void toggle_by_handle(Bench& bench) {
     };
     const auto bits = [&](const std::vector<Entity>& order) {
         return all(
-            order,
-            [&](Entity entity) { world.disable<ToggledExtra>(entity); },
+            order, [&](Entity entity) { world.disable<ToggledExtra>(entity); },
             [&](Entity entity) { world.enable<ToggledExtra>(entity); });
     };
     const auto bytes = [&](const std::vector<Entity>& order) {
         return all(
-            order,
-            [&](Entity entity) { flags[entity.index] = 0; },
+            order, [&](Entity entity) { flags[entity.index] = 0; },
             [&](Entity entity) { flags[entity.index] = 1; });
     };
     const auto times = take_turns(
-        bench.repeats,
-        [&] { return bench.time_reference(); },
-        [&] { return bytes(entities); },
-        [&] { return bits(entities); },
-        [&] { return bytes(mixed); },
-        [&] { return bits(mixed); });
+        bench.repeats, [&] { return bench.time_reference(); }, [&] { return bytes(entities); },
+        [&] { return bits(entities); }, [&] { return bytes(mixed); }, [&] { return bits(mixed); });
     bench.check(world.query<With<ToggledExtra>>().count() == kMany, "enable");
     world.disable<ToggledExtra>(entities[5]);
     bench.check(world.query<With<ToggledExtra>>().count() == kMany - 1, "disable");
-    const auto row = [&](int gate,
-                         const char* name,
-                         const Timing& ecs,
-                         const Timing& raw,
+    const auto row = [&](int gate, const char* name, const Timing& ecs, const Timing& raw,
                          double limit) {
         bench.add({gate, name, kMany, "ns", ecs, raw, times[0], Figure::OfReference, limit, ""});
     };

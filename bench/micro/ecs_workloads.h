@@ -113,12 +113,7 @@ struct Grow {
 /// Reads three columns and writes four. The rotation is not normalized: this is about memory.
 struct Animate {
     void operator()(
-        const Velocity& v,
-        const Turn& t,
-        const Scale& s,
-        Position& p,
-        Rotation& r,
-        Tint& c,
+        const Velocity& v, const Turn& t, const Scale& s, Position& p, Rotation& r, Tint& c,
         Life& l) const {
         Move()(v, p);
         const Rotation q = r;

@@ -36,8 +36,7 @@ struct Crowd {
             const Vec3 place = {i % 317 - 158, i / 317 - 158, 0};
             const Affine now = affine_from(place, {1, 0, 0, 0}, Vec3(0.3f));
             world.create(
-                MeshInstance{{0}, {static_cast<std::uint32_t>(i) % 8}},
-                WorldTransform{now},
+                MeshInstance{{0}, {static_cast<std::uint32_t>(i) % 8}}, WorldTransform{now},
                 PreviousWorldTransform{now});
         }
     }

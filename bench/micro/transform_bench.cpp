@@ -53,8 +53,7 @@ void raw_copy(benchmark::State& state) {
     std::vector<WorldTransform> source = boxes.world;
     for (auto _ : state) {
         std::memcpy(
-            static_cast<void*>(boxes.previous.data()),
-            boxes.world.data(),
+            static_cast<void*>(boxes.previous.data()), boxes.world.data(),
             kBoxes * sizeof(WorldTransform));
         std::memcpy(
             static_cast<void*>(boxes.world.data()), source.data(), kBoxes * sizeof(WorldTransform));

@@ -79,10 +79,8 @@ void fft_columns(benchmark::State& state) {
     std::vector<float> scratch(fft_scratch_size(size));
     for (auto _ : state) {
         kernel(
-            plan,
-            {from.data(), from.data() + from.size() / 2},
-            {to.data(), to.data() + to.size() / 2},
-            scratch);
+            plan, {from.data(), from.data() + from.size() / 2},
+            {to.data(), to.data() + to.size() / 2}, scratch);
         benchmark::ClobberMemory();
     }
     per_point(state, kFftColumns * size);

@@ -46,10 +46,7 @@ void substep(benchmark::State& state) {
             const float* const h = pool.height.data();
             step_row(
                 {h + pool.at(0, z - 1), h + pool.at(0, z), h + pool.at(0, z + 1)},
-                {pool.before.data() + pool.at(0, z), width},
-                keep.data(),
-                1.0f,
-                0.3f);
+                {pool.before.data() + pool.at(0, z), width}, keep.data(), 1.0f, 0.3f);
         }
         std::swap(pool.height, pool.before);
         benchmark::ClobberMemory();
@@ -89,10 +86,7 @@ std::vector<PlacedWall> columns_of(const RippleState& pool, float aside) {
             affine_from({place.x + (i == 0 ? aside : 0.0f), 0, place.y}, Quat(1, 0, 0, 0), Vec3(1));
         const float radius = side / 80;
         columns.push_back(*place_wall(
-            {.shape = WallShape::Cylinder, .half = {radius, 1, radius}},
-            world,
-            {},
-            1,
+            {.shape = WallShape::Cylinder, .half = {radius, 1, radius}}, world, {}, 1,
             pool.size()));
     }
     return columns;
@@ -134,8 +128,7 @@ void many_pools(benchmark::State& state) {
         world.create(
             Transform{.position = place},
             WorldTransform{affine_from(place, Quat(1, 0, 0, 0), Vec3(1))},
-            Water{.size = Vec2(size)},
-            WaterRipples{.rain = 10});
+            Water{.size = Vec2(size)}, WaterRipples{.rain = 10});
         cells += side * side;
     }
     world.run(add_ripple_states);

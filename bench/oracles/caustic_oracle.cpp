@@ -72,10 +72,7 @@ double way_to_walls(const dvec3& from, const dvec3& ray, const dvec2& half) {
 }  // namespace
 
 CausticLight trace_photons(
-    const CausticPool& pool,
-    const CausticSurfaceAt& surface,
-    const dvec3& to_sun,
-    int side,
+    const CausticPool& pool, const CausticSurfaceAt& surface, const dvec3& to_sun, int side,
     long photons) {
     CausticLight light;
     light.side = side;
@@ -127,13 +124,8 @@ CausticLight trace_photons(
 }
 
 CausticLight trace_mirrored_photons(
-    const CausticPool& pool,
-    const CausticSurfaceAt& surface,
-    const dvec3& to_sun,
-    double height,
-    const dvec2& middle,
-    int side,
-    long photons) {
+    const CausticPool& pool, const CausticSurfaceAt& surface, const dvec3& to_sun, double height,
+    const dvec2& middle, int side, long photons) {
     CausticLight light;
     light.side = side;
     light.floor.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);

@@ -51,22 +51,14 @@ struct CausticLight {
 
 /// `photons` of them, evenly spread with a little chance; `to_sun` is unit.
 [[nodiscard]] CausticLight trace_photons(
-    const CausticPool& pool,
-    const CausticSurfaceAt& surface,
-    const glm::dvec3& to_sun,
-    int side,
+    const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun, int side,
     long photons);
 
 /// The same of light that the surface mirrors, on a ceiling at `height` above rest: `floor` is the
 /// part of it of half extents `half` about `middle`, `on_floor` all of it. Light that is thrown
 /// down again has not entered.
 [[nodiscard]] CausticLight trace_mirrored_photons(
-    const CausticPool& pool,
-    const CausticSurfaceAt& surface,
-    const glm::dvec3& to_sun,
-    double height,
-    const glm::dvec2& middle,
-    int side,
-    long photons);
+    const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun,
+    double height, const glm::dvec2& middle, int side, long photons);
 
 }  // namespace limn::oracle

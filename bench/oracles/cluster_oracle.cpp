@@ -43,9 +43,7 @@ bool reaches(const LightReach& light, const DVec3& point) {
 }
 
 std::vector<std::vector<std::uint32_t>> brute_force_lists(
-    const RenderView& view,
-    const ClusterShape& shape,
-    std::span<const LightReach> lights,
+    const RenderView& view, const ClusterShape& shape, std::span<const LightReach> lights,
     double slack) {
     const auto& r = view.world_from_camera.row;
     const auto column = [&](int c) { return DVec3(r[0][c], r[1][c], r[2][c]); };
@@ -69,8 +67,7 @@ std::vector<std::vector<std::uint32_t>> brute_force_lists(
                 for (std::size_t i = 0; i < lights.size(); ++i) {
                     const DVec3 offset = DVec3(lights[i].center) - column(3);
                     const DVec3 apart = {
-                        gap(glm::dot(offset, column(0)), x),
-                        gap(glm::dot(offset, column(1)), y),
+                        gap(glm::dot(offset, column(0)), x), gap(glm::dot(offset, column(1)), y),
                         gap(-glm::dot(offset, column(2)), z)};
                     if (glm::length(apart) <= lights[i].radius * (1 + slack) + slack * z.low) {
                         list.push_back(static_cast<std::uint32_t>(i));

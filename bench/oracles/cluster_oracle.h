@@ -20,9 +20,7 @@ using DVec3 = glm::dvec3;
 /// For every cell the lights whose sphere meets the box around the cell in view space, `slack` of
 /// the radius wider; numbered from 0, in order. Lists of point lights may hold no others.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> brute_force_lists(
-    const RenderView& view,
-    const ClusterShape& shape,
-    std::span<const LightReach> lights,
+    const RenderView& view, const ClusterShape& shape, std::span<const LightReach> lights,
     double slack);
 
 }  // namespace limn::oracle

@@ -103,8 +103,7 @@ double green_at(const LightPicture& picture, const glm::dvec2& place) {
 
 LightPicture make_dark(int width, int height) {
     return {
-        width,
-        height,
+        width, height,
         std::vector<glm::dvec3>(static_cast<std::size_t>(width) * height, glm::dvec3(0))};
 }
 

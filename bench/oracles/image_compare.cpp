@@ -286,8 +286,7 @@ FlipSide prepare_side(const ColorImage& image, double pixels_per_degree) {
     Plane planes[3];
     for (int i = 0; i < 3; ++i) {
         planes[i] = filter_contrast(
-            make_plane(opponent, [i](const Vec3& c) { return c[i]; }),
-            kSensitivities[i],
+            make_plane(opponent, [i](const Vec3& c) { return c[i]; }), kSensitivities[i],
             pixels_per_degree);
     }
     FlipSide side;

@@ -51,8 +51,7 @@ double spot_factor(SpotProfile profile, double inner, double outer, double angle
     }
     const double s = std::clamp(
         (std::cos(angle) - std::cos(outer)) / std::max(std::cos(inner) - std::cos(outer), 1e-4),
-        0.0,
-        1.0);
+        0.0, 1.0);
     return profile == SpotProfile::Smoothstep ? s * s * (3 - 2 * s) : s;
 }
 
@@ -63,11 +62,8 @@ LitCoefficients lit(double n_l, double n_h, double shininess) {
 }
 
 DVec3 phong(
-    const ClassicMaterial& material,
-    const DVec3& ambient_light,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera) {
+    const ClassicMaterial& material, const DVec3& ambient_light, std::span<const Arriving> lights,
+    const DVec3& normal, const DVec3& to_camera) {
     DVec3 color = material.ambient * ambient_light;
     for (const Arriving& light : lights) {
         const double r_v = glm::dot(reflect_about(light.to_light, normal), to_camera);
@@ -78,11 +74,8 @@ DVec3 phong(
 }
 
 DVec3 blinn(
-    const ClassicMaterial& material,
-    const DVec3& ambient_light,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera) {
+    const ClassicMaterial& material, const DVec3& ambient_light, std::span<const Arriving> lights,
+    const DVec3& normal, const DVec3& to_camera) {
     DVec3 color = material.ambient * ambient_light;
     for (const Arriving& light : lights) {
         const DVec3 sum = light.to_light + to_camera;
@@ -95,12 +88,8 @@ DVec3 blinn(
 }
 
 DVec3 skin(
-    const ClassicMaterial& material,
-    const DVec3& skin_color,
-    bool wide,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera) {
+    const ClassicMaterial& material, const DVec3& skin_color, bool wide,
+    std::span<const Arriving> lights, const DVec3& normal, const DVec3& to_camera) {
     DVec3 color = blinn(material, DVec3(0), lights, normal, to_camera);
     const double n_v = std::clamp(glm::dot(normal, to_camera), 0.0, 1.0);
     const double rim = wide ? 1 - n_v * n_v : (1 - n_v) * (1 - n_v);
@@ -111,9 +100,7 @@ DVec3 skin(
 }
 
 Arriving arrive(
-    const PointLight& light,
-    const DVec3& light_position,
-    const DVec3& position,
+    const PointLight& light, const DVec3& light_position, const DVec3& position,
     const DVec3& normal) {
     const DVec3 offset = light_position - position;
     const double d = glm::length(offset);
@@ -125,10 +112,7 @@ Arriving arrive(
 }
 
 Arriving arrive(
-    const SpotLight& light,
-    const DVec3& light_position,
-    const DVec3& axis,
-    const DVec3& position,
+    const SpotLight& light, const DVec3& light_position, const DVec3& axis, const DVec3& position,
     const DVec3& normal) {
     const DVec3 offset = light_position - position;
     const double d = glm::length(offset);

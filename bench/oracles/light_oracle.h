@@ -49,40 +49,25 @@ struct Arriving {
 
 /// light.phong-model: ka Ia + sum Ii (kd (L.N) + ks (R.V)^n).
 [[nodiscard]] DVec3 phong(
-    const ClassicMaterial& material,
-    const DVec3& ambient_light,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera);
+    const ClassicMaterial& material, const DVec3& ambient_light, std::span<const Arriving> lights,
+    const DVec3& normal, const DVec3& to_camera);
 
 /// light.halfway-vector: the same with (N.H)^n.
 [[nodiscard]] DVec3 blinn(
-    const ClassicMaterial& material,
-    const DVec3& ambient_light,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera);
+    const ClassicMaterial& material, const DVec3& ambient_light, std::span<const Arriving> lights,
+    const DVec3& normal, const DVec3& to_camera);
 
 /// char.skin-shade: blinn() and sum Ii kd s skin, s = (1 - n.v)^2, or 1 - (n.v)^2 where it is wide.
 [[nodiscard]] DVec3 skin(
-    const ClassicMaterial& material,
-    const DVec3& skin_color,
-    bool wide,
-    std::span<const Arriving> lights,
-    const DVec3& normal,
-    const DVec3& to_camera);
+    const ClassicMaterial& material, const DVec3& skin_color, bool wide,
+    std::span<const Arriving> lights, const DVec3& normal, const DVec3& to_camera);
 
 /// light.interface: what each type sends to `position`. `axis`: unit, where the light shines.
 [[nodiscard]] Arriving arrive(
-    const PointLight& light,
-    const DVec3& light_position,
-    const DVec3& position,
+    const PointLight& light, const DVec3& light_position, const DVec3& position,
     const DVec3& normal);
 [[nodiscard]] Arriving arrive(
-    const SpotLight& light,
-    const DVec3& light_position,
-    const DVec3& axis,
-    const DVec3& position,
+    const SpotLight& light, const DVec3& light_position, const DVec3& axis, const DVec3& position,
     const DVec3& normal);
 [[nodiscard]] Arriving arrive(const DirectionalLight& light, const DVec3& axis);
 

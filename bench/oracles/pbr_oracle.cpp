@@ -66,11 +66,8 @@ DirectionalAlbedo directional_albedo(double n_v, double roughness, int samples) 
 }
 
 glm::dvec3 reflect_pbr(
-    const PbrMaterial& material,
-    const DirectionalAlbedo& lobe,
-    const glm::dvec3& normal,
-    const glm::dvec3& to_camera,
-    const glm::dvec3& to_light) {
+    const PbrMaterial& material, const DirectionalAlbedo& lobe, const glm::dvec3& normal,
+    const glm::dvec3& to_camera, const glm::dvec3& to_light) {
     const double n_l = glm::dot(normal, to_light);
     if (n_l <= 0) {
         return glm::dvec3(0);

@@ -29,11 +29,8 @@ struct PbrMaterial {
 /// Radiance towards `to_camera` for a unit irradiance on a plane facing `to_light`; `albedo` of the
 /// lobe is passed because the sum over lights needs it once.
 [[nodiscard]] glm::dvec3 reflect_pbr(
-    const PbrMaterial& material,
-    const DirectionalAlbedo& lobe,
-    const glm::dvec3& normal,
-    const glm::dvec3& to_camera,
-    const glm::dvec3& to_light);
+    const PbrMaterial& material, const DirectionalAlbedo& lobe, const glm::dvec3& normal,
+    const glm::dvec3& to_camera, const glm::dvec3& to_light);
 
 /// Radiance of a surface in a furnace of radiance 1, by summing reflect_pbr over the hemisphere:
 /// the white furnace. `steps` intervals in elevation, twice as many around.

@@ -29,11 +29,7 @@ DVec3 to_world(const Affine& a, const Vec3& p) {
 
 /// Where the line enters the box before it leaves it, within begin .. end.
 bool crosses(
-    const DVec3& min,
-    const DVec3& max,
-    const DVec3& from,
-    const DVec3& inverse,
-    double begin,
+    const DVec3& min, const DVec3& max, const DVec3& from, const DVec3& inverse, double begin,
     double end) {
     for (int i = 0; i < 3; ++i) {
         const double a = (min[i] - from[i]) * inverse[i];
@@ -116,9 +112,7 @@ void ShadowScene::build(std::uint32_t begin, std::uint32_t end) {
         return t.corner[axis] + (t.edge_u[axis] + t.edge_v[axis]) / 3;
     };
     std::nth_element(
-        triangles_.begin() + begin,
-        triangles_.begin() + middle,
-        triangles_.begin() + end,
+        triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
         [&](const Triangle& a, const Triangle& b) { return along(a) < along(b); });
     build(begin, middle);
     nodes_[index].first = static_cast<std::uint32_t>(nodes_.size());

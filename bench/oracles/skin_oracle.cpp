@@ -72,15 +72,12 @@ std::vector<glm::dmat4> skin_matrices(const SkinData& skin, std::span<const Affi
 }
 
 std::vector<SkinnedVertex> skin_vertices(
-    const MeshData& mesh,
-    std::span<const glm::dmat4> matrices,
-    std::span<const float> morph_weights,
-    Skinning skinning) {
+    const MeshData& mesh, std::span<const glm::dmat4> matrices,
+    std::span<const float> morph_weights, Skinning skinning) {
     std::vector<SkinnedVertex> vertices(mesh.positions.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         vertices[v] = {
-            mesh.positions[v],
-            mesh.normals.empty() ? Vec3(0, 0, 1) : mesh.normals[v],
+            mesh.positions[v], mesh.normals.empty() ? Vec3(0, 0, 1) : mesh.normals[v],
             mesh.tangents.empty() ? Vec3(1, 0, 0) : Vec3(mesh.tangents[v])};
     }
     for (std::size_t t = 0; t < std::min(mesh.morphs.size(), morph_weights.size()); ++t) {
@@ -99,8 +96,7 @@ std::vector<SkinnedVertex> skin_vertices(
         SkinnedVertex& moved = vertices[v];
         std::vector<Influence> by;
         for (std::size_t i = mesh.skin.empty() ? 0 : mesh.skin.first[v];
-             i < (mesh.skin.empty() ? 0 : mesh.skin.first[v + 1]);
-             ++i) {
+             i < (mesh.skin.empty() ? 0 : mesh.skin.first[v + 1]); ++i) {
             by.push_back({mesh.skin.joints[i], mesh.skin.weights[i]});
         }
         if (!by.empty() && !matrices.empty()) {

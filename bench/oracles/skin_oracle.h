@@ -28,9 +28,7 @@ skin_matrices(const SkinData& skin, std::span<const Affine> joints);
 
 /// `matrices` is empty where no joints move the mesh; missing weights are 0.
 [[nodiscard]] std::vector<SkinnedVertex> skin_vertices(
-    const MeshData& mesh,
-    std::span<const glm::dmat4> matrices,
-    std::span<const float> morph_weights,
-    Skinning skinning);
+    const MeshData& mesh, std::span<const glm::dmat4> matrices,
+    std::span<const float> morph_weights, Skinning skinning);
 
 }  // namespace limn::oracle

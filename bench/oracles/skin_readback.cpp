@@ -63,11 +63,7 @@ void SkinReadback::forget() {
 }
 
 std::vector<ReadSkin> SkinReadback::run(
-    const World& world,
-    std::span<const Entity> drawn,
-    float alpha,
-    float alpha_before,
-    bool before,
+    const World& world, std::span<const Entity> drawn, float alpha, float alpha_before, bool before,
     int views) {
     Machine& m = *machine_;
     const auto& assets = world.resource<Assets>();
@@ -107,9 +103,7 @@ std::vector<ReadSkin> SkinReadback::run(
             skin.normals.emplace_back(
                 from_snorm(v.normal[0]), from_snorm(v.normal[1]), from_snorm(v.normal[2]));
             skin.tangents.emplace_back(
-                from_snorm(v.tangent[0]),
-                from_snorm(v.tangent[1]),
-                from_snorm(v.tangent[2]),
+                from_snorm(v.tangent[0]), from_snorm(v.tangent[1]), from_snorm(v.tangent[2]),
                 from_snorm(v.tangent[3]));
         }
     }

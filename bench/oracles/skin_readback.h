@@ -34,12 +34,8 @@ class SkinReadback {
 
     /// One frame in which `drawn` are drawn, `views` times each.
     std::vector<ReadSkin>
-    run(const World& world,
-        std::span<const Entity> drawn,
-        float alpha = 1,
-        float alpha_before = 0,
-        bool before = true,
-        int views = 1);
+    run(const World& world, std::span<const Entity> drawn, float alpha = 1, float alpha_before = 0,
+        bool before = true, int views = 1);
 
     /// Another world follows.
     void forget();

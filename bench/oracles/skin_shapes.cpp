@@ -26,12 +26,8 @@ MeshData make_tube(int rings, int sectors, float height) {
     for (int i = 0; i < rings; ++i) {
         for (int j = 0; j < sectors; ++j) {
             for (const std::uint32_t corner :
-                 {index(i, j),
-                  index(i, j + 1),
-                  index(i + 1, j + 1),
-                  index(i, j),
-                  index(i + 1, j + 1),
-                  index(i + 1, j)}) {
+                 {index(i, j), index(i, j + 1), index(i + 1, j + 1), index(i, j),
+                  index(i + 1, j + 1), index(i + 1, j)}) {
                 mesh.indices.push_back(corner);
             }
         }

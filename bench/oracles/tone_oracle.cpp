@@ -55,8 +55,7 @@ PictureStatistics measure_picture(std::span<const glm::dvec3> pixels, double cli
             continue;
         }
         const glm::dvec3 light = {
-            std::clamp(pixel.r, 0.0, kLargestHalf),
-            std::clamp(pixel.g, 0.0, kLargestHalf),
+            std::clamp(pixel.r, 0.0, kLargestHalf), std::clamp(pixel.g, 0.0, kLargestHalf),
             std::clamp(pixel.b, 0.0, kLargestHalf)};
         result.mean += light;
         luminances.push_back(luminance(light));

@@ -30,8 +30,7 @@ std::vector<glm::dvec3> corners_at(const World& world, Entity entity, double alp
     const auto* morphs =
         deformed != nullptr ? world.find<MorphWeights>(deformed->character) : nullptr;
     for (std::size_t i = deformed != nullptr ? deformed->first_morph : 0;
-         morphs != nullptr && i < morphs->weights.size();
-         ++i) {
+         morphs != nullptr && i < morphs->weights.size(); ++i) {
         const double from = morphs->previous[i];
         weights.push_back(static_cast<float>(from + alpha * (double(morphs->weights[i]) - from)));
     }

@@ -40,9 +40,7 @@ Status write_report(const std::string& path, const std::string& text) {
 /// Writes what was asked for: `json` and `csv` as text, the table unless one of them goes to
 /// stdout.
 Status write_results(
-    const BenchOptions& options,
-    const std::string& table,
-    const std::string& json,
+    const BenchOptions& options, const std::string& table, const std::string& json,
     const std::string& csv) {
     if (options.json != "-" && options.csv != "-") {
         fmt::print("{}", table);
@@ -143,9 +141,7 @@ Status run_bench(const BenchOptions& options) {
             return bench.error();
         }
         return write_results(
-            options,
-            lights_bench_table(*bench),
-            lights_bench_json(*bench),
+            options, lights_bench_table(*bench), lights_bench_json(*bench),
             lights_bench_csv(*bench));
     }
     BenchReport report = machine_report(stage, *headless, options);

@@ -58,9 +58,8 @@ passes_beyond(const BenchReport& report, const BenchReport& without) {
     std::vector<std::pair<std::string, double>> passes;
     for (const BenchSeries& series : report.series) {
         const bool known = std::any_of(
-            without.series.begin(), without.series.end(), [&](const BenchSeries& other) {
-                return is_pass(other) && other.name == series.name;
-            });
+            without.series.begin(), without.series.end(),
+            [&](const BenchSeries& other) { return is_pass(other) && other.name == series.name; });
         if (is_pass(series) && !known) {
             passes.emplace_back(series.name, summarize(series.samples).median);
         }
@@ -72,11 +71,8 @@ passes_beyond(const BenchReport& report, const BenchReport& without) {
 }
 
 Status measure_point(
-    const BenchOptions& options,
-    HeadlessRenderer& headless,
-    LensBenchPoint& point,
-    Progress& progress,
-    int& done) {
+    const BenchOptions& options, HeadlessRenderer& headless, LensBenchPoint& point,
+    Progress& progress, int& done) {
     Result<std::unique_ptr<Stage>> stage =
         open_stage(kLensScene, std::nullopt, options.assignments);
     if (!stage) {
@@ -167,27 +163,14 @@ std::string lens_bench_table(const LensBench& bench) {
     auto out = std::back_inserter(text);
     const BenchReport& none = bench.points.front().report;
     fmt::format_to(
-        out,
-        "{}, {} x {}, {} frames, {} threads\n{}, OpenGL {}\n\n{:<42} {:>10} {:>10} {:>10}\n",
-        bench.machine.scene,
-        bench.machine.size.x,
-        bench.machine.size.y,
-        none.frames,
-        bench.machine.threads,
-        bench.machine.gl_renderer,
-        bench.machine.gl_version,
-        "[ms], medians",
-        "frame",
-        "added",
-        "passes");
+        out, "{}, {} x {}, {} frames, {} threads\n{}, OpenGL {}\n\n{:<42} {:>10} {:>10} {:>10}\n",
+        bench.machine.scene, bench.machine.size.x, bench.machine.size.y, none.frames,
+        bench.machine.threads, bench.machine.gl_renderer, bench.machine.gl_version, "[ms], medians",
+        "frame", "added", "passes");
     for (const LensBenchPoint& point : bench.points) {
         const LensCost cost = lens_cost(bench, point);
         fmt::format_to(
-            out,
-            "{:<42} {:>10.2f} {:>10.2f} {:>10.2f}\n",
-            point.name,
-            cost.frame,
-            cost.added,
+            out, "{:<42} {:>10.2f} {:>10.2f} {:>10.2f}\n", point.name, cost.frame, cost.added,
             cost.passes);
     }
     fmt::format_to(out, "\nPasses of {}:\n", bench.points.back().name);
@@ -230,13 +213,8 @@ std::string lens_bench_csv(const LensBench& bench) {
     for (const LensBenchPoint& point : bench.points) {
         const LensCost cost = lens_cost(bench, point);
         fmt::format_to(
-            std::back_inserter(text),
-            "\"{}\",{},{:.6f},{:.6f},{:.6f},{:.6f}\n",
-            point.name,
-            point.report.frames,
-            cost.frame,
-            frame_summary(point.report).p95,
-            cost.added,
+            std::back_inserter(text), "\"{}\",{},{:.6f},{:.6f},{:.6f},{:.6f}\n", point.name,
+            point.report.frames, cost.frame, frame_summary(point.report).p95, cost.added,
             cost.passes);
     }
     return text;

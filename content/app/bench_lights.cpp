@@ -145,13 +145,8 @@ std::string lights_bench_table(const LightsBench& bench) {
         out,
         "{}, {} x {}, {} threads\n{}, OpenGL {}\n\n"
         "Median of a frame [ms], and how often that of the clustered method:\n{:<7}",
-        bench.machine.scene,
-        bench.machine.size.x,
-        bench.machine.size.y,
-        bench.machine.threads,
-        bench.machine.gl_renderer,
-        bench.machine.gl_version,
-        "lights");
+        bench.machine.scene, bench.machine.size.x, bench.machine.size.y, bench.machine.threads,
+        bench.machine.gl_renderer, bench.machine.gl_version, "lights");
     for (const char* name : kMethodNames) {
         fmt::format_to(out, " {:>19}", name);
     }
@@ -162,9 +157,7 @@ std::string lights_bench_table(const LightsBench& bench) {
             const LightsBenchPoint& point = bench.points[method][i];
             if (was_measured(point)) {
                 fmt::format_to(
-                    out,
-                    " {:>11.2f} {:>6.1f}x",
-                    frame_summary(point.report).median,
+                    out, " {:>11.2f} {:>6.1f}x", frame_summary(point.report).median,
                     cost_over_clustered(bench, method, i));
             } else {
                 fmt::format_to(out, " {:>19}", "-");
@@ -235,14 +228,9 @@ std::string lights_bench_csv(const LightsBench& bench) {
             if (was_measured(point)) {
                 const Summary frame = frame_summary(point.report);
                 fmt::format_to(
-                    std::back_inserter(text),
-                    "{},{},{},{:.6f},{:.6f},{:.6f}\n",
-                    kMethodNames[method],
-                    point.lights,
-                    point.report.frames,
-                    frame.median,
-                    frame.p95,
-                    frame.max);
+                    std::back_inserter(text), "{},{},{},{:.6f},{:.6f},{:.6f}\n",
+                    kMethodNames[method], point.lights, point.report.frames, frame.median,
+                    frame.p95, frame.max);
             }
         }
     }

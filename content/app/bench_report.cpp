@@ -63,19 +63,9 @@ std::string bench_table(const BenchReport& report) {
         out,
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
         "{} entities, {} draws, {} triangles, {:.0f} MiB resident, {:.0f} MiB of targets\n\n",
-        report.scene,
-        report.size.x,
-        report.size.y,
-        report.frames,
-        report.warmup,
-        report.threads,
-        report.gl_renderer,
-        report.gl_version,
-        report.entities,
-        report.draws,
-        report.triangles,
-        report.resident_mib,
-        report.gpu_mib);
+        report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
+        report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
+        report.resident_mib, report.gpu_mib);
     fmt::format_to(out, "{:<34} {:>3} {:>11} {:>11} {:>11}\n", "[ms]", "", "median", "p95", "max");
     for (const BenchKind kind : kKinds) {
         std::vector<Line> lines = lines_of(report, kind);
@@ -84,14 +74,9 @@ std::string bench_table(const BenchReport& report) {
         });
         for (const Line& line : lines) {
             fmt::format_to(
-                out,
-                "{:<6} {:<27} {:>3} {:>11.3f} {:>11.3f} {:>11.3f}\n",
-                kind_name(kind),
-                line.series->name,
-                clock_name(line.series->clock),
-                line.summary.median,
-                line.summary.p95,
-                line.summary.max);
+                out, "{:<6} {:<27} {:>3} {:>11.3f} {:>11.3f} {:>11.3f}\n", kind_name(kind),
+                line.series->name, clock_name(line.series->clock), line.summary.median,
+                line.summary.p95, line.summary.max);
         }
     }
     return text;
@@ -133,14 +118,9 @@ std::string bench_csv(const BenchReport& report) {
     for (const BenchKind kind : kKinds) {
         for (const Line& line : lines_of(report, kind)) {
             fmt::format_to(
-                std::back_inserter(text),
-                "{},{},{},{:.6f},{:.6f},{:.6f}\n",
-                kind_name(kind),
-                line.series->name,
-                clock_name(line.series->clock),
-                line.summary.median,
-                line.summary.p95,
-                line.summary.max);
+                std::back_inserter(text), "{},{},{},{:.6f},{:.6f},{:.6f}\n", kind_name(kind),
+                line.series->name, clock_name(line.series->clock), line.summary.median,
+                line.summary.p95, line.summary.max);
         }
     }
     return text;

@@ -59,18 +59,8 @@ Vec4 read_texel(const gpu::Texture& texture, int x, int y) {
     std::array<float, 4> texel = {0, 0, 0, 0};
     const bool depth = gpu::format_info(texture.desc().format).depth;
     glGetTextureSubImage(
-        texture.id(),
-        0,
-        x,
-        y,
-        0,
-        1,
-        1,
-        1,
-        depth ? GL_DEPTH_COMPONENT : GL_RGBA,
-        GL_FLOAT,
-        sizeof(texel),
-        texel.data());
+        texture.id(), 0, x, y, 0, 1, 1, 1, depth ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT,
+        sizeof(texel), texel.data());
     return {texel[0], texel[1], texel[2], texel[3]};
 }
 
@@ -78,8 +68,7 @@ Vec4 read_texel(const gpu::Texture& texture, int x, int y) {
 
 Result<BufferViewer> BufferViewer::create(gpu::Device& device) {
     const Result<gpu::Pipeline> pipeline = gpu::create_pipeline(
-        device,
-        {.vertex = "fullscreen.vert", .fragment = "buffer_viewer.frag"},
+        device, {.vertex = "fullscreen.vert", .fragment = "buffer_viewer.frag"},
         {.depth = {.test = false, .write = false}});
     if (!pipeline) {
         return pipeline.error();
@@ -263,9 +252,7 @@ void BufferViewer::draw_picture(const HudStyle& style) {
     const ImVec2 size = {width, width / aspect};
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Image(
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(view_.id())),
-        size,
-        {0, 1},
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(view_.id())), size, {0, 1},
         {1, 0});
 
     const gpu::FormatInfo& format = gpu::format_info(source_->desc().format);
@@ -278,13 +265,7 @@ void BufferViewer::draw_picture(const HudStyle& style) {
     if (inside) {
         const Vec4 texel = read_texel(*source_, x, view_.height() - 1 - y);
         ImGui::TextColored(
-            kHudAccent,
-            "(%d, %d)  %.5g  %.5g  %.5g  %.5g",
-            x,
-            y,
-            texel.x,
-            texel.y,
-            texel.z,
+            kHudAccent, "(%d, %d)  %.5g  %.5g  %.5g  %.5g", x, y, texel.x, texel.y, texel.z,
             texel.w);
     } else {
         ImGui::TextColored(kHudDim, "%d x %d  %s", view_.width(), view_.height(), format.name);

@@ -65,34 +65,20 @@ CLI::Option* add_size(CLI::App& app, IVec2& size) {
 
 template <typename T>
 CLI::Option* add_integer(
-    CLI::App& app,
-    const std::string& name,
-    const std::string& doc,
-    T& target,
-    std::int64_t min,
+    CLI::App& app, const std::string& name, const std::string& doc, T& target, std::int64_t min,
     std::int64_t max) {
     return add_parsed(
-               app,
-               name,
-               doc,
-               target,
+               app, name, doc, target,
                [min, max](const std::string& text) { return parse_integer(text, min, max); })
         ->type_name("N");
 }
 
 template <typename T>
 CLI::Option* add_number(
-    CLI::App& app,
-    const std::string& name,
-    const std::string& doc,
-    T& target,
-    double min,
+    CLI::App& app, const std::string& name, const std::string& doc, T& target, double min,
     double max) {
     return add_parsed(
-               app,
-               name,
-               doc,
-               target,
+               app, name, doc, target,
                [min, max](const std::string& text) { return parse_number(text, min, max); })
         ->type_name("X");
 }
@@ -107,11 +93,7 @@ Result<std::string> parse_png_path(const std::string& text) {
 
 CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
     return add_integer(
-        app,
-        "--seed",
-        "of every random number, instead of the level's",
-        seed,
-        0,
+        app, "--seed", "of every random number, instead of the level's", seed, 0,
         std::numeric_limits<std::int64_t>::max());
 }
 
@@ -155,12 +137,8 @@ Command add_play(CLI::App& program, PlayOptions& options) {
            "rendered pixels a window pixel, 0.1 to 2, or auto: holds 60 frames a second")
         ->type_name("auto|X");
     add_integer(
-        *app,
-        "--headless-frames",
-        "write so many pictures along the camera path; no window",
-        options.headless_frames,
-        1,
-        10000);
+        *app, "--headless-frames", "write so many pictures along the camera path; no window",
+        options.headless_frames, 1, 10000);
     app->add_option("-o,--out", options.out, "folder for pictures and screenshots")
         ->type_name("FOLDER");
     app->footer(
@@ -190,12 +168,8 @@ Command add_render(CLI::App& program, RenderOptions& options) {
         ->default_str("60");
     add_seed(*app, options.seed);
     add_integer(
-        *app,
-        "--spp",
-        "samples a pixel of lens and shutter, for finals; without it, as played",
-        options.samples,
-        1,
-        65536);
+        *app, "--spp", "samples a pixel of lens and shutter, for finals; without it, as played",
+        options.samples, 1, 65536);
     add_parsed(*app, "--aov", "named layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
     add_assignments(*app, options.assignments);
@@ -448,10 +422,7 @@ bool explain_unknown_command(std::string_view word, const std::vector<Command>& 
     const std::string nearest = nearest_name(word, names);
     const std::string hint = nearest.empty() ? "" : fmt::format(", perhaps {}", nearest);
     fmt::print(
-        stderr,
-        "limn: found command \"{}\", expected one of {}{}\n",
-        word,
-        fmt::join(names, " "),
+        stderr, "limn: found command \"{}\", expected one of {}{}\n", word, fmt::join(names, " "),
         hint);
     return true;
 }

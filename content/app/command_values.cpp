@@ -26,9 +26,7 @@ Result<IVec2> parse_size(std::string_view text) {
         || size.x > kMaxImageSide || size.y > kMaxImageSide || size.x * size.y > kMaxImagePixels) {
         return fail(
             "found \"{}\", expected WIDTHxHEIGHT such as 1280x720, each 1 to {}, {} pixels at most",
-            text,
-            kMaxImageSide,
-            kMaxImagePixels);
+            text, kMaxImageSide, kMaxImagePixels);
     }
     return size;
 }
@@ -45,8 +43,7 @@ Result<FrameRange> parse_frame_range(std::string_view text) {
     if (!first_ok || !last_ok || range.first < 0 || range.last < range.first
         || range.last >= kMaxFrames) {
         return fail(
-            "found \"{}\", expected FIRST:LAST such as 0:99, 0 <= FIRST <= LAST < {}",
-            text,
+            "found \"{}\", expected FIRST:LAST such as 0:99, 0 <= FIRST <= LAST < {}", text,
             kMaxFrames);
     }
     return range;

@@ -73,8 +73,7 @@ Result<Loaded> load_picture(const std::string& path) {
         if (is_linear) {
             loaded.linear->pixels[i] = color;
             loaded.display.pixels[i] = {
-                display_from_linear(color.x),
-                display_from_linear(color.y),
+                display_from_linear(color.x), display_from_linear(color.y),
                 display_from_linear(color.z)};
         } else {
             loaded.display.pixels[i] = color;
@@ -86,9 +85,8 @@ Result<Loaded> load_picture(const std::string& path) {
 /// The row of the brightest pixel: the scanline that says most about highlights.
 int brightest_row(const ColorImage& image) {
     const auto brightest = std::max_element(
-        image.pixels.begin(), image.pixels.end(), [](const Vec3& a, const Vec3& b) {
-            return a.x + a.y + a.z < b.x + b.y + b.z;
-        });
+        image.pixels.begin(), image.pixels.end(),
+        [](const Vec3& a, const Vec3& b) { return a.x + a.y + a.z < b.x + b.y + b.z; });
     return static_cast<int>(brightest - image.pixels.begin()) / image.width;
 }
 
@@ -131,18 +129,12 @@ void print_table(const Comparison& numbers) {
         fmt::print("relative mse       {:.6g}\n", *numbers.relative_mse);
     }
     fmt::print(
-        "largest difference {:.6g} in channel {} at ({}, {})\n",
-        numbers.largest.difference,
-        "RGB"[numbers.largest.channel],
-        numbers.largest.pixel.x,
-        numbers.largest.pixel.y);
+        "largest difference {:.6g} in channel {} at ({}, {})\n", numbers.largest.difference,
+        "RGB"[numbers.largest.channel], numbers.largest.pixel.x, numbers.largest.pixel.y);
     fmt::print("color correctness  {:.6f}\n", numbers.color_correctness);
     fmt::print(
         "scanline {:<9} peak moves {} px, height x {:.4f}, roughness {:.4f} and {:.4f}\n",
-        numbers.row,
-        numbers.line.peak_shift,
-        numbers.line.peak_ratio,
-        numbers.line.roughness_a,
+        numbers.row, numbers.line.peak_shift, numbers.line.peak_ratio, numbers.line.roughness_a,
         numbers.line.roughness_b);
 }
 
@@ -198,13 +190,8 @@ Status run_compare(const CompareOptions& options) {
     }
     if (a->display.width != b->display.width || a->display.height != b->display.height) {
         return fail(
-            "{}: found {} x {} pixels, expected {} x {} as {} has",
-            options.b,
-            b->display.width,
-            b->display.height,
-            a->display.width,
-            a->display.height,
-            options.a);
+            "{}: found {} x {} pixels, expected {} x {} as {} has", options.b, b->display.width,
+            b->display.height, a->display.width, a->display.height, options.a);
     }
     const Comparison numbers = compare(*a, *b);
     options.json ? print_json(numbers) : print_table(numbers);

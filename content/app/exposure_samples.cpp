@@ -40,9 +40,7 @@ constexpr Directions van_der_corput() {
 /// S. Joe and F. Kuo, "Constructing Sobol sequences with better two-dimensional projections"
 /// (2008).
 constexpr std::array<Directions, kDimensions> kSobol = {
-    van_der_corput(),
-    make_directions(1, 0, {1, 0, 0}),
-    make_directions(2, 1, {1, 3, 0}),
+    van_der_corput(), make_directions(1, 0, {1, 0, 0}), make_directions(2, 1, {1, 3, 0}),
     make_directions(3, 1, {1, 3, 1})};
 
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {

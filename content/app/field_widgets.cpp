@@ -95,25 +95,18 @@ bool edit_floats(const FieldInfo& field, float* values, int count) {
     const WidgetRange range = widget_range(field, scale, largest);
     const char* format = number_format(scale, largest);
     const bool changed =
-        range.slider && count == 1 ? ImGui::SliderFloat(
-            "##value", shown.data(), range.min, range.max, format, ImGuiSliderFlags_AlwaysClamp)
-                                   : ImGui::DragScalarN(
-                                       "##value",
-                                       ImGuiDataType_Float,
-                                       shown.data(),
-                                       count,
-                                       range.speed,
-                                       &range.min,
-                                       &range.max,
-                                       format,
-                                       ImGuiSliderFlags_AlwaysClamp);
+        range.slider && count == 1
+            ? ImGui::SliderFloat(
+                "##value", shown.data(), range.min, range.max, format, ImGuiSliderFlags_AlwaysClamp)
+            : ImGui::DragScalarN(
+                "##value", ImGuiDataType_Float, shown.data(), count, range.speed, &range.min,
+                &range.max, format, ImGuiSliderFlags_AlwaysClamp);
     for (int i = 0; changed && i < count; ++i) {
         const float value = shown[static_cast<std::size_t>(i)] / scale;
         if (std::isfinite(value)) {
             // The way through degrees must not step over the field's own limits.
             values[i] = std::clamp(
-                value,
-                static_cast<float>(std::max(field.meta.min, -static_cast<double>(FLT_MAX))),
+                value, static_cast<float>(std::max(field.meta.min, -static_cast<double>(FLT_MAX))),
                 static_cast<float>(std::min(field.meta.max, static_cast<double>(FLT_MAX))));
         }
     }
@@ -135,8 +128,7 @@ bool edit_color(const FieldInfo& field, float* values, int count) {
         const float linear = i < 3 ? linear_from_srgb(value) : value;
         if (std::isfinite(linear)) {
             values[i] = std::clamp(
-                linear,
-                static_cast<float>(std::max(field.meta.min, -static_cast<double>(FLT_MAX))),
+                linear, static_cast<float>(std::max(field.meta.min, -static_cast<double>(FLT_MAX))),
                 static_cast<float>(std::min(field.meta.max, static_cast<double>(FLT_MAX))));
         }
     }
@@ -165,13 +157,7 @@ bool edit_integer(const FieldInfo& field, void* element) {
     const double max = std::min(field.meta.max, 1e15);
     const float speed = static_cast<float>(std::max(std::abs(value) * 0.005, 0.1));
     if (!ImGui::DragScalar(
-            "##value",
-            ImGuiDataType_Double,
-            &value,
-            speed,
-            &min,
-            &max,
-            "%.0f",
+            "##value", ImGuiDataType_Double, &value, speed, &min, &max, "%.0f",
             ImGuiSliderFlags_AlwaysClamp)) {
         return false;
     }
@@ -217,9 +203,7 @@ std::size_t asset_count(const Assets& assets, std::string_view kind) {
 }
 
 void format_asset(
-    std::array<char, 128>& label,
-    const Assets& assets,
-    std::string_view kind,
+    std::array<char, 128>& label, const Assets& assets, std::string_view kind,
     std::uint32_t index) {
     const std::string* name = asset_name(assets, kind, index);
     const auto result = name == nullptr ? fmt::format_to_n(label.data(), label.size() - 1, "none")

@@ -121,22 +121,13 @@ std::string describe(const HdrPicture& picture) {
     std::string text = fmt::format(
         "{}\n{} x {} pixels\nlog-average {:.4g}, mean color {:.4g} {:.4g} {:.4g}\n"
         "luminance {:.4g} .. {:.4g}, dynamic range {}\nwithout the outermost 0.1 % {}\n",
-        picture.path(),
-        picture.width(),
-        picture.height(),
-        s.log_average,
-        s.mean.x,
-        s.mean.y,
-        s.mean.z,
-        s.least,
-        s.largest,
-        range_text(s.least, s.largest),
+        picture.path(), picture.width(), picture.height(), s.log_average, s.mean.x, s.mean.y,
+        s.mean.z, s.least, s.largest, range_text(s.least, s.largest),
         range_text(s.clipped_least, s.clipped_largest));
     if (s.not_finite > 0) {
         text += fmt::format(
             "{} of {} pixels hold NaN or infinity: left out of the numbers, shown black or white\n",
-            s.not_finite,
-            s.pixels + s.not_finite);
+            s.not_finite, s.pixels + s.not_finite);
     }
     return text;
 }

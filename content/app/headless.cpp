@@ -10,11 +10,8 @@ Status check_picture_size(const gpu::Device& device, const IVec2& size) {
     const int most = device.caps().max_texture_size;
     if (size.x > most || size.y > most) {
         return fail(
-            "--size: found {}x{}, expected at most {} a side: {} can draw no more",
-            size.x,
-            size.y,
-            most,
-            device.caps().renderer);
+            "--size: found {}x{}, expected at most {} a side: {} can draw no more", size.x, size.y,
+            most, device.caps().renderer);
     }
     return Done{};
 }

@@ -86,9 +86,7 @@ void draw_key_cap(const char* key, float width) {
     const ImVec2 cap = {text_size.x + 2 * style.FramePadding.x, text_size.y + 2};
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(
-        at,
-        {at.x + cap.x, at.y + cap.y},
-        ImGui::GetColorU32(ImGuiCol_FrameBgHovered),
+        at, {at.x + cap.x, at.y + cap.y}, ImGui::GetColorU32(ImGuiCol_FrameBgHovered),
         style.FrameRounding);
     list->AddText({at.x + style.FramePadding.x, at.y + 1}, ImGui::GetColorU32(kHudAccent), key);
     ImGui::Dummy({width, cap.y});
@@ -177,20 +175,15 @@ void Hud::draw_status(const HudStatus& status) {
         }
         const double rate = status.frame_ms > 0.0 ? 1000.0 / status.frame_ms : 0.0;
         numbers_text(
-            style_,
-            kHudText,
+            style_, kHudText,
             format("{:.1f} fps   {:.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
         numbers_text(
-            style_,
-            kHudDim,
+            style_, kHudDim,
             status.render_size == status.window_size
                 ? format("{} x {}", status.window_size.x, status.window_size.y)
                 : format(
-                    "{} x {} shown at {} x {}{}",
-                    status.render_size.x,
-                    status.render_size.y,
-                    status.window_size.x,
-                    status.window_size.y,
+                    "{} x {} shown at {} x {}{}", status.render_size.x, status.render_size.y,
+                    status.window_size.x, status.window_size.y,
                     status.scale_auto ? " (auto)" : ""));
         if (*status.weather != '\0') {
             ImGui::TextColored(kHudText, "%s", status.weather);

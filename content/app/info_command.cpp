@@ -63,12 +63,8 @@ void print_assets(const Assets& assets) {
         const MeshData& mesh = assets.meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
         fmt::print(
-            "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n",
-            mesh.indices.size() / 3,
-            size.x,
-            size.y,
-            size.z,
-            mesh.name);
+            "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n", mesh.indices.size() / 3,
+            size.x, size.y, size.z, mesh.name);
     }
     print_rest(assets.meshes.size());
 
@@ -78,10 +74,8 @@ void print_assets(const Assets& assets) {
         const Material& material = assets.materials[i];
         fmt::print(
             "    {:<5}  metalness {:.2f}  roughness {:.2f}  {}\n",
-            kShading[static_cast<std::size_t>(material.shading)],
-            material.metalness,
-            material.roughness,
-            material.name);
+            kShading[static_cast<std::size_t>(material.shading)], material.metalness,
+            material.roughness, material.name);
     }
     print_rest(assets.materials.size());
 
@@ -117,13 +111,8 @@ Status print_scene(const std::string& file) {
         const Vec3 size = 2.0f * half_extent(scene->bounds);
         const Vec3 middle = center(scene->bounds);
         fmt::print(
-            "{:.3g} x {:.3g} x {:.3g} m about ({:.3g}, {:.3g}, {:.3g})\n",
-            size.x,
-            size.y,
-            size.z,
-            middle.x,
-            middle.y,
-            middle.z);
+            "{:.3g} x {:.3g} x {:.3g} m about ({:.3g}, {:.3g}, {:.3g})\n", size.x, size.y, size.z,
+            middle.x, middle.y, middle.z);
     }
     if (scene->duration > 0.0) {
         fmt::print("camera path of {:.1f} s\n", scene->duration);
@@ -141,10 +130,7 @@ Status print_exr(const std::string& file) {
         return image.error();
     }
     fmt::print(
-        "{}\nOpenEXR, {} x {} pixels, {} channels\n",
-        file,
-        image->width,
-        image->height,
+        "{}\nOpenEXR, {} x {} pixels, {} channels\n", file, image->width, image->height,
         image->channels.size());
     for (const ExrChannel& channel : image->channels) {
         float least = INFINITY;
@@ -154,11 +140,8 @@ Status print_exr(const std::string& file) {
             most = std::max(most, value);
         }
         fmt::print(
-            "    {:<16} {:<5} {:.6g} .. {:.6g}\n",
-            channel.name,
-            channel.half ? "half" : "float",
-            least,
-            most);
+            "    {:<16} {:<5} {:.6g} .. {:.6g}\n", channel.name, channel.half ? "half" : "float",
+            least, most);
     }
     for (const auto& [name, value] : image->metadata) {
         fmt::print("    {} = {}\n", name, value);
@@ -173,10 +156,7 @@ Status print_image(const std::string& file) {
     }
     static constexpr const char* kFormats[] = {"8 bit", "half", "float"};
     fmt::print(
-        "{}\n{} x {} pixels, {}\n",
-        file,
-        image->width,
-        image->height,
+        "{}\n{} x {} pixels, {}\n", file, image->width, image->height,
         kFormats[static_cast<std::size_t>(image->format)]);
     return Done{};
 }
@@ -188,8 +168,8 @@ Status run_info(const std::string& file) {
     if (ending == ".exr") {
         return print_exr(file);
     }
-    static constexpr std::array<std::string_view, 6> kImages = {
-        ".png", ".jpg", ".jpeg", ".bmp", ".webp", ".hdr"};
+    static constexpr std::array<std::string_view, 6> kImages = {".png", ".jpg",  ".jpeg",
+                                                                ".bmp", ".webp", ".hdr"};
     if (std::find(kImages.begin(), kImages.end(), ending) != kImages.end()) {
         return print_image(file);
     }

@@ -263,11 +263,7 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
 }
 
 void Inspector::edit_copy(
-    const HudStyle& style,
-    World& world,
-    Edit edit,
-    const ComponentInfo& info,
-    const void* value,
+    const HudStyle& style, World& world, Edit edit, const ComponentInfo& info, const void* value,
     const std::string& place) {
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
@@ -300,11 +296,7 @@ void Inspector::draw_resources(const HudStyle& style, World& world) {
             Edit edit;
             edit.kind = EditKind::Resource;
             edit_copy(
-                style,
-                world,
-                std::move(edit),
-                info,
-                std::as_const(world).find_resource(id),
+                style, world, std::move(edit), info, std::as_const(world).find_resource(id),
                 info.name);
         }
         ImGui::PopID();
@@ -325,10 +317,8 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
         const Material& material = assets->materials[i];
         ImGui::PushID(static_cast<int>(i));
         const ImVec4 swatch = {
-            std::sqrt(material.base_color.x),
-            std::sqrt(material.base_color.y),
-            std::sqrt(material.base_color.z),
-            1.0f};
+            std::sqrt(material.base_color.x), std::sqrt(material.base_color.y),
+            std::sqrt(material.base_color.z), 1.0f};
         const float side = ImGui::GetTextLineHeight();
         ImGui::ColorButton("##swatch", swatch, ImGuiColorEditFlags_NoTooltip, {side, side});
         ImGui::SameLine();

@@ -57,12 +57,8 @@ class Inspector {
     void add_rows(const Hierarchy& tree, Entity entity, int depth);
     /// Edits a copy of the value; on a change records it under `place` and gives it to the world.
     void edit_copy(
-        const HudStyle& style,
-        World& world,
-        Edit edit,
-        const ComponentInfo& info,
-        const void* value,
-        const std::string& place);
+        const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
+        const void* value, const std::string& place);
 
     UndoStack undo_;
     Entity selected_;

@@ -32,9 +32,7 @@ std::string range_or_unit(const FieldMeta& meta) {
 
 /// Adds the fields of `object`, those of structs in it with their path.
 void add_lines(
-    const std::vector<FieldInfo>& fields,
-    const void* object,
-    const std::string& prefix,
+    const std::vector<FieldInfo>& fields, const void* object, const std::string& prefix,
     std::vector<FieldLine>& lines) {
     for (const FieldInfo& field : fields) {
         const void* value = static_cast<const std::byte*>(object) + field.offset;
@@ -69,16 +67,8 @@ void print_component(const ComponentInfo& info) {
     }
     for (const FieldLine& line : lines) {
         fmt::print(
-            "    {:<{}}  {:<{}}  = {:<{}}  {:<{}}  {}\n",
-            line.path,
-            path,
-            line.type,
-            type,
-            line.value,
-            value,
-            line.range,
-            range,
-            line.doc);
+            "    {:<{}}  {:<{}}  = {:<{}}  {:<{}}  {}\n", line.path, path, line.type, type,
+            line.value, value, line.range, range, line.doc);
     }
     fmt::print("\n");
 }

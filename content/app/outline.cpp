@@ -32,8 +32,7 @@ void draw_box_outline(const RenderView& view, const Affine& transform, const Bou
     std::array<Vec4, 8> corners;  // bit 0, 1, 2 of the index: x, y, z of min or max
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Vec3 corner = {
-            (i & 1) != 0 ? box.max.x : box.min.x,
-            (i & 2) != 0 ? box.max.y : box.min.y,
+            (i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
             (i & 4) != 0 ? box.max.z : box.min.z};
         corners[i] = view.steady_from_world * Vec4(transform_point(transform, corner), 1.0f);
     }

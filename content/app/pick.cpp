@@ -115,9 +115,7 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
     }
     std::vector<Candidate> candidates;
     world.query<const WorldTransform, const MeshInstance, Optional<const Inflate>>().each(
-        [&](Entity entity,
-            const WorldTransform& transform,
-            const MeshInstance& instance,
+        [&](Entity entity, const WorldTransform& transform, const MeshInstance& instance,
             const Inflate* inflate) {
             if (instance.mesh.index >= assets->meshes.size()) {
                 return;
@@ -136,8 +134,7 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
                 .origin = transform_point(mesh_from_world, ray.origin),
                 .direction = transform_vector(mesh_from_world, ray.direction)};
             if (const auto enter = meet_box(
-                    candidate.origin,
-                    candidate.direction,
+                    candidate.origin, candidate.direction,
                     inflated(shape_bounds(mesh, candidate.posed), {candidate.inflate}))) {
                 candidate.enter = *enter;
                 candidates.push_back(std::move(candidate));

@@ -81,11 +81,8 @@ write_exr_picture(const std::string& path, const FrameOutput& frame, const Pictu
     exr.height = radiance.height;
     exr.metadata = notes;
     add_layer(
-        exr,
-        "",
-        std::string_view("RGBA").substr(0, static_cast<std::size_t>(radiance.channels)),
-        radiance.pixels,
-        false);
+        exr, "", std::string_view("RGBA").substr(0, static_cast<std::size_t>(radiance.channels)),
+        radiance.pixels, false);
     for (const AovOutput& aov : frame.aovs) {
         const gpu::FloatImage image = gpu::read_floats(*aov.texture);
         const std::string_view letters = layer_letters(aov.name);

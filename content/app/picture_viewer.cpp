@@ -26,8 +26,8 @@ constexpr float kEvStep = 0.5f;     // of a key press
 constexpr float kZoomStep = 1.15f;  // of a step of the wheel
 constexpr float kMostZoom = 64.0f;
 constexpr float kPanelWidth = 330.0f;  // in units of the layout
-constexpr const char* kCurves[] = {
-    "Neutral", "ACES", "Linear", "Reinhard", "Dodge and burn", "Knee"};
+constexpr const char* kCurves[] = {"Neutral",  "ACES",           "Linear",
+                                   "Reinhard", "Dodge and burn", "Knee"};
 constexpr const char* kMetering[] = {"Manual", "Key", "Auto"};
 
 void row(const char* name, const std::string& value) {
@@ -44,10 +44,8 @@ std::string range_row(double least, double largest) {
 }  // namespace
 
 PictureViewer::PictureViewer(
-    std::unique_ptr<Window> window,
-    std::unique_ptr<gpu::Device> device,
-    std::unique_ptr<HdrPicture> picture,
-    const Exposure& exposure)
+    std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
+    std::unique_ptr<HdrPicture> picture, const Exposure& exposure)
     : window_(std::move(window)), device_(std::move(device)), picture_(std::move(picture)),
       hud_(std::make_unique<Hud>(*window_)), exposure_(exposure), initial_(exposure) {}
 
@@ -244,11 +242,7 @@ void PictureViewer::draw_sliders() {
     ImGui::SliderFloat("defog", &exposure_.defog, 0.0f, 0.01f, "%.4f", kClamp);
     if (exposure_.curve == ToneCurve::Knee) {
         ImGui::SliderFloat(
-            "contrast",
-            &exposure_.contrast,
-            0.0f,
-            10.0f,
-            "%.3f",
+            "contrast", &exposure_.contrast, 0.0f, 10.0f, "%.3f",
             kClamp | ImGuiSliderFlags_Logarithmic);
     }
     if (exposure_.curve == ToneCurve::Reinhard) {

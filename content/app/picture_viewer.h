@@ -27,10 +27,8 @@ class PictureViewer {
 
   private:
     PictureViewer(
-        std::unique_ptr<Window> window,
-        std::unique_ptr<gpu::Device> device,
-        std::unique_ptr<HdrPicture> picture,
-        const Exposure& exposure);
+        std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
+        std::unique_ptr<HdrPicture> picture, const Exposure& exposure);
 
     void handle_key(const KeyPress& press);
     void move_picture(const WindowEvents& events);

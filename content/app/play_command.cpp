@@ -48,10 +48,8 @@ Status play_headless(const PlayOptions& options, bool no_display) {
     }
     fmt::print(
         "{}Rendering {} pictures along the camera path of {} on {}.\n",
-        no_display ? "There is no display: no window is opened. " : "",
-        options.headless_frames,
-        stage.scene.name,
-        headless->device->caps().renderer);
+        no_display ? "There is no display: no window is opened. " : "", options.headless_frames,
+        stage.scene.name, headless->device->caps().renderer);
     std::fflush(stdout);
 
     const double duration = stage.scene.duration > 0.0 ? stage.scene.duration : kStillDuration;
@@ -60,8 +58,7 @@ Status play_headless(const PlayOptions& options, bool no_display) {
         const double time = duration * i / options.headless_frames;
         const float alpha = advance_stage(stage, time);
         const RenderView view = make_render_view(
-            stage.world,
-            stage.scene.camera,
+            stage.world, stage.scene.camera,
             {.width = options.size.x,
              .height = options.size.y,
              .alpha = alpha,

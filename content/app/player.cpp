@@ -102,8 +102,7 @@ std::string describe_weather(const World& world) {
     const float from = weather->wind_direction + kPi;
     const int point = static_cast<int>(std::lround(from / (kPi / 4))) % 8;
     std::string line = fmt::format(
-        "wind {:.1f} m/s from {}",
-        weather->wind_speed,
+        "wind {:.1f} m/s from {}", weather->wind_speed,
         kPoints[static_cast<std::size_t>((point + 8) % 8)]);
     if (weather->rain > 0) {
         line += fmt::format(", rain {:.0f} %", 100 * weather->rain);
@@ -151,11 +150,7 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
         const IVec2 size = render_size(player->scale_, window_size);
         log_info(
             "{} draws on the processor: {} x {} pixels, shown at {} x {}",
-            player->device_->caps().renderer,
-            size.x,
-            size.y,
-            window_size.x,
-            window_size.y);
+            player->device_->caps().renderer, size.x, size.y, window_size.x, window_size.y);
     }
     return player;
 }
@@ -336,11 +331,9 @@ Input Player::read_input(const WindowEvents& events) {
         const auto turn = [&axis](int plus, int minus) { return axis(plus, minus, plus, minus); };
         input.lens = {
             turn(GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT_BRACKET),
-            turn(GLFW_KEY_EQUAL, GLFW_KEY_MINUS),
-            turn(GLFW_KEY_0, GLFW_KEY_9)};
+            turn(GLFW_KEY_EQUAL, GLFW_KEY_MINUS), turn(GLFW_KEY_0, GLFW_KEY_9)};
         input.weather = {
-            turn(GLFW_KEY_L, GLFW_KEY_J),
-            turn(GLFW_KEY_I, GLFW_KEY_K),
+            turn(GLFW_KEY_L, GLFW_KEY_J), turn(GLFW_KEY_I, GLFW_KEY_K),
             turn(GLFW_KEY_O, GLFW_KEY_U)};
         input.fast =
             window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
@@ -373,8 +366,7 @@ void Player::cycle_camera() {
         const Vec3 middle = is_empty(bounds) ? Vec3(0) : center(bounds);
         camera_.orbit.target = inspector_.selected();
         start_orbit(
-            camera_,
-            camera_.pose,
+            camera_, camera_.pose,
             entity_middle(stage_->world, camera_.orbit.target).value_or(middle));
         break;
     }

@@ -41,8 +41,7 @@ class Player {
     using Clock = std::chrono::steady_clock;
 
     Player(
-        std::unique_ptr<Window> window,
-        std::unique_ptr<gpu::Device> device,
+        std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
         const PlayOptions& options);
 
     /// Replaces the level; the old one stays if the new one cannot be loaded.

@@ -57,10 +57,8 @@ void name_cell(std::string_view name, double share) {
     const float width = ImGui::GetContentRegionAvail().x;
     const float length = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
     ImGui::GetWindowDrawList()->AddRectFilled(
-        at,
-        {at.x + length, at.y + ImGui::GetTextLineHeight()},
-        ImGui::GetColorU32(ImGuiCol_HeaderHovered),
-        2.0f);
+        at, {at.x + length, at.y + ImGui::GetTextLineHeight()},
+        ImGui::GetColorU32(ImGuiCol_HeaderHovered), 2.0f);
     ImGui::TextUnformatted(name.data(), name.data() + name.size());
 }
 
@@ -135,29 +133,22 @@ void ProfilerPanel::draw_graph(const HudStyle& style) {
         const float x = at.x + size.x - static_cast<float>(count - i) * step;
         const ImVec4& color = ms > 2.0 * all.median ? kHudBad : kHudAccent;
         list->AddRectFilled(
-            {x, at.y + size.y - height_of(ms)},
-            {x + std::max(step - 0.5f, 1.0f), at.y + size.y},
+            {x, at.y + size.y - height_of(ms)}, {x + std::max(step - 0.5f, 1.0f), at.y + size.y},
             ImGui::GetColorU32({color.x, color.y, color.z, 0.75f}));
     }
     const float line = at.y + size.y - height_of(kGoodFrame);
     list->AddLine({at.x, line}, {at.x + size.x, line}, ImGui::GetColorU32(ImGuiCol_Separator));
     const ImVec2 label = ImGui::CalcTextSize("60/s");
     list->AddRectFilled(
-        {at.x, line - label.y},
-        {at.x + label.x + 8, line},
-        ImGui::GetColorU32(ImGuiCol_PopupBg),
+        {at.x, line - label.y}, {at.x + label.x + 8, line}, ImGui::GetColorU32(ImGuiCol_PopupBg),
         3.0f);
     list->AddText({at.x + 4, line - label.y}, ImGui::GetColorU32(kHudDim), "60/s");
     ImGui::Dummy(size);
 
     std::array<char, 96> text;
     *fmt::format_to_n(
-         text.data(),
-         text.size() - 1,
-         "median {:.2f}  p95 {:.2f}  max {:.2f} ms",
-         all.median,
-         all.p95,
-         all.max)
+         text.data(), text.size() - 1, "median {:.2f}  p95 {:.2f}  max {:.2f} ms", all.median,
+         all.p95, all.max)
          .out = '\0';
     ImGui::PushFont(style.numbers);
     ImGui::TextUnformatted(text.data());

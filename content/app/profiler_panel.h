@@ -29,9 +29,7 @@ class ProfilerPanel {
   public:
     void add_frame(const FrameCost& cost);
     void draw(
-        const HudStyle& style,
-        const World& world,
-        const Schedule& schedule,
+        const HudStyle& style, const World& world, const Schedule& schedule,
         const FrameGraph& graph);
 
     /// Of the last second or so [ms].

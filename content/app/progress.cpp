@@ -42,16 +42,8 @@ void Progress::update(int done) {
         left = fmt::format(" {:.0f} s left", elapsed / share * (1.0 - share));
     }
     const std::string line = fmt::format(
-        "{}{} {} of {} [{:#>{}}{:->{}}]{}",
-        kClearLine,
-        what_,
-        done,
-        total_,
-        "",
-        filled,
-        "",
-        kBarWidth - filled,
-        left);
+        "{}{} {} of {} [{:#>{}}{:->{}}]{}", kClearLine, what_, done, total_, "", filled, "",
+        kBarWidth - filled, left);
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }

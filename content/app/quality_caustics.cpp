@@ -48,8 +48,7 @@ class Pool {
                 .depth = kDepth,
                 .absorption = Vec3(1e-6f),
                 .scattering = Vec3(0)},
-            Caustics{},
-            WorldTransform{placed_at({0, 0, 0})});
+            Caustics{}, WorldTransform{placed_at({0, 0, 0})});
     }
 
     void lay(const Vec3& middle, float half) {
@@ -66,8 +65,7 @@ class Pool {
         const auto width = static_cast<std::size_t>(image.width);
         for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
             std::copy_n(
-                rows.end() - static_cast<std::ptrdiff_t>((y + 1) * width),
-                width,
+                rows.end() - static_cast<std::ptrdiff_t>((y + 1) * width), width,
                 image.pixels.begin() + static_cast<std::ptrdiff_t>(y * width));
         }
         return image;
@@ -215,10 +213,7 @@ void measure_photons(HeadlessRenderer& headless, QualityReport& report) {
          .depth = kDepth,
          .index = static_cast<double>(pool.water().refractive_index),
          .boxes = {}},
-        surface_of(table),
-        pool.to_sun(),
-        1,
-        1'000'000);
+        surface_of(table), pool.to_sun(), 1, 1'000'000);
     double received = 0;
     const gpu::FloatImage whole = pool.map();
     for (const float texel : whole.pixels) {
@@ -227,20 +222,14 @@ void measure_photons(HeadlessRenderer& headless, QualityReport& report) {
     received *= square(2 * kRim * static_cast<double>(kHalf) / whole.width);
     report.rows.push_back(
         {"light that arrives, off from what waves let in",
-         100 * std::abs(received / all.entered - 1),
-         QualityBound::AtMost,
-         1,
-         "%"});
+         100 * std::abs(received / all.entered - 1), QualityBound::AtMost, 1, "%"});
 
     const oracle::CausticLight exact = oracle::trace_photons(
         {.half = glm::dvec2(kHalf),
          .depth = kDepth,
          .index = static_cast<double>(pool.water().refractive_index),
          .boxes = {}},
-        surface_of(table),
-        pool.to_sun(),
-        kCells,
-        kPhotons);
+        surface_of(table), pool.to_sun(), kCells, kPhotons);
     double before = 0;
     for (const int spacing : {8, 4, 2}) {
         pool.world().get<Caustics>(pool.entity()).spacing = spacing;
@@ -248,10 +237,8 @@ void measure_photons(HeadlessRenderer& headless, QualityReport& report) {
         const double error = relative_error(found, exact);
         report.rows.push_back(
             {fmt::format("rays every {} of 512 texels: light on the floor, mean error", spacing),
-             error,
-             spacing == 8 ? QualityBound::None : QualityBound::AtMost,
-             spacing == 2 ? std::min(before, 3.0) : before,
-             "%"});
+             error, spacing == 8 ? QualityBound::None : QualityBound::AtMost,
+             spacing == 2 ? std::min(before, 3.0) : before, "%"});
         before = error;
         if (spacing == 2) {
             report.pictures.push_back(
@@ -289,10 +276,7 @@ void measure_ripple_caustic(HeadlessRenderer& headless, QualityReport& report) {
             std::hypot(x - static_cast<double>(place), z + 0.5 * static_cast<double>(place)));
     }
     report.rows.push_back(
-        {"a ripple at three places: its caustic beside it by",
-         worst,
-         QualityBound::AtMost,
-         0.02,
+        {"a ripple at three places: its caustic beside it by", worst, QualityBound::AtMost, 0.02,
          "m"});
 }
 
@@ -307,12 +291,7 @@ void measure_mirrored(HeadlessRenderer& headless, QualityReport& report) {
         {.half = glm::dvec2(kHalf),
          .index = static_cast<double>(pool.water().refractive_index),
          .boxes = {}},
-        surface_of(table),
-        pool.to_sun(),
-        1.5,
-        glm::dvec2(0),
-        1,
-        1'000'000);
+        surface_of(table), pool.to_sun(), 1.5, glm::dvec2(0), 1, 1'000'000);
     const gpu::FloatImage atlas = pool.map();
     double received = 0;
     for (int z = 0; z < kSide; ++z) {
@@ -324,10 +303,7 @@ void measure_mirrored(HeadlessRenderer& headless, QualityReport& report) {
     received *= square(2 * static_cast<double>(kHalf) / inner);
     report.rows.push_back(
         {"light that waves mirror, that arrives above, off from what they should",
-         100 * std::abs(received / exact.entered - 1),
-         QualityBound::AtMost,
-         1,
-         "%"});
+         100 * std::abs(received / exact.entered - 1), QualityBound::AtMost, 1, "%"});
 }
 
 void measure_hole(HeadlessRenderer& headless, QualityReport& report) {
@@ -339,15 +315,10 @@ void measure_hole(HeadlessRenderer& headless, QualityReport& report) {
     pool.lay({0, kStands, 0}, 0.2f);
     report.rows.push_back(
         {"behind what stands in the water: light that is left",
-         100 * pool.floor_below(in_hole) / open,
-         QualityBound::AtMost,
-         0.1,
-         "%"});
+         100 * pool.floor_below(in_hole) / open, QualityBound::AtMost, 0.1, "%"});
     report.rows.push_back(
         {"beside that: light that is left",
-         100 * pool.floor_below(in_hole + Vec3(0.35f, 0, 0)) / open,
-         QualityBound::AtLeast,
-         98,
+         100 * pool.floor_below(in_hole + Vec3(0.35f, 0, 0)) / open, QualityBound::AtLeast, 98,
          "%"});
 }
 

@@ -26,9 +26,7 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
     if (chosen.empty()) {
         const std::string nearest = nearest_name(name, names);
         return fail(
-            "found effect \"{}\", expected one of {}{}",
-            name,
-            join_text(names, " "),
+            "found effect \"{}\", expected one of {}{}", name, join_text(names, " "),
             nearest.empty() ? "" : ", perhaps " + nearest);
     }
     return chosen;

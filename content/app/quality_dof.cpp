@@ -37,8 +37,7 @@ RenderView lens_view(const Vec3& eye, const Vec3& target, const Lens& lens) {
 /// The lens that most is measured with, looking along -z.
 RenderView fast_view() {
     return lens_view(
-        {0, 0, 0},
-        {0, 0, -1},
+        {0, 0, 0}, {0, 0, -1},
         {.f_number = kFNumber,
          .focus_distance = kFocus,
          .sensor_height = kFilm,
@@ -141,10 +140,7 @@ DiscErrors measure_discs(HeadlessRenderer& headless, bool wall, QualityReport& r
         if (wall) {
             report.rows.push_back(
                 {fmt::format("disc at {} m, diameter ({:.2f} px by the law)", distance, wanted),
-                 found,
-                 QualityBound::None,
-                 0,
-                 "px"});
+                 found, QualityBound::None, 0, "px"});
         }
         if (wall && (distance == 0.7 || distance == 30.0)) {
             const gpu::FloatImage truth = sampled(headless, scene, view);
@@ -161,18 +157,12 @@ void measure_law(HeadlessRenderer& headless, QualityReport& report) {
     const DiscErrors wall = measure_discs(headless, true, report);
     const DiscErrors night = measure_discs(headless, false, report);
     const QualityRow rows[] = {
-        {"largest difference from the diameter law",
-         wall.diameter,
-         QualityBound::AtMost,
-         0.5,
+        {"largest difference from the diameter law", wall.diameter, QualityBound::AtMost, 0.5,
          "px"},
         {"the same of the 256 samples themselves", wall.samples, QualityBound::None, 0, "px"},
         {"light that a disc gains or loses", 100 * wall.light, QualityBound::AtMost, 1, "%"},
-        {"difference from the law, of lamps before the night",
-         night.diameter,
-         QualityBound::AtMost,
-         0.5,
-         "px"},
+        {"difference from the law, of lamps before the night", night.diameter, QualityBound::AtMost,
+         0.5, "px"},
         {"light that those gain or lose", 100 * night.light, QualityBound::AtMost, 2, "%"}};
     report.rows.insert(report.rows.end(), std::begin(rows), std::end(rows));
 }
@@ -224,10 +214,7 @@ void measure_spread(HeadlessRenderer& headless, QualityReport& report) {
     const gpu::FloatImage effect = picture(headless, scene, view);
     report.rows.push_back(
         {"light outside the outline of a near card, from that of the samples",
-         100 * std::abs(outside(effect) / outside(truth) - 1),
-         QualityBound::AtMost,
-         5,
-         "%"});
+         100 * std::abs(outside(effect) / outside(truth) - 1), QualityBound::AtMost, 5, "%"});
     report.pictures.push_back({"a near card", displayed(effect), displayed(truth)});
 }
 
@@ -271,10 +258,7 @@ void furnish_night(QualityScene& scene) {
 }
 
 void measure_scene(
-    HeadlessRenderer& headless,
-    QualityScene& scene,
-    const RenderView& view,
-    const char* name,
+    HeadlessRenderer& headless, QualityScene& scene, const RenderView& view, const char* name,
     QualityReport& report) {
     const ColorImage truth = displayed(sampled(headless, scene, view));
     ColorImage effect = displayed(picture(headless, scene, view));

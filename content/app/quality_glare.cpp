@@ -154,16 +154,12 @@ void measure_streaks(GlareBench& bench, QualityReport& report) {
             .strength = 1, .threshold = 1, .blades = blades, .length = 0.45f, .rotation = 0.2f};
         const Added added = added_to(lamp, bench.glaring(lamp, glare));
         worst = std::max(
-            worst,
-            angles_off(
-                streak_angles(added, 20, 44),
-                oracle::diffraction_angles(blades, static_cast<double>(glare.rotation))));
+            worst, angles_off(
+                       streak_angles(added, 20, 44),
+                       oracle::diffraction_angles(blades, static_cast<double>(glare.rotation))));
     }
     report.rows.push_back(
-        {"glare: streaks, from where 3 to 9 blades diffract light",
-         worst,
-         QualityBound::AtMost,
-         1,
+        {"glare: streaks, from where 3 to 9 blades diffract light", worst, QualityBound::AtMost, 1,
          "degrees"});
 }
 
@@ -226,44 +222,29 @@ void measure_profile(GlareBench& bench, QualityReport& report) {
     report.rows.push_back(
         {"glare: light of a star, from what was asked", lost, QualityBound::AtMost, 1, "%"});
     report.rows.push_back(
-        {"glare: light along a streak, from its closed form",
-         profile,
-         QualityBound::AtMost,
-         5,
+        {"glare: light along a streak, from its closed form", profile, QualityBound::AtMost, 5,
          "%"});
     report.rows.push_back(
-        {"glare: power of the distance that it falls with, from 2",
-         power,
-         QualityBound::AtMost,
-         0.3,
-         ""});
+        {"glare: power of the distance that it falls with, from 2", power, QualityBound::AtMost,
+         0.3, ""});
 }
 
 /// A picture with stars beside that of the oracle.
 void compare_stars(
-    GlareBench& bench,
-    const std::string& name,
-    const LightPicture& sharp,
-    const Glare& glare,
-    const Exposure& exposure,
-    QualityReport& report) {
+    GlareBench& bench, const std::string& name, const LightPicture& sharp, const Glare& glare,
+    const Exposure& exposure, QualityReport& report) {
     const LightPicture exact = oracle::add_stars(sharp, star_of(glare), kWidth);
     QualityPicture picture = {
         fmt::format("glare: {}, {} blades", name, glare.blades),
-        bench.developed(bench.glaring(sharp, glare), exposure),
-        bench.developed(exact, exposure)};
+        bench.developed(bench.glaring(sharp, glare), exposure), bench.developed(exact, exposure)};
     report.rows.push_back(
         {fmt::format("glare: {}, as shown, beside the oracle", name),
-         psnr(picture.oracle, picture.effect),
-         QualityBound::AtLeast,
+         psnr(picture.oracle, picture.effect), QualityBound::AtLeast,
          36,  // at half the size lines are up to half a pixel beside their lamps
          "dB"});
     report.rows.push_back(
         {fmt::format("glare: {}, the same without it", name),
-         psnr(picture.oracle, bench.developed(sharp, exposure)),
-         QualityBound::None,
-         0,
-         "dB"});
+         psnr(picture.oracle, bench.developed(sharp, exposure)), QualityBound::None, 0, "dB"});
     report.pictures.push_back(std::move(picture));
 }
 

@@ -144,22 +144,16 @@ Status measure_level(
 
     QualityPicture picture = {
         fmt::format("{}, strength {}", level, glow.strength),
-        bench.developed(made, opened->exposure),
-        bench.developed(exact, opened->exposure)};
+        bench.developed(made, opened->exposure), bench.developed(exact, opened->exposure)};
     const double off = percent_off(oracle::sum_of(made).y, oracle::sum_of(sharp).y);
     report.rows.push_back(
         {fmt::format("{}: light made or lost", level), off, QualityBound::AtMost, 0.5, "%"});
     report.rows.push_back(
         {fmt::format("{}: as shown, beside the oracle", level),
-         psnr(picture.oracle, picture.effect),
-         QualityBound::AtLeast,
-         40,
-         "dB"});
+         psnr(picture.oracle, picture.effect), QualityBound::AtLeast, 40, "dB"});
     report.rows.push_back(
         {fmt::format("{}: the same without glow", level),
-         psnr(picture.oracle, bench.developed(sharp, opened->exposure)),
-         QualityBound::None,
-         0,
+         psnr(picture.oracle, bench.developed(sharp, opened->exposure)), QualityBound::None, 0,
          "dB"});
     report.pictures.push_back(std::move(picture));
     return Done{};

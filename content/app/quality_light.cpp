@@ -54,9 +54,7 @@ LightPicture make_dot(const IVec2& size, const dvec2& place, double light) {
 }
 
 ColorImage develop_light(
-    FrameGraph& graph,
-    Developer& developer,
-    const LightPicture& picture,
+    FrameGraph& graph, Developer& developer, const LightPicture& picture,
     const Exposure& exposure) {
     const gpu::Texture radiance = upload_light(picture);
     Exposure steady = exposure;

@@ -25,9 +25,7 @@ make_dot(const IVec2& size, const glm::dvec2& place, double light);
 
 /// As a screen shows it, without dither.
 [[nodiscard]] ColorImage develop_light(
-    FrameGraph& graph,
-    Developer& developer,
-    const oracle::LightPicture& picture,
+    FrameGraph& graph, Developer& developer, const oracle::LightPicture& picture,
     const Exposure& exposure = {});
 
 /// A level after its first step.

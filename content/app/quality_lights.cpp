@@ -116,10 +116,7 @@ gpu::FloatImage oracle_picture(const std::vector<Lamp>& lamps, const RenderView&
 
 void measure_pictures(HeadlessRenderer& headless, QualityReport& report) {
     constexpr const char* kMethods[kLightMethods] = {
-        "clustered",
-        "a full-screen pass a light",
-        "light volumes",
-        "objects with their lights",
+        "clustered", "a full-screen pass a light", "light volumes", "objects with their lights",
         "lights with their objects"};
     const std::vector<Lamp> lamps = make_lamps();
     QualityScene scene;
@@ -141,9 +138,7 @@ void measure_pictures(HeadlessRenderer& headless, QualityReport& report) {
         report.rows.push_back(
             {fmt::format("{} lights, {}: largest difference on screen", kLamps, kMethods[method]),
              255.0 * static_cast<double>(largest_difference(found, expected).difference),
-             QualityBound::AtMost,
-             1,
-             "/ 255"});
+             QualityBound::AtMost, 1, "/ 255"});
         if (method == 0) {
             report.pictures.push_back(
                 {fmt::format("{} lights by clusters", kLamps), found, expected});
@@ -166,8 +161,7 @@ bool find_pixel(const RenderView& view, const Vec3& point, Vec3& pixel) {
     const Vec4 clip = view.clip_from_world * Vec4(point, 1);
     pixel = {
         (clip.x / clip.w * 0.5f + 0.5f) * static_cast<float>(view.width),
-        (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(view.height),
-        clip.w};
+        (clip.y / clip.w * 0.5f + 0.5f) * static_cast<float>(view.height), clip.w};
     return clip.w >= view.near && std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w;
 }
 
@@ -183,10 +177,7 @@ Status measure_lists(HeadlessRenderer& headless, QualityReport& report) {
     int missing = 0;
     while (tests < kRandomTests || reaching < kReachingTests) {
         const RenderView view = quality_view(
-            numbers.in_cube(15),
-            numbers.in_cube(15),
-            333,
-            190,
+            numbers.in_cube(15), numbers.in_cube(15), 333, 190,
             radians(70 + 40 * numbers.signed_unit()));
         LightList lights;
         for (int i = 0; i < kLightsAtOnce; ++i) {
@@ -214,9 +205,7 @@ Status measure_lists(HeadlessRenderer& headless, QualityReport& report) {
     }
     report.rows.push_back(
         {fmt::format("lights that reach a point and are not in its list, of {} tests", tests),
-         static_cast<double>(missing),
-         QualityBound::AtMost,
-         0});
+         static_cast<double>(missing), QualityBound::AtMost, 0});
     report.rows.push_back(
         {"lights in a point's list, for each that reaches it",
          static_cast<double>(listed_tests) / reaching});

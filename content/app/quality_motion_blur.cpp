@@ -61,9 +61,7 @@ struct MovingScene : QualityScene {
     }
     [[nodiscard]] RenderView view_at(double moment) const {
         return make_render_view(
-            {.fov_y = fov_y, .near = 0.05f},
-            camera(moment),
-            camera(moment - 1),
+            {.fov_y = fov_y, .near = 0.05f}, camera(moment), camera(moment - 1),
             {.width = kWidth, .height = kHeight});
     }
 };
@@ -167,8 +165,7 @@ void furnish_crossing(MovingScene& scene) {
     scene.move(box, red, straight({-0.3f, 1.1f, 0.4f}, {0.7f, 0, 0}));
     scene.move(box, blue, straight({0.5f, 0.8f, -0.6f}, {0, 0.8f, 0}));
     scene.move(
-        scene.add(make_sphere({.radius = 0.4f, .segments = 32, .rings = 16})),
-        blue,
+        scene.add(make_sphere({.radius = 0.4f, .segments = 32, .rings = 16})), blue,
         straight({-1.4f, 1.4f, -1}, {0.4f, -0.5f, 0}));
 }
 
@@ -188,14 +185,12 @@ void furnish_wheel(MovingScene& scene) {
         };
     };
     scene.move(
-        scene.add(make_torus({.radius = 0.9f, .tube = 0.15f, .segments = 64, .sides = 16})),
-        tire,
+        scene.add(make_torus({.radius = 0.9f, .tube = 0.15f, .segments = 64, .sides = 16})), tire,
         roll(posed({0, 0, 0}, glm::angleAxis(radians(90.0f), Vec3(1, 0, 0)))));
     const MeshId bar = scene.add(make_box({.size = {1.75f, 0.12f, 0.08f}}));
     for (int i = 0; i < 3; ++i) {
         scene.move(
-            bar,
-            spoke,
+            bar, spoke,
             roll(posed(
                 {0, 0, 0}, glm::angleAxis(radians(60.0f * static_cast<float>(i)), Vec3(0, 0, 1)))));
     }
@@ -254,8 +249,7 @@ void furnish_morph(MovingScene& scene) {
     }
     ball.morphs = {std::move(flat), std::move(lean)};
     const Entity entity = scene.move(
-        scene.add(std::move(ball)),
-        tiled(scene, {0.95f, 0.5f, 0.2f}, {0.35f, 0.1f, 0.1f}, 4),
+        scene.add(std::move(ball)), tiled(scene, {0.95f, 0.5f, 0.2f}, {0.35f, 0.1f, 0.1f}, 4),
         still(posed({0, 1, 0})));
     scene.world.add(entity, MorphWeights{});
     scene.world.add(entity, Deformed{entity, {}, 0, Skinning::Linear});
@@ -331,17 +325,11 @@ void measure_scene(
     const ColorImage truth = displayed(accumulate(headless, scene));
     ColorImage effect = displayed(blur(headless, scene));
     report.rows.push_back(
-        {fmt::format("{}, PSNR", wanted.name),
-         psnr(effect, truth),
-         QualityBound::AtLeast,
-         kLeastPsnr,
-         "dB"});
+        {fmt::format("{}, PSNR", wanted.name), psnr(effect, truth), QualityBound::AtLeast,
+         kLeastPsnr, "dB"});
     report.rows.push_back(
-        {fmt::format("{}, PSNR of the sharp picture", wanted.name),
-         psnr(sharp, truth),
-         QualityBound::None,
-         0,
-         "dB"});
+        {fmt::format("{}, PSNR of the sharp picture", wanted.name), psnr(sharp, truth),
+         QualityBound::None, 0, "dB"});
     report.pictures.push_back({wanted.name, std::move(effect), truth});
 }
 
@@ -373,17 +361,11 @@ void measure_smear(HeadlessRenderer& headless, QualityReport& report) {
     }
     const double share = 100 * outside / std::max(smeared, 1.0);
     report.rows.push_back(
-        {"smear outside the silhouette, from half",
-         std::abs(share - 50),
-         QualityBound::AtMost,
-         3,
+        {"smear outside the silhouette, from half", std::abs(share - 50), QualityBound::AtMost, 3,
          "%"});
     report.rows.push_back(
-        {"light that a smear gains or loses",
-         100 * std::abs(light / sharp_light - 1),
-         QualityBound::AtMost,
-         1,
-         "%"});
+        {"light that a smear gains or loses", 100 * std::abs(light / sharp_light - 1),
+         QualityBound::AtMost, 1, "%"});
 }
 
 }  // namespace

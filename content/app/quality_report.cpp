@@ -109,9 +109,7 @@ Result<std::string> image_tag(const ColorImage& image, std::string_view caption)
     }
     return fmt::format(
         "<div><img src=\"data:image/png;base64,{}\" alt=\"{}\"><small>{}</small></div>\n",
-        base64(*png),
-        caption,
-        caption);
+        base64(*png), caption, caption);
 }
 
 Result<std::string> figure(const QualityPicture& picture) {
@@ -154,10 +152,7 @@ std::string quality_table(std::span<const MeasuredQuality> measured) {
         text += fmt::format("{}: against {}\n", one.effect->name, one.effect->oracle);
         for (const QualityRow& row : one.report.rows) {
             text += fmt::format(
-                "  {:<{}}  {:>14}  {:<16}{}\n",
-                row.name,
-                width,
-                number_text(row.found, row.unit),
+                "  {:<{}}  {:>14}  {:<16}{}\n", row.name, width, number_text(row.found, row.unit),
                 limit_text(row),
                 row.bound == QualityBound::None ? ""
                 : holds(row)                    ? "holds"
@@ -197,24 +192,20 @@ quality_html(std::span<const MeasuredQuality> measured, std::string_view gl_rend
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Limn: "
         "quality</title>\n<style>{}</style></head><body>\n<h1>Limn: effects beside their "
         "oracles</h1>\n<p>Written by <code>limn quality --html</code>; drawn by {}.</p>\n",
-        kStyle,
-        escaped(gl_renderer));
+        kStyle, escaped(gl_renderer));
     for (const MeasuredQuality& one : measured) {
         html += fmt::format(
             "<h2 id=\"{0}\">{0}</h2>\n<p>Against {1}.</p>\n<table><tr><th>measured</th><th>found"
             "</th><th>must be</th><th></th></tr>\n",
-            escaped(one.effect->name),
-            escaped(one.effect->oracle));
+            escaped(one.effect->name), escaped(one.effect->oracle));
         for (const QualityRow& row : one.report.rows) {
             const char* verdict = row.bound == QualityBound::None ? "<td></td>"
                                   : holds(row)                    ? "<td class=\"yes\">holds</td>"
                                                : "<td class=\"no\">does not hold</td>";
             html += fmt::format(
                 "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>{}</tr>\n",
-                escaped(row.name),
-                escaped(number_text(row.found, row.unit)),
-                escaped(limit_text(row)),
-                verdict);
+                escaped(row.name), escaped(number_text(row.found, row.unit)),
+                escaped(limit_text(row)), verdict);
         }
         html += "</table>\n";
         for (const QualityPicture& picture : one.report.pictures) {

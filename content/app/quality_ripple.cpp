@@ -166,10 +166,7 @@ class Court {
         const auto* exposure = stage_.world.find_resource<Exposure>();
         graph_.begin_frame();
         const TextureId display = develop(
-            graph_,
-            developer_,
-            exposure != nullptr ? *exposure : Exposure{},
-            std::nullopt,
+            graph_, developer_, exposure != nullptr ? *exposure : Exposure{}, std::nullopt,
             graph_.import("radiance", radiance));
         graph_.keep(display);
         graph_.execute();
@@ -186,39 +183,23 @@ class Court {
 
 /// Field, picture and what stands in front, of one ripple that is there while this runs.
 void measure_one(
-    Court& court,
-    const std::string& name,
-    Entity ripple,
-    const ExactShift& exact,
-    double front,
+    Court& court, const std::string& name, Entity ripple, const ExactShift& exact, double front,
     QualityReport& report) {
     const Seen seen = court.look();
     court.world().destroy(ripple);
     QualityPicture picture = {name, Court::shown(seen.display), court.shifted(exact, front)};
     report.rows.push_back(
-        {name + ": field, off by",
-         court.field_error(seen, exact),
-         QualityBound::AtMost,
-         0.25,
+        {name + ": field, off by", court.field_error(seen, exact), QualityBound::AtMost, 0.25,
          "px"});
     report.rows.push_back(
-        {name + ": as shown, beside the oracle",
-         psnr(picture.oracle, picture.effect),
-         QualityBound::AtLeast,
-         40,
-         "dB"});
+        {name + ": as shown, beside the oracle", psnr(picture.oracle, picture.effect),
+         QualityBound::AtLeast, 40, "dB"});
     report.rows.push_back(
-        {name + ": the same without the ripple",
-         psnr(picture.oracle, court.still()),
-         QualityBound::None,
-         0,
-         "dB"});
+        {name + ": the same without the ripple", psnr(picture.oracle, court.still()),
+         QualityBound::None, 0, "dB"});
     report.rows.push_back(
         {name + ": pixels changed before it",
-         static_cast<double>(court.changed_before(seen, front)),
-         QualityBound::AtMost,
-         0,
-         ""});
+         static_cast<double>(court.changed_before(seen, front)), QualityBound::AtMost, 0, ""});
     report.pictures.push_back(std::move(picture));
 }
 
@@ -233,14 +214,12 @@ void measure_rings(Court& court, QualityReport& report) {
             .wavelength = static_cast<double>(ring.wavelength),
             .amplitude = 0.04 * (1 - static_cast<double>(age) / 1.5)};
         measure_one(
-            court,
-            fmt::format("ring, {} s", age),
+            court, fmt::format("ring, {} s", age),
             court.world().create(ring, WorldTransform{affine_from(kCenter, {1, 0, 0, 0}, Vec3(1))}),
             [&](const dvec2& pixel, double distance) {
                 return oracle::ring_shift(camera, wave, pixel, distance);
             },
-            glm::dot(dvec3(kCenter) - camera.eye, camera.forward),
-            report);
+            glm::dot(dvec3(kCenter) - camera.eye, camera.forward), report);
     }
 }
 
@@ -261,14 +240,12 @@ void measure_hazes(Court& court, double time, QualityReport& report) {
         const double front =
             glm::dot(dvec3(-0.5, 1.6, -2) - camera.eye, camera.forward) - (ball ? 3.2 : 3.6);
         measure_one(
-            court,
-            ball ? "hot air, ball" : "hot air, box",
+            court, ball ? "hot air, ball" : "hot air, box",
             court.world().create(haze, WorldTransform{pose}),
             [&](const dvec2& pixel, double distance) {
                 return oracle::haze_shift(camera, air, pixel, distance);
             },
-            front,
-            report);
+            front, report);
     }
 }
 
@@ -277,16 +254,13 @@ void measure_screen(Court& court, QualityReport& report) {
     const double radius = static_cast<double>(ripple.radius + ripple.radius_speed * ripple.age);
     const double amplitude = static_cast<double>(ripple.amplitude * ripple_fade(ripple));
     measure_one(
-        court,
-        "screen",
-        court.world().create(ripple),
+        court, "screen", court.world().create(ripple),
         [&](const dvec2& pixel, double) {
             const dvec2 size(kWidth, kHeight);
             return size
                    * oracle::screen_shift(pixel / size, dvec2(ripple.center), radius, amplitude);
         },
-        0,
-        report);
+        0, report);
 }
 
 }  // namespace
@@ -307,9 +281,7 @@ Result<QualityReport> measure_ripple(HeadlessRenderer& headless) {
         return developer.error();
     }
     Court court(
-        headless,
-        *std::move(developer),
-        stage,
+        headless, *std::move(developer), stage,
         make_render_view(stage.world, *camera, {.width = kWidth, .height = kHeight}));
     QualityReport report;
     measure_rings(court, report);
@@ -321,9 +293,7 @@ Result<QualityReport> measure_ripple(HeadlessRenderer& headless) {
         WorldTransform{affine_from({0, 1, 0}, {1, 0, 0, 0}, Vec3(1))});
     report.rows.push_back(
         {"pixels changed by a ripple of no strength",
-         static_cast<double>(court.changed_before(court.look(), 1e30)),
-         QualityBound::AtMost,
-         0,
+         static_cast<double>(court.changed_before(court.look(), 1e30)), QualityBound::AtMost, 0,
          ""});
     court.world().destroy(still);
     return report;

@@ -72,8 +72,7 @@ ColorImage displayed(const gpu::FloatImage& radiance) {
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             image.pixels.emplace_back(
-                encoded(radiance.at(x, y, 0)),
-                encoded(radiance.at(x, y, 1)),
+                encoded(radiance.at(x, y, 0)), encoded(radiance.at(x, y, 1)),
                 encoded(radiance.at(x, y, 2)));
         }
     }

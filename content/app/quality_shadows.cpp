@@ -171,9 +171,7 @@ struct Source {
 
 /// The same, by rays.
 std::vector<double> cast_rays(
-    const oracle::ShadowScene& rays,
-    const Source& source,
-    const Seen& seen,
+    const oracle::ShadowScene& rays, const Source& source, const Seen& seen,
     const Unshadowed& pictures) {
     constexpr double kFar = 1000;  // a sun's disc, for rays with an end [m]
     std::vector<double> shares(kPixels, 1);
@@ -210,8 +208,7 @@ ColorImage picture_of(const Unshadowed& pictures, const std::vector<double>& sha
 
 /// Share of the pixels that the light can reach on which both say whether it does [%].
 double agreement(
-    const Unshadowed& pictures,
-    const std::vector<double>& found,
+    const Unshadowed& pictures, const std::vector<double>& found,
     const std::vector<double>& expected) {
     int counted = 0;
     int same = 0;
@@ -280,11 +277,8 @@ void measure_methods(HeadlessRenderer& headless, QualityReport& report) {
             const double agree = agreement(pictures, shares_of(pictures, shaded), expected);
             const std::string title = fmt::format("{}: {}", name_of(kind), method.name);
             report.rows.push_back(
-                {title + ", pixels that agree with rays",
-                 agree,
-                 QualityBound::AtLeast,
-                 method.agree,
-                 "%"});
+                {title + ", pixels that agree with rays", agree, QualityBound::AtLeast,
+                 method.agree, "%"});
             report.pictures.push_back({title, displayed(shaded), picture_of(pictures, expected)});
             found_details.add(report.pictures.back().effect);
             expected_details.add(report.pictures.back().oracle);
@@ -292,8 +286,7 @@ void measure_methods(HeadlessRenderer& headless, QualityReport& report) {
         }
         report.pictures.push_back(
             {fmt::format("{}, a corner by each method: {}", name_of(kind), names),
-             found_details.sheet(),
-             expected_details.sheet()});
+             found_details.sheet(), expected_details.sheet()});
         scene.world.destroy(light);
     }
 }
@@ -350,14 +343,13 @@ void measure_penumbras(HeadlessRenderer& headless, QualityReport& report) {
             {kWidth, kHeight, 4, std::vector<float>(4 * kPixels, 0.0f)},
             scene.radiance(headless, view)};
         scene.world.add(
-            light,
-            Shadow{
-                .method = ShadowMethod::Map,
-                .filter = ShadowFilter::ContactHardening,
-                .resolution = 1024,
-                .source_size = static_cast<float>(size),
-                .cascades = 1,
-                .distance = 6});
+            light, Shadow{
+                       .method = ShadowMethod::Map,
+                       .filter = ShadowFilter::ContactHardening,
+                       .resolution = 1024,
+                       .source_size = static_cast<float>(size),
+                       .cascades = 1,
+                       .distance = 6});
         const gpu::FloatImage shaded = scene.radiance(headless, view);
         const std::vector<double> shares = shares_of(pictures, shaded);
         std::vector<std::pair<double, double>> profile;
@@ -373,14 +365,11 @@ void measure_penumbras(HeadlessRenderer& headless, QualityReport& report) {
             fmt::format("{}: penumbra of an edge {:g} m above", name_of(kind), kBoard);
         report.rows.push_back(
             {title + ", width off the law by",
-             100 * std::abs(rise_width(std::move(profile)) / law - 1),
-             QualityBound::AtMost,
-             15,
+             100 * std::abs(rise_width(std::move(profile)) / law - 1), QualityBound::AtMost, 15,
              "%"});
         const Source source = {kind, sun ? DVec3(0, 1, 0) : DVec3(0, kLight, 0), size};
         report.pictures.push_back(
-            {title,
-             displayed(shaded),
+            {title, displayed(shaded),
              picture_of(pictures, cast_rays(rays, source, seen, pictures))});
         scene.world.destroy(light);
     }

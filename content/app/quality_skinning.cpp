@@ -33,11 +33,7 @@ struct SkinStage : QualityScene {
         return {static_cast<std::uint32_t>(skins.size() - 1)};
     }
     Entity pose(
-        MeshId mesh,
-        SkinId skin,
-        Pose pose,
-        Skinning skinning,
-        MaterialId material = {},
+        MeshId mesh, SkinId skin, Pose pose, Skinning skinning, MaterialId material = {},
         const Affine& where = {}) {
         const Entity entity = place(mesh, material, where);
         world.add(entity, std::move(pose));
@@ -57,9 +53,7 @@ struct SkinStage : QualityScene {
         const auto* morphs = world.find<MorphWeights>(entity);
         const std::vector<float> none;
         return oracle::skin_vertices(
-            mesh_of(entity),
-            matrices,
-            morphs != nullptr ? morphs->weights : none,
+            mesh_of(entity), matrices, morphs != nullptr ? morphs->weights : none,
             deformed.skinning);
     }
 };

@@ -80,11 +80,7 @@ DVec3 classic(const Material& material, const DVec3& point) {
     }
     if (material.shading == ShadingModel::Skin) {
         return oracle::skin(
-            coefficients,
-            DVec3(material.skin_color),
-            material.wide_rim,
-            lights,
-            kNormal,
+            coefficients, DVec3(material.skin_color), material.wide_rim, lights, kNormal,
             to_camera);
     }
     return oracle::blinn(coefficients, DVec3(0), lights, kNormal, to_camera);
@@ -154,8 +150,7 @@ Result<QualityReport> measure_surfaces(HeadlessRenderer& headless) {
         const gpu::FloatImage expected = oracle_picture(plate.material);
         report.rows.push_back(
             {fmt::format("{}: largest difference, of the brightest", plate.name),
-             largest_share(found, expected),
-             QualityBound::AtMost,
+             largest_share(found, expected), QualityBound::AtMost,
              // The albedo of the metal's lobe comes from a table of 64 x 64.
              plate.material.shading == ShadingModel::Pbr ? 2e-3 : 1e-3});
         report.pictures.push_back({plate.name, displayed(found), displayed(expected)});

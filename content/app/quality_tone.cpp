@@ -91,8 +91,7 @@ std::vector<dvec3> pixels_of(const gpu::FloatImage& image) {
 
 /// What Exposure says of a picture, with the oracle's formulas.
 std::vector<dvec3> develop_exactly(
-    const std::vector<dvec3>& pixels,
-    const oracle::PictureStatistics& statistics,
+    const std::vector<dvec3>& pixels, const oracle::PictureStatistics& statistics,
     const Exposure& exposure) {
     const bool metered = exposure.metering != Metering::Manual;
     const double scale = std::exp2(static_cast<double>(exposure.ev))
@@ -130,8 +129,7 @@ std::vector<dvec3> develop_exactly(
         case ToneCurve::Knee:
             for (int c = 0; c < 3; ++c) {
                 color[c] = oracle::knee_map(
-                    pixels[i][c],
-                    haze[c],
+                    pixels[i][c], haze[c],
                     {.exposure = scale,
                      .contrast = exposure.contrast,
                      .exponent = 1.0 / exposure.gamma});
@@ -156,9 +154,7 @@ double percent_off(double found, double exact) {
 }
 
 void measure_statistics(
-    const layout::PictureMeasure& found,
-    const oracle::PictureStatistics& exact,
-    float key,
+    const layout::PictureMeasure& found, const oracle::PictureStatistics& exact, float key,
     QualityReport& report) {
     const auto row = [&report](const char* name, double off, double most) {
         report.rows.push_back({name, off, QualityBound::AtMost, most, "%"});
@@ -182,13 +178,9 @@ void measure_statistics(
         // A bin of its histogram at either end.
         100 * (std::exp2(2.2 / layout::kBinsPerStop) - 1));
     row("metered: log-average luminance off the key by",
-        percent_off(found.mean_scale.w * exact.log_average, key),
-        kSame);
+        percent_off(found.mean_scale.w * exact.log_average, key), kSame);
     report.rows.push_back(
-        {"dynamic range of the picture",
-         exact.largest / exact.least,
-         QualityBound::None,
-         0,
+        {"dynamic range of the picture", exact.largest / exact.least, QualityBound::None, 0,
          ": 1"});
 }
 
@@ -276,9 +268,7 @@ Result<QualityReport> measure_tone(HeadlessRenderer& headless) {
     FrameGraph graph(*headless.device);
     graph.begin_frame();
     static_cast<void>(measure_picture(
-        graph,
-        developer.statistics,
-        graph.import("radiance", radiance),
+        graph, developer.statistics, graph.import("radiance", radiance),
         {.key = kKey, .histogram = true}));
     graph.execute();
     measure_statistics(
@@ -297,21 +287,14 @@ Result<QualityReport> measure_tone(HeadlessRenderer& headless) {
             // The region about a pixel has one of nine sizes. Where two are as good, the GPU may
             // take the other one; and its larger blurs are made at half and quarter size.
             report.rows.push_back(
-                {fmt::format("{}, mean difference", tone.name),
-                 error.mean,
-                 QualityBound::AtMost,
-                 0.7,
-                 "codes"});
+                {fmt::format("{}, mean difference", tone.name), error.mean, QualityBound::AtMost,
+                 0.7, "codes"});
             report.rows.push_back(
-                {fmt::format("{}, more than 2.5 codes off", tone.name),
-                 error.far_off,
-                 QualityBound::AtMost,
-                 2,
-                 "%"});
+                {fmt::format("{}, more than 2.5 codes off", tone.name), error.far_off,
+                 QualityBound::AtMost, 2, "%"});
         } else {
             report.rows.push_back(
-                {fmt::format("{}, largest difference", tone.name),
-                 error.largest,
+                {fmt::format("{}, largest difference", tone.name), error.largest,
                  QualityBound::AtMost,
                  0.6,  // of which half a code is rounding to 8 bits
                  "codes"});

@@ -43,9 +43,7 @@ oracle::CameraMotion walking_camera() {
 
 RenderView view_of(const oracle::CameraMotion& motion) {
     return make_render_view(
-        motion.camera,
-        motion.current,
-        motion.previous,
+        motion.camera, motion.current, motion.previous,
         {.width = motion.width,
          .height = motion.height,
          .alpha = static_cast<float>(motion.alpha),
@@ -77,8 +75,7 @@ void furnish_crowd(MotionStage& stage) {
             random.uniform(-1.4f, 1.4f), random.uniform(-0.3f, 1.2f), random.uniform(-0.8f, 0.1f)};
         const Vec3 way = 0.2f * random.direction();
         stage.move(
-            ball,
-            turned(place + way, random.direction(), 0.5f),
+            ball, turned(place + way, random.direction(), 0.5f),
             turned(place, random.direction(), 0.3f));
     }
 }
@@ -144,9 +141,7 @@ struct Agreement {
 };
 
 Agreement compare(
-    HeadlessRenderer& headless,
-    const MotionStage& stage,
-    const oracle::CameraMotion& motion,
+    HeadlessRenderer& headless, const MotionStage& stage, const oracle::CameraMotion& motion,
     QualityPicture* picture) {
     oracle::VelocityOracle rays(motion);
     rays.add(stage.world);
@@ -183,12 +178,8 @@ Agreement compare(
 }
 
 void measure_scene(
-    HeadlessRenderer& headless,
-    const char* name,
-    void (*furnish)(MotionStage&),
-    QualityReport& report,
-    double& worst_sky,
-    double& least_compared) {
+    HeadlessRenderer& headless, const char* name, void (*furnish)(MotionStage&),
+    QualityReport& report, double& worst_sky, double& least_compared) {
     MotionStage stage;
     furnish(stage);
     double worst = 0;

@@ -43,27 +43,14 @@ Planes planes_of(const OceanCascade& cascade) {
     const auto plane = [](const std::vector<float>& field) {
         return Plane(field.begin(), field.end());
     };
-    return {
-        plane(cascade.height),
-        plane(cascade.shift_x),
-        plane(cascade.shift_z),
-        plane(cascade.slope_x),
-        plane(cascade.slope_z),
-        plane(cascade.shift_xx),
-        plane(cascade.shift_zz),
-        plane(cascade.shift_xz)};
+    return {plane(cascade.height),   plane(cascade.shift_x), plane(cascade.shift_z),
+            plane(cascade.slope_x),  plane(cascade.slope_z), plane(cascade.shift_xx),
+            plane(cascade.shift_zz), plane(cascade.shift_xz)};
 }
 
 Planes planes_of(const oracle::OceanPlanes& sum) {
-    return {
-        sum.height,
-        sum.shift_x,
-        sum.shift_z,
-        sum.slope_x,
-        sum.slope_z,
-        sum.shift_xx,
-        sum.shift_zz,
-        sum.shift_xz};
+    return {sum.height,  sum.shift_x,  sum.shift_z,  sum.slope_x,
+            sum.slope_z, sum.shift_xx, sum.shift_zz, sum.shift_xz};
 }
 
 Planes planes_of(const OceanFields& fields, int cascade) {
@@ -78,15 +65,8 @@ Planes planes_of(const OceanFields& fields, int cascade) {
         }
         return field;
     };
-    return {
-        plane(moved, 1),
-        plane(moved, 0),
-        plane(moved, 2),
-        plane(bent, 0),
-        plane(bent, 1),
-        plane(bent, 2),
-        plane(bent, 3),
-        plane(moved, 3)};
+    return {plane(moved, 1), plane(moved, 0), plane(moved, 2), plane(bent, 0),
+            plane(bent, 1),  plane(bent, 2),  plane(bent, 3),  plane(moved, 3)};
 }
 
 /// Of all fields the largest difference, over the largest value of the field.
@@ -146,8 +126,7 @@ ColorImage seen_from_above(const std::vector<Layer>& layers) {
             const float toward = 0.5f - 1.6f * normal.x + 0.9f * normal.z;
             const float glint = std::pow(std::max(glm::dot(normal, halfway), 0.0f), 180.0f);
             const Vec3 color = glm::mix(
-                                   Vec3(0.004f, 0.03f, 0.05f),
-                                   Vec3(0.12f, 0.28f, 0.36f),
+                                   Vec3(0.004f, 0.03f, 0.05f), Vec3(0.12f, 0.28f, 0.36f),
                                    std::clamp(toward, 0.0f, 1.0f))
                                + glint * Vec3(1.4f, 1.1f, 0.7f);
             image.pixels.insert(image.pixels.end(), {color.x, color.y, color.z});
@@ -188,11 +167,8 @@ Status measure_fields(gpu::Device& device, QualityReport& report) {
         const Planes on_gpu = planes_of(fft->fields, static_cast<int>(c));
         const auto row = [&](const char* who, double error) {
             report.rows.push_back(
-                {fmt::format("patch of {:.0f} m, {}: largest error", cascade.patch, who),
-                 error,
-                 QualityBound::AtMost,
-                 kLargestError,
-                 ""});
+                {fmt::format("patch of {:.0f} m, {}: largest error", cascade.patch, who), error,
+                 QualityBound::AtMost, kLargestError, ""});
         };
         row("kernels", relative_error(found.back().planes, exact.back().planes));
         row("GPU", relative_error(on_gpu, exact.back().planes));
@@ -223,10 +199,7 @@ void measure_height(OceanSpectrum spectrum, const char* name, QualityReport& rep
     }
     report.rows.push_back(
         {fmt::format("{}: significant height, off by", name),
-         100 * std::abs(std::sqrt(sum / 32 / m0) - 1),
-         QualityBound::AtMost,
-         5,
-         "%"});
+         100 * std::abs(std::sqrt(sum / 32 / m0) - 1), QualityBound::AtMost, 5, "%"});
 }
 
 /// How far the wave (2, 1) of a patch has run after some seconds, beside what the dispersion says.
@@ -267,9 +240,7 @@ void measure_speed(float depth, const char* name, QualityReport& report) {
     report.rows.push_back(
         {fmt::format("{}: speed of a wave, off by", name),
          100 * std::abs(turned / (20 * kWait) / k / phase_speed(k, depth) - 1),
-         QualityBound::AtMost,
-         0.1,
-         "%"});
+         QualityBound::AtMost, 0.1, "%"});
 }
 
 /// Water that a step makes or loses, of all that is above or below rest.

@@ -56,8 +56,7 @@ Vec3 ray_through(const RenderView& view, int x, int y) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 in_camera(ndc * view.tangent, -1);
     return {
-        glm::dot(Vec3(pose[0]), in_camera),
-        glm::dot(Vec3(pose[1]), in_camera),
+        glm::dot(Vec3(pose[0]), in_camera), glm::dot(Vec3(pose[1]), in_camera),
         glm::dot(Vec3(pose[2]), in_camera)};
 }
 
@@ -108,9 +107,7 @@ MirroredTruth trace_truth(HeadlessRenderer& headless, QualityScene& shore, const
 
 /// Decibels over the pixels that count, of radiance over the share that is mirrored.
 double psnr_of(
-    const gpu::FloatImage& picture,
-    const MirroredTruth& truth,
-    const std::vector<bool>& counts,
+    const gpu::FloatImage& picture, const MirroredTruth& truth, const std::vector<bool>& counts,
     const RenderView& view) {
     double squares = 0;
     double samples = 0;
@@ -143,10 +140,8 @@ void measure_water_reflections(HeadlessRenderer& headless, QualityReport& report
         Water{.refractive_index = kIndex, .absorption = Vec3(1000), .scattering = Vec3(0)},
         WorldTransform{placed_at({0, 0, 0})});
     const std::vector<bool> all(truth.is_water.size(), true);
-    const auto measure = [&](const char* name,
-                             const WaterLook& look,
-                             const std::vector<bool>& counts,
-                             double least) {
+    const auto measure = [&](const char* name, const WaterLook& look,
+                             const std::vector<bool>& counts, double least) {
         shore.world.add(water, look);
         const gpu::FloatImage seen = shore.radiance(headless, view);
         shore.world.remove<WaterLook>(water);
@@ -161,8 +156,7 @@ void measure_water_reflections(HeadlessRenderer& headless, QualityReport& report
         "the same in half as many pixels a side", {.reflection = WaterReflection::Planar}, all, 30);
     measure("out of the picture, where it holds what is mirrored", {}, truth.is_held, 20);
     report.pictures.push_back(
-        {"still water, planar, and a mirrored camera's picture",
-         displayed(seen),
+        {"still water, planar, and a mirrored camera's picture", displayed(seen),
          displayed(truth.radiance)});
 }
 

@@ -44,9 +44,7 @@ Result<Entity> choose_camera(const Stage& stage, const std::string& name) {
         return *camera;
     }
     return fail(
-        "{}: found no camera \"{}\", expected one of: {}",
-        stage.scene.path,
-        name,
+        "{}: found no camera \"{}\", expected one of: {}", stage.scene.path, name,
         camera_names(stage.world));
 }
 
@@ -72,8 +70,7 @@ RenderView advance_to_view(
     const float alpha = advance_stage(stage, time.shown);
     const double steps = (time.shown - time.before) / stage_step(stage);
     return make_render_view(
-        stage.world,
-        camera,
+        stage.world, camera,
         {.width = options.size.x,
          .height = options.size.y,
          .alpha = alpha,
@@ -89,10 +86,7 @@ double open_seconds(const World& world, const PictureTime& time) {
 
 /// As it is played, its edges made smooth.
 FrameOutput draw_played(
-    Renderer& renderer,
-    Stage& stage,
-    Entity camera,
-    const RenderOptions& options,
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
     const PictureTime& time) {
     const RenderView view = advance_to_view(stage, camera, options, time);
     return render_accumulated(
@@ -102,10 +96,7 @@ FrameOutput draw_played(
 /// The mean of samples of shutter, lens and pixel, while the world goes on: the truth that the
 /// effects of the played picture come near.
 FrameOutput draw_sampled(
-    Renderer& renderer,
-    Stage& stage,
-    Entity camera,
-    const RenderOptions& options,
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
     const PictureTime& time) {
     const double open = open_seconds(stage.world, time);
     const float weight = 1.0f / static_cast<float>(options.samples);
@@ -122,8 +113,7 @@ FrameOutput draw_sampled(
         }
         const RenderView view = advance_to_view(stage, camera, options, {moment, moment});
         accumulate(
-            renderer,
-            stage.world,
+            renderer, stage.world,
             with_lens_sample(
                 with_jitter(view, sample.jitter), point_on_aperture(view.lens, sample.square)),
             weight);
@@ -132,18 +122,13 @@ FrameOutput draw_sampled(
 }
 
 Status render_picture(
-    HeadlessRenderer& headless,
-    Stage& stage,
-    Entity camera,
-    const RenderOptions& options,
-    const PictureTime& time,
-    const std::string& path) {
+    HeadlessRenderer& headless, Stage& stage, Entity camera, const RenderOptions& options,
+    const PictureTime& time, const std::string& path) {
     const FrameOutput frame = options.samples > 0
                                   ? draw_sampled(*headless.renderer, stage, camera, options, time)
                                   : draw_played(*headless.renderer, stage, camera, options, time);
     return write_picture(
-        path,
-        frame,
+        path, frame,
         {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time.shown)}});
 }
 
@@ -208,11 +193,7 @@ Status run_render(const RenderOptions& options) {
     for (int i = 0; i < count; ++i) {
         const int frame = options.frames->first + i;
         const Status status = render_picture(
-            *headless,
-            stage,
-            *camera,
-            options,
-            {frame / options.fps, (frame - 1) / options.fps},
+            *headless, stage, *camera, options, {frame / options.fps, (frame - 1) / options.fps},
             numbered_path(options.out, frame));
         if (!status) {
             return status.error();

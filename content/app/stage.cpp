@@ -17,8 +17,7 @@ constexpr double kRounding = 1e-3;
 }  // namespace
 
 Result<std::unique_ptr<Stage>> open_stage(
-    const std::string& scene,
-    std::optional<std::uint64_t> seed,
+    const std::string& scene, std::optional<std::uint64_t> seed,
     std::span<const Assignment> assignments) {
     auto stage = std::make_unique<Stage>();
     Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = seed});

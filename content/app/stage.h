@@ -24,8 +24,7 @@ struct Stage {
 
 /// Fails with the loader's line, or that of the first assignment that cannot be made.
 [[nodiscard]] Result<std::unique_ptr<Stage>> open_stage(
-    const std::string& scene,
-    std::optional<std::uint64_t> seed = std::nullopt,
+    const std::string& scene, std::optional<std::uint64_t> seed = std::nullopt,
     std::span<const Assignment> assignments = {});
 
 /// One step of the simulation.

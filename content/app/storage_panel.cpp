@@ -153,21 +153,15 @@ void draw_archetype(const HudStyle& style, const ArchetypeStats& archetype) {
     }
     draw_chunks(style, archetype);
     numbers_text(
-        style,
-        kHudText,
+        style, kHudText,
         fmt::format(
-            "{} rows  {} {}",
-            grouped(archetype.rows),
-            archetype.chunks,
+            "{} rows  {} {}", grouped(archetype.rows), archetype.chunks,
             archetype.chunks == 1 ? "chunk" : "chunks"));
     ImGui::SameLine();
     right_text(
-        style,
-        kHudDim,
+        style, kHudDim,
         fmt::format(
-            "{} B/row  {} {:.0f} %",
-            archetype.row_bytes,
-            bytes_text(archetype.committed),
+            "{} B/row  {} {:.0f} %", archetype.row_bytes, bytes_text(archetype.committed),
             100.0 * archetype.fill()));
     for (const auto& [component, rows] : archetype.disabled) {
         numbers_text(
@@ -175,11 +169,9 @@ void draw_archetype(const HudStyle& style, const ArchetypeStats& archetype) {
     }
     if (archetype.rows_moved_in + archetype.rows_moved_out > 0) {
         numbers_text(
-            style,
-            kHudDim,
+            style, kHudDim,
             fmt::format(
-                "moved in {}, out {}",
-                grouped(archetype.rows_moved_in),
+                "moved in {}, out {}", grouped(archetype.rows_moved_in),
                 grouped(archetype.rows_moved_out)));
     }
     ImGui::Dummy({0, 4 * style.scale});
@@ -238,11 +230,9 @@ void StoragePanel::draw(const HudStyle& style, const World& world, const Schedul
 
 void StoragePanel::draw_summary(const HudStyle& style) const {
     numbers_text(
-        style,
-        kHudAccent,
+        style, kHudAccent,
         fmt::format(
-            "{} entities, {} for them",
-            grouped(world_.entities),
+            "{} entities, {} for them", grouped(world_.entities),
             bytes_text(world_.memory.total())));
     WordFlow words;
     for (const StorageLook* look :
@@ -254,9 +244,8 @@ void StoragePanel::draw_summary(const HudStyle& style) const {
 
 void StoragePanel::draw_archetypes(const HudStyle& style) const {
     const auto used = static_cast<std::size_t>(std::count_if(
-        world_.archetypes.begin(), world_.archetypes.end(), [](const ArchetypeStats& archetype) {
-            return archetype.rows > 0;
-        }));
+        world_.archetypes.begin(), world_.archetypes.end(),
+        [](const ArchetypeStats& archetype) { return archetype.rows > 0; }));
     if (!section("Archetypes", used)) {
         return;
     }

@@ -129,13 +129,8 @@ void Window::wait_events(double seconds) {
 void Window::toggle_fullscreen() {
     if (glfwGetWindowMonitor(window_) != nullptr) {
         glfwSetWindowMonitor(
-            window_,
-            nullptr,
-            windowed_position_.x,
-            windowed_position_.y,
-            windowed_size_.x,
-            windowed_size_.y,
-            GLFW_DONT_CARE);
+            window_, nullptr, windowed_position_.x, windowed_position_.y, windowed_size_.x,
+            windowed_size_.y, GLFW_DONT_CARE);
         return;
     }
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();

@@ -325,8 +325,7 @@ TriangleFrame triangle_frame(const Vec3 (&p)[3], const Vec2 (&uv)[3]) {
         return {};
     }
     return {
-        Vec3((d2.y * e1 - d1.y * e2) / determinant),
-        Vec3((d1.x * e2 - d2.x * e1) / determinant),
+        Vec3((d2.y * e1 - d1.y * e2) / determinant), Vec3((d1.x * e2 - d2.x * e1) / determinant),
         static_cast<float>(determinant)};
 }
 

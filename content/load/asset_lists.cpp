@@ -13,8 +13,7 @@ namespace {
 template <typename T>
 void append(std::vector<T>& target, std::vector<T>& source) {
     target.insert(
-        target.end(),
-        std::make_move_iterator(source.begin()),
+        target.end(), std::make_move_iterator(source.begin()),
         std::make_move_iterator(source.end()));
     source.clear();
 }

@@ -23,9 +23,7 @@ struct Reader {
     const FindNames& names;
 
     Status read_fields(
-        const JsonValue& json,
-        const std::vector<FieldInfo>& fields,
-        void* object,
+        const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
         const std::string& path) const;
     Status read_shape(
         const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
@@ -34,22 +32,16 @@ struct Reader {
 
   private:
     Error refuse(
-        const std::string& path,
-        SourcePosition at,
-        std::string_view found,
+        const std::string& path, SourcePosition at, std::string_view found,
         std::string_view expected) const {
         return error_at({place.file, path}, at, found, expected);
     }
 
     Status read_scalar(
-        const JsonValue& json,
-        const FieldInfo& info,
-        const std::string& path,
+        const JsonValue& json, const FieldInfo& info, const std::string& path,
         double& number) const;
     Status read_floats(
-        const JsonValue& json,
-        const FieldInfo& info,
-        std::span<float> floats,
+        const JsonValue& json, const FieldInfo& info, std::span<float> floats,
         const std::string& path) const;
     Status read_integer(
         const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
@@ -105,9 +97,7 @@ std::optional<double> angle_from_text(std::string_view text) {
 }
 
 Status Reader::read_fields(
-    const JsonValue& json,
-    const std::vector<FieldInfo>& fields,
-    void* object,
+    const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
     const std::string& path) const {
     if (json.kind != JsonKind::Object) {
         return refuse(path, json.at, describe(json), "an object with the fields to set");
@@ -117,16 +107,12 @@ Status Reader::read_fields(
         if (field == nullptr) {
             const std::vector<std::string_view> known = names_of(fields);
             return refuse(
-                path,
-                member.at,
-                "the field " + in_quotes(member.key),
+                path, member.at, "the field " + in_quotes(member.key),
                 (known.empty() ? "none" : "one of " + joined(known))
                     + did_you_mean(member.key, known));
         }
         const Status status = read_shape(
-            member.value,
-            *field,
-            field_ptr(object, *field),
+            member.value, *field, field_ptr(object, *field),
             path.empty() ? member.key : path + '.' + member.key);
         if (!status) {
             return status;
@@ -143,9 +129,7 @@ Status Reader::read_shape(
     const bool is_list = info.shape == FieldShape::List;
     if (json.kind != JsonKind::Array || (!is_list && json.items.size() != info.count)) {
         return refuse(
-            path,
-            json.at,
-            describe(json),
+            path, json.at, describe(json),
             is_list ? "an array" : fmt::format("an array of {}", info.count));
     }
     if (is_list) {
@@ -199,9 +183,7 @@ Status Reader::read_one(
         element.size = sizeof(int);
         for (std::size_t i = 0; i < count; ++i) {
             const Status status = read_integer(
-                json.items[i],
-                element,
-                static_cast<int*>(field) + i,
+                json.items[i], element, static_cast<int*>(field) + i,
                 fmt::format("{}[{}]", path, i));
             if (!status) {
                 return status;
@@ -244,9 +226,7 @@ Status Reader::read_scalar(
 }
 
 Status Reader::read_floats(
-    const JsonValue& json,
-    const FieldInfo& info,
-    std::span<float> floats,
+    const JsonValue& json, const FieldInfo& info, std::span<float> floats,
     const std::string& path) const {
     const auto read_float = [&](const JsonValue& item, float& out, const std::string& where) {
         double number = 0.0;
@@ -271,9 +251,7 @@ Status Reader::read_floats(
     if (json.kind != JsonKind::Array || (json.items.size() != floats.size() && !without_alpha)) {
         const std::string color = info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
         return refuse(
-            path,
-            json.at,
-            describe(json),
+            path, json.at, describe(json),
             fmt::format("an array of {} numbers{}", floats.size(), color));
     }
     for (std::size_t i = 0; i < json.items.size(); ++i) {
@@ -315,9 +293,7 @@ Status Reader::read_rotation(
     const bool is_euler = json.kind == JsonKind::Array && json.items.size() == 3;
     if (!is_euler && (json.kind != JsonKind::Array || json.items.size() != 4)) {
         return refuse(
-            path,
-            json.at,
-            describe(json),
+            path, json.at, describe(json),
             "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
     }
     FieldInfo plain = info;
@@ -417,9 +393,7 @@ Status Reader::read_name(
         const std::vector<std::string_view> all =
             names.all ? names.all(kind) : std::vector<std::string_view>();
         return refuse(
-            path,
-            json.at,
-            fmt::format("the {} {}", kind, in_quotes(json.text)),
+            path, json.at, fmt::format("the {} {}", kind, in_quotes(json.text)),
             (all.empty() ? "none: there are no names of that kind here"
                          : "the name of one that exists")
                 + did_you_mean(json.text, all));
@@ -440,8 +414,7 @@ std::string misfit(const ComponentInfo& info, const void* object) {
         if (light->inner_angle > light->outer_angle) {
             return fmt::format(
                 "found an inner_angle {} beyond the outer_angle {}, expected at most that",
-                light->inner_angle,
-                light->outer_angle);
+                light->inner_angle, light->outer_angle);
         }
     }
     if (&info == &component_info<Environment>()) {
@@ -543,10 +516,7 @@ Error error_at(
 }
 
 Status read_component(
-    const JsonValue& json,
-    const ComponentInfo& info,
-    void* object,
-    const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
     const FindNames& names) {
     Status status = Reader{place, names}.read_fields(json, info.fields, object, place.path);
     if (!status) {
@@ -560,9 +530,7 @@ Status read_component(
 }
 
 Result<AnyComponent> read_component(
-    const JsonValue& json,
-    const ComponentInfo& info,
-    const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
     const FindNames& names) {
     AnyComponent component(info);
     const Status status = read_component(json, info, component.data(), place, names);
@@ -573,10 +541,7 @@ Result<AnyComponent> read_component(
 }
 
 Status read_field(
-    const JsonValue& json,
-    const FieldInfo& info,
-    void* field,
-    const JsonPlace& place,
+    const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const FindNames& names) {
     return Reader{place, names}.read_shape(json, info, field, place.path);
 }
@@ -597,8 +562,7 @@ JsonValue write_field(const FieldInfo& info, const void* field, const GiveNames&
 }
 
 void for_each_asset(
-    const std::vector<FieldInfo>& fields,
-    void* object,
+    const std::vector<FieldInfo>& fields, void* object,
     const std::function<void(std::string_view, std::uint32_t&)>& visit) {
     for (const FieldInfo& info : fields) {
         if (info.type != FieldType::Asset && info.type != FieldType::Struct) {

@@ -61,17 +61,12 @@ struct JsonPlace {
 /// Sets the fields that the object `json` names; the others stay. `object` is of type `info`. After
 /// an error some may be set: work on a copy.
 [[nodiscard]] Status read_component(
-    const JsonValue& json,
-    const ComponentInfo& info,
-    void* object,
-    const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
     const FindNames& names);
 
 /// Defaults, then the fields that `json` names.
 [[nodiscard]] Result<AnyComponent> read_component(
-    const JsonValue& json,
-    const ComponentInfo& info,
-    const JsonPlace& place,
+    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
     const FindNames& names);
 
 /// The same for a type of the program: `read_struct(json, material, place, names)`.
@@ -83,10 +78,7 @@ read_struct(const JsonValue& json, T& object, const JsonPlace& place, const Find
 
 /// One field: `field` points at it.
 [[nodiscard]] Status read_field(
-    const JsonValue& json,
-    const FieldInfo& info,
-    void* field,
-    const JsonPlace& place,
+    const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const FindNames& names);
 
 /// All fields of `object`, so that reading them into any value of the type gives `object`.
@@ -97,8 +89,7 @@ write_field(const FieldInfo& info, const void* field, const GiveNames& names);
 
 /// Calls `visit` with every asset id in the value, and its kind.
 void for_each_asset(
-    const std::vector<FieldInfo>& fields,
-    void* object,
+    const std::vector<FieldInfo>& fields, void* object,
     const std::function<void(std::string_view kind, std::uint32_t& index)>& visit);
 
 /// Rotation of [yaw, pitch, roll] in degrees: about y, then x, then z of the rotated frame.

@@ -77,8 +77,7 @@ Status check_kind(std::span<const std::byte> bytes, const std::string& place) {
     constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
     if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0) {
         return fail(
-            "{}: found {} bytes without the mark of OpenEXR, expected 76 2f 31 01",
-            place,
+            "{}: found {} bytes without the mark of OpenEXR, expected 76 2f 31 01", place,
             bytes.size());
     }
     const auto version = std::to_integer<unsigned>(bytes[4]);
@@ -91,8 +90,7 @@ Status check_kind(std::span<const std::byte> bytes, const std::string& place) {
     for (const auto& [flag, name] : kUnsupported) {
         if ((flags & flag) != 0) {
             return fail(
-                "{}: found a {} OpenEXR file, which is unsupported, expected scan lines",
-                place,
+                "{}: found a {} OpenEXR file, which is unsupported, expected scan lines", place,
                 name);
         }
     }
@@ -105,11 +103,8 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || height < 1 || width > limits.max_size || height > limits.max_size) {
         return fail(
-            "{}: dataWindow: found {} x {} pixels, expected 1 to {} along a side",
-            place,
-            width,
-            height,
-            limits.max_size);
+            "{}: dataWindow: found {} x {} pixels, expected 1 to {} along a side", place, width,
+            height, limits.max_size);
     }
     std::int64_t channels = 0;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
@@ -125,11 +120,7 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
     }
     if (width * height * channels > limits.max_values) {
         return fail(
-            "{}: found {} x {} x {} values, expected at most {}",
-            place,
-            width,
-            height,
-            channels,
+            "{}: found {} x {} x {} values, expected at most {}", place, width, height, channels,
             limits.max_values);
     }
     return Done{};
@@ -267,11 +258,8 @@ Status write_exr(const std::string& path, const ExrImage& image, ExrCompression 
 }
 
 void add_layer(
-    ExrImage& image,
-    std::string_view layer,
-    std::string_view letters,
-    std::span<const float> values,
-    bool half) {
+    ExrImage& image, std::string_view layer, std::string_view letters,
+    std::span<const float> values, bool half) {
     const std::size_t count =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     LIMN_CHECK(values.size() == count * letters.size());
@@ -310,9 +298,7 @@ ImageData to_image_data(const ExrImage& image, const std::string& name) {
     const ExrChannel* gray = find_channel(image, "Y");
     gray = gray != nullptr ? gray : &image.channels.front();
     const ExrChannel* sources[4] = {
-        find_channel(image, "R"),
-        find_channel(image, "G"),
-        find_channel(image, "B"),
+        find_channel(image, "R"), find_channel(image, "G"), find_channel(image, "B"),
         find_channel(image, "A")};
     if (sources[0] == nullptr || sources[1] == nullptr || sources[2] == nullptr) {
         sources[0] = sources[1] = sources[2] = gray;

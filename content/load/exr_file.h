@@ -56,18 +56,14 @@ struct ExrLimits {
 /// Writes the file whole or not at all. Finite values beyond the range of a half become its
 /// largest, 65504, in half channels; infinities and NaN stay what they are.
 [[nodiscard]] Status write_exr(
-    const std::string& path,
-    const ExrImage& image,
+    const std::string& path, const ExrImage& image,
     ExrCompression compression = ExrCompression::Zip);
 
 /// Appends the channels "layer.X" ... for the letters of `letters`, from interleaved `values` with
 /// one value a letter. An empty `layer` gives plain "R", "G" ...
 void add_layer(
-    ExrImage& image,
-    std::string_view layer,
-    std::string_view letters,
-    std::span<const float> values,
-    bool half);
+    ExrImage& image, std::string_view layer, std::string_view letters,
+    std::span<const float> values, bool half);
 
 /// The channel called `name`, or null.
 [[nodiscard]] const ExrChannel* find_channel(const ExrImage& image, std::string_view name);

@@ -93,13 +93,8 @@ struct Strip {
 
 /// Fails unless `count` elements of `element_size` bytes fit into the view from `offset` on.
 Result<Strip> find_strip(
-    const GltfDocument& document,
-    int view_index,
-    std::uint64_t offset,
-    std::uint64_t count,
-    std::uint64_t element_size,
-    bool strided,
-    const std::string& place) {
+    const GltfDocument& document, int view_index, std::uint64_t offset, std::uint64_t count,
+    std::uint64_t element_size, bool strided, const std::string& place) {
     const auto index = static_cast<std::size_t>(view_index);
     const std::span<const std::byte> bytes = view_bytes(document, index);
     const std::uint64_t own_stride = document.model.bufferViews[index].byteStride;
@@ -108,10 +103,7 @@ Result<Strip> find_strip(
         return fail(
             "{}: found a stride of {} in bufferViews[{}], expected at least the {} bytes of an "
             "element",
-            place,
-            stride,
-            index,
-            element_size);
+            place, stride, index, element_size);
     }
     // count < 2^32, stride <= 252 and offset < 2^53: no overflow.
     const std::uint64_t end = offset + (count - 1) * stride + element_size;
@@ -119,11 +111,7 @@ Result<Strip> find_strip(
         return fail(
             "{}: found {} elements that end at byte {}, expected to stay within the {} of "
             "bufferViews[{}]",
-            place,
-            count,
-            end,
-            bytes.size(),
-            index);
+            place, count, end, bytes.size(), index);
     }
     return Strip{bytes.data() + offset, stride};
 }
@@ -135,9 +123,7 @@ struct Replacements {
 };
 
 Result<Replacements> find_replacements(
-    const GltfDocument& document,
-    const tinygltf::Accessor& accessor,
-    std::uint64_t element_size,
+    const GltfDocument& document, const tinygltf::Accessor& accessor, std::uint64_t element_size,
     const std::string& place) {
     const auto& sparse = accessor.sparse;
     const auto count = static_cast<std::uint64_t>(sparse.count);
@@ -146,30 +132,19 @@ Result<Replacements> find_replacements(
     }
     if (!is_index_type(sparse.indices.componentType)) {
         return fail(
-            "{}.sparse.indices.componentType: found {}, expected 5121, 5123 or 5125",
-            place,
+            "{}.sparse.indices.componentType: found {}, expected 5121, 5123 or 5125", place,
             sparse.indices.componentType);
     }
     const std::uint64_t index_size = component_size(sparse.indices.componentType);
     const Result<Strip> indices = find_strip(
-        document,
-        sparse.indices.bufferView,
-        static_cast<std::uint64_t>(sparse.indices.byteOffset),
-        count,
-        index_size,
-        false,
-        place + ".sparse.indices");
+        document, sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset),
+        count, index_size, false, place + ".sparse.indices");
     if (!indices) {
         return indices.error();
     }
     const Result<Strip> values = find_strip(
-        document,
-        sparse.values.bufferView,
-        static_cast<std::uint64_t>(sparse.values.byteOffset),
-        count,
-        element_size,
-        false,
-        place + ".sparse.values");
+        document, sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset),
+        count, element_size, false, place + ".sparse.values");
     if (!values) {
         return values.error();
     }
@@ -180,19 +155,13 @@ Result<Replacements> find_replacements(
             load_index(indices->first + i * index_size, sparse.indices.componentType);
         if (element >= accessor.count) {
             return fail(
-                "{}.sparse.indices: found {} at {}, expected an index below {}",
-                place,
-                element,
-                i,
+                "{}.sparse.indices: found {} at {}, expected an index below {}", place, element, i,
                 accessor.count);
         }
         if (!result.elements.empty() && element <= result.elements.back()) {
             return fail(
-                "{}.sparse.indices: found {} after {} at {}, expected increasing ones",
-                place,
-                element,
-                result.elements.back(),
-                i);
+                "{}.sparse.indices: found {} after {} at {}, expected increasing ones", place,
+                element, result.elements.back(), i);
         }
         result.elements.push_back(element);
     }
@@ -206,19 +175,12 @@ struct Elements {
 };
 
 Result<Elements> find_elements(
-    const GltfDocument& document,
-    const tinygltf::Accessor& accessor,
-    std::uint64_t element_size,
+    const GltfDocument& document, const tinygltf::Accessor& accessor, std::uint64_t element_size,
     const std::string& place) {
     Elements elements;
     if (accessor.bufferView >= 0) {
         const Result<Strip> strip = find_strip(
-            document,
-            accessor.bufferView,
-            accessor.byteOffset,
-            accessor.count,
-            element_size,
-            true,
+            document, accessor.bufferView, accessor.byteOffset, accessor.count, element_size, true,
             place);
         if (!strip) {
             return strip.error();
@@ -226,10 +188,8 @@ Result<Elements> find_elements(
         elements.base = *strip;
     } else if (accessor.count > kMaxZeros) {
         return fail(
-            "{}.count: found {} elements without a bufferView, expected at most {}",
-            place,
-            accessor.count,
-            kMaxZeros);
+            "{}.count: found {} elements without a bufferView, expected at most {}", place,
+            accessor.count, kMaxZeros);
     }
     if (accessor.sparse.isSparse) {
         Result<Replacements> sparse = find_replacements(document, accessor, element_size, place);
@@ -244,9 +204,7 @@ Result<Elements> find_elements(
 /// Calls store(element, bytes) for the elements that are somewhere.
 template <typename Store>
 void visit_elements(
-    const tinygltf::Accessor& accessor,
-    const Elements& elements,
-    std::uint64_t size,
+    const tinygltf::Accessor& accessor, const Elements& elements, std::uint64_t size,
     Store&& store) {
     if (elements.base.first != nullptr) {
         for (std::uint64_t i = 0; i < accessor.count; ++i) {
@@ -262,9 +220,7 @@ void visit_elements(
 Status take_values(GltfDocument& document, std::uint64_t values, const std::string& place) {
     if (values > document.values_left) {
         return fail(
-            "{}: found {} more numbers, expected at most {} in the whole file",
-            place,
-            values,
+            "{}: found {} more numbers, expected at most {} in the whole file", place, values,
             document.limits.max_values);
     }
     document.values_left -= values;
@@ -289,15 +245,12 @@ read_floats(GltfDocument& document, int index, int components, const std::string
     const std::uint64_t size = component_size(accessor.componentType);
     if (component_count(document, index) != components) {
         return fail(
-            "{}.type: found {} numbers an element, expected {}",
-            here,
-            component_count(document, index),
-            components);
+            "{}.type: found {} numbers an element, expected {}", here,
+            component_count(document, index), components);
     }
     if (size == 0) {
         return fail(
-            "{}.componentType: found {}, expected 5120 to 5123, 5125 or 5126",
-            here,
+            "{}.componentType: found {}, expected 5120 to 5123, 5125 or 5126", here,
             accessor.componentType);
     }
     const auto width = static_cast<std::uint64_t>(components);
@@ -334,9 +287,7 @@ read_indices(GltfDocument& document, int index, const std::string& place) {
     if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType)) {
         return fail(
             "{}: found {} numbers of type {} an element, expected one of type 5121, 5123 or 5125",
-            here,
-            component_count(document, index),
-            accessor.componentType);
+            here, component_count(document, index), accessor.componentType);
     }
     if (Status status = take_values(document, accessor.count, here); !status) {
         return status.error();

@@ -62,10 +62,7 @@ std::size_t height_of(const ChannelGroup& group) {
 /// The keys of all channels of one kind as rows, a value a joint; cubic keys are three rows.
 template <typename T>
 void fill_rows(
-    const ChannelGroup& group,
-    Path path,
-    std::vector<std::uint16_t>& joints,
-    std::vector<T>& rows,
+    const ChannelGroup& group, Path path, std::vector<std::uint16_t>& joints, std::vector<T>& rows,
     T (*value_of)(const float* numbers)) {
     std::vector<const Channel*> chosen;
     for (const Channel& channel : group.channels) {
@@ -117,8 +114,7 @@ class AnimationBuilder {
 
     Status build() {
         for (const auto step :
-             {&AnimationBuilder::find_joints,
-              &AnimationBuilder::add_skins,
+             {&AnimationBuilder::find_joints, &AnimationBuilder::add_skins,
               &AnimationBuilder::add_clips}) {
             if (Status status = (this->*step)(); !status) {
                 return status;
@@ -159,8 +155,7 @@ class AnimationBuilder {
                     const std::int32_t found = scene_node(static_cast<std::size_t>(joint));
                     if (found < 0) {
                         return fail(
-                            "{}.joints: found node {}, which is not in the scene",
-                            skin_place(skin),
+                            "{}.joints: found node {}, which is not in the scene", skin_place(skin),
                             joint);
                     }
                     moves[static_cast<std::size_t>(found)] = true;
@@ -197,9 +192,7 @@ class AnimationBuilder {
         }
         if (count >= kMostJoints) {
             return fail(
-                "{}: nodes: found {} that move, expected at most {}",
-                document_.file,
-                count,
+                "{}: nodes: found {} that move, expected at most {}", document_.file, count,
                 kMostJoints - 1);
         }
         scene_.skeleton.name = scene_.name;
@@ -269,10 +262,8 @@ class AnimationBuilder {
             }
             if (values->size() < 16 * skin.joints.size()) {
                 return fail(
-                    "{}: found {} matrices, expected one for each of {} joints",
-                    place,
-                    values->size() / 16,
-                    skin.joints.size());
+                    "{}: found {} matrices, expected one for each of {} joints", place,
+                    values->size() / 16, skin.joints.size());
             }
             for (std::size_t i = 0; i < skin.joints.size(); ++i) {
                 const float* columns = values->data() + 16 * i;
@@ -323,10 +314,7 @@ class AnimationBuilder {
             if (sampler >= samplers.size()) {
                 return fail(
                     "{}.channels[{}].sampler: found the number {}, expected an index below {}",
-                    place_,
-                    i,
-                    sampler,
-                    samplers.size());
+                    place_, i, sampler, samplers.size());
             }
             const JsonValue& target = member(channels[i], "target");
             const JsonValue* node = target.find("node");
@@ -390,10 +378,7 @@ class AnimationBuilder {
         const std::size_t found = values->size() / static_cast<std::size_t>(width);
         if (found != expected) {
             return fail(
-                "{}.output: found {} values, expected {} for {} keys{}{}",
-                place,
-                found,
-                expected,
+                "{}.output: found {} values, expected {} for {} keys{}{}", place, found, expected,
                 group.times.size(),
                 channel.path == Path::Weights ? fmt::format(" of {} morph targets", channel.count)
                                               : "",

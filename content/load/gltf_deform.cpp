@@ -32,18 +32,13 @@ struct InfluenceSet {
 };
 
 Result<std::vector<float>> read_attribute(
-    GltfDocument& document,
-    const GltfVertices& vertices,
-    int accessor,
-    int width,
+    GltfDocument& document, const GltfVertices& vertices, int accessor, int width,
     const std::string& place) {
     Result<std::vector<float>> values = read_floats(document, accessor, width, place);
     if (values && values->size() != vertices.count * static_cast<std::size_t>(width)) {
         return fail(
-            "{}: found {} elements, expected as many as POSITION has, {}",
-            place,
-            values->size() / static_cast<std::size_t>(width),
-            vertices.count);
+            "{}: found {} elements, expected as many as POSITION has, {}", place,
+            values->size() / static_cast<std::size_t>(width), vertices.count);
     }
     return values;
 }
@@ -60,11 +55,8 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
         }
         if (joints == attributes.end() || weights == attributes.end()) {
             return fail(
-                "{}.attributes: found {} alone, expected JOINTS_{} and WEIGHTS_{}",
-                vertices.place,
-                joints == attributes.end() ? weights->first : joints->first,
-                n,
-                n);
+                "{}.attributes: found {} alone, expected JOINTS_{} and WEIGHTS_{}", vertices.place,
+                joints == attributes.end() ? weights->first : joints->first, n, n);
         }
         InfluenceSet set;
         set.joints_place = fmt::format("{}.attributes.{}", vertices.place, joints->first);
@@ -75,9 +67,7 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
             && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
             return fail(
                 "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
-                set.joints_place,
-                joints->second,
-                type);
+                set.joints_place, joints->second, type);
         }
         for (const auto& [accessor, place, target] :
              {std::tuple(joints->second, &set.joints_place, &set.joints),
@@ -126,9 +116,7 @@ void append_influences(SkinWeights& skin, std::vector<Influence>& influences, do
 
 /// The influences of vertex `vertex` of the file, those without weight left out.
 Status gather_influences(
-    const std::vector<InfluenceSet>& sets,
-    std::uint32_t vertex,
-    std::size_t joints,
+    const std::vector<InfluenceSet>& sets, std::uint32_t vertex, std::size_t joints,
     std::vector<Influence>& influences) {
     influences.clear();
     for (const InfluenceSet& set : sets) {
@@ -136,9 +124,7 @@ Status gather_influences(
             const float weight = set.weights[i];
             if (weight < kLeastWeight) {
                 return fail(
-                    "{}: found {} in element {}, expected at least 0",
-                    set.weights_place,
-                    weight,
+                    "{}: found {} in element {}, expected at least 0", set.weights_place, weight,
                     vertex);
             }
             // A tiny weight would vanish, and its sum with it, in the division below.
@@ -148,10 +134,7 @@ Status gather_influences(
             if (set.joints[i] >= static_cast<float>(joints)) {
                 return fail(
                     "{}: found joint {} in element {}, expected one of the {} of the skin",
-                    set.joints_place,
-                    set.joints[i],
-                    vertex,
-                    joints);
+                    set.joints_place, set.joints[i], vertex, joints);
             }
             influences.emplace_back(static_cast<std::uint16_t>(set.joints[i]), weight);
         }
@@ -198,9 +181,7 @@ MorphTarget keep_moving(const Differences& all, std::span<const std::uint32_t> u
 }
 
 Result<Differences> read_differences(
-    GltfDocument& document,
-    const GltfVertices& vertices,
-    const std::map<std::string, int>& source,
+    GltfDocument& document, const GltfVertices& vertices, const std::map<std::string, int>& source,
     const std::string& place) {
     Differences all;
     for (const auto& [name, accessor] : source) {
@@ -222,11 +203,8 @@ Result<Differences> read_differences(
         });
         if (large != values->end()) {
             return fail(
-                "{}: found {} in element {}, expected at most {}",
-                here,
-                *large,
-                (large - values->begin()) / 3,
-                kLargestOffset);
+                "{}: found {} in element {}, expected at most {}", here, *large,
+                (large - values->begin()) / 3, kLargestOffset);
         }
         *target = std::move(*values);
     }
@@ -272,17 +250,12 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
         document.warnings.push_back(fmt::format(
             "{}: the weights of {} vertices do not sum to 1 and were scaled; of element {} the "
             "sum is {:.4g}",
-            place,
-            off.count,
-            off.vertex,
-            off.sum));
+            place, off.count, off.vertex, off.sum));
     }
     if (loose.count > 0) {
         document.warnings.push_back(fmt::format(
             "{}: {} vertices have no weight and follow the first joint; the first is element {}",
-            place,
-            loose.count,
-            loose.vertex));
+            place, loose.count, loose.vertex));
     }
     return skin;
 }
@@ -292,9 +265,7 @@ Result<std::vector<MorphTarget>> read_morph_targets(
     std::vector<MorphTarget> targets;
     for (std::size_t i = 0; i < vertices.primitive.targets.size(); ++i) {
         const Result<Differences> all = read_differences(
-            document,
-            vertices,
-            vertices.primitive.targets[i],
+            document, vertices, vertices.primitive.targets[i],
             fmt::format("{}.targets[{}]", vertices.place, i));
         if (!all) {
             return all.error();

@@ -15,10 +15,8 @@ namespace limn {
 namespace {
 
 constexpr std::array kExtensions = {
-    std::string_view("KHR_lights_punctual"),
-    std::string_view("KHR_materials_emissive_strength"),
-    std::string_view("KHR_materials_unlit"),
-    std::string_view("KHR_mesh_quantization"),
+    std::string_view("KHR_lights_punctual"),   std::string_view("KHR_materials_emissive_strength"),
+    std::string_view("KHR_materials_unlit"),   std::string_view("KHR_mesh_quantization"),
     std::string_view("KHR_texture_transform"),
 };
 
@@ -32,11 +30,8 @@ Status check_version(const JsonValue& json, const std::string& file) {
         const std::string& name = required->items[i].text;
         if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end()) {
             return fail(
-                "{}: extensionsRequired[{}]: found {}, expected one of {}",
-                file,
-                i,
-                in_quotes(name),
-                join_text(kExtensions, ", "));
+                "{}: extensionsRequired[{}]: found {}, expected one of {}", file, i,
+                in_quotes(name), join_text(kExtensions, ", "));
         }
     }
     return Done{};
@@ -46,19 +41,8 @@ Status check_version(const JsonValue& json, const std::string& file) {
 /// guess.
 JsonValue choose_for_tinygltf(const JsonValue& json) {
     constexpr std::string_view kSections[] = {
-        "asset",
-        "accessors",
-        "bufferViews",
-        "meshes",
-        "nodes",
-        "skins",
-        "scenes",
-        "scene",
-        "materials",
-        "textures",
-        "samplers",
-        "cameras",
-        "extensions"};
+        "asset", "accessors", "bufferViews", "meshes",   "nodes",   "skins",     "scenes",
+        "scene", "materials", "textures",    "samplers", "cameras", "extensions"};
     std::vector<JsonMember> members;
     for (const JsonMember& member : json.members) {
         if (std::find(std::begin(kSections), std::end(kSections), member.key)
@@ -118,18 +102,14 @@ Status load_buffers(GltfDocument& document, const GltfChunks& chunks) {
         }
         if (length > bytes.size()) {
             return fail(
-                "{}.byteLength: found {}, expected at most the {} bytes there are",
-                place,
-                length,
+                "{}.byteLength: found {}, expected at most the {} bytes there are", place, length,
                 bytes.size());
         }
         bytes.resize(length);
         total += length;
         if (total > document.limits.max_bytes) {
             return fail(
-                "{}: found {} bytes in buffers, expected at most {}",
-                place,
-                total,
+                "{}: found {} bytes in buffers, expected at most {}", place, total,
                 document.limits.max_bytes);
         }
         document.buffers.push_back(std::move(bytes));
@@ -145,12 +125,7 @@ Status check_views(const GltfDocument& document) {
             return fail(
                 "{}: bufferViews[{}]: found {} bytes from byte {}, expected to stay within the {} "
                 "of buffers[{}]",
-                document.file,
-                i,
-                view.byteLength,
-                view.byteOffset,
-                size,
-                view.buffer);
+                document.file, i, view.byteLength, view.byteOffset, size, view.buffer);
         }
     }
     return Done{};
@@ -159,9 +134,7 @@ Status check_views(const GltfDocument& document) {
 }  // namespace
 
 Result<GltfDocument> open_gltf(
-    std::span<const std::byte> bytes,
-    const std::string& file,
-    const std::string& folder,
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits) {
     if (bytes.size() > limits.max_bytes) {
         return fail(

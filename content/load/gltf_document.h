@@ -34,9 +34,7 @@ struct GltfDocument {
 
 /// Reads container, JSON and buffers; images come with the materials (gltf_material.h).
 [[nodiscard]] Result<GltfDocument> open_gltf(
-    std::span<const std::byte> bytes,
-    const std::string& file,
-    const std::string& folder,
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits);
 
 /// The bytes of buffer view `index`.

@@ -121,9 +121,7 @@ class ExtrasReader {
         if (object.kind != JsonKind::Object) {
             return fail(
                 "{}: {}: found {}, expected an object with a member for each component",
-                document_.file,
-                where,
-                describe(object));
+                document_.file, where, describe(object));
         }
         for (const JsonMember& member : object.members) {
             const ComponentInfo* info = find_component(member.key);
@@ -133,11 +131,8 @@ class ExtrasReader {
                     known.emplace_back(other->name);
                 }
                 return fail(
-                    "{}: {}: found {}, expected the name of a component{}",
-                    document_.file,
-                    where,
-                    in_quotes(member.key),
-                    did_you_mean(member.key, known));
+                    "{}: {}: found {}, expected the name of a component{}", document_.file, where,
+                    in_quotes(member.key), did_you_mean(member.key, known));
             }
             Result<AnyComponent> component = read_component(
                 member.value, *info, {document_.file, where + "." + member.key}, names_);

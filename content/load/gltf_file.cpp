@@ -43,9 +43,7 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
     const std::uint32_t length = little_endian(bytes, 8);
     if (length != bytes.size()) {
         return fail(
-            "{}: found {} bytes, expected the {} that the GLB header says",
-            file,
-            bytes.size(),
+            "{}: found {} bytes, expected the {} that the GLB header says", file, bytes.size(),
             length);
     }
     GltfChunks chunks;
@@ -53,8 +51,7 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
     for (std::size_t at = 12; at < bytes.size();) {
         if (bytes.size() - at < 8) {
             return fail(
-                "{}: found {} bytes after the last GLB chunk, expected none",
-                file,
+                "{}: found {} bytes after the last GLB chunk, expected none", file,
                 bytes.size() - at);
         }
         const std::uint32_t size = little_endian(bytes, at);
@@ -62,16 +59,13 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
         at += 8;
         if (size > bytes.size() - at) {
             return fail(
-                "{}: found a GLB chunk of {} bytes, expected at most the {} left in the file",
-                file,
-                size,
-                bytes.size() - at);
+                "{}: found a GLB chunk of {} bytes, expected at most the {} left in the file", file,
+                size, bytes.size() - at);
         }
         const std::span<const std::byte> data = bytes.subspan(at, size);
         if (!has_json && type != kJsonChunk) {
             return fail(
-                "{}: found chunk type {}, expected JSON as the first chunk",
-                file,
+                "{}: found chunk type {}, expected JSON as the first chunk", file,
                 fmt::format("{:#010x}", type));
         }
         if (!has_json) {
@@ -207,9 +201,7 @@ Result<GltfChunks> split_gltf(std::span<const std::byte> bytes, const std::strin
 }
 
 Result<std::vector<std::byte>> fetch_uri(
-    const std::string& uri,
-    const std::string& folder,
-    const std::string& place,
+    const std::string& uri, const std::string& folder, const std::string& place,
     std::uint64_t max_bytes) {
     if (uri.starts_with("data:")) {
         return decode_data_uri(uri, place);
@@ -221,9 +213,7 @@ Result<std::vector<std::byte>> fetch_uri(
     }
     if (const std::string_view why = refusal(*relative); !why.empty()) {
         return fail(
-            "{}: found {} in {}, expected a path under the file's own folder",
-            place,
-            why,
+            "{}: found {} in {}, expected a path under the file's own folder", place, why,
             in_quotes(uri));
     }
     if (folder.empty()) {
@@ -237,8 +227,7 @@ Result<std::vector<std::byte>> fetch_uri(
     }
     if (!is_under(path, base)) {
         return fail(
-            "{}: found {}, a link out of the file's folder, expected a file under it",
-            place,
+            "{}: found {}, a link out of the file's folder, expected a file under it", place,
             in_quotes(uri));
     }
     Result<std::vector<std::byte>> bytes = read_file(path.string(), max_bytes);

@@ -29,9 +29,7 @@ split_gltf(std::span<const std::byte> bytes, const std::string& file);
 /// schemes, absolute paths, "..", symbolic links out of the folder, and files at all when `folder`
 /// is "".
 [[nodiscard]] Result<std::vector<std::byte>> fetch_uri(
-    const std::string& uri,
-    const std::string& folder,
-    const std::string& place,
+    const std::string& uri, const std::string& folder, const std::string& place,
     std::uint64_t max_bytes);
 
 }  // namespace limn

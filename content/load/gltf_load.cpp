@@ -48,9 +48,7 @@ Result<GltfParts> build_meshes(GltfDocument& document, GltfScene& scene) {
 }
 
 Result<GltfScene> parse(
-    std::span<const std::byte> bytes,
-    const std::string& file,
-    const std::string& folder,
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits) {
     Result<GltfDocument> document = open_gltf(bytes, file, folder, limits);
     if (!document) {
@@ -81,9 +79,7 @@ Result<GltfScene> parse(
 }  // namespace
 
 Result<GltfScene> parse_gltf(
-    std::span<const std::byte> bytes,
-    const std::string& file,
-    const std::string& folder,
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits) {
     try {
         return parse(bytes, file, folder, limits);

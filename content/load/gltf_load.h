@@ -50,9 +50,7 @@ struct GltfLimits {
 /// The same from memory. `file` begins the messages; other files are looked for under `folder`, or
 /// not at all when it is empty: then naming one is an error.
 [[nodiscard]] Result<GltfScene> parse_gltf(
-    std::span<const std::byte> bytes,
-    const std::string& file,
-    const std::string& folder,
+    std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits = {});
 
 }  // namespace limn

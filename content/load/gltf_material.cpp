@@ -170,8 +170,7 @@ load_wanted(const GltfDocument& document, const WantedImage& wanted, const Image
     std::string place = fmt::format("{}: images[{}]", document.file, wanted.source);
     if ((uri == nullptr) == (view == nullptr)) {
         return fail(
-            "{}: found {} uri and bufferView, expected one of them",
-            place,
+            "{}: found {} uri and bufferView, expected one of them", place,
             uri == nullptr ? "neither" : "both");
     }
     std::vector<std::byte> fetched;
@@ -237,8 +236,7 @@ Status build_materials(GltfDocument& document, GltfScene& scene) {
                 static_cast<std::uint64_t>(data.width) * static_cast<std::uint64_t>(data.height);
             if (pixels > pixels_left) {
                 return fail(
-                    "{}: found more pixels, expected at most {} in all images",
-                    document.file,
+                    "{}: found more pixels, expected at most {} in all images", document.file,
                     document.limits.max_pixels);
             }
             pixels_left -= pixels;

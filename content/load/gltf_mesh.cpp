@@ -88,10 +88,8 @@ class MeshBuilder {
             return skip("it has no POSITION");
         }
         for (const auto step :
-             {&MeshBuilder::read_positions,
-              &MeshBuilder::read_triangles,
-              &MeshBuilder::read_attributes,
-              &MeshBuilder::read_deformations}) {
+             {&MeshBuilder::read_positions, &MeshBuilder::read_triangles,
+              &MeshBuilder::read_attributes, &MeshBuilder::read_deformations}) {
             if (Status status = (this->*step)(); !status) {
                 return status.error();
             }
@@ -121,10 +119,7 @@ class MeshBuilder {
         for (std::size_t i = 0; i < values->size(); ++i) {
             if (std::abs((*values)[i]) > kLargestPosition) {
                 return fail(
-                    "{}: found {} in element {}, expected at most {}",
-                    place,
-                    (*values)[i],
-                    i / 3,
+                    "{}: found {} in element {}, expected at most {}", place, (*values)[i], i / 3,
                     kLargestPosition);
             }
         }
@@ -151,11 +146,8 @@ class MeshBuilder {
         for (std::size_t i = 0; i < list.size(); ++i) {
             if (list[i] >= positions_.size()) {
                 return fail(
-                    "{}: found {} at {}, expected an index below the {} vertices",
-                    place,
-                    list[i],
-                    i,
-                    positions_.size());
+                    "{}: found {} at {}, expected an index below the {} vertices", place, list[i],
+                    i, positions_.size());
             }
         }
         if (source_.mode == TINYGLTF_MODE_TRIANGLES && list.size() % 3 != 0) {
@@ -200,9 +192,7 @@ class MeshBuilder {
         std::vector<T> all(values->size() / static_cast<std::size_t>(T::length()));
         if (all.size() != positions_.size()) {
             return fail(
-                "{}: found {} elements, expected as many as POSITION has, {}",
-                place,
-                all.size(),
+                "{}: found {} elements, expected as many as POSITION has, {}", place, all.size(),
                 positions_.size());
         }
         std::memcpy(all.data(), values->data(), values->size() * sizeof(float));

@@ -24,8 +24,7 @@ constexpr float kSmallestScale = 1e-6f;
 
 Vec3 vector_of(const std::vector<double>& values) {
     return {
-        static_cast<float>(values[0]),
-        static_cast<float>(values[1]),
+        static_cast<float>(values[0]), static_cast<float>(values[1]),
         static_cast<float>(values[2])};
 }
 
@@ -103,9 +102,7 @@ class NodeBuilder {
                     return fail(
                         "{}.children: found node {}, which is a child of nodes[{}] already, "
                         "expected one parent",
-                        place(i),
-                        child,
-                        parent);
+                        place(i), child, parent);
                 }
                 parent = i;
             }
@@ -144,9 +141,7 @@ class NodeBuilder {
             if (parent_[index] != kNone || reached[index]) {
                 return fail(
                     "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
-                    document_.file,
-                    scene,
-                    root,
+                    document_.file, scene, root,
                     reached[index] ? "is there twice" : "has a parent");
             }
             if (Status status = visit(index, reached, order_); !status) {
@@ -170,8 +165,7 @@ class NodeBuilder {
             open.pop_back();
             if (now.depth > document_.limits.max_depth) {
                 return fail(
-                    "{}: found more than {} nodes in each other",
-                    place(now.node),
+                    "{}: found more than {} nodes in each other", place(now.node),
                     document_.limits.max_depth);
             }
             reached[now.node] = true;
@@ -216,11 +210,7 @@ class NodeBuilder {
             if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
                 return fail(
                     "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
-                    place(index),
-                    m[3],
-                    m[7],
-                    m[11],
-                    m[15]);
+                    place(index), m[3], m[7], m[11], m[15]);
             }
             Mat4 matrix;
             for (int i = 0; i < 16; ++i) {
@@ -243,15 +233,12 @@ class NodeBuilder {
             const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
             if (length < 1e-6) {
                 return fail(
-                    "{}.rotation: found a quaternion of length {}, expected 1",
-                    place(index),
+                    "{}.rotation: found a quaternion of length {}, expected 1", place(index),
                     length);
             }
             transform.rotation = Quat(
-                static_cast<float>(q[3] / length),
-                static_cast<float>(q[0] / length),
-                static_cast<float>(q[1] / length),
-                static_cast<float>(q[2] / length));
+                static_cast<float>(q[3] / length), static_cast<float>(q[0] / length),
+                static_cast<float>(q[1] / length), static_cast<float>(q[2] / length));
         }
         avoid_zero_scale(transform);
         return Done{};
@@ -334,10 +321,7 @@ class NodeBuilder {
             if (const std::size_t own = scene_.meshes[part.mesh].morphs.size(); own != count) {
                 return fail(
                     "{}: meshes[{}].primitives: found {} and {} targets, expected as many in each",
-                    document_.file,
-                    mesh,
-                    count,
-                    own);
+                    document_.file, mesh, count, own);
             }
         }
         if (count == 0) {
@@ -355,8 +339,7 @@ class NodeBuilder {
             return fail(
                 "{}.weights: found {}, expected one for each of {} targets",
                 own ? place(index) : fmt::format("{}: meshes[{}]", document_.file, mesh),
-                values.size(),
-                count);
+                values.size(), count);
         }
         node.first_morph = static_cast<std::int32_t>(weights.size());
         document_.node_morphs[index] = {node.first_morph, count};

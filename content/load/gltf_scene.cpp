@@ -103,8 +103,7 @@ Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect) {
         const Vec3 p = half * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
         const float toward = glm::dot(p, to_camera);
         distance = std::max(
-            {distance,
-             toward + std::abs(glm::dot(p, right)) / tan_x,
+            {distance, toward + std::abs(glm::dot(p, right)) / tan_x,
              toward + std::abs(glm::dot(p, up)) / tan_y});
     }
     Transform view;

@@ -25,12 +25,8 @@ namespace {
 std::string sniff_format(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr std::pair<std::string_view, const char*> kMagic[] = {
-        {"\x89PNG\r\n\x1a\n", "png"},
-        {"\xff\xd8\xff", "jpeg"},
-        {"BM", "bmp"},
-        {"#?RADIANCE", "hdr"},
-        {"#?RGBE", "hdr"},
-        {"\x76\x2f\x31\x01", "exr"},
+        {"\x89PNG\r\n\x1a\n", "png"}, {"\xff\xd8\xff", "jpeg"}, {"BM", "bmp"},
+        {"#?RADIANCE", "hdr"},        {"#?RGBE", "hdr"},        {"\x76\x2f\x31\x01", "exr"},
     };
     for (const auto& [magic, format] : kMagic) {
         if (text.starts_with(magic)) {
@@ -95,9 +91,7 @@ bool read_pixels(
 }
 
 Result<ImageData> decode(
-    std::span<const std::byte> bytes,
-    const std::string& place,
-    bool srgb,
+    std::span<const std::byte> bytes, const std::string& place, bool srgb,
     const ImageLimits& limits) {
     const std::string format = sniff_format(bytes);
     if (bytes.empty()) {
@@ -107,8 +101,7 @@ Result<ImageData> decode(
         return fail(
             "{}: found {} bytes of an unknown kind, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
             "picture",
-            place,
-            bytes.size());
+            place, bytes.size());
     }
     if (format == "png") {
         if (Status status = check_png(bytes, place); !status) {
@@ -145,12 +138,8 @@ Result<ImageData> decode(
         || spec.height > limits.max_size
         || std::int64_t{spec.width} * spec.height > limits.max_pixels) {
         return fail(
-            "{}: found {} x {} pixels, expected at most {} along a side and {} in all",
-            place,
-            spec.width,
-            spec.height,
-            limits.max_size,
-            limits.max_pixels);
+            "{}: found {} x {} pixels, expected at most {} along a side and {} in all", place,
+            spec.width, spec.height, limits.max_size, limits.max_pixels);
     }
     if (spec.depth > 1 || spec.nchannels < 1 || spec.deep) {
         return fail("{}: found a deep or volume picture, expected a flat one", place);
@@ -224,9 +213,7 @@ Result<ImageData> load_image(const std::string& path, bool srgb, const ImageLimi
 }
 
 Result<ImageData> decode_image(
-    std::span<const std::byte> bytes,
-    const std::string& place,
-    bool srgb,
+    std::span<const std::byte> bytes, const std::string& place, bool srgb,
     const ImageLimits& limits) {
     try {
         return decode(bytes, place, srgb, limits);

@@ -31,9 +31,7 @@ load_image(const std::string& path, bool srgb, const ImageLimits& limits = {});
 
 /// The same from memory; `place` begins the message of an error and names the image.
 [[nodiscard]] Result<ImageData> decode_image(
-    std::span<const std::byte> bytes,
-    const std::string& place,
-    bool srgb,
+    std::span<const std::byte> bytes, const std::string& place, bool srgb,
     const ImageLimits& limits = {});
 
 /// Replaces what is not finite in a picture of floats, NaN by 0 and infinities by the largest half

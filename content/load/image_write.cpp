@@ -38,11 +38,7 @@ encode_png(int width, int height, int channels, OIIO::TypeDesc type, const void*
 
 /// The same of checked sizes and without exceptions.
 Result<std::vector<unsigned char>> encode_values(
-    int width,
-    int height,
-    int channels,
-    OIIO::TypeDesc type,
-    std::size_t count,
+    int width, int height, int channels, OIIO::TypeDesc type, std::size_t count,
     const void* values) {
     LIMN_CHECK(width > 0 && height > 0 && channels >= 1 && channels <= 4);
     LIMN_CHECK(
@@ -57,13 +53,8 @@ Result<std::vector<unsigned char>> encode_values(
 }
 
 Status write_values(
-    const std::string& path,
-    int width,
-    int height,
-    int channels,
-    OIIO::TypeDesc type,
-    std::size_t count,
-    const void* values) {
+    const std::string& path, int width, int height, int channels, OIIO::TypeDesc type,
+    std::size_t count, const void* values) {
     const Result<std::vector<unsigned char>> bytes =
         encode_values(width, height, channels, type, count, values);
     if (!bytes) {
@@ -75,20 +66,14 @@ Status write_values(
 }  // namespace
 
 Status write_png(
-    const std::string& path,
-    int width,
-    int height,
-    int channels,
+    const std::string& path, int width, int height, int channels,
     std::span<const std::uint8_t> pixels) {
     return write_values(
         path, width, height, channels, OIIO::TypeUInt8, pixels.size(), pixels.data());
 }
 
 Status write_png16(
-    const std::string& path,
-    int width,
-    int height,
-    int channels,
+    const std::string& path, int width, int height, int channels,
     std::span<const std::uint16_t> pixels) {
     return write_values(
         path, width, height, channels, OIIO::TypeUInt16, pixels.size(), pixels.data());

@@ -16,18 +16,12 @@ namespace limn {
 /// Writes `width` x `height` pixels of `channels` (1 gray, 2 gray and alpha, 3 RGB, 4 RGBA)
 /// interleaved values, rows from top to bottom.
 [[nodiscard]] Status write_png(
-    const std::string& path,
-    int width,
-    int height,
-    int channels,
+    const std::string& path, int width, int height, int channels,
     std::span<const std::uint8_t> pixels);
 
 /// The same with 16 bits a value, for ramps that 8 bits would band.
 [[nodiscard]] Status write_png16(
-    const std::string& path,
-    int width,
-    int height,
-    int channels,
+    const std::string& path, int width, int height, int channels,
     std::span<const std::uint16_t> pixels);
 
 /// The file of write_png as bytes, for pictures within other files.

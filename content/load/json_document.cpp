@@ -202,8 +202,7 @@ class JsonParser {
     bool check_depth(const JsonValue& value, int depth) {
         return depth < limits_.max_depth
                || refuse_at(
-                   value.at,
-                   fmt::format("more than {} levels of nesting", limits_.max_depth),
+                   value.at, fmt::format("more than {} levels of nesting", limits_.max_depth),
                    "fewer");
     }
 
@@ -260,8 +259,7 @@ class JsonParser {
         const std::from_chars_result parsed = std::from_chars(value.text.data(), end, value.number);
         if (parsed.ec != std::errc() || !std::isfinite(value.number)) {
             return refuse_at(
-                value.at,
-                "the number " + value.text.substr(0, kQuotedBytes),
+                value.at, "the number " + value.text.substr(0, kQuotedBytes),
                 "one that a double can hold");
         }
         return true;
@@ -414,8 +412,7 @@ class JsonParser {
         for (const JsonMember& member : object.members) {
             if (!seen.insert(member.key).second) {
                 return refuse_at(
-                    member.at,
-                    "the key " + in_quotes(member.key) + " for the second time",
+                    member.at, "the key " + in_quotes(member.key) + " for the second time",
                     "each key once");
             }
         }
@@ -555,8 +552,7 @@ Result<JsonValue> load_json(const std::string& path, const JsonLimits& limits) {
     }
     if (!std::filesystem::is_regular_file(status)) {
         return fail(
-            "{}: found {}, expected a file",
-            path,
+            "{}: found {}, expected a file", path,
             std::filesystem::is_directory(status) ? "a directory" : "a special file");
     }
     const auto close = [](std::FILE* file) { std::fclose(file); };
@@ -662,9 +658,7 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string_vi
     constexpr std::size_t kLongestName = 64;
     std::vector<std::string_view> short_ones;
     std::copy_if(
-        candidates.begin(),
-        candidates.end(),
-        std::back_inserter(short_ones),
+        candidates.begin(), candidates.end(), std::back_inserter(short_ones),
         [](std::string_view c) { return c.size() <= kLongestName; });
     const std::string nearest =
         name.size() <= kLongestName ? nearest_name(name, short_ones) : std::string();

@@ -132,9 +132,7 @@ Status LevelEntities::add_node(
     }
     if (around.depth >= limits_.max_depth) {
         return refuse(
-            path,
-            json.at,
-            fmt::format("more than {} entities in each other", limits_.max_depth),
+            path, json.at, fmt::format("more than {} entities in each other", limits_.max_depth),
             "fewer");
     }
     const std::size_t open_before = open_.size();
@@ -158,9 +156,7 @@ Status LevelEntities::read_own_keys(Node& node) const {
                       && name->text.find('.') == std::string::npos;
     if (!good) {
         return refuse(
-            node.path,
-            name->at,
-            describe(*name),
+            node.path, name->at, describe(*name),
             "a name: a string that is not empty, without '.'");
     }
     node.name = name->text;
@@ -181,21 +177,17 @@ Status LevelEntities::find_layers(Node& node) {
                 known.emplace_back(name);
             }
             return refuse(
-                node.path,
-                used->at,
+                node.path, used->at,
                 used->kind == JsonKind::String ? "the prefab " + in_quotes(used->text)
                                                : describe(*used),
                 "the name of one of \"prefabs\"" + did_you_mean(used->text, known));
         }
         if (std::find(open_.begin(), open_.end(), used->text) != open_.end()) {
             return refuse(
-                node.path,
-                used->at,
+                node.path, used->at,
                 fmt::format(
-                    "the prefab {} inside itself ({} > {})",
-                    in_quotes(used->text),
-                    fmt::join(open_, " > "),
-                    used->text),
+                    "the prefab {} inside itself ({} > {})", in_quotes(used->text),
+                    fmt::join(open_, " > "), used->text),
                 "one that does not contain itself");
         }
         layer = prefab->second.json;
@@ -206,18 +198,14 @@ Status LevelEntities::find_layers(Node& node) {
         }
         if (const JsonValue* const name = layer->find("name")) {
             return refuse(
-                "prefabs." + used->text,
-                name->at,
-                "a name",
+                "prefabs." + used->text, name->at, "a name",
                 "none: the entities that use it have names");
         }
         open_.push_back(used->text);
         node.layers.push_back(layer);
         if (node.layers.size() > kMaxLayers) {
             return refuse(
-                node.path,
-                used->at,
-                fmt::format("more than {} prefabs of prefabs", kMaxLayers),
+                node.path, used->at, fmt::format("more than {} prefabs of prefabs", kMaxLayers),
                 "fewer");
         }
     }
@@ -240,16 +228,12 @@ Status LevelEntities::spend(const Node& node, std::uint64_t copies) {
     }
     if (copies > limits_.max_entities - entities_) {
         return refuse(
-            node.path,
-            node.json->at,
-            fmt::format("{} entities here", copies),
+            node.path, node.json->at, fmt::format("{} entities here", copies),
             fmt::format("at most {} in all", limits_.max_entities));
     }
     if (copies > (limits_.max_values - values_) / values) {
         return refuse(
-            node.path,
-            node.json->at,
-            fmt::format("{} copies of {} values", copies, values),
+            node.path, node.json->at, fmt::format("{} copies of {} values", copies, values),
             fmt::format("at most {} in all entities", limits_.max_values));
     }
     entities_ += copies;
@@ -297,10 +281,7 @@ Status LevelEntities::add_copies(List& list, Node& node, const Around& around) {
 }
 
 Status LevelEntities::add_copy(
-    List& list,
-    const Node& node,
-    const Around& around,
-    std::vector<AnyComponent> components,
+    List& list, const Node& node, const Around& around, std::vector<AnyComponent> components,
     const std::string& name) {
     const auto index = static_cast<std::uint32_t>(list.entities.entities.size());
     if (around.parent >= 0) {
@@ -312,10 +293,8 @@ Status LevelEntities::add_copy(
         const auto [place, is_new] = list.scopes[around.scope].names.try_emplace(name, index);
         if (!is_new) {
             return refuse(
-                node.path,
-                node.json->find("name")->at,
-                "the name " + in_quotes(name) + " for the second time",
-                "each name once");
+                node.path, node.json->find("name")->at,
+                "the name " + in_quotes(name) + " for the second time", "each name once");
         }
     }
     list.entities.entities.push_back({std::move(components)});
@@ -350,9 +329,7 @@ Status LevelEntities::add_copy(
         }
         for (std::size_t i = 0; i < children->items.size(); ++i) {
             const Status status = add_node(
-                list,
-                children->items[i],
-                {index, scope, around.depth + 1},
+                list, children->items[i], {index, scope, around.depth + 1},
                 fmt::format("{}.children[{}]", node.path, i));
             if (!status) {
                 return status;
@@ -399,9 +376,7 @@ Status LevelEntities::read_layer(
                 known.emplace_back(component->name);
             }
             return refuse(
-                node.path,
-                member.at,
-                "the component " + in_quotes(member.key),
+                node.path, member.at, "the component " + in_quotes(member.key),
                 "one of `limn components`, or one of name prefab gltf repeat children"
                     + did_you_mean(member.key, known));
         }
@@ -464,9 +439,7 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
                 known.emplace_back(name);
             }
             return refuse(
-                "",
-                unknown->at,
-                "the entity " + in_quotes(unknown->name),
+                "", unknown->at, "the entity " + in_quotes(unknown->name),
                 "the name of one that exists" + did_you_mean(unknown->name, known));
         }
     }

@@ -101,26 +101,19 @@ class LevelEntities {
     [[nodiscard]] Status read_own_keys(Node& node) const;
     [[nodiscard]] Status add_copies(List& list, Node& node, const Around& around);
     [[nodiscard]] Status add_copy(
-        List& list,
-        const Node& node,
-        const Around& around,
-        std::vector<AnyComponent> components,
+        List& list, const Node& node, const Around& around, std::vector<AnyComponent> components,
         const std::string& name);
     [[nodiscard]] Status
     add_name(List& list, const Node& node, std::uint32_t scope, const std::string& name);
     [[nodiscard]] Result<std::vector<AnyComponent>> read_components(List& list, const Node& node);
     [[nodiscard]] Status read_layer(
-        List& list,
-        const JsonValue& layer,
-        const Node& node,
+        List& list, const JsonValue& layer, const Node& node,
         std::vector<AnyComponent>& components);
     [[nodiscard]] Status spend(const Node& node, std::uint64_t copies);
     [[nodiscard]] FindNames names_in(List& list) const;
     [[nodiscard]] Status resolve(List& list, bool is_level) const;
     [[nodiscard]] Error refuse(
-        const std::string& path,
-        SourcePosition at,
-        std::string_view found,
+        const std::string& path, SourcePosition at, std::string_view found,
         std::string_view expected) const {
         return error_at({file_, path}, at, found, expected);
     }

@@ -12,8 +12,8 @@ namespace limn {
 
 namespace {
 
-const std::vector<std::string_view> kKeys = {
-    "at", "every", "times", "set", "set_resources", "impulse", "spawn", "destroy"};
+const std::vector<std::string_view> kKeys = {"at",      "every", "times",  "set", "set_resources",
+                                             "impulse", "spawn", "destroy"};
 constexpr double kLatest = 1e6;  // [s]
 
 struct EventReader {
@@ -27,9 +27,7 @@ struct EventReader {
         const bool good = json.kind == JsonKind::Number && json.number >= min && json.number <= max;
         if (!good) {
             return error_at(
-                {place.file, place.path + '.' + key},
-                json.at,
-                describe(json),
+                {place.file, place.path + '.' + key}, json.at, describe(json),
                 fmt::format("a number {} .. {}", min, max));
         }
         out = json.number;
@@ -39,17 +37,11 @@ struct EventReader {
     Status read_times(const JsonValue& json);
     Status read_member(const JsonMember& member);
     Status read_edits(
-        const JsonValue& json,
-        const std::vector<FieldInfo>& fields,
-        std::uint32_t offset,
-        const JsonPlace& at,
-        ScriptAction& action);
+        const JsonValue& json, const std::vector<FieldInfo>& fields, std::uint32_t offset,
+        const JsonPlace& at, ScriptAction& action);
     Status read_change(
-        const JsonMember& member,
-        const ComponentInfo* info,
-        const std::string& hint,
-        ScriptAction action,
-        const JsonPlace& at);
+        const JsonMember& member, const ComponentInfo* info, const std::string& hint,
+        ScriptAction action, const JsonPlace& at);
     Status read_targets(const JsonValue& json, EventAction kind, const char* key);
     Status read_resources(const JsonValue& json);
     Status read_spawns(const JsonValue& json);
@@ -74,9 +66,7 @@ Status EventReader::read_times(const JsonValue& json) {
         status = read_number(*times, "times", 1.0, 1e9, count);
         if (status && (count != std::floor(count) || every == nullptr)) {
             return error_at(
-                {place.file, place.path + ".times"},
-                times->at,
-                describe(*times),
+                {place.file, place.path + ".times"}, times->at, describe(*times),
                 every == nullptr ? "\"every\" beside it" : "a whole number");
         }
         event.times = static_cast<std::uint32_t>(count);
@@ -87,11 +77,8 @@ Status EventReader::read_times(const JsonValue& json) {
 /// The fields that `json` names, read into action.value. An object for a struct names fields of it,
 /// so that the others stay.
 Status EventReader::read_edits(
-    const JsonValue& json,
-    const std::vector<FieldInfo>& fields,
-    std::uint32_t offset,
-    const JsonPlace& at,
-    ScriptAction& action) {
+    const JsonValue& json, const std::vector<FieldInfo>& fields, std::uint32_t offset,
+    const JsonPlace& at, ScriptAction& action) {
     if (json.kind != JsonKind::Object) {
         return error_at(at, json.at, describe(json), "an object with the fields to set");
     }
@@ -99,9 +86,7 @@ Status EventReader::read_edits(
         const FieldInfo* const field = find_field(fields, member.key);
         if (field == nullptr) {
             return error_at(
-                at,
-                member.at,
-                "the field " + in_quotes(member.key),
+                at, member.at, "the field " + in_quotes(member.key),
                 "one that it has" + field_suggestion(fields, member.key));
         }
         const JsonPlace inner{at.file, at.path + '.' + member.key};
@@ -134,18 +119,13 @@ Status EventReader::read_edits(
 }
 
 Status EventReader::read_change(
-    const JsonMember& member,
-    const ComponentInfo* info,
-    const std::string& hint,
-    ScriptAction action,
-    const JsonPlace& at) {
+    const JsonMember& member, const ComponentInfo* info, const std::string& hint,
+    ScriptAction action, const JsonPlace& at) {
     const char* const noun = action.is_resource ? "resource" : "component";
     if (info == nullptr || info->ops.construct_default == nullptr
         || info->ops.construct_copy == nullptr) {
         return error_at(
-            at,
-            member.at,
-            fmt::format("the {} {}", noun, in_quotes(member.key)),
+            at, member.at, fmt::format("the {} {}", noun, in_quotes(member.key)),
             fmt::format("one of `limn components`{}", hint));
     }
     action.value = AnyComponent(*info);
@@ -161,9 +141,7 @@ Result<Entity> EventReader::find_entity(std::string_view name, SourcePosition at
     const std::optional<Entity> entity = names.entity(name, at);
     if (!entity) {
         return error_at(
-            {place.file, place.path + '.' + key},
-            at,
-            "the entity " + in_quotes(name),
+            {place.file, place.path + '.' + key}, at, "the entity " + in_quotes(name),
             "one of the level" + did_you_mean(name, names.all("entity")));
     }
     return *entity;
@@ -190,11 +168,8 @@ Status EventReader::read_targets(const JsonValue& json, EventAction kind, const 
             action.action = kind;
             action.entity = *entity;
             const Status status = read_change(
-                component,
-                find_component(component.key),
-                component_suggestion(component.key),
-                std::move(action),
-                inner);
+                component, find_component(component.key), component_suggestion(component.key),
+                std::move(action), inner);
             if (!status) {
                 return status;
             }
@@ -212,11 +187,8 @@ Status EventReader::read_resources(const JsonValue& json) {
         ScriptAction action;
         action.is_resource = true;
         const Status status = read_change(
-            resource,
-            find_resource(resource.key),
-            resource_suggestion(resource.key),
-            std::move(action),
-            at);
+            resource, find_resource(resource.key), resource_suggestion(resource.key),
+            std::move(action), at);
         if (!status) {
             return status;
         }
@@ -283,18 +255,14 @@ Status EventReader::read_member(const JsonMember& member) {
         return Done{};
     }
     return error_at(
-        place,
-        member.at,
-        "the key " + in_quotes(key),
+        place, member.at, "the key " + in_quotes(key),
         fmt::format("one of {}", fmt::join(kKeys, " ")) + did_you_mean(key, kKeys));
 }
 
 }  // namespace
 
 Result<ScriptEvent> read_event(
-    const JsonValue& json,
-    const JsonPlace& place,
-    const FindNames& names,
+    const JsonValue& json, const JsonPlace& place, const FindNames& names,
     const ReadPrefab& read_prefab) {
     if (json.kind != JsonKind::Object) {
         return error_at(place, json.at, describe(json), "an object");

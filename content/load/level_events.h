@@ -26,9 +26,7 @@ namespace limn {
 using ReadPrefab = std::function<Result<Prefab>(const JsonValue& node, const JsonPlace& place)>;
 
 [[nodiscard]] Result<ScriptEvent> read_event(
-    const JsonValue& json,
-    const JsonPlace& place,
-    const FindNames& names,
+    const JsonValue& json, const JsonPlace& place, const FindNames& names,
     const ReadPrefab& read_prefab);
 
 }  // namespace limn

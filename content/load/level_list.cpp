@@ -81,8 +81,7 @@ Result<std::string> find_level(std::string_view name) {
         names.emplace_back(level.name);
     }
     return fail(
-        "{}: found no level of that name, expected one of `limn levels`{}",
-        name,
+        "{}: found no level of that name, expected one of `limn levels`{}", name,
         did_you_mean(name, names));
 }
 

@@ -20,16 +20,8 @@ namespace limn {
 namespace {
 
 const std::vector<std::string_view> kLevelKeys = {
-    "title",
-    "description",
-    "resources",
-    "images",
-    "materials",
-    "paths",
-    "meshes",
-    "prefabs",
-    "entities",
-    "events"};
+    "title", "description", "resources", "images",   "materials",
+    "paths", "meshes",      "prefabs",   "entities", "events"};
 constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm"};
 
 using Names = std::unordered_map<std::string, std::uint32_t>;
@@ -115,9 +107,7 @@ Status LevelParser::read_keys() {
     for (const JsonMember& member : json_.members) {
         if (std::find(kLevelKeys.begin(), kLevelKeys.end(), member.key) == kLevelKeys.end()) {
             return error_at(
-                place(""),
-                member.at,
-                "the key " + in_quotes(member.key),
+                place(""), member.at, "the key " + in_quotes(member.key),
                 fmt::format("one of {}", fmt::join(kLevelKeys, " "))
                     + did_you_mean(member.key, kLevelKeys));
         }
@@ -156,9 +146,7 @@ Status LevelParser::read_resource(const JsonMember& member, const JsonPlace& at)
     const ComponentInfo* const info = find_resource(member.key);
     if (info == nullptr || info->ops.construct_default == nullptr) {
         return error_at(
-            at,
-            member.at,
-            "the resource " + in_quotes(member.key),
+            at, member.at, "the resource " + in_quotes(member.key),
             "one of `limn components`" + resource_suggestion(member.key));
     }
     Result<AnyComponent> resource = read_component(member.value, *info, at, asset_names());
@@ -196,9 +184,7 @@ Status LevelParser::read_image(const JsonMember& member, const JsonPlace& at) {
                           && json.members.size() == (srgb == nullptr ? 1u : 2u);
         if (!good) {
             return error_at(
-                at,
-                json.at,
-                "other keys or types",
+                at, json.at, "other keys or types",
                 "{\"file\": \"path\", \"srgb\": true or false}");
         }
         image.file = file->text;
@@ -209,9 +195,7 @@ Status LevelParser::read_image(const JsonMember& member, const JsonPlace& at) {
         image.pattern = make->kind == JsonKind::String ? find_pattern_kind(make->text) : nullptr;
         if (image.pattern == nullptr) {
             return error_at(
-                at,
-                make->at,
-                describe(*make),
+                at, make->at, describe(*make),
                 "a kind of pattern" + pattern_kind_suggestion(make->text));
         }
         Result<AnyComponent> parameters =
@@ -237,9 +221,7 @@ Status LevelParser::read_pattern(const JsonValue& json, const JsonPlace& at, Mat
         json.kind == JsonKind::String ? patterns_.find(json.text) : patterns_.end();
     if (pattern == patterns_.end()) {
         return error_at(
-            at,
-            json.at,
-            describe(json),
+            at, json.at, describe(json),
             "the name of one of \"images\" that is made"
                 + did_you_mean(json.text, sorted_names(patterns_)));
     }
@@ -262,9 +244,7 @@ Status LevelParser::read_material(const JsonMember& member, const JsonPlace& at)
             like->kind == JsonKind::String ? materials_.find(like->text) : materials_.end();
         if (other == materials_.end()) {
             return error_at(
-                at,
-                like->at,
-                describe(*like),
+                at, like->at, describe(*like),
                 "the name of a material before this one"
                     + did_you_mean(like->text, sorted_names(materials_)));
         }
@@ -287,11 +267,8 @@ Status LevelParser::read_material(const JsonMember& member, const JsonPlace& at)
         const FieldInfo* const scale = find_field(component_info<TextureSlot>().fields, "scale");
         status = read_field(*tiling, *scale, &scaled.scale, {at.file, at.path + ".tiling"}, names);
         for (TextureSlot* const slot :
-             {&material.base_color_texture,
-              &material.metal_rough_texture,
-              &material.normal_texture,
-              &material.occlusion_texture,
-              &material.emission_texture}) {
+             {&material.base_color_texture, &material.metal_rough_texture, &material.normal_texture,
+              &material.occlusion_texture, &material.emission_texture}) {
             slot->scale = scaled.scale;
         }
     }
@@ -309,11 +286,7 @@ Status LevelParser::read_path(const JsonMember& member, const JsonPlace& at) {
     Result<PathData> path = make_path(shape->as<PathShape>());
     if (!path) {
         return fail(
-            "{}:{}:{}: {}: {}",
-            at.file,
-            member.value.at.line,
-            member.value.at.column,
-            at.path,
+            "{}:{}:{}: {}: {}", at.file, member.value.at.line, member.value.at.column, at.path,
             path.error().message);
     }
     path->name = member.key;
@@ -476,9 +449,7 @@ Status make_pattern(Level& level, const LevelImage& image, std::uint64_t& pixels
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
-            place_of(level, image.at, "images." + image.name),
-            pixels,
-            pixels_left);
+            place_of(level, image.at, "images." + image.name), pixels, pixels_left);
     }
     pixels_left -= pixels;
     PatternMaps maps = image.pattern->make(image.parameters.data());
@@ -491,10 +462,7 @@ Status make_pattern(Level& level, const LevelImage& image, std::uint64_t& pixels
 }
 
 Status load_picture(
-    Level& level,
-    const LevelImage& image,
-    const std::string& folder,
-    const LevelLimits& limits,
+    Level& level, const LevelImage& image, const std::string& folder, const LevelLimits& limits,
     std::uint64_t& pixels_left) {
     const std::string place = place_of(level, image.at, "images." + image.name);
     const Result<std::vector<std::byte>> bytes =
@@ -514,9 +482,7 @@ Status load_picture(
         static_cast<std::uint64_t>(data->width) * static_cast<std::uint64_t>(data->height);
     if (const std::size_t bad = replace_non_finite(*data); bad > 0) {
         log_warn(
-            "{}: {}: {} values are not finite; NaN became 0, infinity 65504",
-            place,
-            image.file,
+            "{}: {}: {} values are not finite; NaN became 0, infinity 65504", place, image.file,
             bad);
     }
     data->name = image.name;
@@ -549,10 +515,7 @@ Status make_meshes(Level& level, const LevelLimits& limits) {
         if (vertices > limits.max_vertices) {
             return fail(
                 "{}: meshes.{}: found {} vertices so far, expected at most {} in all meshes",
-                level.file,
-                mesh.name,
-                vertices,
-                limits.max_vertices);
+                level.file, mesh.name, vertices, limits.max_vertices);
         }
     }
     return Done{};

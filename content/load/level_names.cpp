@@ -61,8 +61,7 @@ class LateNames {
                 if (status && !action.value.is_empty()) {
                     const bool is_entity = action.entity.generation == prefab_entity(0).generation;
                     status = resolve(
-                        action.value,
-                        "events: " + action.value.info().name,
+                        action.value, "events: " + action.value.info().name,
                         is_entity ? scene_of(action.entity.index) : std::nullopt);
                 }
                 if (!status) {
@@ -131,8 +130,7 @@ class LateNames {
     Status resolve(AnyComponent& component, std::string_view place, SceneNumber own) {
         Status result = Done{};
         for_each_asset(
-            component.info().fields,
-            component.data(),
+            component.info().fields, component.data(),
             [&](std::string_view kind, std::uint32_t& index) {
                 const auto lists = lists_.find(std::string(kind));
                 if (lists == lists_.end() || index == kNoAsset || !result) {
@@ -150,11 +148,7 @@ class LateNames {
                 }
                 result = fail(
                     "{}: {}: found the {} {}, expected one of a glTF file or a made mesh{}",
-                    level_.file,
-                    place,
-                    kind,
-                    in_quotes(name),
-                    did_you_mean(name, known));
+                    level_.file, place, kind, in_quotes(name), did_you_mean(name, known));
             });
         return result;
     }

@@ -15,8 +15,8 @@ namespace limn {
 
 namespace {
 
-const std::vector<std::string_view> kByNames = {
-    "random", "x", "y", "z", "radius", "angle", "index"};
+const std::vector<std::string_view> kByNames = {"random", "x",     "y",    "z",
+                                                "radius", "angle", "index"};
 const std::vector<std::string_view> kVariationKeys = {"by", "from", "to", "pick", "noise", "times"};
 
 /// `json` is an object with known keys only.
@@ -28,9 +28,7 @@ Status check_keys(
     for (const JsonMember& member : json.members) {
         if (std::find(known.begin(), known.end(), member.key) == known.end()) {
             return error_at(
-                place,
-                member.at,
-                "the key " + in_quotes(member.key),
+                place, member.at, "the key " + in_quotes(member.key),
                 fmt::format("one of {}", fmt::join(known, " ")) + did_you_mean(member.key, known));
         }
     }
@@ -49,11 +47,8 @@ Result<float> read_number(const JsonValue& json, float min, float max, const Jso
 /// The numbers of `from` or `to`, one a lane of the field. Checked by reading them into the field
 /// of a copy of its component.
 Result<std::vector<double>> read_lanes(
-    const JsonValue& json,
-    const Variation& variation,
-    const AnyComponent& component,
-    const JsonPlace& place,
-    const FindNames& names) {
+    const JsonValue& json, const Variation& variation, const AnyComponent& component,
+    const JsonPlace& place, const FindNames& names) {
     const FieldInfo& field = *variation.field;
     std::vector<double> lanes;
     if (field.type == FieldType::Quat) {
@@ -83,11 +78,8 @@ Result<std::vector<double>> read_lanes(
 }
 
 Status read_picks(
-    const JsonValue& json,
-    const AnyComponent& component,
-    const JsonPlace& place,
-    const FindNames& names,
-    Variation& variation) {
+    const JsonValue& json, const AnyComponent& component, const JsonPlace& place,
+    const FindNames& names, Variation& variation) {
     if (json.kind != JsonKind::Array || json.items.empty()) {
         return error_at(place, json.at, describe(json), "an array of values");
     }
@@ -107,9 +99,7 @@ Status read_options(const JsonValue& json, const JsonPlace& place, Variation& va
         const auto name = std::find(kByNames.begin(), kByNames.end(), by->text);
         if (by->kind != JsonKind::String || name == kByNames.end()) {
             return error_at(
-                place,
-                by->at,
-                describe(*by),
+                place, by->at, describe(*by),
                 fmt::format("one of {}", fmt::join(kByNames, " "))
                     + did_you_mean(by->text, kByNames));
         }
@@ -134,11 +124,8 @@ Status read_options(const JsonValue& json, const JsonPlace& place, Variation& va
 
 /// Which field of which component "sway.phase" is.
 Status find_varied_field(
-    const JsonMember& member,
-    std::span<const AnyComponent> components,
-    const JsonPlace& place,
-    Variation& variation,
-    const AnyComponent*& component) {
+    const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& place,
+    Variation& variation, const AnyComponent*& component) {
     const std::size_t dot = std::min(member.key.find('.'), member.key.size());
     const std::string_view name = std::string_view(member.key).substr(0, dot);
     std::vector<std::string_view> present;
@@ -150,22 +137,17 @@ Status find_varied_field(
     }
     if (component == nullptr) {
         return error_at(
-            place,
-            member.at,
-            "the component " + in_quotes(name),
+            place, member.at, "the component " + in_quotes(name),
             fmt::format("one that the entity has: {}", fmt::join(present, " "))
                 + did_you_mean(name, present));
     }
     AnyComponent scratch = *component;
     const Result<FieldRef> field = field_at(
-        scratch.info(),
-        scratch.data(),
+        scratch.info(), scratch.data(),
         std::string_view(member.key).substr(std::min(dot + 1, member.key.size())));
     if (!field || field->field->shape != FieldShape::One) {
         return error_at(
-            place,
-            member.at,
-            "the field " + in_quotes(member.key),
+            place, member.at, "the field " + in_quotes(member.key),
             field ? "one that is no list" : "a field of the component: " + field.error().message);
     }
     variation.component = scratch.info().id;
@@ -177,9 +159,7 @@ Status find_varied_field(
 }
 
 Result<Variation> read_variation(
-    const JsonMember& member,
-    std::span<const AnyComponent> components,
-    const JsonPlace& outer,
+    const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& outer,
     const FindNames& names) {
     const JsonPlace place{outer.file, outer.path + '.' + member.key};
     Variation variation;
@@ -252,10 +232,7 @@ Vec3 from_middle(const RepeatGrid& grid, const Cell& cell) {
 
 /// The copy's number before noise, 0 .. 1; of VaryBy::Random one a lane.
 float number_of(
-    const Variation& variation,
-    const RepeatGrid& grid,
-    const Cell& cell,
-    std::uint64_t index,
+    const Variation& variation, const RepeatGrid& grid, const Cell& cell, std::uint64_t index,
     float random) {
     switch (variation.by) {
     case VaryBy::Random:
@@ -294,9 +271,7 @@ float with_noise_and_times(const Variation& variation, float t, float random) {
 }
 
 void apply_variation(
-    const Variation& variation,
-    const Repeat& repeat,
-    std::uint64_t index,
+    const Variation& variation, const Repeat& repeat, std::uint64_t index,
     AnyComponent& component) {
     Random random(repeat.grid.seed, index, variation.name_hash, 0);
     const Cell cell = cell_of(repeat.grid, index);
@@ -369,9 +344,7 @@ std::uint64_t repeat_count(const Repeat& repeat) {
 }
 
 Result<Repeat> read_repeat(
-    const JsonValue& json,
-    std::span<const AnyComponent> components,
-    const JsonPlace& place,
+    const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
     const FindNames& names) {
     Repeat repeat;
     if (json.kind != JsonKind::Object) {

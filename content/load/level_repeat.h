@@ -78,9 +78,7 @@ struct Repeat {
 
 /// `components` are those of the entity, after all that a prefab gives.
 [[nodiscard]] Result<Repeat> read_repeat(
-    const JsonValue& json,
-    std::span<const AnyComponent> components,
-    const JsonPlace& place,
+    const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
     const FindNames& names);
 
 /// Moves copy number `index` to its place and changes its fields. A Sway moves with the Transform.
@@ -91,8 +89,7 @@ void visit_fields(RepeatGrid& grid, Visitor&& visit) {
     visit("count", grid.count, {.doc = "copies along x, y and z", .min = 1, .max = 1e6});
     visit("spacing", grid.spacing, {.doc = "from copy to copy", .unit = "m"});
     visit(
-        "radius",
-        grid.radius,
+        "radius", grid.radius,
         {.doc = "of a ring for the copies along x; 0 = none", .unit = "m", .min = 0});
     visit(
         "centered", grid.centered, {.doc = "the middle is the node's place, else the first copy"});

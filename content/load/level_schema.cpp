@@ -79,9 +79,8 @@ JsonValue constant(std::string_view word) {
 /// An object with these properties and no others.
 JsonValue closed_object(Members properties, std::vector<JsonValue> required = {}) {
     JsonValue schema = of_type(
-        "object",
-        {member("properties", json_object(std::move(properties))),
-         member("additionalProperties", json_of(false))});
+        "object", {member("properties", json_object(std::move(properties))),
+                   member("additionalProperties", json_of(false))});
     if (!required.empty()) {
         schema.members.push_back(member("required", json_array(std::move(required))));
     }
@@ -200,8 +199,7 @@ JsonValue schema_of_images() {
 
 JsonValue schema_of_materials() {
     Members properties = {
-        member("like", of_type("string")),
-        member("pattern", of_type("string")),
+        member("like", of_type("string")), member("pattern", of_type("string")),
         member("tiling", array_of(of_type("number"), 2, 2))};
     for (JsonMember& field : properties_of(component_info<Material>().fields)) {
         properties.push_back(std::move(field));
@@ -213,8 +211,7 @@ JsonValue schema_of_repeat() {
     Members properties = properties_of(component_info<RepeatGrid>().fields);
     JsonValue variation = closed_object(
         {member("by", one_of_words({"random", "x", "y", "z", "radius", "angle", "index"})),
-         member("from", json_object()),
-         member("to", json_object()),
+         member("from", json_object()), member("to", json_object()),
          member("pick", of_type("array", {member("minItems", count(1))})),
          member(
              "noise",
@@ -241,8 +238,7 @@ JsonValue schema_of_components(Members more, bool may_be_null) {
 JsonValue schema_of_node() {
     return schema_of_components(
         {member("name", of_type("string", {member("pattern", text("^[^.]+$"))})),
-         member("prefab", of_type("string")),
-         member("gltf", of_type("string")),
+         member("prefab", of_type("string")), member("gltf", of_type("string")),
          member("repeat", any_of({reference("repeat of a node"), of_type("null")})),
          member("children", array_of(reference("node")))},
         true);
@@ -261,8 +257,7 @@ JsonValue schema_of_event() {
         return of_type("number", {member("minimum", number(0)), member("maximum", number(1e6))});
     };
     return closed_object(
-        {member("at", time()),
-         member("every", time()),
+        {member("at", time()), member("every", time()),
          member("times", of_type("integer", {member("minimum", number(1))})),
          member("set", map_of(schema_of_components({}, false))),
          member("set_resources", schema_of_resources()),
@@ -274,8 +269,7 @@ JsonValue schema_of_event() {
 
 JsonValue definitions() {
     Members all = {
-        member("node", schema_of_node()),
-        member("repeat of a node", schema_of_repeat()),
+        member("node", schema_of_node()), member("repeat of a node", schema_of_repeat()),
         member("event", schema_of_event())};
     for (const std::vector<const ComponentInfo*>& infos : {all_components(), all_resources()}) {
         for (const ComponentInfo* const info : infos) {
@@ -289,10 +283,8 @@ JsonValue definitions() {
 
 JsonValue level_schema() {
     JsonValue schema = closed_object(
-        {member("title", of_type("string")),
-         member("description", of_type("string")),
-         member("resources", schema_of_resources()),
-         member("images", schema_of_images()),
+        {member("title", of_type("string")), member("description", of_type("string")),
+         member("resources", schema_of_resources()), member("images", schema_of_images()),
          member("materials", schema_of_materials()),
          member("paths", map_of(schema_of_fields(component_info<PathShape>().fields))),
          member("meshes", map_of(any_of(schemas_of_kinds(mesh_kinds())))),

@@ -24,9 +24,7 @@ void set_entities(AnyComponent& component, const std::vector<Entity>& entities, 
 }
 
 void localize(
-    Prefab& prefab,
-    const AssetOffsets& offsets,
-    const std::vector<Entity>& entities,
+    Prefab& prefab, const AssetOffsets& offsets, const std::vector<Entity>& entities,
     bool is_outside) {
     for (PrefabEntity& entity : prefab.entities) {
         for (AnyComponent& component : entity.components) {
@@ -75,9 +73,8 @@ void change_character(Prefab& prefab, Entity from, Entity to) {
         for (AnyComponent& component : entity.components) {
             if (component.info().has_entities) {
                 for_each_entity(
-                    component.info().fields, component.data(), [from, to](Entity& named) {
-                        named = named == from ? to : named;
-                    });
+                    component.info().fields, component.data(),
+                    [from, to](Entity& named) { named = named == from ? to : named; });
             }
         }
     }
@@ -85,10 +82,7 @@ void change_character(Prefab& prefab, Entity from, Entity to) {
 
 /// The first use brings the file's assets; the others are copies of its entities.
 void spawn_scene(
-    World& world,
-    Assets& assets,
-    GltfScene scene,
-    const GltfUse& use,
+    World& world, Assets& assets, GltfScene scene, const GltfUse& use,
     const std::vector<Entity>& entities) {
     const Entity first = entities[use.entities.front()];
     const SpawnedGltf spawned = spawn_gltf(world, assets, std::move(scene), first);

@@ -87,8 +87,7 @@ void add_light_rig(World& world, const Quat& camera) {
         Transform transform;
         transform.rotation = look_along(camera * -light.from);
         world.create(
-            Name{light.name},
-            transform,
+            Name{light.name}, transform,
             DirectionalLight{.color = light.color, .illuminance = light.illuminance});
     }
 }

@@ -48,12 +48,8 @@ JsonValue parse_value(std::string_view text) {
 /// Sets the field in a copy, which takes the place of `object` if all is well. Whole structs may be
 /// set, too, and keep what the value does not name.
 Status set_field(
-    const ComponentInfo& info,
-    void* object,
-    std::string_view field_path,
-    const JsonValue& value,
-    const JsonPlace& place,
-    const FindNames& names) {
+    const ComponentInfo& info, void* object, std::string_view field_path, const JsonValue& value,
+    const JsonPlace& place, const FindNames& names) {
     AnyComponent copy(info, object);
     const Result<FieldRef> field = field_at(info, copy.data(), field_path);
     if (!field) {
@@ -81,12 +77,8 @@ Status set_field(
 }
 
 Status set_in_entities(
-    World& world,
-    const std::vector<Entity>& entities,
-    const ComponentInfo& info,
-    std::string_view field_path,
-    const JsonValue& value,
-    const JsonPlace& place) {
+    World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
+    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
     bool is_set = false;
     for (const Entity entity : entities) {
         AnyComponent component = AnyComponent::read(world, entity, info);
@@ -109,10 +101,7 @@ Status set_in_entities(
 
 /// Makes the resource, with its defaults but for that field, if the scene has none.
 Status set_in_resource(
-    World& world,
-    const ComponentInfo& info,
-    std::string_view field_path,
-    const JsonValue& value,
+    World& world, const ComponentInfo& info, std::string_view field_path, const JsonValue& value,
     const JsonPlace& place) {
     const FindNames names = find_names_in(world);
     if (void* const object = world.find_resource(info.id)) {
@@ -148,10 +137,8 @@ Status set_in_material(
     }
     const std::string_view name = rest.substr(0, rest.find('.'));
     return fail(
-        "{}: found the material {}, expected one of the scene and a field{}",
-        place.file,
-        in_quotes(name),
-        did_you_mean(name, names));
+        "{}: found the material {}, expected one of the scene and a field{}", place.file,
+        in_quotes(name), did_you_mean(name, names));
 }
 
 /// `path` split at a dot such that what is before it is an entity's name and what is behind it
@@ -170,10 +157,8 @@ set_in_named(World& world, std::string_view path, const JsonValue& value, const 
         const ComponentInfo* const info = find_component(component);
         if (info == nullptr) {
             return fail(
-                "{}: found the component {}, expected one of `limn components`{}",
-                place.file,
-                in_quotes(component),
-                component_suggestion(component));
+                "{}: found the component {}, expected one of `limn components`{}", place.file,
+                in_quotes(component), component_suggestion(component));
         }
         if (end + 1 >= rest.size()) {
             return fail("{}: found no field behind {}, expected one", place.file, info->name);
@@ -187,9 +172,7 @@ set_in_named(World& world, std::string_view path, const JsonValue& value, const 
     }
     return fail(
         "{}: found {}, expected an entity, a resource or materials before the first dot{}",
-        place.file,
-        in_quotes(name),
-        did_you_mean(name, known));
+        place.file, in_quotes(name), did_you_mean(name, known));
 }
 
 }  // namespace

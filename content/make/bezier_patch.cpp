@@ -101,8 +101,7 @@ std::array<BezierPatch, 4> split_patch(const BezierPatch& patch) {
             Curve high;
             split_curve(
                 {half[side].p[0][j], half[side].p[1][j], half[side].p[2][j], half[side].p[3][j]},
-                low,
-                high);
+                low, high);
             for (std::size_t i = 0; i < 4; ++i) {
                 children[2 * side].p[i][j] = low[i];
                 children[2 * side + 1].p[i][j] = high[i];
@@ -137,8 +136,7 @@ PatchTriangles tessellate_uniform(std::size_t patch_count, int divisions) {
         for (std::uint32_t j = 0; j < row; ++j) {
             for (std::uint32_t i = 0; i < row; ++i) {
                 out.samples.push_back(
-                    {patch,
-                     static_cast<float>(i) / static_cast<float>(divisions),
+                    {patch, static_cast<float>(i) / static_cast<float>(divisions),
                      static_cast<float>(j) / static_cast<float>(divisions)});
             }
         }

@@ -81,10 +81,7 @@ void add_spar(
     };
     const float length = glm::distance(a, b);
     add_patch(
-        mesh,
-        10,
-        1,
-        {1, length},
+        mesh, 10, 1, {1, length},
         [&](float u, float v) {
             return glm::mix(b, a, v) + glm::mix(radius_b, radius_a, v) * around(u);
         },
@@ -93,10 +90,7 @@ void add_spar(
         const Vec3 end = far ? b : a;
         const Vec3 tip = end + (far ? radius_b : -radius_a) * axis;
         add_patch(
-            mesh,
-            10,
-            1,
-            {1, 0.1f},
+            mesh, 10, 1, {1, 0.1f},
             [&](float u, float v) {
                 const float r = far ? radius_b * v : radius_a * (1 - v);
                 return glm::mix(far ? tip : end, far ? end : tip, v) + r * around(u);
@@ -218,11 +212,7 @@ MeshData make_hull(const BoatShape& shape) {
         add_patch(
             mesh, 8, 2, {1, 1}, blade({0.9f, 0.5f}, {-0.6f, -0.5f}, -0.3f, -1.05f, 0.12f), kBottom);
         add_patch(
-            mesh,
-            6,
-            4,
-            {0.4f, 1},
-            blade({-3.14f, -2.86f}, {-3.6f, -3.35f}, 0.55f, -0.7f, 0.08f),
+            mesh, 6, 4, {0.4f, 1}, blade({-3.14f, -2.86f}, {-3.6f, -3.35f}, 0.55f, -0.7f, 0.08f),
             [](const Vec3& p) { return p.y < 0.02f ? kBottom : kTrim; });
     }
     add_spar(mesh, {0, 0.62f, -3.35f}, {0, 0.78f, -2.1f}, 0.03f, 0.02f, kTrim);
@@ -339,8 +329,7 @@ Vec3 sail_place(float u, float v) {
     const float held = 1 - square(1 - 4 * down * (1 - down));
     const float roach = 0.10f * 4 * down * (1 - down) * along;
     return {
-        kBelly * chord * arc * held * 0.85f + 0.12f * along * std::sin(kPi * (1 - down)),
-        flat.y,
+        kBelly * chord * arc * held * 0.85f + 0.12f * along * std::sin(kPi * (1 - down)), flat.y,
         flat.x - roach};
 }
 

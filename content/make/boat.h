@@ -35,8 +35,7 @@ template <typename Visitor>
 void visit_fields(BoatShape& shape, Visitor&& visit) {
     visit("part", shape.part, {.doc = "which of its meshes", .values = "hull deck spars rig"});
     visit(
-        "length",
-        shape.length,
+        "length", shape.length,
         {.doc = "from transom to stem, about", .unit = "m", .min = 0.1, .max = 1000});
     visit("strakes", shape.strakes, {.doc = "planks on each side", .min = 2, .max = 64});
     visit("stations", shape.stations, {.doc = "steps along it", .min = 6, .max = 512});

@@ -53,8 +53,7 @@ PatternMaps make_asphalt(const AsphaltPattern& pattern) {
         t.color = pattern.color * (1.0f + 0.5f * grain + 0.35f * stains) * (1.0f - 0.45f * puddle);
         t.height = 0.0016f * grain * (1.0f - puddle);
         t.roughness = glm::mix(
-            std::clamp(pattern.roughness + 0.2f * grain + 0.15f * stains, 0.2f, 1.0f),
-            0.06f,
+            std::clamp(pattern.roughness + 0.2f * grain + 0.15f * stains, 0.2f, 1.0f), 0.06f,
             puddle);
         t.occlusion = 1.0f;
         return t;

@@ -244,10 +244,7 @@ void add_eyeball(MeshData& mesh, const Eye& eye) {
             const Vec3 out = std::cos(polar) * eye.forward
                              + sine * (std::cos(around) * eye.right + std::sin(around) * eye.up);
             append_head_vertex(
-                mesh,
-                eye.center + eye.radius * out,
-                out,
-                creature_eye_color(polar),
+                mesh, eye.center + eye.radius * out, out, creature_eye_color(polar),
                 {static_cast<float>(i) / kAround, static_cast<float>(row) / kRings});
         }
     }
@@ -281,10 +278,7 @@ void add_lid(MeshData& mesh, const Eye& eye, float side, MorphTarget& blink) {
         blink.positions.push_back(size * radius * (shut - rest));
         blink.normals.push_back(is_cap ? cap_shut - cap : shut - rest);
         append_head_vertex(
-            mesh,
-            eye.center + size * radius * rest,
-            is_cap ? cap : rest,
-            color,
+            mesh, eye.center + size * radius * rest, is_cap ? cap : rest, color,
             {0.5f + across / kPi, turn / kPi});
     };
     const auto across_of = [](std::uint32_t i) {

@@ -73,15 +73,13 @@ template <typename Visitor>
 void visit_fields(CreatureShape& shape, Visitor&& visit) {
     visit("height", shape.height, {.doc = "of the back", .unit = "m", .min = 0.01, .max = 100});
     visit(
-        "detail",
-        shape.detail,
+        "detail", shape.detail,
         {.doc = "size of the triangles of a creature of 0.45 m",
          .unit = "m",
          .min = 0.004,
          .max = 0.02});
     visit(
-        "triangles",
-        shape.triangles,
+        "triangles", shape.triangles,
         {.doc = "if not 0: simplified to about so many", .min = 0, .max = 1000000});
 }
 

@@ -134,13 +134,7 @@ constexpr Part kParts[] = {
 
 /// What is taken away of the ears: their insides.
 constexpr Part kEarCup = {
-    Head,
-    {0.058f, 0.7f, 0.314f},
-    {0.085f, 0.77f, 0.297f},
-    0.028f,
-    0.008f,
-    0.012f,
-    {1, 1, 0.55f},
+    Head, {0.058f, 0.7f, 0.314f}, {0.085f, 0.77f, 0.297f}, 0.028f, 0.008f, 0.012f, {1, 1, 0.55f},
     true};
 
 Vec3 mirrored(const Vec3& p) {
@@ -176,15 +170,9 @@ float from(float low, float high, float x) {
 /// The bones that the hide is unrolled about, from one end to the other.
 std::span<const Vec3> chart_bones(int chart) {
     static const std::vector<Vec3> kTrunk = {
-        {0, 0.604f, 0.48f},
-        {0, 0.62f, 0.32f},
-        {0, 0.57f, 0.26f},
-        {0, 0.46f, 0.18f},
-        {0, 0.405f, 0.1f},
-        {0, 0.405f, -0.2f},
-        {0, 0.4f, -0.34f},
-        {0, 0.36f, -0.46f},
-        {0, 0.28f, -0.72f}};
+        {0, 0.604f, 0.48f}, {0, 0.62f, 0.32f},  {0, 0.57f, 0.26f},
+        {0, 0.46f, 0.18f},  {0, 0.405f, 0.1f},  {0, 0.405f, -0.2f},
+        {0, 0.4f, -0.34f},  {0, 0.36f, -0.46f}, {0, 0.28f, -0.72f}};
     static const std::vector<Vec3> kFront = {
         {0.05f, 0.42f, 0.13f},
         {0.066f, 0.26f, 0.088f},

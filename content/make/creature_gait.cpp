@@ -244,9 +244,7 @@ float blink_at(const Gait& gait, float phase) {
 
 /// The pitch of every joint relative to the world.
 Pitches pitches_at(
-    const Gait& gait,
-    const Trunk& trunk,
-    const std::array<std::array<float, kKeys>, kLegs>& slopes,
+    const Gait& gait, const Trunk& trunk, const std::array<std::array<float, kKeys>, kLegs>& slopes,
     int key) {
     const float phase = static_cast<float>(key) / kKeys;
     Pitches pitches{};

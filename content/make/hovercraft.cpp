@@ -71,10 +71,8 @@ float hull(const Vec3& p) {
     d = smooth_union(
         d,
         rounded_box(
-            p + Vec3(0, 0.04f + 0.06f * wing_x, 0.55f * wing_x - 1.3f),
-            {0.45f, 0, 0},
-            {0.6f, 0.045f, glm::mix(0.42f, 0.16f, wing_x)},
-            0.04f),
+            p + Vec3(0, 0.04f + 0.06f * wing_x, 0.55f * wing_x - 1.3f), {0.45f, 0, 0},
+            {0.6f, 0.045f, glm::mix(0.42f, 0.16f, wing_x)}, 0.04f),
         0.16f);
     // flat bottom
     return smooth_cut(d, p.y + 0.2f, 0.12f);

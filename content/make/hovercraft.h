@@ -20,16 +20,13 @@ struct HovercraftShape {
 template <typename Visitor>
 void visit_fields(HovercraftShape& shape, Visitor&& visit) {
     visit(
-        "length",
-        shape.length,
+        "length", shape.length,
         {.doc = "from nozzle to nose", .unit = "m", .min = 0.1, .max = 1000});
     visit(
-        "detail",
-        shape.detail,
+        "detail", shape.detail,
         {.doc = "size of the triangles of a craft of 5 m", .unit = "m", .min = 0.015, .max = 0.2});
     visit(
-        "triangles",
-        shape.triangles,
+        "triangles", shape.triangles,
         {.doc = "simplified to about so many; 0 = not at all", .min = 0, .max = 1e6});
 }
 

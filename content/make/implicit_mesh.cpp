@@ -126,10 +126,8 @@ void add_faces(
                     u[(axis + 1) % 3] = 1;
                     v[(axis + 2) % 3] = 1;
                     std::array<std::uint32_t, 4> quad = {
-                        vertex_of[samples.index(at - u - v)],
-                        vertex_of[samples.index(at - v)],
-                        vertex_of[samples.index(at)],
-                        vertex_of[samples.index(at - u)]};
+                        vertex_of[samples.index(at - u - v)], vertex_of[samples.index(at - v)],
+                        vertex_of[samples.index(at)], vertex_of[samples.index(at - u)]};
                     if (!inside) {
                         std::swap(quad[1], quad[3]);
                     }

@@ -13,18 +13,11 @@ namespace {
 
 /// A flat grid of points; its texture coordinates are meters along `right` and against `up`.
 void append_flat(
-    MeshData& mesh,
-    const Vec3& right,
-    const Vec3& up,
-    std::span<const float> columns,
-    std::span<const float> rows,
-    float depth) {
+    MeshData& mesh, const Vec3& right, const Vec3& up, std::span<const float> columns,
+    std::span<const float> rows, float depth) {
     const Vec3 out = glm::cross(right, up);
     append_grid(
-        mesh,
-        static_cast<int>(columns.size()) - 1,
-        static_cast<int>(rows.size()) - 1,
-        {},
+        mesh, static_cast<int>(columns.size()) - 1, static_cast<int>(rows.size()) - 1, {},
         [&](int i, int j) {
             const float x = columns[static_cast<std::size_t>(i)];
             const float y = rows[static_cast<std::size_t>(j)];
@@ -79,10 +72,7 @@ Vec3 swept(const WayPoint& point, const SectionPoint& corner) {
 
 /// One side of a section: flat across, along the way from corner `a` down to corner `b`.
 void append_side(
-    MeshData& mesh,
-    std::span<const WayPoint> way,
-    const SectionPoint& a,
-    const SectionPoint& b,
+    MeshData& mesh, std::span<const WayPoint> way, const SectionPoint& a, const SectionPoint& b,
     float v) {
     const Vec2 step = Vec2(b.offset - a.offset, b.z - a.z);
     const float width = glm::length(step);
@@ -173,11 +163,7 @@ std::vector<CurvePoint> vault_curve(const VaultShape& shape) {
 /// Half of the web of a vault that is level along `level` and falls along `fall`, from the middle
 /// to one corner: its lower and its upper side.
 void append_web(
-    MeshData& mesh,
-    const VaultShape& shape,
-    float half_level,
-    float half_fall,
-    const Vec3& level,
+    MeshData& mesh, const VaultShape& shape, float half_level, float half_fall, const Vec3& level,
     const Vec3& fall) {
     const std::vector<CurvePoint> curve = vault_curve(shape);
     const int n = shape.segments;

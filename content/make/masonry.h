@@ -71,27 +71,22 @@ template <typename Visitor>
 void visit_fields(ArchShape& shape, Visitor&& visit) {
     visit("span", shape.span, {.doc = "between the legs", .unit = "m", .min = 1e-3, .max = 1e4});
     visit(
-        "rise",
-        shape.rise,
+        "rise", shape.rise,
         {.doc = "from where the curve begins to its point", .unit = "m", .min = 1e-3, .max = 1e4});
     visit(
-        "radius",
-        shape.radius,
+        "radius", shape.radius,
         {.doc = "of the two arcs in spans: 0.5 a half circle, 1 equilateral; 0 = by span and rise",
          .min = 0,
          .max = 4});
     visit(
-        "legs",
-        shape.legs,
+        "legs", shape.legs,
         {.doc = "straight parts below the curve", .unit = "m", .min = 0, .max = 1e4});
     visit(
-        "thickness",
-        shape.thickness,
+        "thickness", shape.thickness,
         {.doc = "outwards from the curve", .unit = "m", .min = 1e-3, .max = 1e4});
     visit("depth", shape.depth, {.doc = "along z", .unit = "m", .min = 1e-3, .max = 1e4});
     visit(
-        "chamfer",
-        shape.chamfer,
+        "chamfer", shape.chamfer,
         {.doc = "cut off the two inner edges", .unit = "m", .min = 0, .max = 1e4});
     visit("segments", shape.segments, {.doc = "of one of the two arcs", .min = 1, .max = 512});
 }
@@ -99,36 +94,30 @@ void visit_fields(ArchShape& shape, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(WallShape& shape, Visitor&& visit) {
     visit(
-        "size",
-        shape.size,
+        "size", shape.size,
         {.doc = "width, height and thickness", .unit = "m", .min = 1e-2, .max = 1e4});
     visit(
-        "span",
-        shape.span,
+        "span", shape.span,
         {.doc = "width of the opening, less than the wall's",
          .unit = "m",
          .min = 1e-3,
          .max = 1e4});
     visit(
-        "spring",
-        shape.spring,
+        "spring", shape.spring,
         {.doc = "where the curve begins; the middle of a round opening",
          .unit = "m",
          .min = 0,
          .max = 1e4});
     visit(
-        "rise",
-        shape.rise,
+        "rise", shape.rise,
         {.doc = "from there to the point", .unit = "m", .min = 1e-3, .max = 1e4});
     visit(
-        "radius",
-        shape.radius,
+        "radius", shape.radius,
         {.doc = "of the two arcs in spans: 0.5 a half circle, 1 equilateral; 0 = by span and rise",
          .min = 0,
          .max = 4});
     visit(
-        "sill",
-        shape.sill,
+        "sill", shape.sill,
         {.doc = "where a pointed opening begins; 0 = on the ground",
          .unit = "m",
          .min = 0,
@@ -141,12 +130,10 @@ template <typename Visitor>
 void visit_fields(VaultShape& shape, Visitor&& visit) {
     visit("size", shape.size, {.doc = "along x and z", .unit = "m", .min = 1e-2, .max = 1e4});
     visit(
-        "rise",
-        shape.rise,
+        "rise", shape.rise,
         {.doc = "from the corners to the middle", .unit = "m", .min = 1e-3, .max = 1e4});
     visit(
-        "radius",
-        shape.radius,
+        "radius", shape.radius,
         {.doc = "of the arcs in spans, then stretched: 0.5 round, 1 equilateral",
          .min = 0.5,
          .max = 4});

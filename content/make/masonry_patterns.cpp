@@ -193,10 +193,8 @@ PatternMaps make_ashlar(const AshlarPattern& pattern) {
         const int slant = own < 0.5f ? 1 : -1;
         const Vec2 strokes = uv * static_cast<float>(rows) * Vec2(7, 14);
         const float chisel =
-            fbm({strokes.x + static_cast<float>(slant) * 0.5f * strokes.y, strokes.y},
-                seed + 30,
-                {7 * rows, 14 * rows},
-                2);
+            fbm({strokes.x + static_cast<float>(slant) * 0.5f * strokes.y, strokes.y}, seed + 30,
+                {7 * rows, 14 * rows}, 2);
         const float rough = 1.0f - pattern.wear;
         const Vec3 stone = tinted(pattern.color, pattern.variation, random)
                            * (1.0f + 0.30f * cloud + 0.22f * grain + 0.25f * stain);
@@ -236,9 +234,7 @@ PatternMaps make_rose_window(const RoseWindowPattern& pattern) {
         nearest.take(radius - rose.hub, 0);
         nearest.take(
             capsule_distance(
-                by_petal - Vec2(rose.petal_begin, 0),
-                rose.begin_radius,
-                rose.end_radius,
+                by_petal - Vec2(rose.petal_begin, 0), rose.begin_radius, rose.end_radius,
                 rose.petal_end - rose.petal_begin),
             1);
         nearest.take(glm::length(in_roundel) - rose.roundel_radius, 2);
@@ -266,8 +262,7 @@ PatternMaps make_rose_window(const RoseWindowPattern& pattern) {
         const int count = pattern.petals;
         const std::uint32_t random = lattice_hash(
             nearest.part == 0 ? 0 : (sector % count + count) % count,
-            glass.number + 2000 * nearest.part,
-            seed);
+            glass.number + 2000 * nearest.part, seed);
         // Clear inside of the outlines, and again beyond the bars around them, up to the rim.
         const float inside = 1.0f - glm::smoothstep(-rose.pixel, rose.pixel, d);
         const float outside = glm::smoothstep(-rose.pixel, rose.pixel, d - 2.0f * rose.bar);
@@ -341,8 +336,7 @@ PatternMaps make_stars(const StarsPattern& pattern) {
         PatternTexel t;
         t.color = glm::mix(
             pattern.color * (1.0f + 0.5f * cloud + 0.2f * grain),
-            pattern.star_color * (1.0f + 0.2f * grain),
-            star * (1.0f - 0.7f * bare));
+            pattern.star_color * (1.0f + 0.2f * grain), star * (1.0f - 0.7f * bare));
         t.height = 0.0015f * star / count + 0.0008f * grain / count;
         t.roughness = glm::mix(0.8f, 0.34f, star * (1.0f - bare)) + 0.05f * grain;
         return t;

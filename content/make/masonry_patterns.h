@@ -68,8 +68,7 @@ void visit_fields(AshlarPattern& p, Visitor&& visit) {
     detail::visit_image(p.image, visit);
     visit("rows", p.rows, {.doc = "courses; made even", .min = 2, .max = 128});
     visit(
-        "aspect",
-        p.aspect,
+        "aspect", p.aspect,
         {.doc = "mean length of a block over its height", .min = 0.5, .max = 8});
     visit("irregular", p.irregular, {.doc = "how much lengths differ", .min = 0, .max = 1});
     visit("joint", p.joint, {.doc = "width of the mortar in courses", .min = 0, .max = 0.3});
@@ -86,16 +85,14 @@ void visit_fields(RoseWindowPattern& p, Visitor&& visit) {
     detail::visit_image(p.image, visit);
     visit("petals", p.petals, {.doc = "around the hub", .min = 3, .max = 64});
     visit(
-        "tracery",
-        p.tracery,
+        "tracery", p.tracery,
         {.doc = "half the width of the bars, of the image", .min = 0, .max = 0.1});
     visit(
         "lead", p.lead, {.doc = "width between pieces of glass, of the bars", .min = 0, .max = 1});
     visit("variation", p.variation, {.doc = "from piece to piece", .min = 0, .max = 1});
     visit("field", p.field, {.doc = "most of the petals", .min = 0, .max = 1, .color = true});
     visit(
-        "border",
-        p.border,
+        "border", p.border,
         {.doc = "of petals, and the roundels", .min = 0, .max = 1, .color = true});
     visit("accent", p.accent, {.doc = "medallions and hub", .min = 0, .max = 1, .color = true});
     visit(

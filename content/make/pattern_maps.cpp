@@ -43,8 +43,7 @@ void for_pixels(int size, Body&& body) {
         for (std::size_t y = begin; y < end; ++y) {
             for (int x = 0; x < size; ++x) {
                 body(
-                    x,
-                    static_cast<int>(y),
+                    x, static_cast<int>(y),
                     y * static_cast<std::size_t>(size) + static_cast<std::size_t>(x));
             }
         }
@@ -63,10 +62,7 @@ PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const V
         const PatternTexel t = texel((Vec2(x, y) + 0.5f) / pixels);
         heights[pixel] = t.height * pixels;
         const Vec3 c = glm::clamp(t.color, 0.0f, 1.0f);
-        put(maps.base_color,
-            pixel,
-            to_byte(encode_srgb(c.x)),
-            to_byte(encode_srgb(c.y)),
+        put(maps.base_color, pixel, to_byte(encode_srgb(c.x)), to_byte(encode_srgb(c.y)),
             to_byte(encode_srgb(c.z)));
         put(maps.orm, pixel, to_byte(t.occlusion), to_byte(t.roughness), to_byte(t.metalness));
     });

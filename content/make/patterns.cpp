@@ -222,8 +222,7 @@ PatternMaps make_marble(const MarblePattern& pattern) {
                               + 0.25f * (1.0f - glm::smoothstep(0.0f, 0.35f, broad)));
         PatternTexel t;
         t.color = glm::mix(
-            pattern.color * (1.0f + 0.12f * cloud),
-            pattern.vein_color,
+            pattern.color * (1.0f + 0.12f * cloud), pattern.vein_color,
             std::clamp(dark, 0.0f, 1.0f));
         t.height = -0.0004f * dark;
         t.roughness = pattern.roughness + 0.12f * dark + 0.03f * cloud;

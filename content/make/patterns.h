@@ -131,8 +131,7 @@ void visit_image(PatternSize& image, Visitor& visit) {
     visit(
         "size", image.size, {.doc = "pixels along each side", .unit = "px", .min = 1, .max = 4096});
     visit(
-        "seed",
-        image.seed,
+        "seed", image.seed,
         {.doc = "another piece of the same material", .min = 0, .max = 2147483647});
 }
 
@@ -143,8 +142,7 @@ void visit_fields(CheckerPattern& p, Visitor&& visit) {
     detail::visit_image(p.image, visit);
     visit("cells", p.cells, {.doc = "along each side", .min = 2, .max = 512});
     visit(
-        "color_a",
-        p.color_a,
+        "color_a", p.color_a,
         {.doc = "of one half of the cells", .min = 0, .max = 1, .color = true});
     visit("color_b", p.color_b, {.doc = "of the other half", .min = 0, .max = 1, .color = true});
     visit("roughness", p.roughness, {.doc = "perceptual roughness", .min = 0, .max = 1});
@@ -156,8 +154,7 @@ void visit_fields(TilesPattern& p, Visitor&& visit) {
     visit("cells", p.cells, {.doc = "tiles along each side", .min = 1, .max = 128});
     visit("color", p.color, {.doc = "of the glaze", .min = 0, .max = 1, .color = true});
     visit(
-        "grout_color",
-        p.grout_color,
+        "grout_color", p.grout_color,
         {.doc = "between the tiles", .min = 0, .max = 1, .color = true});
     visit("variation", p.variation, {.doc = "from tile to tile", .min = 0, .max = 1});
     visit("grout", p.grout, {.doc = "width of the grout in tiles", .min = 0, .max = 0.3});
@@ -169,8 +166,7 @@ void visit_fields(BricksPattern& p, Visitor&& visit) {
     visit("rows", p.rows, {.doc = "of bricks; made even", .min = 2, .max = 128});
     visit("color", p.color, {.doc = "of the bricks", .min = 0, .max = 1, .color = true});
     visit(
-        "mortar_color",
-        p.mortar_color,
+        "mortar_color", p.mortar_color,
         {.doc = "between the bricks", .min = 0, .max = 1, .color = true});
     visit("variation", p.variation, {.doc = "from brick to brick", .min = 0, .max = 1});
 }
@@ -181,8 +177,7 @@ void visit_fields(StonePattern& p, Visitor&& visit) {
     visit("cells", p.cells, {.doc = "stones along each side", .min = 2, .max = 128});
     visit("color", p.color, {.doc = "of the stones", .min = 0, .max = 1, .color = true});
     visit(
-        "joint_color",
-        p.joint_color,
+        "joint_color", p.joint_color,
         {.doc = "between the stones", .min = 0, .max = 1, .color = true});
     visit("variation", p.variation, {.doc = "from stone to stone", .min = 0, .max = 1});
 }
@@ -224,8 +219,7 @@ template <typename Visitor>
 void visit_fields(RustPattern& p, Visitor&& visit) {
     detail::visit_image(p.image, visit);
     visit(
-        "metal_color",
-        p.metal_color,
+        "metal_color", p.metal_color,
         {.doc = "of the bare metal", .min = 0, .max = 1, .color = true});
     visit("rust_color", p.rust_color, {.doc = "of the rust", .min = 0, .max = 1, .color = true});
     visit("rust", p.rust, {.doc = "share of the surface", .min = 0, .max = 1});
@@ -236,12 +230,10 @@ void visit_fields(FabricPattern& p, Visitor&& visit) {
     detail::visit_image(p.image, visit);
     visit("threads", p.threads, {.doc = "along each side; made even", .min = 2, .max = 512});
     visit(
-        "warp_color",
-        p.warp_color,
+        "warp_color", p.warp_color,
         {.doc = "of the threads along v", .min = 0, .max = 1, .color = true});
     visit(
-        "weft_color",
-        p.weft_color,
+        "weft_color", p.weft_color,
         {.doc = "of the threads along u", .min = 0, .max = 1, .color = true});
 }
 

@@ -91,8 +91,7 @@ void append_lathe(
             const Vec3 out = {turn.sin, 0, turn.cos};
             const Vec3 along = vertex.tangent;
             vertex.position = {
-                ring.radius * lobe.factor * turn.sin,
-                ring.height,
+                ring.radius * lobe.factor * turn.sin, ring.height,
                 ring.radius * lobe.factor * turn.cos};
             vertex.normal = glm::normalize(
                 ring.normal.x * (lobe.factor * out - lobe.slope * along)
@@ -105,14 +104,8 @@ void append_lathe(
 
 /// A disc or ring at `height` that faces up (facing = 1) or down (-1).
 void append_disc(
-    MeshData& mesh,
-    float radius,
-    float hole,
-    float height,
-    float facing,
-    int segments,
-    int divisions,
-    const Lobes& lobes = {}) {
+    MeshData& mesh, float radius, float hole, float height, float facing, int segments,
+    int divisions, const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(segments);
     append_grid(mesh, segments, divisions, {false, hole == 0.0f}, [&](int i, int j) {
         // With columns to the right and rows toward the middle, the outline runs clockwise seen
@@ -181,13 +174,9 @@ MeshData make_box(const BoxShape& shape) {
     const Vec3 inner = half - bevel;
 
     // The six sides: where the image's right and top point.
-    const Vec3 sides[6][2] = {
-        {{0, 0, -1}, {0, 1, 0}},
-        {{0, 0, 1}, {0, 1, 0}},
-        {{1, 0, 0}, {0, 0, -1}},
-        {{1, 0, 0}, {0, 0, 1}},
-        {{1, 0, 0}, {0, 1, 0}},
-        {{-1, 0, 0}, {0, 1, 0}}};
+    const Vec3 sides[6][2] = {{{0, 0, -1}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}},
+                              {{1, 0, 0}, {0, 0, -1}}, {{1, 0, 0}, {0, 0, 1}},
+                              {{1, 0, 0}, {0, 1, 0}},  {{-1, 0, 0}, {0, 1, 0}}};
     MeshData mesh;
     for (const auto& side : sides) {
         const Vec3& right = side[0];
@@ -198,10 +187,7 @@ MeshData make_box(const BoxShape& shape) {
         const std::vector<float> columns = rounded_lines(half_right, bevel, shape);
         const std::vector<float> rows = rounded_lines(half_up, bevel, shape);
         append_grid(
-            mesh,
-            static_cast<int>(columns.size()) - 1,
-            static_cast<int>(rows.size()) - 1,
-            {},
+            mesh, static_cast<int>(columns.size()) - 1, static_cast<int>(rows.size()) - 1, {},
             [&](int i, int j) {
                 const float x = columns[static_cast<std::size_t>(i)];
                 const float y = -rows[static_cast<std::size_t>(j)];

@@ -102,19 +102,16 @@ template <typename Visitor>
 void visit_fields(BoxShape& shape, Visitor&& visit) {
     visit("size", shape.size, {.doc = "along x, y and z", .unit = "m", .min = 1e-4, .max = 1e5});
     visit(
-        "bevel",
-        shape.bevel,
+        "bevel", shape.bevel,
         {.doc = "radius of the edges, at most half the smallest size",
          .unit = "m",
          .min = 0,
          .max = 1e5});
     visit(
-        "bevel_segments",
-        shape.bevel_segments,
+        "bevel_segments", shape.bevel_segments,
         {.doc = "steps of half a rounded edge", .min = 1, .max = 64});
     visit(
-        "divisions",
-        shape.divisions,
+        "divisions", shape.divisions,
         {.doc = "quads along the flat part of a side", .min = 1, .max = 1024});
     visit("metric", shape.metric, {.doc = "the image repeats every meter"});
 }
@@ -122,12 +119,10 @@ void visit_fields(BoxShape& shape, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(TorusShape& shape, Visitor&& visit) {
     visit(
-        "radius",
-        shape.radius,
+        "radius", shape.radius,
         {.doc = "from the center to the middle of the tube", .unit = "m", .min = 1e-4, .max = 1e5});
     visit(
-        "tube",
-        shape.tube,
+        "tube", shape.tube,
         {.doc = "radius of the tube, at most radius", .unit = "m", .min = 1e-4, .max = 1e5});
     visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
     visit("sides", shape.sides, {.doc = "around the tube", .min = 3, .max = 1024});
@@ -153,8 +148,7 @@ template <typename Visitor>
 void visit_fields(ConeShape& shape, Visitor&& visit) {
     visit("radius", shape.radius, {.doc = "below", .unit = "m", .min = 1e-4, .max = 1e5});
     visit(
-        "top_radius",
-        shape.top_radius,
+        "top_radius", shape.top_radius,
         {.doc = "above; 0 = a tip", .unit = "m", .min = 0, .max = 1e5});
     visit("height", shape.height, {.doc = "along y", .unit = "m", .min = 1e-4, .max = 1e5});
     visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
@@ -166,8 +160,7 @@ template <typename Visitor>
 void visit_fields(DiscShape& shape, Visitor&& visit) {
     visit("radius", shape.radius, {.doc = "of the outline", .unit = "m", .min = 1e-4, .max = 1e5});
     visit(
-        "inner_radius",
-        shape.inner_radius,
+        "inner_radius", shape.inner_radius,
         {.doc = "of the hole, less than radius", .unit = "m", .min = 0, .max = 1e5});
     visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
     visit("divisions", shape.divisions, {.doc = "from the middle outwards", .min = 1, .max = 1024});
@@ -176,24 +169,21 @@ void visit_fields(DiscShape& shape, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(LatheShape& shape, Visitor&& visit) {
     visit(
-        "profile",
-        shape.profile,
+        "profile", shape.profile,
         {.doc = "points (radius, height), from below upwards",
          .unit = "m",
          .min = -1e5,
          .max = 1e5});
     visit("segments", shape.segments, {.doc = "around the axis", .min = 3, .max = 2048});
     visit(
-        "crease",
-        shape.crease,
+        "crease", shape.crease,
         {.doc = "where the profile turns by more, there is an edge",
          .unit = "rad",
          .min = 0,
          .max = 3.1416});
     visit("lobes", shape.lobes, {.doc = "around the axis; 0 = round", .min = 0, .max = 256});
     visit(
-        "lobe_depth",
-        shape.lobe_depth,
+        "lobe_depth", shape.lobe_depth,
         {.doc = "how far they stand out, of the radius", .min = 0, .max = 0.5});
     visit("caps", shape.caps, {.doc = "closed where the profile does not end on the axis"});
 }

@@ -65,14 +65,8 @@ void simplify_mesh(MeshData& mesh, std::size_t triangles) {
     }
     std::vector<std::uint32_t> indices(mesh.indices.size());
     indices.resize(meshopt_simplify(
-        indices.data(),
-        mesh.indices.data(),
-        mesh.indices.size(),
-        &mesh.positions[0].x,
-        mesh.positions.size(),
-        sizeof(Vec3),
-        3 * triangles,
-        kLargestError));
+        indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.positions[0].x,
+        mesh.positions.size(), sizeof(Vec3), 3 * triangles, kLargestError));
     std::vector<std::uint32_t> number(mesh.positions.size(), kUnused);
     for (const std::uint32_t index : indices) {
         number[index] = 0;

@@ -85,8 +85,7 @@ std::vector<ProfileRun> cut_profile(const SweepShape& shape, const std::vector<V
         const Vec2& after = normals[(i + 1) % edges];
         runs.back().push_back(
             {points[(i + 1) % count],
-             has_after && smooth(normal, after) ? mean(normal, after) : normal,
-             along});
+             has_after && smooth(normal, after) ? mean(normal, after) : normal, along});
     }
     return runs;
 }
@@ -153,12 +152,8 @@ void append_cap(
 }
 
 void append_piece(
-    MeshData& mesh,
-    const SweepShape& shape,
-    const std::vector<Vec2>& points,
-    const std::vector<ProfileRun>& runs,
-    const std::vector<SweepFrame>& frames,
-    bool ends) {
+    MeshData& mesh, const SweepShape& shape, const std::vector<Vec2>& points,
+    const std::vector<ProfileRun>& runs, const std::vector<SweepFrame>& frames, bool ends) {
     const int rows = static_cast<int>(frames.size()) - 1;
     for (const ProfileRun& run : runs) {
         const int columns = static_cast<int>(run.size()) - 1;

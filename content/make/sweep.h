@@ -34,22 +34,19 @@ void visit_fields(SweepShape& shape, Visitor&& visit) {
     visit("path", shape.path, {.doc = "a path of the level, by name; none: 10 m along +z"});
     visit("profile", shape.profile, {.doc = "points right and up of the path", .unit = "m"});
     visit(
-        "radius",
-        shape.radius,
+        "radius", shape.radius,
         {.doc = "of a tube, instead of the profile", .unit = "m", .min = 0, .max = 1e4});
     visit("segments", shape.segments, {.doc = "around a tube", .min = 3, .max = 512});
     visit("closed", shape.closed, {.doc = "the profile's last point is joined to its first"});
     visit(
-        "crease",
-        shape.crease,
+        "crease", shape.crease,
         {.doc = "where the profile turns by more, there is an edge",
          .unit = "rad",
          .min = 0,
          .max = 3.2});
     visit("begin", shape.begin, {.doc = "along the path", .unit = "m", .min = 0, .max = 1e6});
     visit(
-        "end",
-        shape.end,
+        "end", shape.end,
         {.doc = "along the path; not after begin: its end", .unit = "m", .min = 0, .max = 1e6});
     visit("step", shape.step, {.doc = "from row to row", .unit = "m", .min = 0.001, .max = 1e4});
     visit("dash", shape.dash, {.doc = "length of a piece; 0 = one", .unit = "m", .min = 0});

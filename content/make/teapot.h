@@ -45,12 +45,10 @@ struct TeapotShape {
 template <typename Visitor>
 void visit_fields(TeapotShape& shape, Visitor&& visit) {
     visit(
-        "divisions",
-        shape.divisions,
+        "divisions", shape.divisions,
         {.doc = "quads along each side of the 32 patches", .min = 1, .max = 128});
     visit(
-        "tolerance",
-        shape.tolerance,
+        "tolerance", shape.tolerance,
         {.doc = "if not 0: as few quads as keep the shape to this",
          .unit = "m",
          .min = 0,

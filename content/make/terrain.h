@@ -43,33 +43,27 @@ void visit_fields(TerrainShape& shape, Visitor&& visit) {
     visit("size", shape.size, {.doc = "along x and z", .unit = "m", .min = 0.01, .max = 1e5});
     visit("divisions", shape.divisions, {.doc = "quads along each side", .min = 1, .max = 2048});
     visit(
-        "height",
-        shape.height,
+        "height", shape.height,
         {.doc = "from valleys to crests", .unit = "m", .min = 0, .max = 1e4});
     visit(
-        "feature_size",
-        shape.feature_size,
+        "feature_size", shape.feature_size,
         {.doc = "from hill to hill", .unit = "m", .min = 0.01, .max = 1e5});
     visit("octaves", shape.octaves, {.doc = "levels of detail", .min = 1, .max = 16});
     visit(
-        "ridges",
-        shape.ridges,
+        "ridges", shape.ridges,
         {.doc = "share of the land that is mountains, not hills", .min = 0, .max = 1});
     visit("erosion", shape.erosion, {.doc = "how much slopes lose detail", .min = 0, .max = 4});
     visit(
-        "warp",
-        shape.warp,
+        "warp", shape.warp,
         {.doc = "how much ridges wander, in feature sizes", .min = 0, .max = 2});
     visit(
-        "clearing",
-        shape.clearing,
+        "clearing", shape.clearing,
         {.doc = "radius of a level place in the middle; 0 = none",
          .unit = "m",
          .min = 0,
          .max = 1e5});
     visit(
-        "shore",
-        shape.shore,
+        "shore", shape.shore,
         {.doc = "an island: sinks to 0 over so far from its coast; 0 = no",
          .unit = "m",
          .min = 0,

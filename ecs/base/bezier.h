@@ -135,8 +135,7 @@ struct BezierKnot {
 /// The line turned about the key.
 [[nodiscard]] inline BezierKnot turn_knot(const BezierKnot& knot, const Quat& rotation) {
     return {
-        knot.key + rotation * (knot.before - knot.key),
-        knot.key,
+        knot.key + rotation * (knot.before - knot.key), knot.key,
         knot.key + rotation * (knot.after - knot.key)};
 }
 [[nodiscard]] inline BezierKnot move_knot(const BezierKnot& knot, const Vec3& by) {

@@ -79,10 +79,7 @@ struct MirrorLook {
 /// Where a vertex of a mirror sends the light of a lamp at `light`. One that faces away stays where
 /// it is and is black; so is one whose ray leaves the plane.
 [[nodiscard]] inline MirroredVertex mirror_vertex(
-    const Vec3& vertex,
-    const Vec3& normal,
-    const Vec3& light,
-    const Plane& plane,
+    const Vec3& vertex, const Vec3& normal, const Vec3& light, const Plane& plane,
     const MirrorLook& look = {}) {
     const Vec3 in = glm::normalize(vertex - light);
     const float facing = -glm::dot(in, normal);

@@ -7,12 +7,7 @@ namespace limn {
 
 void check_failed(const char* file, int line, const char* condition, const char* note) {
     std::fprintf(
-        stderr,
-        "%s:%d: check failed: %s%s%s\n",
-        file,
-        line,
-        condition,
-        note != nullptr ? ": " : "",
+        stderr, "%s:%d: check failed: %s%s%s\n", file, line, condition, note != nullptr ? ": " : "",
         note != nullptr ? note : "");
     std::abort();
 }

@@ -9,11 +9,8 @@ namespace {
 void write_to_stderr(LogLevel level, std::string_view message) {
     static constexpr const char* kNames[] = {"debug", "info", "warning", "error"};
     std::fprintf(
-        stderr,
-        "%s: %.*s\n",
-        kNames[static_cast<std::size_t>(level)],
-        static_cast<int>(message.size()),
-        message.data());
+        stderr, "%s: %.*s\n", kNames[static_cast<std::size_t>(level)],
+        static_cast<int>(message.size()), message.data());
 }
 
 std::atomic<LogSink> current_sink{write_to_stderr};

@@ -44,9 +44,7 @@ class Random {
     constexpr Random(
         std::uint64_t seed, std::uint64_t subject, std::uint32_t system, std::uint64_t frame)
         : counter_{
-            0,
-            static_cast<std::uint32_t>(frame),
-            static_cast<std::uint32_t>(subject),
+            0, static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(subject),
             static_cast<std::uint32_t>(subject >> 32)} {
         const std::uint64_t key = hash_combine(hash_combine(seed, system), frame >> 32);
         key_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};

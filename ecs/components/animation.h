@@ -92,8 +92,7 @@ void visit_fields(ClipPlayer& player, Visitor&& visit) {
     visit("clip", player.clip, {.doc = "a clip of the level, by name"});
     visit("time", player.time, {.doc = "in the clip", .unit = "s", .min = 0});
     visit(
-        "speed",
-        player.speed,
+        "speed", player.speed,
         {.doc = "1 as recorded; negative: backward", .min = -100, .max = 100});
     visit("loop", player.loop, {.doc = "otherwise it holds the last pose"});
 }
@@ -115,8 +114,7 @@ void visit_fields(MorphAnimation& animation, Visitor&& visit) {
     visit("clip", animation.clip, {.doc = "a clip of the level, by name; its morph weights alone"});
     visit("time", animation.time, {.doc = "in the clip", .unit = "s", .min = 0});
     visit(
-        "speed",
-        animation.speed,
+        "speed", animation.speed,
         {.doc = "1 as recorded; negative: backward", .min = -100, .max = 100});
     visit("weight", animation.weight, {.doc = "of all it does", .min = -10, .max = 10});
     visit("loop", animation.loop, {.doc = "otherwise it holds the last shape"});
@@ -133,8 +131,7 @@ void visit_fields(Deformed& deformed, Visitor&& visit) {
     visit("skin", deformed.skin, {.doc = "a skin of the level, by name; none: morphs alone"});
     visit("first_morph", deformed.first_morph, {.doc = "place of target 0 in the morph weights"});
     visit(
-        "skinning",
-        deformed.skinning,
+        "skinning", deformed.skinning,
         {.doc = "how joints are blended", .values = "linear dual_quaternion"});
 }
 

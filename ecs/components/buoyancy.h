@@ -24,34 +24,28 @@ struct Floating {
 template <typename Visitor>
 void visit_fields(Floating& floating, Visitor&& visit) {
     visit(
-        "density",
-        floating.density,
+        "density", floating.density,
         {.doc = "water has 1000", .unit = "kg/m^3", .min = 1, .max = 30000});
     visit(
-        "balance",
-        floating.balance,
+        "balance", floating.balance,
         {.doc = "center of mass from the middle of the shape, in its own space", .unit = "m"});
     visit(
-        "drag",
-        floating.drag,
+        "drag", floating.drag,
         {.doc = "resistance of water along its own axes", .min = 0, .max = 1000});
     visit(
-        "damping",
-        floating.damping,
+        "damping", floating.damping,
         {.doc = "how fast motion against the water fades, afloat",
          .unit = "1/s",
          .min = 0,
          .max = 100});
     visit(
-        "splash",
-        floating.splash,
+        "splash", floating.splash,
         {.doc = "height of what it throws up when it falls in", .min = 0, .max = 100});
     visit("stays", floating.stays, {.doc = "is held back by the edges of the water"});
     visit("velocity", floating.velocity, {.doc = "of its center of mass", .unit = "m/s"});
     visit("spin", floating.spin, {.doc = "about the world's axes", .unit = "rad/s"});
     visit(
-        "under",
-        floating.under,
+        "under", floating.under,
         {.doc = "share of its volume that is under water", .min = 0, .max = 1});
 }
 

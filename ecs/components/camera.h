@@ -33,8 +33,7 @@ struct FlyCamera {
 template <typename Visitor>
 void visit_fields(Camera& camera, Visitor&& visit) {
     visit(
-        "fov_y",
-        camera.fov_y,
+        "fov_y", camera.fov_y,
         {.doc = "full vertical angle", .unit = "rad", .min = 0.01, .max = 3.1});
     visit("near", camera.near, {.doc = "near plane", .unit = "m", .min = 1e-4, .max = 100});
     visit("active", camera.active, {.doc = "may be the one that is rendered"});
@@ -46,16 +45,13 @@ void visit_fields(OrbitCamera& orbit, Visitor&& visit) {
     visit("offset", orbit.offset, {.doc = "of the point looked at", .unit = "m"});
     visit("azimuth", orbit.azimuth, {.doc = "about +y, from +z toward +x", .unit = "rad"});
     visit(
-        "elevation",
-        orbit.elevation,
+        "elevation", orbit.elevation,
         {.doc = "above the horizon", .unit = "rad", .min = -1.55, .max = 1.55});
     visit(
-        "distance",
-        orbit.distance,
+        "distance", orbit.distance,
         {.doc = "to the point looked at", .unit = "m", .min = 0.01, .max = 10000});
     visit(
-        "follow",
-        orbit.follow,
+        "follow", orbit.follow,
         {.doc = "share of the way gone in 1/60 s; 1 = rigid", .min = 0, .max = 1});
 }
 
@@ -63,8 +59,7 @@ template <typename Visitor>
 void visit_fields(FlyCamera& fly, Visitor&& visit) {
     visit("speed", fly.speed, {.doc = "of motion", .unit = "m/s", .min = 0, .max = 1000});
     visit(
-        "sensitivity",
-        fly.sensitivity,
+        "sensitivity", fly.sensitivity,
         {.doc = "rotation for a pixel of mouse motion", .unit = "rad", .min = 0, .max = 1});
 }
 

@@ -36,32 +36,25 @@ struct Autofocus {
 template <typename Visitor>
 void visit_fields(Lens& lens, Visitor&& visit) {
     visit(
-        "f_number",
-        lens.f_number,
+        "f_number", lens.f_number,
         {.doc = "focal length / diameter of the aperture", .min = 0.01, .max = 1e6});
     visit(
-        "focus_distance",
-        lens.focus_distance,
+        "focus_distance", lens.focus_distance,
         {.doc = "what is sharp, along the view axis", .unit = "m", .min = 1e-3, .max = 1e6});
     visit(
-        "sensor_height",
-        lens.sensor_height,
+        "sensor_height", lens.sensor_height,
         {.doc = "height of the film", .unit = "m", .min = 1e-4, .max = 10});
     visit(
-        "blades",
-        lens.blades,
+        "blades", lens.blades,
         {.doc = "sides of the aperture; less than 3: it is round", .min = 0, .max = 16});
     visit(
-        "blade_rotation",
-        lens.blade_rotation,
+        "blade_rotation", lens.blade_rotation,
         {.doc = "of the first corner, from the right to the top", .unit = "rad"});
     visit(
-        "largest_blur",
-        lens.largest_blur,
+        "largest_blur", lens.largest_blur,
         {.doc = "widest disc drawn, of the picture's height", .min = 0, .max = 0.25});
     visit(
-        "method",
-        lens.method,
+        "method", lens.method,
         {.doc = "how light that is out of focus is spread", .values = "gather mip"});
 }
 
@@ -70,8 +63,7 @@ void visit_fields(Autofocus& autofocus, Visitor&& visit) {
     visit("target", autofocus.target, {.doc = "entity that is to be sharp, by name"});
     visit("offset", autofocus.offset, {.doc = "of the point, in the target's space", .unit = "m"});
     visit(
-        "response",
-        autofocus.response,
+        "response", autofocus.response,
         {.doc = "time in which 63 % of the way is gone; 0 = at once",
          .unit = "s",
          .min = 0,

@@ -64,8 +64,7 @@ camera_pose(const CameraPath& path, double time, const Vec3& target = {0, 0, 0})
 template <typename Visitor>
 void visit_fields(CameraKey& key, Visitor&& visit) {
     visit(
-        "time",
-        key.time,
+        "time", key.time,
         {.doc = "since the level began, more than the key before",
          .unit = "s",
          .min = 0,
@@ -73,8 +72,7 @@ void visit_fields(CameraKey& key, Visitor&& visit) {
     visit("position", key.position, {.doc = "relative to the camera's parent", .unit = "m"});
     visit("look_at", key.look_at, {.doc = "point of aim look_at", .unit = "m"});
     visit(
-        "rotation",
-        key.rotation,
+        "rotation", key.rotation,
         {.doc = "of aim rotation: x y z w, or [yaw, pitch, roll] in degrees"});
     visit("roll", key.roll, {.doc = "about the view axis, to the left", .unit = "rad"});
 }

@@ -37,52 +37,43 @@ struct Caustics {
 template <typename Visitor>
 void visit_fields(Caustics& caustics, Visitor&& visit) {
     visit(
-        "method",
-        caustics.method,
+        "method", caustics.method,
         {.doc = "by the true surface, or onto five planes by the height",
          .values = "simulated pool"});
     visit(
-        "resolution",
-        caustics.resolution,
+        "resolution", caustics.resolution,
         {.doc = "texels of a side of the map, a power of two", .min = 64, .max = 1024});
     visit("spacing", caustics.spacing, {.doc = "texels from ray to ray", .min = 1, .max = 8});
     visit(
-        "strength",
-        caustics.strength,
+        "strength", caustics.strength,
         {.doc = "1: as it is; 0: as flat water", .min = 0, .max = 4});
     visit(
-        "reach",
-        caustics.reach,
+        "reach", caustics.reach,
         {.doc = "depth down to which light is followed", .unit = "m", .min = 0.01, .max = 1000});
     visit(
-        "window",
-        caustics.window,
+        "window", caustics.window,
         {.doc = "of water without end: side of the square about the camera",
          .unit = "m",
          .min = 0.1,
          .max = 10000});
     visit(
-        "cascades",
-        caustics.cascades,
+        "cascades", caustics.cascades,
         {.doc = "of water without end: maps, each window four times as wide as the one before",
          .min = 1,
          .max = 3});
     visit(
-        "shaft_steps",
-        caustics.shaft_steps,
+        "shaft_steps", caustics.shaft_steps,
         {.doc = "looks along a ray of sight under water, for shafts of light; 0: none",
          .min = 0,
          .max = 64});
     visit(
-        "mirror_reach",
-        caustics.mirror_reach,
+        "mirror_reach", caustics.mirror_reach,
         {.doc = "height up to which mirrored light is followed; 0: none is",
          .unit = "m",
          .min = 0,
          .max = 1000});
     visit(
-        "mirror_resolution",
-        caustics.mirror_resolution,
+        "mirror_resolution", caustics.mirror_resolution,
         {.doc = "texels of a side of the map of mirrored light, a power of two",
          .min = 32,
          .max = 1024});

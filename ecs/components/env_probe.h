@@ -41,15 +41,13 @@ struct EnvProbeState {
 template <typename Visitor>
 void visit_fields(EnvProbe& probe, Visitor&& visit) {
     visit(
-        "radius",
-        probe.radius,
+        "radius", probe.radius,
         {.doc = "where it counts fully; not used with a box",
          .unit = "m",
          .min = 0.001,
          .max = 1e5});
     visit(
-        "box",
-        probe.box,
+        "box", probe.box,
         {.doc = "half sides of the room it stands for; 0 = all is far away",
          .unit = "m",
          .min = 0,
@@ -57,25 +55,21 @@ void visit_fields(EnvProbe& probe, Visitor&& visit) {
     visit(
         "box_center", probe.box_center, {.doc = "of the box, in the entity's space", .unit = "m"});
     visit(
-        "fade",
-        probe.fade,
+        "fade", probe.fade,
         {.doc = "width of the rim where it fades out, as a share of radius or box",
          .min = 0.001,
          .max = 10});
     visit(
-        "resolution",
-        probe.resolution,
+        "resolution", probe.resolution,
         {.doc = "of a cube face, a power of two", .unit = "px", .min = 16, .max = 1024});
     visit("near", probe.near, {.doc = "near plane", .unit = "m", .min = 1e-4, .max = 100});
     visit(
-        "update",
-        probe.update,
+        "update", probe.update,
         {.doc = "when it looks around again", .values = "once period movement either"});
     visit("period", probe.period, {.doc = "of period", .unit = "frames", .min = 1, .max = 1e6});
     visit("threshold", probe.threshold, {.doc = "of movement", .unit = "m", .min = 0, .max = 1e5});
     visit(
-        "face_by_face",
-        probe.face_by_face,
+        "face_by_face", probe.face_by_face,
         {.doc = "one face a frame instead of six, after the first time"});
 }
 

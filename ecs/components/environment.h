@@ -38,37 +38,30 @@ struct Environment {
 template <typename Visitor>
 void visit_fields(Environment& environment, Visitor&& visit) {
     visit(
-        "sky",
-        environment.sky,
+        "sky", environment.sky,
         {.doc = "what surrounds the scene", .values = "gradient studio uniform panorama"});
     visit(
-        "zenith",
-        environment.zenith,
+        "zenith", environment.zenith,
         {.doc = "radiance from above, or of uniform", .min = 0, .max = 1e5, .color = true});
     visit(
-        "horizon",
-        environment.horizon,
+        "horizon", environment.horizon,
         {.doc = "radiance from the horizon", .min = 0, .max = 1e5, .color = true});
     visit(
-        "ground",
-        environment.ground,
+        "ground", environment.ground,
         {.doc = "radiance from below", .min = 0, .max = 1e5, .color = true});
     visit(
         "intensity", environment.intensity, {.doc = "multiplies all of it", .min = 0, .max = 1e5});
     visit("visible", environment.visible, {.doc = "drawn as background"});
     visit("panorama", environment.panorama, {.doc = "an image of the level, by name"});
     visit(
-        "mapping",
-        environment.mapping,
+        "mapping", environment.mapping,
         {.doc = "how the panorama shows directions",
          .values = "equirectangular cylindrical angular"});
     visit(
-        "rotation",
-        environment.rotation,
+        "rotation", environment.rotation,
         {.doc = "of the panorama about the vertical, counter-clockwise from above", .unit = "rad"});
     visit(
-        "half_angle",
-        environment.half_angle,
+        "half_angle", environment.half_angle,
         {.doc = "of a cylindrical panorama, from the horizon to its upper edge",
          .unit = "rad",
          .min = 0.01,

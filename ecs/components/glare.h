@@ -20,17 +20,14 @@ struct Glare {
 template <typename Visitor>
 void visit_fields(Glare& glare, Visitor&& visit) {
     visit(
-        "strength",
-        glare.strength,
+        "strength", glare.strength,
         {.doc = "share of the light above the threshold that is added", .min = 0, .max = 10});
     visit("threshold", glare.threshold, {.doc = "luminance above which", .min = 0, .max = 65504});
     visit(
-        "blades",
-        glare.blades,
+        "blades", glare.blades,
         {.doc = "of the aperture; even: as many streaks, odd: twice as many", .min = 3, .max = 16});
     visit(
-        "length",
-        glare.length,
+        "length", glare.length,
         {.doc = "of a streak, as a share of the picture's height", .min = 0.005, .max = 2});
     visit("rotation", glare.rotation, {.doc = "of the aperture", .unit = "rad"});
 }

@@ -30,26 +30,21 @@ struct Glow {
 template <typename Visitor>
 void visit_fields(Glow& glow, Visitor&& visit) {
     visit(
-        "kind",
-        glow.kind,
+        "kind", glow.kind,
         {.doc = "everything by its light, or what surfaces emit", .values = "lens mask"});
     visit(
-        "strength",
-        glow.strength,
+        "strength", glow.strength,
         {.doc = "share of the light that is scattered; of a mask, added", .min = 0, .max = 1});
     visit(
-        "radius",
-        glow.radius,
+        "radius", glow.radius,
         {.doc = "of a lens: of the widest scattering, as a share of the picture's height",
          .min = 0.001,
          .max = 1});
     visit(
-        "falloff",
-        glow.falloff,
+        "falloff", glow.falloff,
         {.doc = "of a lens: light falls with this power of the distance", .min = 1, .max = 4});
     visit(
-        "firefly",
-        glow.firefly,
+        "firefly", glow.firefly,
         {.doc = "of a lens: luminance from which on lone pixels glow no more; 0 = no such limit",
          .min = 0,
          .max = 65504});

@@ -27,12 +27,10 @@ void visit_fields(Input& input, Visitor&& visit) {
     visit("zoom", input.zoom, {.doc = "wheel steps, > 0 = nearer"});
     visit("fast", input.fast, {.doc = "move faster"});
     visit(
-        "lens",
-        input.lens,
+        "lens", input.lens,
         {.doc = "wanted turn: focus farther, aperture wider, shutter longer", .min = -1, .max = 1});
     visit(
-        "weather",
-        input.weather,
+        "weather", input.weather,
         {.doc = "wanted change: wind veers, gets stronger, more rain", .min = -1, .max = 1});
     visit("click", input.click, {.doc = "on what the pointer is on; a stone thrown takes it"});
     visit("eye", input.eye, {.doc = "where the pointer is looked through from", .unit = "m"});

@@ -74,8 +74,7 @@ struct LightPulse {
 template <typename Visitor>
 void visit_fields(Attenuation& attenuation, Visitor&& visit) {
     visit(
-        "falloff",
-        attenuation.falloff,
+        "falloff", attenuation.falloff,
         {.doc = "how the light fades with distance",
          .values = "inverse_square polynomial smooth none"});
     visit("constant", attenuation.constant, {.doc = "c of polynomial", .min = 0});
@@ -83,8 +82,7 @@ void visit_fields(Attenuation& attenuation, Visitor&& visit) {
     visit(
         "quadratic", attenuation.quadratic, {.doc = "q of polynomial", .unit = "1/m^2", .min = 0});
     visit(
-        "multiplier",
-        attenuation.multiplier,
+        "multiplier", attenuation.multiplier,
         {.doc = "m of smooth: widens the bright part", .min = 1, .max = 100});
 }
 
@@ -92,12 +90,10 @@ template <typename Visitor>
 void visit_fields(PointLight& light, Visitor&& visit) {
     visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
     visit(
-        "intensity",
-        light.intensity,
+        "intensity", light.intensity,
         {.doc = "luminous intensity", .unit = "cd", .min = 0, .max = 1e6});
     visit(
-        "radius",
-        light.radius,
+        "radius", light.radius,
         {.doc = "where it has faded to nothing; 0 = never", .unit = "m", .min = 0, .max = 1e5});
     visit("attenuation", light.attenuation, {.doc = "how it fades with distance"});
     visit("enabled", light.enabled, {.doc = "shines at all"});
@@ -107,25 +103,20 @@ template <typename Visitor>
 void visit_fields(SpotLight& light, Visitor&& visit) {
     visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
     visit(
-        "intensity",
-        light.intensity,
+        "intensity", light.intensity,
         {.doc = "luminous intensity", .unit = "cd", .min = 0, .max = 1e6});
     visit(
-        "radius",
-        light.radius,
+        "radius", light.radius,
         {.doc = "where it has faded to nothing; 0 = never", .unit = "m", .min = 0, .max = 1e5});
     visit("attenuation", light.attenuation, {.doc = "how it fades with distance"});
     visit(
-        "inner_angle",
-        light.inner_angle,
+        "inner_angle", light.inner_angle,
         {.doc = "half angle of full light", .unit = "rad", .min = 0, .max = 1.5708});
     visit(
-        "outer_angle",
-        light.outer_angle,
+        "outer_angle", light.outer_angle,
         {.doc = "half angle where it ends", .unit = "rad", .min = 0, .max = 1.5708});
     visit(
-        "profile",
-        light.profile,
+        "profile", light.profile,
         {.doc = "between the two cones", .values = "linear_cosine smoothstep linear_angle"});
     visit("enabled", light.enabled, {.doc = "shines at all"});
 }
@@ -134,8 +125,7 @@ template <typename Visitor>
 void visit_fields(DirectionalLight& light, Visitor&& visit) {
     visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
     visit(
-        "illuminance",
-        light.illuminance,
+        "illuminance", light.illuminance,
         {.doc = "on a surface that faces it", .unit = "lx", .min = 0, .max = 1e6});
     visit("enabled", light.enabled, {.doc = "shines at all"});
 }
@@ -144,12 +134,10 @@ template <typename Visitor>
 void visit_fields(LightPulse& pulse, Visitor&& visit) {
     visit("shape", pulse.shape, {.doc = "what it follows", .values = "sine noise"});
     visit(
-        "amplitude",
-        pulse.amplitude,
+        "amplitude", pulse.amplitude,
         {.doc = "share of the intensity that comes and goes", .min = 0, .max = 1});
     visit(
-        "frequency",
-        pulse.frequency,
+        "frequency", pulse.frequency,
         {.doc = "angular frequency", .unit = "rad/s", .min = 0, .max = 1000});
     visit("phase", pulse.phase, {.doc = "phase at time 0", .unit = "rad"});
 }

@@ -24,25 +24,20 @@ void visit_fields(MirrorCaustic& mirror, Visitor&& visit) {
     visit("normal", mirror.normal, {.doc = "of the plane, toward the mirror"});
     visit("offset", mirror.offset, {.doc = "of the plane along its normal", .unit = "m"});
     visit(
-        "color",
-        mirror.color,
+        "color", mirror.color,
         {.doc = "of the light that the plane sends on", .min = 0, .max = 1000});
     visit("strength", mirror.strength, {.doc = "light times this is added", .min = 0, .max = 1000});
     visit(
-        "power_plane",
-        mirror.power_plane,
+        "power_plane", mirror.power_plane,
         {.doc = "of the cosine at the plane", .min = 0, .max = 100});
     visit(
-        "power_surface",
-        mirror.power_surface,
+        "power_surface", mirror.power_surface,
         {.doc = "of the cosine at the mirror", .min = 0, .max = 100});
     visit(
-        "farthest",
-        mirror.farthest,
+        "farthest", mirror.farthest,
         {.doc = "rays go no farther", .unit = "m", .min = 0.001, .max = 1e6});
     visit(
-        "highest",
-        mirror.highest,
+        "highest", mirror.highest,
         {.doc = "what lands higher above the plane is black", .unit = "m", .min = 0, .max = 1e6});
 }
 

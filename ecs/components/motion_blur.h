@@ -40,21 +40,18 @@ struct MotionBlur {
 template <typename Visitor>
 void visit_fields(MotionBlur& blur, Visitor&& visit) {
     visit(
-        "mode",
-        blur.mode,
+        "mode", blur.mode,
         {.doc = "how a smear is made; all but reconstruct are older methods",
          .values = "reconstruct accumulate camera flow stretch"});
     visit(
-        "shutter",
-        blur.shutter,
+        "shutter", blur.shutter,
         {.doc = "angle of a rotary shutter; 0 = no blur, 360 = open all the time",
          .unit = "deg",
          .min = 0,
          .max = 1440});
     visit("samples", blur.samples, {.doc = "along a smear", .min = 2, .max = 64});
     visit(
-        "longest",
-        blur.longest,
+        "longest", blur.longest,
         {.doc = "smear, as a share of the picture's height; longer ones are cut",
          .min = 0.01,
          .max = 1});

@@ -120,73 +120,58 @@ struct ComponentTraits<OceanFoam> : DefaultTraits {
 template <typename Visitor>
 void visit_fields(Ocean& ocean, Visitor&& visit) {
     visit(
-        "spectrum",
-        ocean.spectrum,
+        "spectrum", ocean.spectrum,
         {.doc = "how much energy waves of each length have",
          .values = "wind_sea phillips jonswap tma"});
     visit(
-        "spreading",
-        ocean.spreading,
+        "spreading", ocean.spreading,
         {.doc = "of that energy about the wind",
          .values = "wind_sea hasselmann donelan_banner cosine_squared"});
     visit(
-        "wind_speed",
-        ocean.wind_speed,
+        "wind_speed", ocean.wind_speed,
         {.doc = "10 m above the water; 0 = flat", .unit = "m/s", .min = 0, .max = 60});
     visit(
-        "wind_direction",
-        ocean.wind_direction,
+        "wind_direction", ocean.wind_direction,
         {.doc = "where to, from +x toward +z", .unit = "rad", .min = -7, .max = 7});
     visit(
-        "fetch",
-        ocean.fetch,
+        "fetch", ocean.fetch,
         {.doc = "how far the wind has blown over water", .unit = "m", .min = 100, .max = 1e7});
     visit(
-        "depth",
-        ocean.depth,
+        "depth", ocean.depth,
         {.doc = "shallow water slows long waves down", .unit = "m", .min = 0.05, .max = 12000});
     visit(
-        "gamma",
-        ocean.gamma,
+        "gamma", ocean.gamma,
         {.doc = "how much the peak stands out; jonswap and tma", .min = 1, .max = 20});
     visit(
-        "swell",
-        ocean.swell,
+        "swell", ocean.swell,
         {.doc = "long waves gather about the wind's direction", .min = 0, .max = 1});
     visit("amplitude", ocean.amplitude, {.doc = "scales all heights", .min = 0, .max = 10});
     visit("choppiness", ocean.choppiness, {.doc = "shift toward crests", .min = 0, .max = 4});
     visit(
-        "cascades",
-        ocean.cascades,
+        "cascades", ocean.cascades,
         {.doc = "patches of different size; each takes a band of lengths",
          .min = 1,
          .max = kMaxOceanCascades});
     visit(
-        "patch",
-        ocean.patch,
+        "patch", ocean.patch,
         {.doc = "side of the largest, after which it repeats", .unit = "m", .min = 1, .max = 1e4});
     visit(
-        "resolution",
-        ocean.resolution,
+        "resolution", ocean.resolution,
         {.doc = "points along a side of each; rounded down to a power of two",
          .min = 16,
          .max = 1024});
     visit(
-        "loop_period",
-        ocean.loop_period,
+        "loop_period", ocean.loop_period,
         {.doc = "all repeats after so long; 0 = never", .unit = "s", .min = 0, .max = 1e5});
     visit("seed", ocean.seed, {.doc = "of heights and phases"});
     visit(
-        "foam_threshold",
-        ocean.foam_threshold,
+        "foam_threshold", ocean.foam_threshold,
         {.doc = "share of its area at rest below which water foams", .min = -2, .max = 1});
     visit(
-        "foam_rate",
-        ocean.foam_rate,
+        "foam_rate", ocean.foam_rate,
         {.doc = "of covering, times how far below", .unit = "1/s", .min = 0, .max = 1000});
     visit(
-        "foam_decay",
-        ocean.foam_decay,
+        "foam_decay", ocean.foam_decay,
         {.doc = "time to an e-th", .unit = "s", .min = 0.01, .max = 1e4});
 }
 

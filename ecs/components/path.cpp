@@ -81,8 +81,7 @@ Result<PathData> make_path(const PathShape& shape) {
             const bool first = i == 0 && !shape.closed;
             const bool last = i + 1 == count && !shape.closed;
             smooth_knot(
-                knots[i],
-                first ? nullptr : &knots[(i + count - 1) % count],
+                knots[i], first ? nullptr : &knots[(i + count - 1) % count],
                 last ? nullptr : &knots[(i + 1) % count]);
         }
     }

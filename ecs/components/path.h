@@ -86,8 +86,7 @@ void visit_fields(PathKnot& knot, Visitor&& visit) {
     visit("position", knot.position, {.doc = "where the way leads through", .unit = "m"});
     visit("before", knot.before, {.doc = "control point before it, from there", .unit = "m"});
     visit(
-        "after",
-        knot.after,
+        "after", knot.after,
         {.doc = "control point after it, from there; both 0: smooth", .unit = "m"});
     visit("roll", knot.roll, {.doc = "leans to the right", .unit = "rad", .min = -3.2, .max = 3.2});
 }
@@ -102,8 +101,7 @@ template <typename Visitor>
 void visit_fields(PathFollower& follower, Visitor&& visit) {
     visit("path", follower.path, {.doc = "a path of the level, by name"});
     visit(
-        "distance",
-        follower.distance,
+        "distance", follower.distance,
         {.doc = "from the beginning", .unit = "m", .min = -1e6, .max = 1e6});
     visit("speed", follower.speed, {.doc = "along it", .unit = "m/s", .min = -1000, .max = 1000});
     visit("offset", follower.offset, {.doc = "to the right, up and ahead of it", .unit = "m"});

@@ -57,36 +57,28 @@ struct Exposure {
 template <typename Visitor>
 void visit_fields(Exposure& exposure, Visitor&& visit) {
     visit(
-        "ev",
-        exposure.ev,
+        "ev", exposure.ev,
         {.doc = "radiance times 2^ev before the curve", .unit = "EV", .min = -24, .max = 24});
     visit(
-        "curve",
-        exposure.curve,
+        "curve", exposure.curve,
         {.doc = "tone curve", .values = "neutral aces linear reinhard local knee"});
     visit(
-        "metering",
-        exposure.metering,
+        "metering", exposure.metering,
         {.doc = "who decides how much light is right", .values = "manual key auto"});
     visit(
-        "key",
-        exposure.key,
+        "key", exposure.key,
         {.doc = "log-average luminance after metering", .min = 1e-3, .max = 10});
     visit(
-        "adaptation",
-        exposure.adaptation,
+        "adaptation", exposure.adaptation,
         {.doc = "time constant of auto", .unit = "s", .min = 0, .max = 60});
     visit(
-        "darkest",
-        exposure.darkest,
+        "darkest", exposure.darkest,
         {.doc = "luminance below which metering lifts no further", .min = 1e-6, .max = 65504});
     visit(
-        "brightest",
-        exposure.brightest,
+        "brightest", exposure.brightest,
         {.doc = "luminance above which metering dims no further", .min = 1e-6, .max = 65504});
     visit(
-        "white",
-        exposure.white,
+        "white", exposure.white,
         {.doc = "of reinhard: luminance after exposure shown as 1; 0 = none",
          .min = 0,
          .max = 65504});
@@ -94,8 +86,7 @@ void visit_fields(Exposure& exposure, Visitor&& visit) {
     visit(
         "defog", exposure.defog, {.doc = "share of the mean color taken off", .min = 0, .max = 1});
     visit(
-        "encoding",
-        exposure.encoding,
+        "encoding", exposure.encoding,
         {.doc = "of display codes; knee has power always", .values = "srgb power"});
     visit("gamma", exposure.gamma, {.doc = "of power and knee", .min = 1, .max = 4});
     visit("dither", exposure.dither, {.doc = "before 8 bits"});

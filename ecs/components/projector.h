@@ -26,15 +26,13 @@ template <typename Visitor>
 void visit_fields(Projector& projector, Visitor&& visit) {
     visit("image", projector.image, {.doc = "what is thrown, by name"});
     visit(
-        "width",
-        projector.width,
+        "width", projector.width,
         {.doc = "of the image: of a spot light its angle, of a directional light meters",
          .unit = "rad",
          .min = 0.001,
          .max = 1000});
     visit(
-        "aspect",
-        projector.aspect,
+        "aspect", projector.aspect,
         {.doc = "width over height of a frame", .min = 0.01, .max = 100});
     visit("columns", projector.columns, {.doc = "frames side by side", .min = 1, .max = 64});
     visit("rows", projector.rows, {.doc = "frames below each other", .min = 1, .max = 64});

@@ -45,31 +45,25 @@ void visit_fields(Racer& racer, Visitor&& visit) {
         "distance", racer.distance, {.doc = "along the track", .unit = "m", .min = 0, .max = 1e6});
     visit("lateral", racer.lateral, {.doc = "to its right", .unit = "m", .min = -1e3, .max = 1e3});
     visit(
-        "heading",
-        racer.heading,
+        "heading", racer.heading,
         {.doc = "off its direction, to the right", .unit = "rad", .min = -3.2, .max = 3.2});
     visit("speed", racer.speed, {.doc = "along its nose", .unit = "m/s", .min = 0, .max = 1000});
     visit("lean", racer.lean, {.doc = "into the turn", .unit = "rad", .min = -3.2, .max = 3.2});
     visit(
-        "half_width",
-        racer.half_width,
+        "half_width", racer.half_width,
         {.doc = "of the track, where its walls are", .unit = "m", .min = 0, .max = 1000});
     visit("height", racer.height, {.doc = "above the track", .unit = "m", .min = -10, .max = 100});
     visit(
-        "top_speed",
-        racer.top_speed,
+        "top_speed", racer.top_speed,
         {.doc = "without a boost", .unit = "m/s", .min = 0, .max = 1000});
     visit(
-        "boost_speed",
-        racer.boost_speed,
+        "boost_speed", racer.boost_speed,
         {.doc = "with one", .unit = "m/s", .min = 0, .max = 1000});
     visit(
-        "acceleration",
-        racer.acceleration,
+        "acceleration", racer.acceleration,
         {.doc = "at rest", .unit = "m/s^2", .min = 0.01, .max = 1000});
     visit(
-        "grip",
-        racer.grip,
+        "grip", racer.grip,
         {.doc = "sideways acceleration when it drives itself",
          .unit = "m/s^2",
          .min = 0.01,
@@ -86,16 +80,13 @@ void visit_fields(SpeedView& view, Visitor&& visit) {
     visit("racer", view.racer, {.doc = "whose speed counts"});
     visit("slow_fov", view.slow_fov, {.doc = "at rest", .unit = "rad", .min = 0.01, .max = 3.1});
     visit(
-        "fast_fov",
-        view.fast_fov,
+        "fast_fov", view.fast_fov,
         {.doc = "at the speed of a boost", .unit = "rad", .min = 0.01, .max = 3.1});
     visit(
-        "slow_shutter",
-        view.slow_shutter,
+        "slow_shutter", view.slow_shutter,
         {.doc = "of the motion blur at rest", .unit = "deg", .min = 0, .max = 360});
     visit(
-        "fast_shutter",
-        view.fast_shutter,
+        "fast_shutter", view.fast_shutter,
         {.doc = "at the speed of a boost", .unit = "deg", .min = 0, .max = 360});
 }
 

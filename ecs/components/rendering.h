@@ -41,19 +41,16 @@ struct Rendering {
 template <typename Visitor>
 void visit_fields(Rendering& rendering, Visitor&& visit) {
     visit(
-        "lights",
-        rendering.lights,
+        "lights", rendering.lights,
         {.doc = "in what order surfaces and lights meet; the picture is the same",
          .values = "clustered full_screen volumes object_major light_major"});
     visit(
         "shading", rendering.shading, {.doc = "where surfaces are lit", .values = "pixel vertex"});
     visit(
-        "antialiasing",
-        rendering.antialiasing,
+        "antialiasing", rendering.antialiasing,
         {.doc = "how edges become smooth", .values = "none temporal"});
     visit(
-        "infinite_viewer",
-        rendering.infinite_viewer,
+        "infinite_viewer", rendering.infinite_viewer,
         {.doc = "highlights as if seen from infinitely far along the view axis"});
 }
 

@@ -73,12 +73,10 @@ void visit_fields(RippleRing& ring, Visitor&& visit) {
     visit("period", ring.period, {.doc = "begins anew; 0 = once", .unit = "s", .min = 0});
     visit("speed", ring.speed, {.doc = "of the shell", .unit = "m/s", .min = 0});
     visit(
-        "wavelength",
-        ring.wavelength,
+        "wavelength", ring.wavelength,
         {.doc = "half the thickness of the shell", .unit = "m", .min = 1e-3});
     visit(
-        "amplitude",
-        ring.amplitude,
+        "amplitude", ring.amplitude,
         {.doc = "largest turn of a ray, at first", .unit = "rad", .min = -0.5, .max = 0.5});
     visit("start_radius", ring.start_radius, {.doc = "at age 0", .unit = "m", .min = 0});
 }
@@ -86,12 +84,10 @@ void visit_fields(RippleRing& ring, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(HeatHaze& haze, Visitor&& visit) {
     visit(
-        "shape",
-        haze.shape,
+        "shape", haze.shape,
         {.doc = "of half-extent 1 in the entity's space", .values = "box ball"});
     visit(
-        "strength",
-        haze.strength,
+        "strength", haze.strength,
         {.doc = "largest shift, as a share of the picture's height", .min = 0, .max = 0.2});
     visit("scale", haze.scale, {.doc = "size of an eddy", .unit = "m", .min = 1e-3});
     visit("rise", haze.rise, {.doc = "of the air", .unit = "m/s", .min = -100, .max = 100});
@@ -102,12 +98,10 @@ template <typename Visitor>
 void visit_fields(LensRain& rain, Visitor&& visit) {
     visit("amount", rain.amount, {.doc = "share of the places for drops", .min = 0, .max = 1});
     visit(
-        "size",
-        rain.size,
+        "size", rain.size,
         {.doc = "of a large drop, as a share of the picture's height", .min = 0.005, .max = 0.5});
     visit(
-        "speed",
-        rain.speed,
+        "speed", rain.speed,
         {.doc = "at which drops run down", .unit = "heights/s", .min = 0, .max = 10});
     visit("strength", rain.strength, {.doc = "of the refraction", .min = 0, .max = 4});
     visit("seed", rain.seed, {.doc = "of places and times"});
@@ -119,15 +113,13 @@ void visit_fields(ScreenRipple& ripple, Visitor&& visit) {
     visit("age", ripple.age, {.doc = "since it began; negative: begins later", .unit = "s"});
     visit("duration", ripple.duration, {.doc = "how long it lasts", .unit = "s", .min = 0.01});
     visit(
-        "amplitude",
-        ripple.amplitude,
+        "amplitude", ripple.amplitude,
         {.doc = "largest shift, as a share of the picture", .min = -1, .max = 1});
     visit("radius", ripple.radius, {.doc = "at age 0, as a share of the picture", .min = 0});
     visit("radius_speed", ripple.radius_speed, {.doc = "of the radius", .unit = "1/s"});
     visit("round", ripple.round, {.doc = "in pixels; otherwise an ellipse"});
     visit(
-        "grid",
-        ripple.grid,
+        "grid", ripple.grid,
         {.doc = "computed at a grid of so many points a side; 0 = every pixel",
          .min = 0,
          .max = 1024});

@@ -45,18 +45,15 @@ void visit_fields(Sailboat& boat, Visitor&& visit) {
     visit("sail_area", boat.sail_area, {.doc = "of the sail", .unit = "m^2", .min = 0, .max = 1e4});
     visit("sail_center", boat.sail_center, {.doc = "where the wind's force attacks", .unit = "m"});
     visit(
-        "keel_area",
-        boat.keel_area,
+        "keel_area", boat.keel_area,
         {.doc = "of the keel, under water", .unit = "m^2", .min = 0, .max = 1e4});
     visit("keel_center", boat.keel_center, {.doc = "where the water's force attacks", .unit = "m"});
     visit(
-        "rudder_area",
-        boat.rudder_area,
+        "rudder_area", boat.rudder_area,
         {.doc = "of the rudder", .unit = "m^2", .min = 0, .max = 1e4});
     visit("rudder_center", boat.rudder_center, {.doc = "likewise", .unit = "m"});
     visit(
-        "wave_drag",
-        boat.wave_drag,
+        "wave_drag", boat.wave_drag,
         {.doc = "resistance of its own waves at hull speed, of its weight", .min = 0, .max = 10});
     visit("rudder", boat.rudder, {.doc = "> 0 turns to starboard", .min = -1, .max = 1});
     visit("sheet", boat.sheet, {.doc = "0 hauled in, 1 let out", .min = 0, .max = 1});
@@ -68,8 +65,7 @@ void visit_fields(Sailboat& boat, Visitor&& visit) {
     visit("taken", boat.taken, {.doc = "somebody steers it"});
     visit("course", boat.course, {.doc = "a path of the level that it follows by itself"});
     visit(
-        "distance",
-        boat.distance,
+        "distance", boat.distance,
         {.doc = "along the course, of what it makes for", .unit = "m", .min = 0, .max = 1e7});
     visit(
         "tack", boat.tack, {.doc = "beating: wind from port 1, starboard -1", .min = -1, .max = 1});

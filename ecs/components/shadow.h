@@ -41,32 +41,26 @@ struct NoShadow {};
 template <typename Visitor>
 void visit_fields(Shadow& shadow, Visitor&& visit) {
     visit(
-        "method",
-        shadow.method,
+        "method", shadow.method,
         {.doc = "how its shadows are found", .values = "auto map perspective volume hybrid"});
     visit(
-        "filter",
-        shadow.filter,
+        "filter", shadow.filter,
         {.doc = "how the edge of a map's shadow is drawn",
          .values = "hard bilinear soft contact_hardening"});
     visit(
-        "resolution",
-        shadow.resolution,
+        "resolution", shadow.resolution,
         {.doc = "side of a map", .unit = "texels", .min = 16, .max = 4096});
     visit(
-        "source_size",
-        shadow.source_size,
+        "source_size", shadow.source_size,
         {.doc = "diameter of what shines; of a directional light an angle [rad]",
          .unit = "m",
          .min = 0,
          .max = 100});
     visit(
-        "cascades",
-        shadow.cascades,
+        "cascades", shadow.cascades,
         {.doc = "maps of a directional light, one behind the other", .min = 1, .max = 4});
     visit(
-        "distance",
-        shadow.distance,
+        "distance", shadow.distance,
         {.doc = "up to where a directional light casts shadows",
          .unit = "m",
          .min = 0.1,

@@ -40,27 +40,22 @@ struct ShadowVolume {
 template <typename Visitor>
 void visit_fields(ShadowVolume& volume, Visitor&& visit) {
     visit(
-        "kind",
-        volume.kind,
+        "kind", volume.kind,
         {.doc = "what the volumes are made of", .values = "per_edge mixed per_triangle"});
     visit(
-        "mode",
-        volume.mode,
+        "mode", volume.mode,
         {.doc = "from which end volumes are counted", .values = "auto z_pass z_fail"});
     visit(
-        "extrusion",
-        volume.extrusion,
+        "extrusion", volume.extrusion,
         {.doc = "how far the volumes go", .values = "infinite constant radius plane"});
     visit(
-        "distance",
-        volume.distance,
+        "distance", volume.distance,
         {.doc = "length of the volumes with the extrusion constant",
          .unit = "m",
          .min = 0.01,
          .max = 1e5});
     visit(
-        "cap_bias",
-        volume.cap_bias,
+        "cap_bias", volume.cap_bias,
         {.doc = "how far the near cap lies beneath the caster's surface",
          .unit = "m",
          .min = 0,

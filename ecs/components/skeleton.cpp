@@ -40,21 +40,13 @@ bool are_rotations(const ClipSheet& sheet) {
 /// Checks the values of `subjects` - joints or weights of which there are `count`.
 template <typename T>
 Status check_rows(
-    const std::string& place,
-    const char* what,
-    const ClipSheet& sheet,
-    const std::vector<std::uint16_t>& subjects,
-    const std::vector<T>& values,
-    std::size_t count) {
+    const std::string& place, const char* what, const ClipSheet& sheet,
+    const std::vector<std::uint16_t>& subjects, const std::vector<T>& values, std::size_t count) {
     const std::size_t row = subjects.size() * (sheet.interpolation == Interpolation::Cubic ? 3 : 1);
     if (values.size() != sheet.times.size() * row) {
         return fail(
-            "{}: {} {}, expected {} for {} keys",
-            place,
-            values.size(),
-            what,
-            sheet.times.size() * row,
-            sheet.times.size());
+            "{}: {} {}, expected {} for {} keys", place, values.size(), what,
+            sheet.times.size() * row, sheet.times.size());
     }
     std::vector<bool> is_named(count, false);
     for (const std::uint16_t subject : subjects) {
@@ -104,12 +96,8 @@ Status check_skeleton(const SkeletonData& skeleton) {
         const std::int32_t parent = skeleton.parents[i];
         if (i == 0 ? parent != -1 : parent < 0 || static_cast<std::size_t>(parent) >= i) {
             return fail(
-                "skeleton {}: joint {} ({}) has the parent {}, expected {}",
-                name,
-                i,
-                skeleton.joints[i],
-                parent,
-                i == 0 ? "-1, it is the root" : "an earlier joint");
+                "skeleton {}: joint {} ({}) has the parent {}, expected {}", name, i,
+                skeleton.joints[i], parent, i == 0 ? "-1, it is the root" : "an earlier joint");
         }
         if (!is_finite(skeleton.rest.translations[i]) || !is_finite(skeleton.rest.rotations[i])
             || !is_finite(skeleton.rest.scales[i]) || !has_length(skeleton.rest.rotations[i])) {
@@ -146,10 +134,8 @@ Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs) 
 Status check_skin(const SkinData& skin, std::size_t joints) {
     if (skin.joints.empty() || skin.joints.size() != skin.joint_from_mesh.size()) {
         return fail(
-            "skin {}: {} matrices for {} joints, expected one each",
-            skin.name,
-            skin.joint_from_mesh.size(),
-            skin.joints.size());
+            "skin {}: {} matrices for {} joints, expected one each", skin.name,
+            skin.joint_from_mesh.size(), skin.joints.size());
     }
     for (std::size_t i = 0; i < skin.joints.size(); ++i) {
         if (skin.joints[i] >= joints) {

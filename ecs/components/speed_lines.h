@@ -18,16 +18,13 @@ template <typename Visitor>
 void visit_fields(SpeedLines& lines, Visitor&& visit) {
     visit("count", lines.count, {.doc = "points that may have one", .min = 0, .max = 4096});
     visit(
-        "length_scale",
-        lines.length_scale,
+        "length_scale", lines.length_scale,
         {.doc = "a line is as long as the way of this time", .unit = "s", .min = 0, .max = 10});
     visit(
-        "min_speed",
-        lines.min_speed,
+        "min_speed", lines.min_speed,
         {.doc = "slower points have no line", .unit = "m/s", .min = 0, .max = 1e4});
     visit(
-        "width",
-        lines.width,
+        "width", lines.width,
         {.doc = "at the mesh, as a share of the picture's height", .min = 0, .max = 0.1});
     visit("color", lines.color, {.doc = "linear, with opacity; fades toward the tail"});
 }

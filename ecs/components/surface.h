@@ -176,8 +176,7 @@ struct Inflate {
 template <typename Visitor>
 void visit_fields(Inflate& inflate, Visitor&& visit) {
     visit(
-        "distance",
-        inflate.distance,
+        "distance", inflate.distance,
         {.doc = "by which every vertex moves along its normal",
          .unit = "m",
          .min = -1000,
@@ -194,80 +193,65 @@ template <typename Visitor>
 void visit_fields(TextureSlot& slot, Visitor&& visit) {
     visit("image", slot.image, {.doc = "an image of the level, by name"});
     visit(
-        "wrap_u",
-        slot.wrap_u,
+        "wrap_u", slot.wrap_u,
         {.doc = "beyond the left and right edge", .values = "repeat mirror clamp"});
     visit(
-        "wrap_v",
-        slot.wrap_v,
+        "wrap_v", slot.wrap_v,
         {.doc = "beyond the upper and lower edge", .values = "repeat mirror clamp"});
     visit("nearest", slot.nearest, {.doc = "no filtering when magnified"});
     visit("uv_set", slot.uv_set, {.doc = "which texture coordinates", .min = 0, .max = 1});
     visit("offset", slot.offset, {.doc = "of the texture coordinates"});
     visit("scale", slot.scale, {.doc = "of the texture coordinates"});
     visit(
-        "rotation",
-        slot.rotation,
+        "rotation", slot.rotation,
         {.doc = "of the texture coordinates, counter-clockwise", .unit = "rad"});
 }
 
 template <typename Visitor>
 void visit_fields(Material& material, Visitor&& visit) {
     visit(
-        "shading",
-        material.shading,
+        "shading", material.shading,
         {.doc = "shading model", .values = "pbr blinn phong unlit skin"});
     visit(
-        "alpha_mode",
-        material.alpha_mode,
+        "alpha_mode", material.alpha_mode,
         {.doc = "what alpha means", .values = "opaque mask blend"});
     visit("double_sided", material.double_sided, {.doc = "drawn from behind too"});
     visit(
-        "alpha_cutoff",
-        material.alpha_cutoff,
+        "alpha_cutoff", material.alpha_cutoff,
         {.doc = "of mask: below is a hole", .min = 0, .max = 1});
     visit(
-        "base_color",
-        material.base_color,
+        "base_color", material.base_color,
         {.doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true});
     visit(
-        "metalness",
-        material.metalness,
+        "metalness", material.metalness,
         {.doc = "0 dielectric, 1 metal; of unlit the share that mirrors", .min = 0, .max = 1});
     visit("roughness", material.roughness, {.doc = "perceptual roughness", .min = 0, .max = 1});
     visit(
-        "emission",
-        material.emission,
+        "emission", material.emission,
         {.doc = "radiance it gives off",
          .unit = "W/(sr m^2)",
          .min = 0,
          .max = 1e6,
          .color = true});
     visit(
-        "specular",
-        material.specular,
+        "specular", material.specular,
         {.doc = "ks of blinn, phong and skin", .min = 0, .max = 1, .color = true});
     visit(
-        "shininess",
-        material.shininess,
+        "shininess", material.shininess,
         {.doc = "n of blinn, phong and skin", .min = 1, .max = 10000});
     visit(
-        "skin_color",
-        material.skin_color,
+        "skin_color", material.skin_color,
         {.doc = "of the rim of skin, times the base color", .min = 0, .max = 1, .color = true});
     visit("wide_rim", material.wide_rim, {.doc = "skin: the rim reaches far into the face"});
     visit(
-        "normal_scale",
-        material.normal_scale,
+        "normal_scale", material.normal_scale,
         {.doc = "strength of the normal map", .min = 0, .max = 10});
     visit(
-        "occlusion_strength",
-        material.occlusion_strength,
+        "occlusion_strength", material.occlusion_strength,
         {.doc = "strength of the occlusion map", .min = 0, .max = 1});
     visit("base_color_texture", material.base_color_texture, {.doc = "sRGB, alpha = opacity"});
     visit(
-        "metal_rough_texture",
-        material.metal_rough_texture,
+        "metal_rough_texture", material.metal_rough_texture,
         {.doc = "green = roughness, blue = metalness"});
     visit("normal_texture", material.normal_texture, {.doc = "tangent space, green up"});
     visit("occlusion_texture", material.occlusion_texture, {.doc = "red"});

@@ -21,8 +21,7 @@ void visit_fields(TextureCombine& combine, Visitor&& visit) {
     visit("grating", combine.grating, {.doc = "lies over it where its alpha is 0"});
     visit("target", combine.target, {.doc = "image that becomes both"});
     visit(
-        "speed",
-        combine.speed,
+        "speed", combine.speed,
         {.doc = "of one copy along u, of the other along v",
          .unit = "1/s",
          .min = -100,

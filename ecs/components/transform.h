@@ -55,8 +55,7 @@ template <typename Visitor>
 void visit_fields(Transform& transform, Visitor&& visit) {
     visit("position", transform.position, {.doc = "relative to the parent", .unit = "m"});
     visit(
-        "rotation",
-        transform.rotation,
+        "rotation", transform.rotation,
         {.doc = "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees"});
     visit("scale", transform.scale, {.doc = "along each local axis, not 0"});
 }

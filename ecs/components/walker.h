@@ -48,8 +48,7 @@ void visit_fields(Walker& walker, Visitor&& visit) {
 template <typename Visitor>
 void visit_fields(Footing& footing, Visitor&& visit) {
     visit(
-        "half",
-        footing.half,
+        "half", footing.half,
         {.doc = "half extents in its own space", .unit = "m", .min = 0, .max = 1e4});
     visit("offset", footing.offset, {.doc = "of its middle in its own space", .unit = "m"});
 }

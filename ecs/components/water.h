@@ -27,24 +27,19 @@ struct Water {
 template <typename Visitor>
 void visit_fields(Water& water, Visitor&& visit) {
     visit(
-        "size",
-        water.size,
+        "size", water.size,
         {.doc = "along its x and z; 0: without end", .unit = "m", .min = 0, .max = 1e6});
     visit(
-        "depth",
-        water.depth,
+        "depth", water.depth,
         {.doc = "of the bottom; 0: deep", .unit = "m", .min = 0, .max = 12000});
     visit(
-        "refractive_index",
-        water.refractive_index,
+        "refractive_index", water.refractive_index,
         {.doc = "water 1.333", .min = 1.0001, .max = 4});
     visit(
-        "absorption",
-        water.absorption,
+        "absorption", water.absorption,
         {.doc = "light that is lost on a meter of way", .unit = "1/m", .min = 0, .max = 1000});
     visit(
-        "scattering",
-        water.scattering,
+        "scattering", water.scattering,
         {.doc = "light that comes back from a meter", .unit = "1/m", .min = 0, .max = 1000});
 }
 

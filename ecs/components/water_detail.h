@@ -43,12 +43,10 @@ void visit_fields(WaterDetail& detail, Visitor&& visit) {
     visit("normal_map", detail.normal_map, {.doc = "that tiles, moved by layers"});
     visit("layers", detail.layers, {.doc = "up to four"});
     visit(
-        "split",
-        detail.split,
+        "split", detail.split,
         {.doc = "shorter waves tilt normals alone; 0: none", .unit = "m", .min = 0, .max = 1000});
     visit(
-        "tile",
-        detail.tile,
+        "tile", detail.tile,
         {.doc = "after which those repeat", .unit = "m", .min = 0.01, .max = 1e4});
 }
 

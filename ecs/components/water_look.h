@@ -43,35 +43,29 @@ struct WaterLook {
 template <typename Visitor>
 void visit_fields(WaterLook& look, Visitor&& visit) {
     visit(
-        "fresnel",
-        look.fresnel,
+        "fresnel", look.fresnel,
         {.doc = "how much it mirrors: exactly, or by a cheap form",
          .values = "exact schlick angle"});
     visit(
-        "reflection",
-        look.reflection,
+        "reflection", look.reflection,
         {.doc = "what it mirrors: the picture, the surroundings alone, or the scene drawn again",
          .values = "picture environment planar"});
     visit(
-        "refraction",
-        look.refraction,
+        "refraction", look.refraction,
         {.doc =
              "what is seen through it: along bent rays, the picture shifted, or a map of the floor",
          .values = "traced shifted floor"});
     visit(
-        "distortion",
-        look.distortion,
+        "distortion", look.distortion,
         {.doc = "of planar reflections and shifts by waves, 1: as they bend them",
          .min = 0,
          .max = 4});
     visit(
-        "map_scale",
-        look.map_scale,
+        "map_scale", look.map_scale,
         {.doc = "side of a planar reflection over that of the picture", .min = 0.1, .max = 1});
     visit("floor_map", look.floor_map, {.doc = "color of the bottom"});
     visit(
-        "floor_tile",
-        look.floor_tile,
+        "floor_tile", look.floor_tile,
         {.doc = "side of a copy of the floor's map", .unit = "m", .min = 0.01, .max = 1e4});
 }
 

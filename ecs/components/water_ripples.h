@@ -123,29 +123,23 @@ struct ComponentTraits<RippleState> : DefaultTraits {
 template <typename Visitor>
 void visit_fields(WaterRipples& ripples, Visitor&& visit) {
     visit(
-        "cell",
-        ripples.cell,
+        "cell", ripples.cell,
         {.doc = "side of a square of the grid", .unit = "m", .min = 0.002, .max = 100});
     visit("speed", ripples.speed, {.doc = "of the waves", .unit = "m/s", .min = 0, .max = 1000});
     visit(
-        "damping",
-        ripples.damping,
+        "damping", ripples.damping,
         {.doc = "how fast they fade", .unit = "1/s", .min = 0, .max = 100});
     visit(
-        "border",
-        ripples.border,
+        "border", ripples.border,
         {.doc = "walls, or open water", .values = "reflecting absorbing"});
     visit(
-        "window",
-        ripples.window,
+        "window", ripples.window,
         {.doc = "part that ripples of water without end", .unit = "m", .min = 0, .max = 10000});
     visit(
-        "rain",
-        ripples.rain,
+        "rain", ripples.rain,
         {.doc = "drops that fall on it", .unit = "1/(m^2 s)", .min = 0, .max = 10000});
     visit(
-        "rain_height",
-        ripples.rain_height,
+        "rain_height", ripples.rain_height,
         {.doc = "of the crest of a drop", .unit = "m", .min = 0, .max = 1});
 }
 
@@ -153,12 +147,10 @@ template <typename Visitor>
 void visit_fields(RippleImpulse& impulse, Visitor&& visit) {
     visit("center", impulse.center, {.doc = "x and z in the water's own space", .unit = "m"});
     visit(
-        "radius",
-        impulse.radius,
+        "radius", impulse.radius,
         {.doc = "of the whole disturbance", .unit = "m", .min = 0, .max = 1000});
     visit(
-        "height",
-        impulse.height,
+        "height", impulse.height,
         {.doc = "of the middle; negative: down", .unit = "m", .min = -100, .max = 100});
 }
 
@@ -179,8 +171,7 @@ void visit_fields(RippleState& state, Visitor&& visit) {
     visit("wet", state.wet, {.doc = "cells that are no wall"});
     visit("walls", state.walls, {.doc = "that stand in it"});
     visit(
-        "wall_border",
-        state.wall_border,
+        "wall_border", state.wall_border,
         {.doc = "that the faces are made for", .values = "reflecting absorbing"});
     visit("dry", state.dry, {.doc = "1 of cells that are wall"});
     visit("walled", state.walled, {.doc = "what walls have displaced", .unit = "m^3"});
@@ -205,8 +196,7 @@ template <typename Visitor>
 void visit_fields(WaterTouch& touch, Visitor&& visit) {
     visit("shape", touch.shape, {.doc = "what pushes the water aside", .values = "ball box mesh"});
     visit(
-        "half",
-        touch.half,
+        "half", touch.half,
         {.doc = "half extents in its own space; of a ball x",
          .unit = "m",
          .min = 0.001,

@@ -50,19 +50,16 @@ struct ComponentTraits<SprayDrops> : DefaultTraits {
 template <typename Visitor>
 void visit_fields(SpraySource& source, Visitor&& visit) {
     visit(
-        "steepness",
-        source.steepness,
+        "steepness", source.steepness,
         {.doc = "height over length beyond which a wave breaks", .min = 0, .max = 1});
     visit(
-        "rate",
-        source.rate,
+        "rate", source.rate,
         {.doc = "drops of a wave that breaks", .unit = "1/s", .min = 0, .max = 1e6});
     visit("spread", source.spread, {.doc = "of their speed", .min = 0, .max = 1});
     visit(
         "angle", source.angle, {.doc = "of their directions", .unit = "rad", .min = 0, .max = 1.5});
     visit(
-        "window",
-        source.window,
+        "window", source.window,
         {.doc = "part of water without end", .unit = "m", .min = 0, .max = 1e5});
 }
 
@@ -70,13 +67,11 @@ template <typename Visitor>
 void visit_fields(SprayObstacle& obstacle, Visitor&& visit) {
     visit("normal", obstacle.normal, {.doc = "of the wall in its own space"});
     visit(
-        "rate",
-        obstacle.rate,
+        "rate", obstacle.rate,
         {.doc = "drops while a crest is at it", .unit = "1/s", .min = 0, .max = 1e6});
     visit("spread", obstacle.spread, {.doc = "of their speed", .min = 0, .max = 1});
     visit(
-        "angle",
-        obstacle.angle,
+        "angle", obstacle.angle,
         {.doc = "half angle of their cone", .unit = "rad", .min = 0, .max = 1.5});
 }
 

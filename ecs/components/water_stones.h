@@ -34,16 +34,13 @@ void visit_fields(StoneThrower& thrower, Visitor&& visit) {
     visit("material", thrower.material, {.doc = "of stones"});
     visit("radius", thrower.radius, {.doc = "of a stone", .unit = "m", .min = 0.005, .max = 10});
     visit(
-        "density",
-        thrower.density,
+        "density", thrower.density,
         {.doc = "of a stone", .unit = "kg/m^3", .min = 1, .max = 30000});
     visit(
-        "speed",
-        thrower.speed,
+        "speed", thrower.speed,
         {.doc = "how fast they fly, about", .unit = "m/s", .min = 0.5, .max = 200});
     visit(
-        "reach",
-        thrower.reach,
+        "reach", thrower.reach,
         {.doc = "how far they can be thrown", .unit = "m", .min = 0, .max = 10000});
     visit("splash", thrower.splash, {.doc = "height of what they throw up", .min = 0, .max = 100});
     visit("most", thrower.most, {.doc = "stones at once", .min = 0, .max = 10000});

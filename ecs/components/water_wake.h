@@ -23,16 +23,13 @@ struct WakeEmitter {
 template <typename Visitor>
 void visit_fields(WakeEmitter& wake, Visitor&& visit) {
     visit(
-        "spacing",
-        wake.spacing,
+        "spacing", wake.spacing,
         {.doc = "way from ring to ring", .unit = "m", .min = 0.01, .max = 1000});
     visit(
-        "amplitude",
-        wake.amplitude,
+        "amplitude", wake.amplitude,
         {.doc = "of a ring when it begins", .unit = "m", .min = 0, .max = 10});
     visit(
-        "length",
-        wake.length,
+        "length", wake.length,
         {.doc = "of its waves; 0: what makes Kelvin's wedge", .unit = "m", .min = 0, .max = 1000});
     visit("waves", wake.waves, {.doc = "in a ring", .min = 1, .max = 100});
     visit(

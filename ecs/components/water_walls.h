@@ -35,8 +35,7 @@ template <typename Visitor>
 void visit_fields(WaterWall& wall, Visitor&& visit) {
     visit("shape", wall.shape, {.doc = "what keeps the water out", .values = "box cylinder ball"});
     visit(
-        "half",
-        wall.half,
+        "half", wall.half,
         {.doc = "half extents in its own space", .unit = "m", .min = 0.001, .max = 10000});
     visit("offset", wall.offset, {.doc = "of its middle in its own space", .unit = "m"});
 }

@@ -110,15 +110,13 @@ void visit_fields(WaterWave& wave, Visitor&& visit) {
     visit(
         "amplitude", wave.amplitude, {.doc = "half the height", .unit = "m", .min = 0, .max = 100});
     visit(
-        "length",
-        wave.length,
+        "length", wave.length,
         {.doc = "from crest to crest", .unit = "m", .min = 0.001, .max = 1e5});
     visit(
         "direction", wave.direction, {.doc = "in which it runs, from +x toward +z", .unit = "rad"});
     visit("phase", wave.phase, {.doc = "where it begins", .unit = "rad"});
     visit(
-        "sharpness",
-        wave.sharpness,
+        "sharpness", wave.sharpness,
         {.doc = "0 a sine, 1 water goes in circles", .min = 0, .max = 100});
     visit("lean", wave.lean, {.doc = "how far crests lean forward", .min = 0, .max = 0.99});
 }
@@ -127,17 +125,14 @@ template <typename Visitor>
 void visit_fields(WaveGroup& group, Visitor&& visit) {
     visit("count", group.count, {.doc = "how many", .min = 0, .max = 256});
     visit(
-        "length",
-        group.length,
+        "length", group.length,
         {.doc = "least and largest", .unit = "m", .min = 0.001, .max = 1e5});
     visit(
-        "amplitude",
-        group.amplitude,
+        "amplitude", group.amplitude,
         {.doc = "least and largest", .unit = "m", .min = 0, .max = 100});
     visit("direction", group.direction, {.doc = "in which they run in the mean", .unit = "rad"});
     visit(
-        "spread",
-        group.spread,
+        "spread", group.spread,
         {.doc = "to both sides of it", .unit = "rad", .min = 0, .max = 3.15});
     visit("sharpness", group.sharpness, {.doc = "of each", .min = 0, .max = 100});
     visit("seed", group.seed, {.doc = "other waves within the same bounds"});
@@ -149,8 +144,7 @@ void visit_fields(RadialWave& wave, Visitor&& visit) {
     visit(
         "amplitude", wave.amplitude, {.doc = "half the height", .unit = "m", .min = 0, .max = 100});
     visit(
-        "length",
-        wave.length,
+        "length", wave.length,
         {.doc = "from crest to crest", .unit = "m", .min = 0.001, .max = 1e5});
     visit("phase", wave.phase, {.doc = "where it begins", .unit = "rad"});
     visit("inward", wave.inward, {.doc = "runs toward the center"});
@@ -163,15 +157,13 @@ void visit_fields(WavePacket& packet, Visitor&& visit) {
     visit("center", packet.center, {.doc = "x and z in the water's own space", .unit = "m"});
     visit("age", packet.age, {.doc = "since it began; negative: begins later", .unit = "s"});
     visit(
-        "amplitude",
-        packet.amplitude,
+        "amplitude", packet.amplitude,
         {.doc = "half the height", .unit = "m", .min = 0, .max = 100});
     visit("length", packet.length, {.doc = "of a wave", .unit = "m", .min = 0.001, .max = 1e5});
     visit("waves", packet.waves, {.doc = "in the ring", .min = 1, .max = 1000});
     visit("lifetime", packet.lifetime, {.doc = "when it ends", .unit = "s", .min = 0, .max = 1e5});
     visit(
-        "decay",
-        packet.decay,
+        "decay", packet.decay,
         {.doc = "fades to 1/e in it; 0: never", .unit = "s", .min = 0, .max = 1e5});
     visit("smooth", packet.smooth, {.doc = "fades to both edges of the ring"});
 }

@@ -25,12 +25,10 @@ inline constexpr float kStrongestWind = 20.0f;  ///< that keys reach [m/s]
 template <typename Visitor>
 void visit_fields(Weather& weather, Visitor&& visit) {
     visit(
-        "wind_speed",
-        weather.wind_speed,
+        "wind_speed", weather.wind_speed,
         {.doc = "10 m above the water", .unit = "m/s", .min = 0, .max = 60});
     visit(
-        "wind_direction",
-        weather.wind_direction,
+        "wind_direction", weather.wind_direction,
         {.doc = "where to, from +x toward +z", .unit = "rad", .min = -7, .max = 7});
     visit("rain", weather.rain, {.doc = "0 = none, 1 = a downpour", .min = 0, .max = 1});
 }

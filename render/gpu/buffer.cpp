@@ -26,9 +26,7 @@ void Buffer::write(std::size_t offset, std::span<const std::byte> bytes) {
     LIMN_CHECK(offset <= size() && bytes.size() <= size() - offset);
     if (!bytes.empty()) {
         glNamedBufferSubData(
-            id(),
-            static_cast<GLintptr>(offset),
-            static_cast<GLsizeiptr>(bytes.size()),
+            id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()),
             bytes.data());
     }
 }
@@ -38,9 +36,7 @@ void Buffer::read(std::size_t offset, std::span<std::byte> bytes) const {
     if (!bytes.empty()) {
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         glGetNamedBufferSubData(
-            id(),
-            static_cast<GLintptr>(offset),
-            static_cast<GLsizeiptr>(bytes.size()),
+            id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()),
             bytes.data());
     }
 }

@@ -52,9 +52,7 @@ std::vector<Candidate> list_candidates() {
                     eglQueryDeviceStringEXT(found[static_cast<std::size_t>(i)], EGL_EXTENSIONS);
                 const bool software = has_extension(extensions, "EGL_MESA_device_software");
                 candidates.push_back(
-                    {EGL_PLATFORM_DEVICE_EXT,
-                     found[static_cast<std::size_t>(i)],
-                     software,
+                    {EGL_PLATFORM_DEVICE_EXT, found[static_cast<std::size_t>(i)], software,
                      fmt::format("EGL device {}{}", i, software ? " (software)" : "")});
             }
         }

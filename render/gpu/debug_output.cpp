@@ -37,12 +37,7 @@ const char* type_name(GLenum type) {
 }
 
 void GLAPIENTRY receive_message(
-    GLenum source,
-    GLenum type,
-    GLuint id,
-    GLenum severity,
-    GLsizei length,
-    const GLchar* message,
+    GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* message,
     const void* user) {
     const bool is_error = type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR
                           || severity == GL_DEBUG_SEVERITY_HIGH;

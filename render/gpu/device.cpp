@@ -272,29 +272,19 @@ void Device::bind_image(
     forget_dead_objects();
     if (change(images_[unit], {texture.id(), access, level, layer})) {
         glBindImageTexture(
-            unit,
-            texture.id(),
-            level,
-            static_cast<GLboolean>(layer < 0),
-            std::max(layer, 0),
-            access,
-            texture.desc().format);
+            unit, texture.id(), level, static_cast<GLboolean>(layer < 0), std::max(layer, 0),
+            access, texture.desc().format);
     }
 }
 
 void Device::bind_buffer(
-    GLenum target,
-    std::array<BufferBinding, kUnits>& bound,
-    unsigned binding,
+    GLenum target, std::array<BufferBinding, kUnits>& bound, unsigned binding,
     const BufferBinding& wanted) {
     LIMN_CHECK(binding < kUnits);
     forget_dead_objects();
     if (change(bound[binding], wanted)) {
         glBindBufferRange(
-            target,
-            binding,
-            wanted.buffer,
-            static_cast<GLintptr>(wanted.offset),
+            target, binding, wanted.buffer, static_cast<GLintptr>(wanted.offset),
             static_cast<GLsizeiptr>(wanted.size));
     }
 }
@@ -330,22 +320,12 @@ void Device::draw(GLenum mode, int first, int count, int instances, unsigned bas
 }
 
 void Device::draw_indexed(
-    GLenum mode,
-    int count,
-    GLenum type,
-    std::size_t offset,
-    int base_vertex,
-    int instances,
+    GLenum mode, int count, GLenum type, std::size_t offset, int base_vertex, int instances,
     unsigned base_instance) {
     check_draw();
     ++stats_.draws;
     glDrawElementsInstancedBaseVertexBaseInstance(
-        mode,
-        count,
-        type,
-        reinterpret_cast<const void*>(offset),
-        instances,
-        base_vertex,
+        mode, count, type, reinterpret_cast<const void*>(offset), instances, base_vertex,
         base_instance);
 }
 
@@ -436,18 +416,8 @@ void blit_to_window(Device& device, const Texture& texture, int width, int heigh
     }
     device.disable_scissor();
     glBlitNamedFramebuffer(
-        device.blit_source_.id(),
-        0,
-        0,
-        0,
-        texture.width(),
-        texture.height(),
-        0,
-        0,
-        width,
-        height,
-        GL_COLOR_BUFFER_BIT,
-        filter);
+        device.blit_source_.id(), 0, 0, 0, texture.width(), texture.height(), 0, 0, width, height,
+        GL_COLOR_BUFFER_BIT, filter);
 }
 
 }  // namespace limn::gpu

@@ -82,13 +82,8 @@ class Device {
     // ---- work; counted, and in debug contexts checked for bindings that are missing ----
     void draw(GLenum mode, int first, int count, int instances = 1, unsigned base_instance = 0);
     void draw_indexed(
-        GLenum mode,
-        int count,
-        GLenum type,
-        std::size_t offset,
-        int base_vertex = 0,
-        int instances = 1,
-        unsigned base_instance = 0);
+        GLenum mode, int count, GLenum type, std::size_t offset, int base_vertex = 0,
+        int instances = 1, unsigned base_instance = 0);
     /// `count` DrawElementsIndirectCommand, tight, from byte `offset` of the bound indirect buffer.
     void draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset, int count);
     /// Triangles of vertex ids 0 .. count - 1 and no attributes.
@@ -132,9 +127,7 @@ class Device {
     template <typename T>
     bool change(T& current, const T& wanted);
     void bind_buffer(
-        GLenum target,
-        std::array<BufferBinding, kUnits>& bound,
-        unsigned binding,
+        GLenum target, std::array<BufferBinding, kUnits>& bound, unsigned binding,
         const BufferBinding& wanted);
     void forget_dead_objects();
     void check_draw() const;

@@ -21,8 +21,7 @@ class Framebuffer {
   public:
     Framebuffer() = default;
     Framebuffer(
-        std::string_view label,
-        std::span<const Attachment> colors,
+        std::string_view label, std::span<const Attachment> colors,
         const Attachment& depth_stencil = {});
 
     [[nodiscard]] GLuint id() const { return object_.id(); }

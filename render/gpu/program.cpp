@@ -106,8 +106,7 @@ std::vector<ProgramInput> read_inputs(GLuint program) {
             program, GL_PROGRAM_INPUT, index, 3, kAsked.data(), 3, nullptr, values.data());
         if (values[0] >= 0 && values[2] != 0) {
             inputs.push_back(
-                {resource_name(program, GL_PROGRAM_INPUT, index),
-                 values[0],
+                {resource_name(program, GL_PROGRAM_INPUT, index), values[0],
                  static_cast<GLenum>(values[1])});
         }
     }
@@ -163,15 +162,11 @@ Status Program::expect_inputs(std::span<const VertexAttribute> format) const {
             return fail(
                 "{}: context: attribute {} at location {} found, expected one that the vertices "
                 "have",
-                label_,
-                input.name,
-                input.location);
+                label_, input.name, input.location);
         }
         if (found->integer != is_integer(input.type)) {
             return fail(
-                "{}: context: attribute {} found as {}, expected {}",
-                label_,
-                input.name,
+                "{}: context: attribute {} found as {}, expected {}", label_, input.name,
                 found->integer ? "a float" : "an integer",
                 found->integer ? "an integer" : "a float");
         }
@@ -186,38 +181,26 @@ Status Program::expect(BindingKind kind, std::string_view name, int binding, int
         });
     if (found == bindings_.end()) {
         return fail(
-            "{}: no {} named {} found, expected one at binding {}",
-            label_,
-            kind_name(kind),
-            name,
+            "{}: no {} named {} found, expected one at binding {}", label_, kind_name(kind), name,
             binding);
     }
     if (found->binding != binding) {
         return fail(
-            "{}: {} {} found at binding {}, expected {}",
-            label_,
-            kind_name(kind),
-            name,
-            found->binding,
-            binding);
+            "{}: {} {} found at binding {}, expected {}", label_, kind_name(kind), name,
+            found->binding, binding);
     }
     if (size > 0 && found->size > size) {
         return fail(
-            "{}: {} {} of {} bytes found, expected at most {}",
-            label_,
-            kind_name(kind),
-            name,
-            found->size,
-            size);
+            "{}: {} {} of {} bytes found, expected at most {}", label_, kind_name(kind), name,
+            found->size, size);
     }
     return Done{};
 }
 
 int Program::find_uniform(std::string_view name) const {
     const auto found = std::lower_bound(
-        uniforms_.begin(), uniforms_.end(), name, [](const Uniform& u, std::string_view wanted) {
-            return u.name < wanted;
-        });
+        uniforms_.begin(), uniforms_.end(), name,
+        [](const Uniform& u, std::string_view wanted) { return u.name < wanted; });
     return found != uniforms_.end() && found->name == name ? found->location : -1;
 }
 

@@ -46,18 +46,8 @@ read_layer(const Texture& texture, GLenum format, GLenum type, int channels, int
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureSubImage(
-        texture.id(),
-        level,
-        0,
-        0,
-        layer,
-        width,
-        height,
-        1,
-        format,
-        type,
-        static_cast<GLsizei>(pixels.size() * sizeof(T)),
-        pixels.data());
+        texture.id(), level, 0, 0, layer, width, height, 1, format, type,
+        static_cast<GLsizei>(pixels.size() * sizeof(T)), pixels.data());
     flip_rows(pixels, row, static_cast<std::size_t>(height));
     return pixels;
 }
@@ -69,12 +59,8 @@ FloatImage read_floats(const Texture& texture, int level, int layer) {
     FloatImage image{texture.width(level), texture.height(level), info.channels, {}};
     if (info.integer) {
         const std::vector<std::int32_t> numbers = read_layer<std::int32_t>(
-            texture,
-            client_format(info, true),
-            info.pixel_type == GL_INT ? GL_INT : GL_UNSIGNED_INT,
-            info.channels,
-            level,
-            layer);
+            texture, client_format(info, true),
+            info.pixel_type == GL_INT ? GL_INT : GL_UNSIGNED_INT, info.channels, level, layer);
         image.pixels.reserve(numbers.size());
         for (const std::int32_t number : numbers) {
             image.pixels.push_back(
@@ -92,9 +78,7 @@ ByteImage read_bytes(const Texture& texture, int level, int layer) {
     const FormatInfo& info = format_info(texture.desc().format);
     LIMN_CHECK(!info.integer && !info.depth);
     return {
-        texture.width(level),
-        texture.height(level),
-        info.channels,
+        texture.width(level), texture.height(level), info.channels,
         read_layer<std::uint8_t>(
             texture, client_format(info, false), GL_UNSIGNED_BYTE, info.channels, level, layer)};
 }
@@ -120,11 +104,7 @@ void AsyncReadback::request(const Texture& texture) {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.id());
     glGetTextureImage(
-        texture.id(),
-        0,
-        client_format(info, false),
-        GL_UNSIGNED_BYTE,
-        static_cast<GLsizei>(bytes),
+        texture.id(), 0, client_format(info, false), GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes),
         nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     pending_.push_back({std::move(buffer), Fence::insert(), width, height, info.channels});

@@ -230,8 +230,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         }
         glDeleteProgram(id);
         return fail(
-            "{}: context: {}",
-            describe(desc),
+            "{}: context: {}", describe(desc),
             log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));

@@ -65,8 +65,7 @@ std::optional<std::string_view> find_embedded(std::string_view path) {
 class Assembler {
   public:
     Assembler(
-        const ShaderFiles& files,
-        const std::vector<ShaderDefine>& defines,
+        const ShaderFiles& files, const std::vector<ShaderDefine>& defines,
         std::vector<ShaderFileVersion>* seen)
         : files_(files), defines_(defines), seen_(seen) {}
 
@@ -114,10 +113,8 @@ class Assembler {
             const std::string_view stripped = trim(current);
             if (!stripped.empty() && !stripped.starts_with("//")) {
                 return fail(
-                    "{}:{}: '{}' found, expected '#version 450' before any code",
-                    source_.files[0],
-                    line,
-                    stripped);
+                    "{}:{}: '{}' found, expected '#version 450' before any code", source_.files[0],
+                    line, stripped);
             }
             ++line;
         }
@@ -153,8 +150,7 @@ class Assembler {
             } else if (number != 0 && is_directive(current, "version", rest)) {
                 return fail(
                     "{}:{}: #version found in an included file, expected it in the shader alone",
-                    source_.files[number],
-                    line);
+                    source_.files[number], line);
             } else {
                 emit(current, number, line);
             }
@@ -229,8 +225,7 @@ class Assembler {
         std::optional<std::string> path = clean_path(wanted);
         if (!path) {
             return fail(
-                "{}: include of '{}' found, expected a path inside the shader folder",
-                place,
+                "{}: include of '{}' found, expected a path inside the shader folder", place,
                 wanted);
         }
         if (!files_.read(*path)) {
@@ -334,9 +329,7 @@ std::uint64_t ShaderFiles::version(std::string_view path) const {
 }
 
 Result<ShaderSource> assemble_shader(
-    const ShaderFiles& files,
-    std::string_view path,
-    const std::vector<ShaderDefine>& defines,
+    const ShaderFiles& files, std::string_view path, const std::vector<ShaderDefine>& defines,
     std::vector<ShaderFileVersion>* files_seen) {
     return Assembler(files, defines, files_seen).run(path);
 }

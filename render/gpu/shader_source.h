@@ -69,9 +69,7 @@ struct ShaderFileVersion {
 /// `files_seen`, if given, receives every file that was asked for, also on failure: reload watches
 /// them.
 [[nodiscard]] Result<ShaderSource> assemble_shader(
-    const ShaderFiles& files,
-    std::string_view path,
-    const std::vector<ShaderDefine>& defines = {},
+    const ShaderFiles& files, std::string_view path, const std::vector<ShaderDefine>& defines = {},
     std::vector<ShaderFileVersion>* files_seen = nullptr);
 
 /// A compiler's log with its "0:line" (Mesa, AMD) or "0(line)" (NVIDIA) turned into "file:line".

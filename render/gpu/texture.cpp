@@ -59,12 +59,8 @@ constexpr std::array kFormats = {
     depth(GL_DEPTH_COMPONENT32F, "DEPTH32F", 4, GL_DEPTH_COMPONENT, GL_FLOAT, false),
     depth(GL_DEPTH24_STENCIL8, "DEPTH24_STENCIL8", 4, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, true),
     depth(
-        GL_DEPTH32F_STENCIL8,
-        "DEPTH32F_STENCIL8",
-        8,
-        GL_DEPTH_STENCIL,
-        GL_FLOAT_32_UNSIGNED_INT_24_8_REV,
-        true),
+        GL_DEPTH32F_STENCIL8, "DEPTH32F_STENCIL8", 8, GL_DEPTH_STENCIL,
+        GL_FLOAT_32_UNSIGNED_INT_24_8_REV, true),
 };
 constexpr FormatInfo kUnknownFormat;
 
@@ -178,9 +174,7 @@ Status check_texture(const DeviceCaps& caps, const TextureDesc& desc) {
     }
     if (desc.width < 1 || desc.height < 1 || desc.depth < 1) {
         return fail(
-            "texture: size {}x{}x{} found, expected at least 1x1x1",
-            desc.width,
-            desc.height,
+            "texture: size {}x{}x{} found, expected at least 1x1x1", desc.width, desc.height,
             desc.depth);
     }
     const int limit = desc.target == GL_TEXTURE_3D ? caps.max_texture_3d_size
@@ -271,20 +265,7 @@ void Texture::copy_from(const Texture& other) {
         other.desc_.format == desc_.format && other.width() == width() && other.height() == height()
         && other.layers() == layers());
     glCopyImageSubData(
-        other.id(),
-        other.target_,
-        0,
-        0,
-        0,
-        0,
-        id(),
-        target_,
-        0,
-        0,
-        0,
-        0,
-        width(),
-        height(),
+        other.id(), other.target_, 0, 0, 0, 0, id(), target_, 0, 0, 0, 0, width(), height(),
         layers());
 }
 

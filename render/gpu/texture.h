@@ -59,10 +59,7 @@ class Texture {
     /// are tight and bottom row first, as OpenGL has them; `pixels` must hold the whole region in
     /// `format` and `type`.
     void upload(
-        std::span<const std::byte> pixels,
-        GLenum format,
-        GLenum type,
-        int level = 0,
+        std::span<const std::byte> pixels, GLenum format, GLenum type, int level = 0,
         int layer = -1);
     /// The same in the format's own pixel_format and pixel_type.
     void upload(std::span<const std::byte> pixels, int level = 0, int layer = -1);

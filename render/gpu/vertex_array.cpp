@@ -22,11 +22,7 @@ VertexArray::VertexArray(std::string_view label, std::span<const VertexAttribute
             glVertexArrayAttribIFormat(id(), a.location, a.components, a.type, a.offset);
         } else {
             glVertexArrayAttribFormat(
-                id(),
-                a.location,
-                a.components,
-                a.type,
-                static_cast<GLboolean>(a.normalized),
+                id(), a.location, a.components, a.type, static_cast<GLboolean>(a.normalized),
                 a.offset);
         }
     }

@@ -17,8 +17,8 @@ constexpr std::uint32_t kGenerationMask = 0x7fff;  // leaves ~0u for "no id"
 constexpr std::size_t kArenaBlock = 64 * 1024;
 
 gpu::TextureDesc desc_of(const TextureSpec& spec) {
-    return {
-        spec.format, spec.width, spec.height, spec.depth, spec.levels, spec.samples, spec.target};
+    return {spec.format, spec.width,   spec.height, spec.depth,
+            spec.levels, spec.samples, spec.target};
 }
 
 }  // namespace
@@ -112,12 +112,8 @@ void* FrameGraph::allocate_closure(std::size_t size, std::size_t alignment) {
 }
 
 void FrameGraph::add_pass_erased(
-    std::string_view name,
-    std::span<const Use> reads,
-    std::span<const Use> writes,
-    void* closure,
-    RunFunction run,
-    DestroyFunction destroy) {
+    std::string_view name, std::span<const Use> reads, std::span<const Use> writes, void* closure,
+    RunFunction run, DestroyFunction destroy) {
     Impl& graph = *impl_;
     LIMN_CHECK_NOTE(graph.running == nullptr, "a pass is added while one runs");
     Impl::Pass pass;
@@ -151,8 +147,7 @@ Status FrameGraph::validate() const {
                 return fail(
                     "frame graph: pass {}: read of {} before any write found, expected an earlier "
                     "pass that writes it",
-                    pass_name,
-                    graph.name_of(r));
+                    pass_name, graph.name_of(r));
             }
             for (const Use& write : graph.writes(pass)) {
                 // A shader may read and write the same image or block. A target it may not sample,
@@ -162,8 +157,7 @@ Status FrameGraph::validate() const {
                     return fail(
                         "frame graph: pass {}: {} found both read and drawn to, expected one of "
                         "them",
-                        pass_name,
-                        graph.name_of(r));
+                        pass_name, graph.name_of(r));
                 }
             }
         }
@@ -176,12 +170,7 @@ Status FrameGraph::validate() const {
                 return fail(
                     "frame graph: pass {}: target {} of {}x{} found, expected {}x{} like its other "
                     "targets",
-                    pass_name,
-                    graph.name_of(r),
-                    own.x,
-                    own.y,
-                    size.x,
-                    size.y);
+                    pass_name, graph.name_of(r), own.x, own.y, size.x, size.y);
             }
             size = own;
             return Done{};
@@ -216,15 +205,8 @@ TextureId FrameGraph::find(std::string_view name) const {
 
 TextureSpec FrameGraph::spec(TextureId id) const {
     const Impl::Resource& r = impl_->resource(id.index);
-    return {
-        impl_->name_of(r),
-        r.desc.format,
-        r.desc.width,
-        r.desc.height,
-        r.desc.depth,
-        r.desc.levels,
-        r.desc.samples,
-        r.desc.target};
+    return {impl_->name_of(r), r.desc.format, r.desc.width,   r.desc.height,
+            r.desc.depth,      r.desc.levels, r.desc.samples, r.desc.target};
 }
 
 const gpu::Texture* FrameGraph::texture(TextureId id) const {
@@ -324,9 +306,8 @@ const gpu::Texture& PassContext::texture(TextureId id) const {
     const std::uint32_t index = graph.index_of(id.index);
     const FrameGraph::Impl::Pass& pass = *graph.running;
     const bool declared = std::any_of(
-        graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end, [=](const Use& use) {
-            return use.resource == index;
-        });
+        graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end,
+        [=](const Use& use) { return use.resource == index; });
     LIMN_CHECK_NOTE(declared, "the pass did not declare that it uses this texture");
     return graph.physical_texture(graph.resources[index]);
 }
@@ -337,9 +318,8 @@ const gpu::Buffer& PassContext::buffer(BufferId id) const {
     const FrameGraph::Impl::Resource& r = graph.resources[index];
     const FrameGraph::Impl::Pass& pass = *graph.running;
     const bool declared = std::any_of(
-        graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end, [=](const Use& use) {
-            return use.resource == index;
-        });
+        graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end,
+        [=](const Use& use) { return use.resource == index; });
     LIMN_CHECK_NOTE(declared && !r.is_texture, "the pass did not declare that it uses this buffer");
     return r.imported_buffer != nullptr ? *r.imported_buffer : graph.pool.buffer(r.slot);
 }

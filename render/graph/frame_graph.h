@@ -172,14 +172,10 @@ class FrameGraph {
     /// Adds a pass. A texture may be among the writes of several passes: later ones draw over it.
     template <typename Run>
     void add_pass(
-        std::string_view name,
-        std::initializer_list<Use> reads,
-        std::initializer_list<Use> writes,
+        std::string_view name, std::initializer_list<Use> reads, std::initializer_list<Use> writes,
         Run&& run) {
         add_pass(
-            name,
-            std::span(reads.begin(), reads.size()),
-            std::span(writes.begin(), writes.size()),
+            name, std::span(reads.begin(), reads.size()), std::span(writes.begin(), writes.size()),
             std::forward<Run>(run));
     }
     template <typename Run>
@@ -249,12 +245,8 @@ class FrameGraph {
     /// Room for a pass's captures, until the next begin_frame().
     [[nodiscard]] void* allocate_closure(std::size_t size, std::size_t alignment);
     void add_pass_erased(
-        std::string_view name,
-        std::span<const Use> reads,
-        std::span<const Use> writes,
-        void* closure,
-        RunFunction run,
-        DestroyFunction destroy);
+        std::string_view name, std::span<const Use> reads, std::span<const Use> writes,
+        void* closure, RunFunction run, DestroyFunction destroy);
 
     std::unique_ptr<Impl> impl_;
 };
@@ -266,10 +258,7 @@ void FrameGraph::add_pass(
     void* room = allocate_closure(sizeof(Closure), alignof(Closure));
     new (room) Closure(std::forward<Run>(run));
     add_pass_erased(
-        name,
-        reads,
-        writes,
-        room,
+        name, reads, writes, room,
         [](void* closure, PassContext& context) { (*static_cast<Closure*>(closure))(context); },
         [](void* closure) { static_cast<Closure*>(closure)->~Closure(); });
 }

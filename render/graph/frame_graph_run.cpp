@@ -260,17 +260,13 @@ void FrameGraph::Impl::clear_target(GLuint framebuffer, const Use& use, int colo
         glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &use.clear.x);
     } else if (info.integer && info.pixel_type == GL_INT) {
         const std::array<GLint, 4> value = {
-            static_cast<GLint>(use.clear.x),
-            static_cast<GLint>(use.clear.y),
-            static_cast<GLint>(use.clear.z),
-            static_cast<GLint>(use.clear.w)};
+            static_cast<GLint>(use.clear.x), static_cast<GLint>(use.clear.y),
+            static_cast<GLint>(use.clear.z), static_cast<GLint>(use.clear.w)};
         glClearNamedFramebufferiv(framebuffer, GL_COLOR, color_index, value.data());
     } else if (info.integer) {
         const std::array<GLuint, 4> value = {
-            static_cast<GLuint>(use.clear.x),
-            static_cast<GLuint>(use.clear.y),
-            static_cast<GLuint>(use.clear.z),
-            static_cast<GLuint>(use.clear.w)};
+            static_cast<GLuint>(use.clear.x), static_cast<GLuint>(use.clear.y),
+            static_cast<GLuint>(use.clear.z), static_cast<GLuint>(use.clear.w)};
         glClearNamedFramebufferuiv(framebuffer, GL_COLOR, color_index, value.data());
     } else {
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, color_index, &use.clear.x);
@@ -320,8 +316,7 @@ void FrameGraph::Impl::collect_gpu_times(bool wait) {
         }
         for (std::size_t i = 1; i < marks.size(); ++i) {
             const bool last_of_name = std::none_of(
-                marks.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                marks.end(),
+                marks.begin() + static_cast<std::ptrdiff_t>(i) + 1, marks.end(),
                 [&](const auto& later) { return later.tag == marks[i].tag; });
             if (last_of_name) {
                 Times& t = times[marks[i].tag];

@@ -48,11 +48,7 @@ std::string FrameGraph::to_text() const {
                 fmt::format("{:{}}  not run         {}\n", graph.names[pass.name], widest, flow);
         } else {
             text += fmt::format(
-                "{:{}}  {:6.3f}  {:6.3f}  {}\n",
-                graph.names[pass.name],
-                widest,
-                t.cpu_ms,
-                t.gpu_ms,
+                "{:{}}  {:6.3f}  {:6.3f}  {}\n", graph.names[pass.name], widest, t.cpu_ms, t.gpu_ms,
                 flow);
         }
     }
@@ -61,11 +57,8 @@ std::string FrameGraph::to_text() const {
             text += fmt::format("buffer {}: {} bytes", graph.name_of(r), r.bytes);
         } else {
             text += fmt::format(
-                "texture {}: {} {}x{}",
-                graph.name_of(r),
-                gpu::format_info(r.desc.format).name,
-                r.desc.width,
-                r.desc.height);
+                "texture {}: {} {}x{}", graph.name_of(r), gpu::format_info(r.desc.format).name,
+                r.desc.width, r.desc.height);
         }
         if (r.imported()) {
             text += ", imported";
@@ -73,19 +66,15 @@ std::string FrameGraph::to_text() const {
             text += ", unused";
         } else if (graph.executed) {
             text += fmt::format(
-                ", {} slot {}{}",
-                r.is_texture ? "texture" : "buffer",
-                r.slot,
+                ", {} slot {}{}", r.is_texture ? "texture" : "buffer", r.slot,
                 r.kept ? ", kept" : "");
         }
         text += '\n';
     }
     text += fmt::format(
         "pool: {} textures, {:.1f} MiB; {:.1f} MiB without sharing; {} barriers\n",
-        graph.stats.pool_textures,
-        mebibytes(graph.stats.pool_bytes),
-        mebibytes(graph.stats.unshared_bytes),
-        graph.stats.barriers);
+        graph.stats.pool_textures, mebibytes(graph.stats.pool_bytes),
+        mebibytes(graph.stats.unshared_bytes), graph.stats.barriers);
     return text;
 }
 
@@ -98,17 +87,13 @@ std::string FrameGraph::to_dot() const {
         const Impl::Pass& pass = graph.passes[i];
         const bool dropped = graph.executed && !pass.runs;
         text += fmt::format(
-            "    {} [shape=box, label={}{}];\n",
-            pass_node(i),
-            quoted(graph.names[pass.name]),
+            "    {} [shape=box, label={}{}];\n", pass_node(i), quoted(graph.names[pass.name]),
             dropped ? ", style=dashed" : "");
     }
     for (std::size_t i = 0; i < graph.resources.size(); ++i) {
         const Impl::Resource& r = graph.resources[i];
         text += fmt::format(
-            "    {} [shape=ellipse, label={}{}];\n",
-            resource_node(i),
-            quoted(graph.name_of(r)),
+            "    {} [shape=ellipse, label={}{}];\n", resource_node(i), quoted(graph.name_of(r)),
             r.imported() ? ", style=bold" : "");
     }
     for (std::size_t i = 0; i < graph.passes.size(); ++i) {

@@ -39,10 +39,7 @@ Result<AovPass> create_aov_pass(gpu::Device& device) {
 }
 
 TextureId draw_aov(
-    FrameGraph& graph,
-    const AovPass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, const AovPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
     int aov) {
     const std::string name = "aov." + std::string(kAovs[aov].name);
     const TextureId value = graph.create(
@@ -56,9 +53,7 @@ TextureId draw_aov(
     }
     const Use writes[] = {cleared(value, kAovs[aov].nothing)};
     graph.add_pass(
-        name,
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        name, std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene, gbuffer, aov](PassContext& context) {
             const auto shadow_views = static_cast<int>(scene.shadows.records.size());
             if (aov == kShadowTexelsAov && shadow_views == 0) {

@@ -35,10 +35,7 @@ struct AovPass {
 
 /// `aov` is an index into kAovs; velocity needs a G-buffer with velocity.
 [[nodiscard]] TextureId draw_aov(
-    FrameGraph& graph,
-    const AovPass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, const AovPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
     int aov);
 
 }  // namespace limn

@@ -18,18 +18,13 @@ Result<BlendPass> create_blend_pass(gpu::Device& device) {
 }
 
 TextureId draw_blended(
-    FrameGraph& graph,
-    BlendPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, BlendPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer) {
     if (!scene.instances.blended.empty()) {
         const std::vector<Use> reads = lighting_reads(scene, {depth_tested(gbuffer.depth)});
         const Use writes[] = {radiance};
         graph.add_pass(
-            "blended",
-            std::span<const Use>(reads),
-            std::span<const Use>(writes),
+            "blended", std::span<const Use>(reads), std::span<const Use>(writes),
             [&pass, &scene](PassContext& context) {
                 bind_lighting(context.device(), scene);
                 const bool clipped = is_clipped(scene);
@@ -38,13 +33,8 @@ TextureId draw_blended(
                     defines.push_back({"CLIPPED"});
                 }
                 draw_runs(
-                    context.device(),
-                    scene,
-                    scene.instances.blended,
-                    pass.programs,
-                    0,
-                    lighting_key(scene) | (clipped ? kClippedKey : 0),
-                    defines,
+                    context.device(), scene, scene.instances.blended, pass.programs, 0,
+                    lighting_key(scene) | (clipped ? kClippedKey : 0), defines,
                     {.depth = {.write = false},
                      .blend = gpu::kBlendPremultiplied,
                      .clip = clipped});

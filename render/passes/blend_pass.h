@@ -24,10 +24,7 @@ struct BlendPass {
 
 /// Radiance with the blended surfaces before it; the same if there are none.
 [[nodiscard]] TextureId draw_blended(
-    FrameGraph& graph,
-    BlendPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, BlendPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer);
 
 }  // namespace limn

@@ -54,13 +54,8 @@ void sum_on_gpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId 
         gpu::Device& device = context.device();
         const std::uint32_t none = 0;
         glClearNamedBufferSubData(
-            context.buffer(light).id(),
-            GL_R32UI,
-            0,
-            static_cast<GLsizeiptr>(bytes),
-            GL_RED_INTEGER,
-            GL_UNSIGNED_INT,
-            &none);
+            context.buffer(light).id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
+            GL_UNSIGNED_INT, &none);
         use_with_jobs(device, pass, *pass.splat);
         pass.splat->set("width", static_cast<int>(width));
         context.bind_storage(kRaysBinding, rays);
@@ -132,9 +127,7 @@ TextureId draw_caustics(
     }
     const Use writes[] = {rays};
     graph.add_pass(
-        "caustic rays",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "caustic rays", std::span<const Use>(reads), std::span<const Use>(writes),
         [=, &pass, &waters, &scene](PassContext& context) {
             gpu::Device& device = context.device();
             const bool ocean = !waters.seas.empty();

@@ -71,9 +71,7 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
         {.name = "light indices", .bytes = rounded(std::size_t{4} * clusters.capacity)});
 
     graph.add_pass(
-        "clusters.blocks",
-        {},
-        {masks},
+        "clusters.blocks", {}, {masks},
         [&pass, &scene, masks, lights, blocks, words](PassContext& context) {
             context.device().use(*pass.blocks);
             bind_view(context.device(), scene);
@@ -83,9 +81,7 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
             context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
         });
     graph.add_pass(
-        "clusters.count",
-        {masks},
-        {lists.cells},
+        "clusters.count", {masks}, {lists.cells},
         [&pass, &scene, masks, lists, lights, blocks](PassContext& context) {
             context.device().use(*pass.count);
             bind_view(context.device(), scene);
@@ -103,9 +99,7 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
         context.device().dispatch(1);
     });
     graph.add_pass(
-        "clusters.fill",
-        {masks, lists.cells},
-        {lists.indices},
+        "clusters.fill", {masks, lists.cells}, {lists.indices},
         [&pass, &scene, masks, lists, lights, blocks](PassContext& context) {
             context.device().use(*pass.fill);
             bind_view(context.device(), scene);

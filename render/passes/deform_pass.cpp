@@ -21,22 +21,15 @@ constexpr unsigned kAttributesBinding = 2;
 
 /// The vertices of a batch in one of their streams.
 void bind_stream(
-    gpu::Device& device,
-    unsigned binding,
-    const gpu::Buffer& buffer,
-    const DeformBatch& batch,
+    gpu::Device& device, unsigned binding, const gpu::Buffer& buffer, const DeformBatch& batch,
     std::size_t stride) {
     device.bind_storage(
-        binding,
-        buffer.id(),
-        batch.first_vertex * stride,
+        binding, buffer.id(), batch.first_vertex * stride,
         (batch.end_vertex - batch.first_vertex) * stride);
 }
 
 void run_batch(
-    gpu::Device& device,
-    const gpu::Program& program,
-    const DeformedVertices& vertices,
+    gpu::Device& device, const gpu::Program& program, const DeformedVertices& vertices,
     const DeformBatch& batch) {
     const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
     bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));

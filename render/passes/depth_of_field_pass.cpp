@@ -103,12 +103,8 @@ void use_fullscreen(PassContext& context, const gpu::Program* program, const gpu
 /// Draws `program` over the tiles of one of `kinds`; the targets are `cover` pixels of the picture
 /// wide and high.
 void draw_tiles(
-    PassContext& context,
-    const gpu::Program* program,
-    const gpu::Buffer& focus,
-    int kinds,
-    const IVec2& cover,
-    int tiles) {
+    PassContext& context, const gpu::Program* program, const gpu::Buffer& focus, int kinds,
+    const IVec2& cover, int tiles) {
     use_fullscreen(context, program, focus);
     program->set("kind", kinds);
     program->set("target_size", Vec2(cover));
@@ -126,9 +122,7 @@ void Drawing::find_tiles(TextureId depth) {
     const TextureId blocks = create("focus.blocks", GL_RGBA16F, block_count);
     const TextureId small_of_blocks = create("focus.small of blocks", GL_RG16F, block_count);
     graph_.add_pass(
-        "focus.blocks",
-        {depth},
-        {discarded(blocks), discarded(small_of_blocks)},
+        "focus.blocks", {depth}, {discarded(blocks), discarded(small_of_blocks)},
         [&pass = pass_, block = block_, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
             use_fullscreen(context, pass.blocks, pass.focus);
@@ -137,9 +131,7 @@ void Drawing::find_tiles(TextureId depth) {
         });
     made_.near_reach = create("focus.near reach", GL_R16F, block_count);
     graph_.add_pass(
-        "focus.spread",
-        {small_of_blocks},
-        {discarded(made_.near_reach)},
+        "focus.spread", {small_of_blocks}, {discarded(made_.near_reach)},
         [&pass = pass_, small_of_blocks](PassContext& context) {
             use_fullscreen(context, pass.spread, pass.focus);
             context.bind_texture(0, small_of_blocks);
@@ -148,9 +140,7 @@ void Drawing::find_tiles(TextureId depth) {
     const TextureId own = create("focus.own tiles", GL_RGBA16F, count);
     const TextureId small = create("focus.own small", GL_RG16F, count);
     graph_.add_pass(
-        "focus.tiles",
-        {blocks, small_of_blocks},
-        {discarded(own), discarded(small)},
+        "focus.tiles", {blocks, small_of_blocks}, {discarded(own), discarded(small)},
         [&pass = pass_, blocks, small_of_blocks](PassContext& context) {
             use_fullscreen(context, pass.tiles, pass.focus);
             context.bind_texture(0, blocks);
@@ -160,9 +150,7 @@ void Drawing::find_tiles(TextureId depth) {
     made_.tiles = create("focus.tiles", GL_RGBA16F, count);
     made_.slight_tiles = create("focus.slight tiles", GL_RG16F, count);
     graph_.add_pass(
-        "focus.reach",
-        {own, small},
-        {discarded(made_.tiles), discarded(made_.slight_tiles)},
+        "focus.reach", {own, small}, {discarded(made_.tiles), discarded(made_.slight_tiles)},
         [&pass = pass_, own, small](PassContext& context) {
             use_fullscreen(context, pass.reach, pass.focus);
             context.bind_texture(0, own);
@@ -174,9 +162,7 @@ void Drawing::find_tiles(TextureId depth) {
 void Drawing::split(TextureId radiance, TextureId depth) {
     made_.seen = create("focus.seen", format_, size_);
     graph_.add_pass(
-        "focus.pack",
-        {radiance, depth},
-        {discarded(made_.seen)},
+        "focus.pack", {radiance, depth}, {discarded(made_.seen)},
         [&pass = pass_, radiance, depth](PassContext& context) {
             use_fullscreen(context, pass.pack, pass.focus);
             context.bind_texture(0, radiance);
@@ -192,16 +178,10 @@ void Drawing::split(TextureId radiance, TextureId depth) {
     made_.wide_radii = create("focus.wide radii", pair_format(), made_.half);
     made_.behind_near = create("focus.behind near", format_, made_.half);
     graph_.add_pass(
-        "focus.split",
-        {made_.seen, made_.tiles, made_.slight_tiles},
-        {cleared(made_.far_light),
-         cleared(made_.near_light),
-         cleared(made_.far_kernels),
-         cleared(made_.near_kernels),
-         cleared(made_.far_wide),
-         cleared(made_.near_wide),
-         cleared(made_.wide_radii),
-         cleared(made_.behind_near)},
+        "focus.split", {made_.seen, made_.tiles, made_.slight_tiles},
+        {cleared(made_.far_light), cleared(made_.near_light), cleared(made_.far_kernels),
+         cleared(made_.near_kernels), cleared(made_.far_wide), cleared(made_.near_wide),
+         cleared(made_.wide_radii), cleared(made_.behind_near)},
         [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
             context.bind_texture(0, made.seen);
             bind_tiles(context, made);
@@ -222,8 +202,7 @@ void Drawing::take_off_highlights() {
     const TextureId luminance =
         create("focus.luminance", GL_RG32F, made_.quarter, luminance_levels);
     graph_.add_pass(
-        "focus.light",
-        {made_.near_light, made_.near_wide, made_.behind_near},
+        "focus.light", {made_.near_light, made_.near_wide, made_.behind_near},
         {target_level(discarded(luminance), 0)},
         [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.light, pass.focus);
@@ -243,10 +222,8 @@ void Drawing::take_off_highlights() {
     graph_.add_pass(
         "focus.rest",
         {made_.far_wide, made_.near_wide, made_.wide_radii, made_.behind_near, luminance},
-        {target_level(discarded(made_.far_rest), 0),
-         target_level(discarded(made_.near_rest), 0),
-         target_level(discarded(made_.rest_radii), 0),
-         target_level(discarded(made_.behind), 0)},
+        {target_level(discarded(made_.far_rest), 0), target_level(discarded(made_.near_rest), 0),
+         target_level(discarded(made_.rest_radii), 0), target_level(discarded(made_.behind), 0)},
         [&pass = pass_, made = made_, luminance](PassContext& context) {
             use_fullscreen(context, pass.rest, pass.focus);
             context.bind_texture(0, made.far_wide);
@@ -267,8 +244,7 @@ void Drawing::gather_coarse() {
     made_.near_coarse = create("focus.near coarse", format_, made_.quarter);
     made_.near_radius = create("focus.near radius", GL_R16F, made_.quarter);
     graph_.add_pass(
-        "focus.coarse",
-        {made_.far_rest, made_.near_rest, made_.rest_radii, made_.tiles},
+        "focus.coarse", {made_.far_rest, made_.near_rest, made_.rest_radii, made_.tiles},
         {discarded(made_.far_coarse), discarded(made_.near_coarse), discarded(made_.near_radius)},
         [&pass = pass_, made = made_](PassContext& context) {
             use_fullscreen(context, pass.coarse, pass.focus);
@@ -285,16 +261,8 @@ void Drawing::gather() {
     made_.near_blurred = create("focus.near blurred", format_, made_.half);
     graph_.add_pass(
         "focus.gather",
-        {made_.far_light,
-         made_.near_light,
-         made_.far_kernels,
-         made_.near_kernels,
-         made_.far_wide,
-         made_.far_coarse,
-         made_.near_coarse,
-         made_.near_radius,
-         made_.tiles,
-         made_.slight_tiles},
+        {made_.far_light, made_.near_light, made_.far_kernels, made_.near_kernels, made_.far_wide,
+         made_.far_coarse, made_.near_coarse, made_.near_radius, made_.tiles, made_.slight_tiles},
         {cleared(made_.far_blurred), cleared(made_.near_blurred)},
         [&pass = pass_, made = made_, count = tile_count()](PassContext& context) {
             context.bind_texture(0, made.far_light);
@@ -314,18 +282,11 @@ TextureId Drawing::compose(TextureId radiance) {
     const TextureId picture = create("radiance through lens", format_, size_);
     graph_.add_pass(
         "focus.compose",
-        {radiance,
-         made_.seen,
-         made_.far_blurred,
-         made_.near_blurred,
-         made_.behind,
-         made_.near_reach,
-         made_.near_coarse,
-         made_.tiles,
-         made_.slight_tiles},
+        {radiance, made_.seen, made_.far_blurred, made_.near_blurred, made_.behind,
+         made_.near_reach, made_.near_coarse, made_.tiles, made_.slight_tiles},
         {discarded(picture)},
-        [&pass = pass_, made = made_, radiance, size = size_, count = tile_count()](
-            PassContext& context) {
+        [&pass = pass_, made = made_, radiance, size = size_,
+         count = tile_count()](PassContext& context) {
             context.bind_texture(0, radiance);
             context.bind_texture(1, made.seen);
             context.bind_texture(2, made.far_blurred);
@@ -344,16 +305,9 @@ TextureId Drawing::compose(TextureId radiance) {
 void Drawing::draw_discs(TextureId picture, TextureId depth) {
     graph_.add_pass(
         "focus.discs",
-        {depth,
-         made_.seen,
-         made_.far_wide,
-         made_.near_wide,
-         made_.far_rest,
-         made_.near_rest,
-         made_.near_blurred,
-         made_.tiles},
-        {picture},
-        [&pass = pass_, made = made_, depth](PassContext& context) {
+        {depth, made_.seen, made_.far_wide, made_.near_wide, made_.far_rest, made_.near_rest,
+         made_.near_blurred, made_.tiles},
+        {picture}, [&pass = pass_, made = made_, depth](PassContext& context) {
             gpu::PipelineState add = gpu::kFullscreenState;
             add.blend = gpu::kBlendAdd;
             add.color_mask = 0b0111;
@@ -387,33 +341,16 @@ TextureId Drawing::by_levels(TextureId radiance, TextureId depth) {
     const int levels = gpu::full_level_count(size_.x, size_.y);
     const TextureId pyramid = create("focus.pyramid", format_, size_, levels);
     graph_.add_pass(
-        "focus.pyramid",
-        {radiance},
-        {image(pyramid)},
+        "focus.pyramid", {radiance}, {image(pyramid)},
         [radiance, pyramid, size = size_](PassContext& context) {
             glCopyImageSubData(
-                context.texture(radiance).id(),
-                GL_TEXTURE_2D,
-                0,
-                0,
-                0,
-                0,
-                context.texture(pyramid).id(),
-                GL_TEXTURE_2D,
-                0,
-                0,
-                0,
-                0,
-                size.x,
-                size.y,
-                1);
+                context.texture(radiance).id(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                context.texture(pyramid).id(), GL_TEXTURE_2D, 0, 0, 0, 0, size.x, size.y, 1);
             glGenerateTextureMipmap(context.texture(pyramid).id());
         });
     const TextureId picture = create("radiance through lens", format_, size_);
     graph_.add_pass(
-        "focus.mip",
-        {pyramid, depth},
-        {discarded(picture)},
+        "focus.mip", {pyramid, depth}, {discarded(picture)},
         [&pass = pass_, block = block_, pyramid, depth](PassContext& context) {
             pass.focus.write(0, std::span(&block, 1));
             use_fullscreen(context, pass.mip, pass.focus);
@@ -474,10 +411,7 @@ bool has_depth_of_field(const RenderView& view) {
 }
 
 TextureId draw_depth_of_field(
-    FrameGraph& graph,
-    DepthOfFieldPass& pass,
-    const RenderView& view,
-    TextureId radiance,
+    FrameGraph& graph, DepthOfFieldPass& pass, const RenderView& view, TextureId radiance,
     TextureId depth) {
     LIMN_CHECK(has_depth_of_field(view));
 

@@ -57,10 +57,7 @@ struct DepthOfFieldPass {
 
 /// The picture through the lens of the view, for which has_depth_of_field.
 [[nodiscard]] TextureId draw_depth_of_field(
-    FrameGraph& graph,
-    DepthOfFieldPass& pass,
-    const RenderView& view,
-    TextureId radiance,
+    FrameGraph& graph, DepthOfFieldPass& pass, const RenderView& view, TextureId radiance,
     TextureId depth);
 
 }  // namespace limn

@@ -124,24 +124,19 @@ layout::FocusBlock make_focus_block(const RenderView& view) {
     const float widest = static_cast<float>(widest_circle(view));
     layout::FocusBlock block{};
     block.lens = {
-        circle_scale(lens, view.tangent.y, view.height),
-        1 / lens.focus_distance,
-        1 / view.near,
+        circle_scale(lens, view.tangent.y, view.height), 1 / lens.focus_distance, 1 / view.near,
         widest};
 
     const bool round = lens.blades < 3;
     const float slice = 2 * kPi / static_cast<float>(round ? 3 : lens.blades);
     block.aperture = {
-        static_cast<float>(lens.blades),
-        lens.blade_rotation,
-        round ? kPi : kPi / slice * std::sin(slice),
-        round ? 0.25f : (2 + std::cos(slice)) / 12};
+        static_cast<float>(lens.blades), lens.blade_rotation,
+        round ? kPi : kPi / slice * std::sin(slice), round ? 0.25f : (2 + std::cos(slice)) / 12};
 
     const IVec2 tiles = (size + layout::kFocusTile - 1) / layout::kFocusTile;
     const float coarse = std::max(0.5f * widest / layout::kLevelRadius, 1.0f);
     block.tiles = {
-        tiles.x,
-        tiles.y,
+        tiles.x, tiles.y,
         static_cast<int>(std::ceil(0.5f * widest / static_cast<float>(layout::kFocusTile))),
         std::max(static_cast<int>(std::ceil(std::log2(coarse))), 1)};
     block.size = Vec4(size, half);

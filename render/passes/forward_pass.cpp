@@ -43,13 +43,8 @@ void draw_object_major(PassContext& context, ForwardPass& pass, const FrameScene
     scene.object_lights->bind(device, kLightIndicesUnit);
     scene.object_lists->bind(device, kLightCellsUnit);
     draw_runs(
-        device,
-        scene,
-        scene.instances.opaque,
-        scene.per_vertex ? pass.gouraud : pass.list,
-        0,
-        lighting_key(scene) | kObjectLights,
-        with(lighting_defines(scene), "OBJECT_LIGHTS"),
+        device, scene, scene.instances.opaque, scene.per_vertex ? pass.gouraud : pass.list, 0,
+        lighting_key(scene) | kObjectLights, with(lighting_defines(scene), "OBJECT_LIGHTS"),
         nearest_once(0));
 }
 
@@ -70,15 +65,8 @@ void add_lights(PassContext& context, ForwardPass& pass, const FrameScene& scene
     };
     for (int i = 0; i < scene.lights.directional; ++i) {
         draw_runs(
-            device,
-            scene,
-            scene.instances.opaque,
-            pass.one,
-            0,
-            key | kDirectional,
-            with(defines, "DIRECTIONAL_LIGHT"),
-            next_turn(),
-            i);
+            device, scene, scene.instances.opaque, pass.one, 0, key | kDirectional,
+            with(defines, "DIRECTIONAL_LIGHT"), next_turn(), i);
     }
     const std::span<const LightRun> runs = scene.light_draws.runs;
     for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
@@ -137,9 +125,7 @@ draw_forward(FrameGraph& graph, ForwardPass& pass, const FrameScene& scene, Text
     if (scene.method == LightMethod::ObjectMajor) {
         const Use writes[] = {cleared(radiance), depth};
         graph.add_pass(
-            "objects",
-            std::span<const Use>(reads),
-            std::span<const Use>(writes),
+            "objects", std::span<const Use>(reads), std::span<const Use>(writes),
             [&pass, &scene](PassContext& context) { draw_object_major(context, pass, scene); });
         return radiance;
     }
@@ -147,20 +133,12 @@ draw_forward(FrameGraph& graph, ForwardPass& pass, const FrameScene& scene, Text
         "objects.base", {}, {cleared(radiance), depth}, [&pass, &scene](PassContext& context) {
             bind_lighting(context.device(), scene);
             draw_runs(
-                context.device(),
-                scene,
-                scene.instances.opaque,
-                pass.base,
-                0,
-                lighting_key(scene),
-                lighting_defines(scene),
-                nearest_once(0));
+                context.device(), scene, scene.instances.opaque, pass.base, 0, lighting_key(scene),
+                lighting_defines(scene), nearest_once(0));
         });
     const Use writes[] = {radiance, depth};
     graph.add_pass(
-        "objects.lights",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "objects.lights", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene](PassContext& context) { add_lights(context, pass, scene); });
     return radiance;
 }

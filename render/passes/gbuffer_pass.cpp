@@ -13,9 +13,7 @@ void draw_sky_velocity(
         return;
     }
     graph.add_pass(
-        "gbuffer, sky velocity",
-        {depth_tested(gbuffer.depth)},
-        {gbuffer.velocity},
+        "gbuffer, sky velocity", {depth_tested(gbuffer.depth)}, {gbuffer.velocity},
         [&pass, &scene](PassContext& context) {
             gpu::PipelineState state = gpu::kFullscreenState;
             state.depth = {.test = true, .write = false, .func = GL_EQUAL};
@@ -58,12 +56,8 @@ Gbuffer draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& sce
         bind_view(context.device(), scene);
         const bool clipped = is_clipped(scene);
         draw_runs(
-            context.device(),
-            scene,
-            scene.instances.opaque,
-            pass.programs,
-            velocity ? kVelocity : 0u,
-            clipped ? 1 : 0,
+            context.device(), scene, scene.instances.opaque, pass.programs,
+            velocity ? kVelocity : 0u, clipped ? 1 : 0,
             clipped ? std::vector<gpu::ShaderDefine>{{"CLIPPED"}}
                     : std::vector<gpu::ShaderDefine>{},
             {.clip = clipped});

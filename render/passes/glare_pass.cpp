@@ -18,12 +18,8 @@ TextureId create_like(FrameGraph& graph, std::string_view name, TextureId other)
 
 /// Adds the line in a direction to `star`.
 void draw_line(
-    FrameGraph& graph,
-    const GlarePass& pass,
-    TextureId source,
-    const Use& star,
-    const Vec2& direction,
-    float half_length) {
+    FrameGraph& graph, const GlarePass& pass, TextureId source, const Use& star,
+    const Vec2& direction, float half_length) {
     // Tents of half-lengths unit * 2, 4 ... 2^steps; the light of each is half that of the last.
     const int steps =
         std::clamp(static_cast<int>(std::ceil(std::log2(half_length))), 1, kMostSteps);
@@ -37,14 +33,8 @@ void draw_line(
             last ? TextureId{star.resource} : create_like(graph, "glare.streak", source);
         const Use target = last ? star : discarded(next);
         graph.add_pass(
-            "glare.streak",
-            {source, sum},
-            {target},
-            [&pass,
-             source,
-             sum,
-             last,
-             share = std::exp2(-static_cast<float>(i)) / whole,
+            "glare.streak", {source, sum}, {target},
+            [&pass, source, sum, last, share = std::exp2(-static_cast<float>(i)) / whole,
              before = first ? 0.0f : 1.0f,
              offset = unit * std::exp2(static_cast<float>(i)) * direction](PassContext& context) {
                 gpu::PipelineState state = gpu::kFullscreenState;
@@ -70,8 +60,7 @@ Result<GlarePass> create_glare_pass(gpu::Device& device) {
         const char* fragment;
     };
     for (const Wanted& wanted :
-         {Wanted{pass.source, "glare_source.frag"},
-          Wanted{pass.streak, "glare_streak.frag"},
+         {Wanted{pass.source, "glare_source.frag"}, Wanted{pass.streak, "glare_streak.frag"},
           Wanted{pass.add, "glare_add.frag"}}) {
         const Result<const gpu::Program*> program =
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = wanted.fragment});
@@ -99,9 +88,7 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
          .width = (spec.width + 1) / 2,
          .height = (spec.height + 1) / 2});
     graph.add_pass(
-        "glare.source",
-        {radiance},
-        {discarded(source)},
+        "glare.source", {radiance}, {discarded(source)},
         [program = pass.source, radiance, threshold = glare.threshold](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("threshold", threshold);
@@ -115,12 +102,8 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
         const float angle =
             glare.rotation + kPi * static_cast<float>(i) / static_cast<float>(lines);
         draw_line(
-            graph,
-            pass,
-            source,
-            i == 0 ? cleared(star) : Use(star),
-            {std::cos(angle), std::sin(angle)},
-            half_length);
+            graph, pass, source, i == 0 ? cleared(star) : Use(star),
+            {std::cos(angle), std::sin(angle)}, half_length);
     }
     const TextureId glaring = graph.create(
         {.name = "radiance with glare",
@@ -128,11 +111,9 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
          .width = spec.width,
          .height = spec.height});
     graph.add_pass(
-        "glare",
-        {radiance, star},
-        {discarded(glaring)},
-        [program = pass.add, radiance, star, strength = glare.strength / static_cast<float>(lines)](
-            PassContext& context) {
+        "glare", {radiance, star}, {discarded(glaring)},
+        [program = pass.add, radiance, star,
+         strength = glare.strength / static_cast<float>(lines)](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("strength", strength);
             context.bind_texture(0, radiance);

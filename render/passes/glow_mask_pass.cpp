@@ -36,10 +36,7 @@ Result<GlowMaskPass> create_glow_mask_pass(gpu::Device& device) {
 }
 
 TextureId draw_glow_mask(
-    FrameGraph& graph,
-    const GlowMaskPass& pass,
-    const Glow& glow,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, const GlowMaskPass& pass, const Glow& glow, const Gbuffer& gbuffer,
     TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
     TextureId mask = graph.create(
@@ -48,9 +45,7 @@ TextureId draw_glow_mask(
          .width = (spec.width + 1) / 2,
          .height = (spec.height + 1) / 2});
     graph.add_pass(
-        "glow mask",
-        {gbuffer.surface, gbuffer.depth},
-        {discarded(mask)},
+        "glow mask", {gbuffer.surface, gbuffer.depth}, {discarded(mask)},
         [program = pass.mask, gbuffer](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             context.bind_texture(kSurfaceUnit, gbuffer.surface);
@@ -66,9 +61,7 @@ TextureId draw_glow_mask(
          .width = spec.width,
          .height = spec.height});
     graph.add_pass(
-        "glow",
-        {radiance, mask},
-        {discarded(glowing)},
+        "glow", {radiance, mask}, {discarded(glowing)},
         [program = pass.add, radiance, mask, strength = glow.strength](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("strength", strength);

@@ -25,10 +25,7 @@ struct GlowMaskPass {
 
 /// `glow.strength` > 0.
 [[nodiscard]] TextureId draw_glow_mask(
-    FrameGraph& graph,
-    const GlowMaskPass& pass,
-    const Glow& glow,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, const GlowMaskPass& pass, const Glow& glow, const Gbuffer& gbuffer,
     TextureId radiance);
 
 }  // namespace limn

@@ -36,12 +36,9 @@ TextureId draw_first(
     const TextureId first = graph.create(
         {.name = "glow", .format = graph.spec(radiance).format, .width = size.x, .height = size.y});
     graph.add_pass(
-        "glow.first",
-        {radiance},
-        {discarded(first)},
+        "glow.first", {radiance}, {discarded(first)},
         [program = even ? pass.first : pass.first_any,
-         per_firefly = glow.firefly > 0 ? 1.0f / glow.firefly : 0.0f,
-         radiance,
+         per_firefly = glow.firefly > 0 ? 1.0f / glow.firefly : 0.0f, radiance,
          size](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("size", size);
@@ -54,21 +51,13 @@ TextureId draw_first(
 
 /// One axis of a step from `source`.
 void draw_axis(
-    FrameGraph& graph,
-    std::string_view name,
-    const gpu::Program* program,
-    TextureId source,
-    Use target,
-    const IVec2& axis,
-    float gain,
-    const gpu::PipelineState& state) {
+    FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
+    Use target, const IVec2& axis, float gain, const gpu::PipelineState& state) {
     const IVec2 size = size_of(graph, TextureId{target.resource});
     graph.add_pass(
-        name,
-        {source},
-        {target},
-        [program, source, axis, gain, state, along = size.x * axis.x + size.y * axis.y](
-            PassContext& context) {
+        name, {source}, {target},
+        [program, source, axis, gain, state,
+         along = size.x * axis.x + size.y * axis.y](PassContext& context) {
             context.device().use(gpu::Pipeline{program, state});
             program->set("axis", axis);
             program->set("sizes", along);
@@ -103,11 +92,7 @@ TextureId step_down(FrameGraph& graph, const GlowPass& pass, TextureId larger) {
 
 /// Draws `smaller` times `gain` into the colors of `larger`, whose alpha stays.
 void step_up(
-    FrameGraph& graph,
-    const GlowPass& pass,
-    TextureId smaller,
-    TextureId larger,
-    float gain,
+    FrameGraph& graph, const GlowPass& pass, TextureId smaller, TextureId larger, float gain,
     const gpu::BlendState& blend) {
     const TextureId between = create_between(graph, smaller, larger);
     gpu::PipelineState state = gpu::kFullscreenState;
@@ -122,12 +107,9 @@ void step_up(
 Result<GlowPass> create_glow_pass(gpu::Device& device) {
     GlowPass pass;
     const ProgramSlot slots[] = {
-        {pass.first, "glow_first.frag", ""},
-        {pass.first_any, "glow_first.frag", "ANY_SIZE"},
-        {pass.down, "glow_step.frag", ""},
-        {pass.up, "glow_step.frag", "UP"},
-        {pass.mix, "glow_mix.frag", ""},
-        {pass.mix_any, "glow_mix.frag", "ANY_SIZE"}};
+        {pass.first, "glow_first.frag", ""}, {pass.first_any, "glow_first.frag", "ANY_SIZE"},
+        {pass.down, "glow_step.frag", ""},   {pass.up, "glow_step.frag", "UP"},
+        {pass.mix, "glow_mix.frag", ""},     {pass.mix_any, "glow_mix.frag", "ANY_SIZE"}};
     for (const ProgramSlot& slot : slots) {
         gpu::ProgramDesc desc = {.vertex = "fullscreen.vert", .fragment = slot.fragment};
         if (*slot.define != 0) {
@@ -187,12 +169,8 @@ TextureId draw_glow(FrameGraph& graph, const GlowPass& pass, const Glow& glow, T
          .width = size.x,
          .height = size.y});
     graph.add_pass(
-        "glow",
-        {radiance, levels[0]},
-        {discarded(glowing)},
-        [program = even ? pass.mix : pass.mix_any,
-         radiance,
-         level = levels[0],
+        "glow", {radiance, levels[0]}, {discarded(glowing)},
+        [program = even ? pass.mix : pass.mix_any, radiance, level = levels[0],
          strength = glow.strength](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             program->set("strength", strength);

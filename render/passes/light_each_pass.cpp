@@ -49,10 +49,7 @@ one_light_program(SurfacePrograms& programs, const FrameScene& scene, std::uint3
 }
 
 void add_over_screen(
-    gpu::Device& device,
-    LightEachPass& pass,
-    const FrameScene& scene,
-    int light,
+    gpu::Device& device, LightEachPass& pass, const FrameScene& scene, int light,
     bool directional) {
     const gpu::Program* program =
         one_light_program(pass.screen, scene, directional ? kDirectional : 0);
@@ -64,10 +61,7 @@ void add_over_screen(
 }
 
 void add_in_volume(
-    gpu::Device& device,
-    LightEachPass& pass,
-    const FrameScene& scene,
-    int light,
+    gpu::Device& device, LightEachPass& pass, const FrameScene& scene, int light,
     const LightReach& reach) {
     const bool cone = reach.cosine > kWidestCone;
     const float sine = std::sqrt(std::max(1 - square(reach.cosine), 0.0f));
@@ -121,9 +115,7 @@ TextureId draw_each_light(
         context.bind_texture(kDepthUnit, gbuffer.depth);
     };
     graph.add_pass(
-        "lights.base",
-        {gbuffer.surface, depth_tested(gbuffer.depth)},
-        {cleared(radiance)},
+        "lights.base", {gbuffer.surface, depth_tested(gbuffer.depth)}, {cleared(radiance)},
         [&pass, &scene, bind](PassContext& context) {
             const gpu::Program* program =
                 pass.base.get(0, lighting_key(scene), lighting_defines(scene));
@@ -137,9 +129,7 @@ TextureId draw_each_light(
         lighting_reads(scene, {gbuffer.surface, depth_tested(gbuffer.depth)});
     const Use writes[] = {radiance};
     graph.add_pass(
-        "lights.each",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "lights.each", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene, bind](PassContext& context) {
             bind(context);
             bind_shadow_masks(context, scene);

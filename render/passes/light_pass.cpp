@@ -42,9 +42,7 @@ draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const G
         lighting_reads(scene, {gbuffer.surface, depth_tested(gbuffer.depth)});
     const Use writes[] = {cleared(radiance)};
     graph.add_pass(
-        "lights",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "lights", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene, gbuffer](PassContext& context) {
             const gpu::Program* program =
                 pass.lights.get(0, lighting_key(scene), lighting_defines(scene));
@@ -62,16 +60,11 @@ draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const G
 }
 
 TextureId draw_sky(
-    FrameGraph& graph,
-    const LightPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, const LightPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer) {
     if (scene.environment.settings.visible || scene.for_light) {
         graph.add_pass(
-            "sky",
-            {depth_tested(gbuffer.depth)},
-            {radiance},
+            "sky", {depth_tested(gbuffer.depth)}, {radiance},
             [&pass, &scene](PassContext& context) {
                 const auto kind = static_cast<int>(scene.environment.settings.sky);
                 context.device().use(gpu::Pipeline{pass.sky[kind], full_screen_where(GL_EQUAL)});

@@ -28,10 +28,7 @@ draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const G
 
 /// Radiance with the sky where no surface is, if the environment is visible or a probe looks.
 [[nodiscard]] TextureId draw_sky(
-    FrameGraph& graph,
-    const LightPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, const LightPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer);
 
 }  // namespace limn

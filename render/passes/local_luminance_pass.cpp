@@ -101,19 +101,13 @@ Result<LocalLuminancePass::Level> create_level(
 }
 
 TextureId blur_along(
-    FrameGraph& graph,
-    std::string_view name,
-    const gpu::Program* program,
-    const gpu::Buffer& weights,
-    TextureId source,
-    const IVec2& direction) {
+    FrameGraph& graph, std::string_view name, const gpu::Program* program,
+    const gpu::Buffer& weights, TextureId source, const IVec2& direction) {
     const TextureSpec spec = graph.spec(source);
     const TextureId target = graph.create(
         {.name = name, .format = GL_RGBA32F, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        name,
-        {source},
-        {discarded(target)},
+        name, {source}, {discarded(target)},
         [program, &weights, source, direction](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             context.device().bind_uniforms(kWeightsBinding, weights);
@@ -125,21 +119,15 @@ TextureId blur_along(
 }
 
 TextureId blur_level(
-    FrameGraph& graph,
-    std::string_view name_across,
-    std::string_view name,
-    const LocalLuminancePass::Level& level,
-    TextureId source) {
+    FrameGraph& graph, std::string_view name_across, std::string_view name,
+    const LocalLuminancePass::Level& level, TextureId source) {
     const TextureId across =
         blur_along(graph, name_across, level.across, level.weights, source, {1, 0});
     return blur_along(graph, name, level.up, level.weights, across, {0, 1});
 }
 
 TextureId shrink(
-    FrameGraph& graph,
-    std::string_view name,
-    const gpu::Program* program,
-    TextureId source,
+    FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
     const IVec2& size) {
     const TextureId target =
         graph.create({.name = name, .format = GL_R32F, .width = size.x, .height = size.y});

@@ -23,9 +23,7 @@ bool is_finite(const MirrorCaustic& m) {
 }
 
 void draw_mirror(
-    gpu::Device& device,
-    const gpu::Program& program,
-    const FrameScene& scene,
+    gpu::Device& device, const gpu::Program& program, const FrameScene& scene,
     const CausticMirror& mirror) {
     if (mirror.mesh >= scene.meshes->meshes().size()) {
         return;
@@ -42,11 +40,8 @@ void draw_mirror(
     program.set("look", Vec4(m.power_plane, m.power_surface, m.farthest, m.highest));
     program.set("color", m.strength * m.color * Vec3(light.color));
     device.draw_indexed(
-        GL_TRIANGLES,
-        static_cast<int>(mesh.index_count),
-        GL_UNSIGNED_INT,
-        mesh.first_index * sizeof(std::uint32_t),
-        mesh.base_vertex);
+        GL_TRIANGLES, static_cast<int>(mesh.index_count), GL_UNSIGNED_INT,
+        mesh.first_index * sizeof(std::uint32_t), mesh.base_vertex);
 }
 
 }  // namespace
@@ -55,14 +50,10 @@ void collect_mirrors(const World& world, float alpha, std::vector<CausticMirror>
     mirrors.clear();
     world
         .query<
-            const MirrorCaustic,
-            const MeshInstance,
-            const WorldTransform,
+            const MirrorCaustic, const MeshInstance, const WorldTransform,
             Optional<const PreviousWorldTransform>>()
-        .each([&](const MirrorCaustic& settings,
-                  const MeshInstance& surface,
-                  const WorldTransform& now,
-                  const PreviousWorldTransform* before) {
+        .each([&](const MirrorCaustic& settings, const MeshInstance& surface,
+                  const WorldTransform& now, const PreviousWorldTransform* before) {
             if (is_finite(settings) && settings.strength > 0) {
                 const Affine place =
                     before != nullptr ? mix_affine(before->world, now.world, alpha) : now.world;
@@ -72,12 +63,8 @@ void collect_mirrors(const World& world, float alpha, std::vector<CausticMirror>
 }
 
 void draw_mirror_caustics(
-    FrameGraph& graph,
-    gpu::Device& device,
-    MirrorCausticPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer) {
+    FrameGraph& graph, gpu::Device& device, MirrorCausticPass& pass, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer) {
     if (pass.mirrors.empty() || scene.lights.records.empty()) {
         return;
     }
@@ -95,9 +82,7 @@ void draw_mirror_caustics(
         return;
     }
     graph.add_pass(
-        "mirror caustics",
-        {depth_tested(gbuffer.depth)},
-        {radiance},
+        "mirror caustics", {depth_tested(gbuffer.depth)}, {radiance},
         [&pass, &scene](PassContext& context) {
             gpu::Device& its_device = context.device();
             its_device.use(gpu::Pipeline{

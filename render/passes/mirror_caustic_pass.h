@@ -38,11 +38,7 @@ void collect_mirrors(const World& world, float alpha, std::vector<CausticMirror>
 
 /// Draws over `radiance`; adds no pass without mirrors or light.
 void draw_mirror_caustics(
-    FrameGraph& graph,
-    gpu::Device& device,
-    MirrorCausticPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer);
+    FrameGraph& graph, gpu::Device& device, MirrorCausticPass& pass, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer);
 
 }  // namespace limn

@@ -44,9 +44,7 @@ TextureId accumulate_motion(
 
     const TextureId pictures = graph.import("motion blur.pictures", pass.pictures);
     graph.add_pass(
-        "motion blur, keep",
-        {radiance},
-        {target_level(discarded(pictures), 0, pass.newest)},
+        "motion blur, keep", {radiance}, {target_level(discarded(pictures), 0, pass.newest)},
         [&program = *pass.copy, radiance](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("weight", 1.0f);
@@ -56,11 +54,9 @@ TextureId accumulate_motion(
     const TextureId blurred = graph.create(
         {.name = "motion blur", .format = spec.format, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        "motion blur",
-        {pictures},
-        {discarded(blurred)},
-        [&program = *pass.mean, pictures, window, newest = pass.newest, count = pass.count](
-            PassContext& context) {
+        "motion blur", {pictures}, {discarded(blurred)},
+        [&program = *pass.mean, pictures, window, newest = pass.newest,
+         count = pass.count](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("newest", newest);
             program.set("count", count);

@@ -29,12 +29,8 @@ Tiling make_tiling(const MotionBlur& settings, int height) {
 }
 
 TextureId pack_motion(
-    FrameGraph& graph,
-    const gpu::Program& program,
-    const MotionBlur& settings,
-    float longest,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer) {
+    FrameGraph& graph, const gpu::Program& program, const MotionBlur& settings, float longest,
+    const FrameScene& scene, const Gbuffer& gbuffer) {
     const TextureSpec source = graph.spec(gbuffer.velocity);
     const TextureId motion = graph.create(
         {.name = "motion blur.motion",
@@ -42,11 +38,9 @@ TextureId pack_motion(
          .width = source.width,
          .height = source.height});
     graph.add_pass(
-        "motion blur, pack",
-        {gbuffer.velocity, gbuffer.depth},
-        {discarded(motion)},
-        [&program, &scene, gbuffer, longest, half_share = half_exposure(settings)](
-            PassContext& context) {
+        "motion blur, pack", {gbuffer.velocity, gbuffer.depth}, {discarded(motion)},
+        [&program, &scene, gbuffer, longest,
+         half_share = half_exposure(settings)](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             bind_view(context.device(), scene);
             program.set("half_exposure", half_share);
@@ -70,9 +64,7 @@ TextureId find_longest(
          .width = first ? tiles(spec.width) : spec.width,
          .height = first ? spec.height : tiles(spec.height)});
     graph.add_pass(
-        first ? "motion blur, rows" : "motion blur, tiles",
-        {source},
-        {discarded(longest)},
+        first ? "motion blur, rows" : "motion blur, tiles", {source}, {discarded(longest)},
         [&program, source, side, along, first](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("along", along);
@@ -93,9 +85,7 @@ spread(FrameGraph& graph, const gpu::Program& program, const Tiling& tiling, Tex
          .width = spec.width,
          .height = spec.height});
     graph.add_pass(
-        "motion blur, neighbors",
-        {tiles},
-        {discarded(neighbors)},
+        "motion blur, neighbors", {tiles}, {discarded(neighbors)},
         [&program, tiling, tiles](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("side", tiling.side);
@@ -115,10 +105,8 @@ Result<MotionBlurPass> create_motion_blur_pass(gpu::Device& device) {
         const char* fragment;
     };
     for (const Wanted& wanted :
-         {Wanted{pass.pack, "motion_pack.frag"},
-          Wanted{pass.tile, "motion_tile.frag"},
-          Wanted{pass.neighbor, "motion_neighbor.frag"},
-          Wanted{pass.blur, "motion_blur.frag"}}) {
+         {Wanted{pass.pack, "motion_pack.frag"}, Wanted{pass.tile, "motion_tile.frag"},
+          Wanted{pass.neighbor, "motion_neighbor.frag"}, Wanted{pass.blur, "motion_blur.frag"}}) {
         const Result<const gpu::Program*> made =
             device.shaders().load({.vertex = "fullscreen.vert", .fragment = wanted.fragment});
         if (!made) {
@@ -130,12 +118,8 @@ Result<MotionBlurPass> create_motion_blur_pass(gpu::Device& device) {
 }
 
 TextureId blur_motion(
-    FrameGraph& graph,
-    const MotionBlurPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, const MotionBlurPass& pass, const MotionBlur& settings,
+    const FrameScene& scene, const Gbuffer& gbuffer, TextureId radiance) {
     LIMN_CHECK(gbuffer.velocity.valid());
     const TextureSpec spec = graph.spec(radiance);
     const Tiling tiling = make_tiling(settings, spec.height);
@@ -147,15 +131,9 @@ TextureId blur_motion(
     const TextureId blurred = graph.create(
         {.name = "motion blur", .format = spec.format, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        "motion blur",
-        {radiance, motion, neighbors},
-        {discarded(blurred)},
-        [&program = *pass.blur,
-         samples = std::clamp(settings.samples, 4, 64),
-         tiling,
-         radiance,
-         motion,
-         neighbors](PassContext& context) {
+        "motion blur", {radiance, motion, neighbors}, {discarded(blurred)},
+        [&program = *pass.blur, samples = std::clamp(settings.samples, 4, 64), tiling, radiance,
+         motion, neighbors](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("side", tiling.side);
             program.set("samples", samples);

@@ -48,11 +48,7 @@ struct MotionBlurPass {
 
 /// `gbuffer` must have velocity.
 [[nodiscard]] TextureId blur_motion(
-    FrameGraph& graph,
-    const MotionBlurPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, const MotionBlurPass& pass, const MotionBlur& settings,
+    const FrameScene& scene, const Gbuffer& gbuffer, TextureId radiance);
 
 }  // namespace limn

@@ -17,21 +17,15 @@ Result<MotionCameraPass> create_motion_camera_pass(gpu::Device& device) {
 }
 
 TextureId blur_camera_motion(
-    FrameGraph& graph,
-    const MotionCameraPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, const MotionCameraPass& pass, const MotionBlur& settings,
+    const FrameScene& scene, const Gbuffer& gbuffer, TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
     const TextureId blurred = graph.create(
         {.name = "motion blur", .format = spec.format, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        "motion blur",
-        {radiance, gbuffer.depth},
-        {discarded(blurred)},
-        [&program = *pass.program, &scene, settings, radiance, depth = gbuffer.depth](
-            PassContext& context) {
+        "motion blur", {radiance, gbuffer.depth}, {discarded(blurred)},
+        [&program = *pass.program, &scene, settings, radiance,
+         depth = gbuffer.depth](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             bind_view(context.device(), scene);
             program.set("half_exposure", half_exposure(settings));

@@ -30,11 +30,7 @@ struct MotionCameraPass {
 [[nodiscard]] Result<MotionCameraPass> create_motion_camera_pass(gpu::Device& device);
 
 [[nodiscard]] TextureId blur_camera_motion(
-    FrameGraph& graph,
-    const MotionCameraPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, const MotionCameraPass& pass, const MotionBlur& settings,
+    const FrameScene& scene, const Gbuffer& gbuffer, TextureId radiance);
 
 }  // namespace limn

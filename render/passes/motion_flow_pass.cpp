@@ -11,10 +11,7 @@ constexpr float kTrailing = 1.0f;  // first step along the field, in halves of i
 constexpr float kLeading = 0.25f;  // the same against it
 
 TextureId draw_field(
-    FrameGraph& graph,
-    MotionFlowPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
+    FrameGraph& graph, MotionFlowPass& pass, const MotionBlur& settings, const FrameScene& scene,
     const Gbuffer& gbuffer) {
     const TextureSpec spec = graph.spec(gbuffer.depth);
     const TextureId field = graph.create(
@@ -23,16 +20,11 @@ TextureId draw_field(
          .width = spec.width,
          .height = spec.height});
     graph.add_pass(
-        "motion blur, flow",
-        {depth_tested(gbuffer.depth)},
-        {cleared(field)},
+        "motion blur, flow", {depth_tested(gbuffer.depth)}, {cleared(field)},
         [&pass, &scene, settings](PassContext& context) {
             bind_view(context.device(), scene);
             draw_motions(
-                context.device(),
-                scene,
-                pass.field,
-                {.depth = {.write = false, .func = GL_EQUAL}},
+                context.device(), scene, pass.field, {.depth = {.write = false, .func = GL_EQUAL}},
                 [&](const gpu::Program& program) {
                     program.set("exposure", 2.0f * half_exposure(settings));
                     program.set("longest", settings.longest * static_cast<float>(context.size().y));
@@ -42,18 +34,13 @@ TextureId draw_field(
 }
 
 TextureId warp(
-    FrameGraph& graph,
-    const gpu::Program& program,
-    TextureId picture,
-    TextureId field,
+    FrameGraph& graph, const gpu::Program& program, TextureId picture, TextureId field,
     float scale) {
     const TextureSpec spec = graph.spec(picture);
     const TextureId mixed = graph.create(
         {.name = "motion blur", .format = spec.format, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        "motion blur",
-        {picture, field},
-        {discarded(mixed)},
+        "motion blur", {picture, field}, {discarded(mixed)},
         [&program, picture, field, scale](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             program.set("scale", scale);
@@ -82,12 +69,8 @@ Result<MotionFlowPass> create_motion_flow_pass(gpu::Device& device) {
 }
 
 TextureId blur_along_flow(
-    FrameGraph& graph,
-    MotionFlowPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, MotionFlowPass& pass, const MotionBlur& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     const TextureId field = draw_field(graph, pass, settings, scene, gbuffer);
     float step = 0.5f;
     for (int i = 0; i < kSteps; ++i) {

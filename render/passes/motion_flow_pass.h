@@ -28,11 +28,7 @@ struct MotionFlowPass {
 [[nodiscard]] Result<MotionFlowPass> create_motion_flow_pass(gpu::Device& device);
 
 [[nodiscard]] TextureId blur_along_flow(
-    FrameGraph& graph,
-    MotionFlowPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, MotionFlowPass& pass, const MotionBlur& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance);
 
 }  // namespace limn

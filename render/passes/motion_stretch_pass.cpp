@@ -9,10 +9,7 @@ namespace limn {
 namespace {
 
 void copy_picture(
-    FrameGraph& graph,
-    std::string_view name,
-    const gpu::Program& program,
-    TextureId from,
+    FrameGraph& graph, std::string_view name, const gpu::Program& program, TextureId from,
     TextureId to) {
     graph.add_pass(name, {from}, {discarded(to)}, [&program, from](PassContext& context) {
         context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
@@ -41,12 +38,8 @@ Result<MotionStretchPass> create_motion_stretch_pass(gpu::Device& device) {
 }
 
 TextureId stretch_motion(
-    FrameGraph& graph,
-    MotionStretchPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, MotionStretchPass& pass, const MotionBlur& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
     const gpu::TextureDesc kept = {
         .format = spec.format, .width = spec.width, .height = spec.height};
@@ -68,9 +61,7 @@ TextureId stretch_motion(
         {.name = "motion blur", .format = spec.format, .width = spec.width, .height = spec.height});
     copy_picture(graph, "motion blur, copy", *pass.copy, radiance, blurred);
     graph.add_pass(
-        "motion blur",
-        {radiance, history, gbuffer.depth},
-        {blurred, cleared(layer_depth)},
+        "motion blur", {radiance, history, gbuffer.depth}, {blurred, cleared(layer_depth)},
         [&pass, &scene, settings, radiance, history, depth = gbuffer.depth](PassContext& context) {
             bind_view(context.device(), scene);
             context.bind_texture(0, radiance);

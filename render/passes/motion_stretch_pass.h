@@ -31,12 +31,8 @@ struct MotionStretchPass {
 [[nodiscard]] Result<MotionStretchPass> create_motion_stretch_pass(gpu::Device& device);
 
 [[nodiscard]] TextureId stretch_motion(
-    FrameGraph& graph,
-    MotionStretchPass& pass,
-    const MotionBlur& settings,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, MotionStretchPass& pass, const MotionBlur& settings, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance);
 
 /// Forgets the picture before.
 void forget_motion(MotionStretchPass& pass);

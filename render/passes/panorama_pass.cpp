@@ -33,26 +33,21 @@ Result<PanoramaPass> create_panorama_pass(gpu::Device& device) {
 }
 
 void draw_panorama(
-    FrameGraph& graph,
-    PanoramaPass& pass,
-    const gpu::Texture& panorama,
+    FrameGraph& graph, PanoramaPass& pass, const gpu::Texture& panorama,
     const Environment& environment) {
     const int size = face_size(pass, panorama.width());
     if (!pass.cube || pass.cube.width() != size) {
         pass.cube = gpu::Texture(
-            "sky cube",
-            {.format = GL_RGBA16F,
-             .width = size,
-             .height = size,
-             .levels = 0,
-             .target = GL_TEXTURE_CUBE_MAP});
+            "sky cube", {.format = GL_RGBA16F,
+                         .width = size,
+                         .height = size,
+                         .levels = 0,
+                         .target = GL_TEXTURE_CUBE_MAP});
     }
     const TextureId cube = graph.import("sky cube", pass.cube);
     for (int face = 0; face < kCubeFaces; ++face) {
         graph.add_pass(
-            "panorama",
-            {},
-            {target_level(discarded(cube), 0, face)},
+            "panorama", {}, {target_level(discarded(cube), 0, face)},
             [&pass, &panorama, environment, face, size](PassContext& context) {
                 const gpu::Program& program = *pass.program;
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});

@@ -26,9 +26,7 @@ struct PanoramaPass {
 
 /// Fills `pass.cube` with what `environment` says of `panorama`.
 void draw_panorama(
-    FrameGraph& graph,
-    PanoramaPass& pass,
-    const gpu::Texture& panorama,
+    FrameGraph& graph, PanoramaPass& pass, const gpu::Texture& panorama,
     const Environment& environment);
 
 /// Adds a pass that fills levels 1 .. n of a cube map.

@@ -16,16 +16,11 @@ Result<ProbePass> create_probe_pass(gpu::Device& device) {
 }
 
 void keep_probe_face(
-    FrameGraph& graph,
-    const ProbePass& pass,
-    TextureId radiance,
-    const gpu::Texture& cube,
+    FrameGraph& graph, const ProbePass& pass, TextureId radiance, const gpu::Texture& cube,
     int face) {
     const TextureId target = graph.import("probe cube", cube);
     graph.add_pass(
-        "probe face",
-        {radiance},
-        {target_level(discarded(target), 0, face)},
+        "probe face", {radiance}, {target_level(discarded(target), 0, face)},
         [&pass, radiance](PassContext& context) {
             context.device().use(gpu::Pipeline{pass.program, gpu::kFullscreenState});
             context.bind_texture(kGbufferUnit, radiance);

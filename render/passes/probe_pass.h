@@ -18,10 +18,7 @@ struct ProbePass {
 [[nodiscard]] Result<ProbePass> create_probe_pass(gpu::Device& device);
 
 void keep_probe_face(
-    FrameGraph& graph,
-    const ProbePass& pass,
-    TextureId radiance,
-    const gpu::Texture& cube,
+    FrameGraph& graph, const ProbePass& pass, TextureId radiance, const gpu::Texture& cube,
     int face);
 
 }  // namespace limn

@@ -18,19 +18,12 @@ constexpr unsigned kSumsBinding = 0;
 
 /// All levels of one layer; `cube` is null where a function is the sky.
 void draw_levels(
-    FrameGraph& graph,
-    const ReflectionPass& pass,
-    const FrameScene& scene,
-    const gpu::Program& program,
-    const gpu::Texture* cube,
-    int layer,
-    int samples) {
+    FrameGraph& graph, const ReflectionPass& pass, const FrameScene& scene,
+    const gpu::Program& program, const gpu::Texture* cube, int layer, int samples) {
     const TextureId maps = graph.import("reflection map", pass.maps);
     for (int level = 0; level < pass.maps.desc().levels; ++level) {
         graph.add_pass(
-            "reflection map",
-            {},
-            {target_level(discarded(maps), level, layer)},
+            "reflection map", {}, {target_level(discarded(maps), level, layer)},
             [&pass, &scene, &program, cube, level, samples](PassContext& context) {
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
                 const gpu::RingSlice& block = scene.environment_block;
@@ -76,17 +69,15 @@ Result<ReflectionPass> create_reflection_pass(gpu::Device& device, int size) {
     pass.irradiance_program = *irradiance;
     const int levels = std::bit_width(static_cast<unsigned>(size / kSmallestLevel));
     pass.maps = gpu::Texture(
-        "reflection maps",
-        {.format = GL_RGBA32F,
-         .width = size,
-         .height = size,
-         .depth = static_cast<int>(layout::kReflectionLayers),
-         .levels = levels,
-         .target = GL_TEXTURE_2D_ARRAY});
+        "reflection maps", {.format = GL_RGBA32F,
+                            .width = size,
+                            .height = size,
+                            .depth = static_cast<int>(layout::kReflectionLayers),
+                            .levels = levels,
+                            .target = GL_TEXTURE_2D_ARRAY});
     pass.maps.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
     pass.irradiance = gpu::Buffer(
-        "irradiance",
-        layout::kReflectionLayers * sizeof(layout::Irradiance),
+        "irradiance", layout::kReflectionLayers * sizeof(layout::Irradiance),
         gpu::BufferUse::Dynamic);
     return pass;
 }
@@ -107,12 +98,8 @@ void draw_sky_reflection(FrameGraph& graph, ReflectionPass& pass, const FrameSce
 }
 
 void draw_cube_reflection(
-    FrameGraph& graph,
-    ReflectionPass& pass,
-    const FrameScene& scene,
-    const gpu::Texture& cube,
-    int layer,
-    int samples) {
+    FrameGraph& graph, ReflectionPass& pass, const FrameScene& scene, const gpu::Texture& cube,
+    int layer, int samples) {
     const gpu::Program& program = *pass.programs[static_cast<int>(SkyKind::Panorama)];
     draw_levels(graph, pass, scene, program, &cube, layer, samples);
     const BufferId sums = graph.import("irradiance", pass.irradiance);

@@ -37,11 +37,7 @@ void draw_sky_reflection(FrameGraph& graph, ReflectionPass& pass, const FrameSce
 /// Makes `layer` of a cube map whose mip levels are filled. `samples`: of a texel of the least
 /// blurred level; each further one has twice as many, at most 256.
 void draw_cube_reflection(
-    FrameGraph& graph,
-    ReflectionPass& pass,
-    const FrameScene& scene,
-    const gpu::Texture& cube,
-    int layer,
-    int samples);
+    FrameGraph& graph, ReflectionPass& pass, const FrameScene& scene, const gpu::Texture& cube,
+    int layer, int samples);
 
 }  // namespace limn

@@ -115,18 +115,13 @@ Result<RipplePass> create_ripple_pass(gpu::Device& device) {
 }
 
 TextureId draw_ripples(
-    FrameGraph& graph,
-    const RipplePass& pass,
-    const RippleList& ripples,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance) {
+    FrameGraph& graph, const RipplePass& pass, const RippleList& ripples, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
     const TextureId field = graph.create(
         {.name = "ripple.field", .format = GL_RGBA32F, .width = spec.width, .height = spec.height});
     graph.add_pass(
-        "ripple field",
-        {gbuffer.depth},
+        "ripple field", {gbuffer.depth},
         {cleared(field, {0, 0, 0, 1})},  // all lies behind the near plane
         [&pass, &ripples, &scene, depth = gbuffer.depth](PassContext& context) {
             gpu::Device& device = context.device();
@@ -142,9 +137,7 @@ TextureId draw_ripples(
          .width = spec.width,
          .height = spec.height});
     graph.add_pass(
-        "ripple",
-        {radiance, field, gbuffer.depth},
-        {discarded(rippled)},
+        "ripple", {radiance, field, gbuffer.depth}, {discarded(rippled)},
         [program = pass.resolve, radiance, field, depth = gbuffer.depth](PassContext& context) {
             context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
             context.bind_texture(kRadianceUnit, radiance);

@@ -46,11 +46,7 @@ struct RipplePass {
 
 /// `ripples` are not empty, and live until the frame is drawn.
 [[nodiscard]] TextureId draw_ripples(
-    FrameGraph& graph,
-    const RipplePass& pass,
-    const RippleList& ripples,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId radiance);
+    FrameGraph& graph, const RipplePass& pass, const RippleList& ripples, const FrameScene& scene,
+    const Gbuffer& gbuffer, TextureId radiance);
 
 }  // namespace limn

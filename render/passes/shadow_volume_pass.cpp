@@ -37,11 +37,8 @@ void bind_volumes(gpu::Device& device, const FrameScene& scene) {
     const VolumeList& list = scene.volumes;
     gpu::VertexArray& vertices = list.meshes->vertices();
     glVertexArrayVertexBuffer(
-        vertices.id(),
-        kVolumeInstanceStream,
-        list.instances.buffer,
-        static_cast<GLintptr>(list.instances.offset),
-        sizeof(layout::VolumeInstance));
+        vertices.id(), kVolumeInstanceStream, list.instances.buffer,
+        static_cast<GLintptr>(list.instances.offset), sizeof(layout::VolumeInstance));
     glVertexArrayBindingDivisor(vertices.id(), kVolumeInstanceStream, 1);
     bind_view(device, scene);
     device.bind_vertex_array(vertices);
@@ -51,18 +48,14 @@ void bind_volumes(gpu::Device& device, const FrameScene& scene) {
 /// Draws the light's volumes; `state_of` gives the state of each run.
 template <typename StateOf>
 void draw_volumes(
-    gpu::Device& device,
-    const VolumeList& list,
-    const VolumeLight& light,
-    const gpu::Program* const* programs,
-    StateOf&& state_of) {
+    gpu::Device& device, const VolumeList& list, const VolumeLight& light,
+    const gpu::Program* const* programs, StateOf&& state_of) {
     device.bind_uniforms(kVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
     for (std::uint32_t i = 0; i < light.run_count; ++i) {
         const VolumeRun& run = list.runs[light.first_run + i];
         device.use(gpu::Pipeline{programs[run.prisms ? 1 : 0], state_of(run)});
         device.draw_indexed_indirect(
-            GL_TRIANGLES,
-            GL_UNSIGNED_INT,
+            GL_TRIANGLES, GL_UNSIGNED_INT,
             list.commands.offset + run.first_command * sizeof(DrawCommand),
             static_cast<int>(run.command_count));
     }
@@ -80,9 +73,7 @@ void clear_bounds(gpu::Device& device) {
 }
 
 void count_light(
-    gpu::Device& device,
-    const FrameScene& scene,
-    const ShadowVolumePass& pass,
+    gpu::Device& device, const FrameScene& scene, const ShadowVolumePass& pass,
     const VolumeLight& light) {
     bind_volumes(device, scene);
     draw_volumes(device, scene.volumes, light, pass.volumes, [&](const VolumeRun& run) {
@@ -98,10 +89,7 @@ void count_light(
 
 /// `lit` where the stencil passes `face`, whose operations set it back.
 void write_mask(
-    gpu::Device& device,
-    const ShadowVolumePass& pass,
-    float lit,
-    std::uint8_t reference,
+    gpu::Device& device, const ShadowVolumePass& pass, float lit, std::uint8_t reference,
     const gpu::StencilFace& face) {
     gpu::PipelineState state = gpu::kFullscreenState;
     state.stencil = {.test = true, .reference = reference, .front = face, .back = face};
@@ -124,18 +112,12 @@ void resolve_light(gpu::Device& device, const ShadowVolumePass& pass, bool hybri
 
 /// The map's answers into the light's layer of the mask, its edges into bit 7 of the stencil.
 void add_classification(
-    FrameGraph& graph,
-    ShadowVolumePass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
-    TextureId mask,
-    int layer) {
+    FrameGraph& graph, ShadowVolumePass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
+    TextureId mask, int layer) {
     const Use reads[] = {gbuffer.surface, depth_tested(gbuffer.depth), scene.shadow_maps};
     const Use writes[] = {target_level(cleared(mask), 0, layer)};
     graph.add_pass(
-        "shadow classes",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "shadow classes", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene, gbuffer, layer](PassContext& context) {
             gpu::Device& device = context.device();
             const VolumeLight& light = scene.volumes.lights[static_cast<std::size_t>(layer)];
@@ -166,9 +148,7 @@ void add_classification(
             clear_bounds(device);
         });
     graph.add_pass(
-        "shadow edges",
-        {mask},
-        {gbuffer.depth},
+        "shadow edges", {mask}, {gbuffer.depth},
         [&pass, &scene, mask, layer](PassContext& context) {
             gpu::Device& device = context.device();
             gpu::PipelineState state = gpu::kFullscreenState;
@@ -249,9 +229,7 @@ TextureId draw_shadow_volumes(
         }
         const Use whole = lights[i].hybrid ? Use(mask) : cleared(mask);
         graph.add_pass(
-            "shadow volumes",
-            {},
-            {target_level(whole, 0, layer), gbuffer.depth},
+            "shadow volumes", {}, {target_level(whole, 0, layer), gbuffer.depth},
             [&pass, &scene, layer](PassContext& context) {
                 const VolumeLight& light = scene.volumes.lights[static_cast<std::size_t>(layer)];
                 set_bounds(context.device(), light.bounds);

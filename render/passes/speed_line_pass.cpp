@@ -6,12 +6,8 @@
 namespace limn {
 
 void draw_speed_lines(
-    FrameGraph& graph,
-    gpu::Device& device,
-    SpeedLinePass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer) {
+    FrameGraph& graph, gpu::Device& device, SpeedLinePass& pass, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer) {
     if (pass.count > 0 && pass.program == nullptr && !pass.failed) {
         const Result<const gpu::Program*> made =
             device.shaders().load({.vertex = "speed_line.vert", .fragment = "speed_line.frag"});
@@ -26,9 +22,7 @@ void draw_speed_lines(
         return;
     }
     graph.add_pass(
-        "speed lines",
-        {depth_tested(gbuffer.depth)},
-        {radiance},
+        "speed lines", {depth_tested(gbuffer.depth)}, {radiance},
         [&pass, &scene](PassContext& context) {
             gpu::Device& its_device = context.device();
             its_device.use(gpu::Pipeline{

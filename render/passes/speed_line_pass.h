@@ -26,11 +26,7 @@ struct SpeedLinePass {
 
 /// Draws over `radiance`; adds no pass without lines.
 void draw_speed_lines(
-    FrameGraph& graph,
-    gpu::Device& device,
-    SpeedLinePass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer);
+    FrameGraph& graph, gpu::Device& device, SpeedLinePass& pass, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer);
 
 }  // namespace limn

@@ -39,9 +39,7 @@ Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
         gpu::Buffer("picture measure", sizeof(nothing), gpu::BufferUse::GpuOnly, &nothing);
     const std::vector<std::uint32_t> empty(layout::kHistogramBins);
     pass.histogram = gpu::Buffer(
-        "luminance histogram",
-        empty.size() * sizeof(std::uint32_t),
-        gpu::BufferUse::GpuOnly,
+        "luminance histogram", empty.size() * sizeof(std::uint32_t), gpu::BufferUse::GpuOnly,
         empty.data());
     return pass;
 }
@@ -51,9 +49,7 @@ float eye_follows(float adaptation, float seconds) {
 }
 
 BufferId measure_picture(
-    FrameGraph& graph,
-    const StatisticsPass& pass,
-    TextureId radiance,
+    FrameGraph& graph, const StatisticsPass& pass, TextureId radiance,
     const MeasureRequest& request) {
     const TextureSpec source = graph.spec(radiance);
     const auto tiles = [](int size) {
@@ -67,9 +63,7 @@ BufferId measure_picture(
     const BufferId measure = graph.import("picture measure", pass.measure);
 
     graph.add_pass(
-        "statistics",
-        {radiance},
-        {parts, histogram},
+        "statistics", {radiance}, {parts, histogram},
         [&pass, request, radiance, parts, histogram, groups](PassContext& context) {
             context.device().use(*pass.parts[request.histogram ? 1 : 0]);
             context.bind_texture(0, radiance);
@@ -78,9 +72,7 @@ BufferId measure_picture(
             context.device().dispatch(groups.x, groups.y);
         });
     graph.add_pass(
-        "statistics, joined",
-        {parts},
-        {histogram, measure},
+        "statistics, joined", {parts}, {histogram, measure},
         [&pass, request, parts, histogram, measure, count](PassContext& context) {
             const gpu::Program& program = *pass.join[request.histogram ? 1 : 0];
             context.device().use(program);

@@ -43,9 +43,7 @@ struct MeasureRequest {
 
 /// Adds the passes to this frame.
 [[nodiscard]] BufferId measure_picture(
-    FrameGraph& graph,
-    const StatisticsPass& pass,
-    TextureId radiance,
+    FrameGraph& graph, const StatisticsPass& pass, TextureId radiance,
     const MeasureRequest& request);
 
 }  // namespace limn

@@ -23,10 +23,7 @@ Result<TemporalPass> create_temporal_pass(gpu::Device& device) {
 }
 
 TextureId resolve_temporally(
-    FrameGraph& graph,
-    TemporalPass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, TemporalPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
     TextureId radiance) {
     LIMN_CHECK(gbuffer.velocity.valid());
     const TextureSpec spec = graph.spec(radiance);
@@ -49,11 +46,10 @@ TextureId resolve_temporally(
     const TextureId resolved = graph.import("temporal", pass.history[pass.newest]);
     const TextureId moments = graph.import("temporal.moments", pass.moments[pass.newest]);
     graph.add_pass(
-        "temporal",
-        {radiance, before, moments_before, gbuffer.velocity, gbuffer.depth},
+        "temporal", {radiance, before, moments_before, gbuffer.velocity, gbuffer.depth},
         {discarded(resolved), discarded(moments)},
-        [&program = *pass.program, &scene, gbuffer, radiance, before, moments_before, any](
-            PassContext& context) {
+        [&program = *pass.program, &scene, gbuffer, radiance, before, moments_before,
+         any](PassContext& context) {
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
             bind_view(context.device(), scene);
             program.set("any_history", any ? 1 : 0);

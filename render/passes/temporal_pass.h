@@ -40,10 +40,7 @@ struct TemporalPass {
 
 /// `gbuffer` must have velocity.
 [[nodiscard]] TextureId resolve_temporally(
-    FrameGraph& graph,
-    TemporalPass& pass,
-    const FrameScene& scene,
-    const Gbuffer& gbuffer,
+    FrameGraph& graph, TemporalPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
     TextureId radiance);
 
 /// Forgets the pictures before.

@@ -26,11 +26,8 @@ Result<TextureCombinePass> create_texture_combine_pass(gpu::Device& device) {
 }
 
 int combine_textures(
-    FrameGraph& graph,
-    const TextureCombinePass& pass,
-    const World& world,
-    const MaterialPool& materials,
-    double time) {
+    FrameGraph& graph, const TextureCombinePass& pass, const World& world,
+    const MaterialPool& materials, double time) {
     int count = 0;
     world.query<const TextureCombine>().each([&](const TextureCombine& combine) {
         const gpu::Texture* water = materials.find_image(combine.water);
@@ -46,9 +43,7 @@ int combine_textures(
             wrapped(time * static_cast<double>(combine.speed.y)));
         const TextureId target = graph.import("combined texture", *texture);
         graph.add_pass(
-            "combine textures",
-            {},
-            {target_level(discarded(target), 0)},
+            "combine textures", {}, {target_level(discarded(target), 0)},
             [&pass, water, grating, texture, offset, gain = combine.gain](PassContext& context) {
                 context.device().use(gpu::Pipeline{pass.program, gpu::kFullscreenState});
                 context.device().bind_texture(0, *water, &pass.repeat);

@@ -26,10 +26,7 @@ struct TextureCombinePass {
 /// `time` that is shown [s]. Nothing without a TextureCombine; one that lacks an image, or reads
 /// its target, is left out. Returns how many there are.
 int combine_textures(
-    FrameGraph& graph,
-    const TextureCombinePass& pass,
-    const World& world,
-    const MaterialPool& materials,
-    double time);
+    FrameGraph& graph, const TextureCombinePass& pass, const World& world,
+    const MaterialPool& materials, double time);
 
 }  // namespace limn

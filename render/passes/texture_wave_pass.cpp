@@ -21,21 +21,18 @@ void draw_texture_waves(FrameGraph& graph, const TextureWavePass& pass, WaterSur
     gpu::Texture& slopes = waters.wave_tiles;
     if (!slopes || slopes.layers() < tiles) {
         slopes = gpu::Texture(
-            "wave tiles",
-            {.format = GL_RGBA32F,
-             .width = kWaveTileSize,
-             .height = kWaveTileSize,
-             .depth = tiles,
-             .levels = 0,
-             .target = GL_TEXTURE_2D_ARRAY});
+            "wave tiles", {.format = GL_RGBA32F,
+                           .width = kWaveTileSize,
+                           .height = kWaveTileSize,
+                           .depth = tiles,
+                           .levels = 0,
+                           .target = GL_TEXTURE_2D_ARRAY});
         slopes.set_wrap(GL_REPEAT);
     }
     const TextureId target = graph.import("wave tiles", slopes);
     for (int tile = 0; tile < tiles; ++tile) {
         graph.add_pass(
-            "texture waves",
-            {},
-            {target_level(discarded(target), 0, tile)},
+            "texture waves", {}, {target_level(discarded(target), 0, tile)},
             [&pass, &waters, tile](PassContext& context) {
                 const std::vector<std::size_t>& ends = waters.list.details.ends;
                 const auto i = static_cast<std::size_t>(tile);

@@ -34,9 +34,7 @@ Result<ToneMapPass> create_tone_map_pass(gpu::Device& device) {
 }
 
 TextureId tone_map(
-    FrameGraph& graph,
-    const ToneMapPass& pass,
-    const Exposure& exposure,
+    FrameGraph& graph, const ToneMapPass& pass, const Exposure& exposure,
     const ToneMapInput& input) {
     LIMN_CHECK(input.local.has_value() == (exposure.curve == ToneCurve::Local));
     const TextureSpec source = graph.spec(input.radiance);

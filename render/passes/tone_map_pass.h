@@ -31,9 +31,7 @@ struct ToneMapInput {
 [[nodiscard]] Result<ToneMapPass> create_tone_map_pass(gpu::Device& device);
 
 [[nodiscard]] TextureId tone_map(
-    FrameGraph& graph,
-    const ToneMapPass& pass,
-    const Exposure& exposure,
+    FrameGraph& graph, const ToneMapPass& pass, const Exposure& exposure,
     const ToneMapInput& input);
 
 }  // namespace limn

@@ -119,10 +119,7 @@ void bind_foam(gpu::Device& device, WaterPass& pass) {
 
 /// Draws radiance and distance of the scene.
 void draw_behind(
-    PassContext& context,
-    const WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    PassContext& context, const WaterPass& pass, const FrameScene& scene, TextureId radiance,
     TextureId depth) {
     context.device().use(gpu::Pipeline{pass.behind, gpu::kFullscreenState});
     bind_view(context.device(), scene);
@@ -138,10 +135,7 @@ struct Behind {
 };
 
 Behind copy_behind(
-    FrameGraph& graph,
-    const WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, const WaterPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer) {
     const auto create = [&](const char* name, GLenum format) {
         return graph.create(
@@ -153,8 +147,7 @@ Behind copy_behind(
     const Behind behind = {
         create("behind water", scene.radiance_format), create("distance behind water", GL_R32F)};
     graph.add_pass(
-        "behind water",
-        {radiance, gbuffer.depth},
+        "behind water", {radiance, gbuffer.depth},
         {discarded(behind.radiance), discarded(behind.distance)},
         [&pass, &scene, radiance, gbuffer](PassContext& context) {
             draw_behind(context, pass, scene, radiance, gbuffer.depth);
@@ -181,10 +174,7 @@ Result<WaterPass> create_water_pass(gpu::Device& device) {
 }
 
 void keep_reflection(
-    FrameGraph& graph,
-    WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer) {
     const int width = scene.view.width;
     const int height = scene.view.height;
@@ -196,9 +186,7 @@ void keep_reflection(
     }
     const TextureId target = graph.import("water reflection", pass.reflection);
     graph.add_pass(
-        "water reflection",
-        {radiance, gbuffer.depth},
-        {target_level(discarded(target), 0)},
+        "water reflection", {radiance, gbuffer.depth}, {target_level(discarded(target), 0)},
         [&pass, &scene, radiance, gbuffer](PassContext& context) {
             draw_behind(context, pass, scene, radiance, gbuffer.depth);
         });
@@ -208,12 +196,8 @@ void keep_reflection(
 }
 
 TextureId draw_water(
-    FrameGraph& graph,
-    WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer,
-    bool attributes) {
+    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
+    const Gbuffer& gbuffer, bool attributes) {
     if (pass.surfaces.list.empty()) {
         return radiance;
     }
@@ -228,9 +212,7 @@ TextureId draw_water(
         writes.emplace_back(gbuffer.surface);
     }
     graph.add_pass(
-        "water",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "water", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &scene, behind, velocity, attributes](PassContext& context) {
             const Variant variant = variant_of(scene, pass.surfaces, velocity, attributes);
             const gpu::Program* program = pass.surface.get(0, variant.key, variant.defines);
@@ -259,11 +241,7 @@ TextureId draw_water(
             }
             device.bind_vertex_array(pass.grid);
             device.draw_indexed(
-                GL_TRIANGLES,
-                kIndices,
-                GL_UNSIGNED_SHORT,
-                0,
-                0,
+                GL_TRIANGLES, kIndices, GL_UNSIGNED_SHORT, 0, 0,
                 static_cast<int>(pass.surfaces.list.patches.size()));
         });
     return radiance;

@@ -38,20 +38,13 @@ struct WaterPass {
 
 /// Keeps a picture of make_reflected_view() for the water of the next one.
 void keep_reflection(
-    FrameGraph& graph,
-    WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
+    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
     const Gbuffer& gbuffer);
 
 /// Radiance with the water; the same where there is none. The G-buffer's depth and velocity become
 /// those of the water; with `attributes` its surface, too.
 [[nodiscard]] TextureId draw_water(
-    FrameGraph& graph,
-    WaterPass& pass,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer,
-    bool attributes);
+    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
+    const Gbuffer& gbuffer, bool attributes);
 
 }  // namespace limn

@@ -15,12 +15,8 @@ Result<WaterVeilPass> create_water_veil_pass(gpu::Device& device) {
 }
 
 TextureId draw_water_veil(
-    FrameGraph& graph,
-    WaterVeilPass& pass,
-    const WaterSurfaces& waters,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer) {
+    FrameGraph& graph, WaterVeilPass& pass, const WaterSurfaces& waters, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer) {
     const std::optional<WaterAroundView>& around = waters.list.around;
     if (!around) {
         return radiance;
@@ -33,9 +29,7 @@ TextureId draw_water_veil(
     const std::vector<Use> reads = lighting_reads(scene, {radiance, gbuffer.depth});
     const Use writes[] = {cleared(veiled)};
     graph.add_pass(
-        "water veil",
-        std::span<const Use>(reads),
-        std::span<const Use>(writes),
+        "water veil", std::span<const Use>(reads), std::span<const Use>(writes),
         [&pass, &waters, &scene, around = *around, radiance, gbuffer](PassContext& context) {
             std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
             const bool ocean = !waters.seas.empty();

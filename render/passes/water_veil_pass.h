@@ -26,11 +26,7 @@ struct WaterVeilPass {
 
 /// Radiance behind the veil; the same where the camera is in no water.
 [[nodiscard]] TextureId draw_water_veil(
-    FrameGraph& graph,
-    WaterVeilPass& pass,
-    const WaterSurfaces& waters,
-    const FrameScene& scene,
-    TextureId radiance,
-    const Gbuffer& gbuffer);
+    FrameGraph& graph, WaterVeilPass& pass, const WaterSurfaces& waters, const FrameScene& scene,
+    TextureId radiance, const Gbuffer& gbuffer);
 
 }  // namespace limn

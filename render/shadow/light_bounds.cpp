@@ -70,8 +70,7 @@ LightBounds light_bounds(const RenderView& view, const Vec3& center, float radiu
     const Affine& camera = view.world_from_camera;
     const Vec3 offset = center - Vec3(camera.row[0].w, camera.row[1].w, camera.row[2].w);
     const Vec3 c = {
-        glm::dot(offset, axis(camera, 0)),
-        glm::dot(offset, axis(camera, 1)),
+        glm::dot(offset, axis(camera, 0)), glm::dot(offset, axis(camera, 1)),
         glm::dot(offset, axis(camera, 2))};
     const float nearest = -c.z - radius;
     const float farthest = -c.z + radius;

@@ -55,13 +55,8 @@ dvec4 plane(const dvec3& axis, double offset) {
 /// Clip space of four linear functions: those of the picture's sides are centered and scaled, so
 /// that its share of q is -1 .. 1.
 dmat4 clip_from_rows(
-    const dvec4& s,
-    const Range& range_s,
-    const dvec4& t,
-    const Range& range_t,
-    const dvec4& depth,
-    const dvec4& q,
-    double widening) {
+    const dvec4& s, const Range& range_s, const dvec4& t, const Range& range_t, const dvec4& depth,
+    const dvec4& q, double widening) {
     dmat4 rows;
     rows[0] = (s - range_s.middle() * q) / (range_s.half() * widening);
     rows[1] = (t - range_t.middle() * q) / (range_t.half() * widening);
@@ -133,8 +128,7 @@ std::array<dvec3, 8> slice_corners(const RenderView& camera, const ViewSlice& sl
         const double y = (i & 2) != 0 ? slice.high.y : slice.low.y;
         const dvec4 in_view = {x * along, y * along, -along, 1};
         corners[i] = {
-            glm::dot(dvec4(row[0]), in_view),
-            glm::dot(dvec4(row[1]), in_view),
+            glm::dot(dvec4(row[0]), in_view), glm::dot(dvec4(row[1]), in_view),
             glm::dot(dvec4(row[2]), in_view)};
     }
     return corners;
@@ -159,9 +153,7 @@ dmat4 virtual_camera(const RenderView& camera, double near, double far, double s
 }
 
 std::optional<dmat4> fit_light_view(
-    const dmat4& distorted_from_world,
-    const dvec4& light,
-    std::span<const dvec3> receivers,
+    const dmat4& distorted_from_world, const dvec4& light, std::span<const dvec3> receivers,
     double widening) {
     std::vector<dvec3> points;
     for (const dvec3& p : receivers) {
@@ -180,10 +172,7 @@ std::optional<dmat4> fit_light_view(
 }
 
 std::optional<ShadowView> make_perspective_view(
-    const RenderView& camera,
-    const Vec4& light,
-    const ViewSlice& slice,
-    int resolution,
+    const RenderView& camera, const Vec4& light, const ViewSlice& slice, int resolution,
     int guard) {
     if (!(slice.near > 0 && slice.near < slice.far)) {
         return std::nullopt;

@@ -53,10 +53,8 @@ virtual_camera(const RenderView& camera, double near, double far, double shift);
 ///   light     homogeneous: a place and 1, or the direction toward it and 0
 ///   widening  of the view beyond the receivers
 [[nodiscard]] std::optional<glm::dmat4> fit_light_view(
-    const glm::dmat4& distorted_from_world,
-    const glm::dvec4& light,
-    std::span<const glm::dvec3> receivers,
-    double widening);
+    const glm::dmat4& distorted_from_world, const glm::dvec4& light,
+    std::span<const glm::dvec3> receivers, double widening);
 
 /// With the least distortion that the light allows; none: another kind of map must serve it.
 [[nodiscard]] std::optional<ShadowView> make_perspective_view(

@@ -24,35 +24,25 @@ CasterVolume make_caster_volume(const ShadowView& view) {
 }
 
 void sign_casters(
-    const World& world,
-    float alpha,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
-    const DeformedList& shapes,
-    std::span<const CasterVolume> volumes,
+    const World& world, float alpha, const MeshPool& meshes, const MaterialPool& materials,
+    const DeformedList& shapes, std::span<const CasterVolume> volumes,
     std::span<std::uint64_t> signatures) {
     const auto query = world.query<
-        const MeshInstance,
-        const WorldTransform,
-        Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>,
-        Optional<const Deformed>,
-        Without<NoShadow>>();
+        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
+        Optional<const Inflate>, Optional<const Deformed>, Without<NoShadow>>();
     const std::size_t count = volumes.size();
     std::vector<std::uint64_t> sums(query.chunk_count() * count);
 
-    query.par_chunks([&](ChunkView chunk,
-                         std::span<const MeshInstance> surfaces,
+    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate,
-                         std::span<const Deformed> deformed) {
+                         std::span<const Inflate> inflate, std::span<const Deformed> deformed) {
         BoxBlock boxes;
         std::uint8_t mirrored[kCullBlock];
         std::uint8_t visible[kCullBlock];
         std::uint64_t hashes[kCullBlock];
-        const InstanceRows rows = {
-            surfaces, now, before, inflate, deformed, chunk.entities(), shapes};
+        const InstanceRows rows = {surfaces,         now,   before, inflate, deformed,
+                                   chunk.entities(), shapes};
         const auto rows_here = static_cast<int>(chunk.size());
         fill_boxes(rows, alpha, meshes.meshes(), boxes, mirrored);
         for (std::size_t i = 0; i < chunk.size(); ++i) {

@@ -19,12 +19,8 @@ class World;
 /// A number for each volume that changes when a caster comes, goes, moves or changes its mesh,
 /// shape, material or Inflate: equal numbers, equal map. The order of the casters does not count.
 void sign_casters(
-    const World& world,
-    float alpha,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
-    const DeformedList& shapes,
-    std::span<const CasterVolume> volumes,
+    const World& world, float alpha, const MeshPool& meshes, const MaterialPool& materials,
+    const DeformedList& shapes, std::span<const CasterVolume> volumes,
     std::span<std::uint64_t> signatures);
 
 }  // namespace limn

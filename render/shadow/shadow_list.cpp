@@ -156,12 +156,7 @@ void ShadowCollector::want_views(
         } else if (light.kind == LightKind::Spot && light.outer_angle <= kWidestSpotView) {
             wanted.kind = layout::kShadowView;
             views_.push_back(make_spot_view(
-                light.position,
-                light.axis,
-                light.outer_angle,
-                near_of(settings),
-                resolution,
-                guard,
+                light.position, light.axis, light.outer_angle, near_of(settings), resolution, guard,
                 light.right));
         } else {
             wanted.kind = layout::kShadowCube;
@@ -283,17 +278,13 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
             wanted.water->record = static_cast<int>(list.records.size());
         } else {
             lights.records[wanted.light->record].shadow = {
-                static_cast<float>(list.records.size()),
-                wanted.kind,
-                static_cast<float>(wanted.count),
-                0};
+                static_cast<float>(list.records.size()), wanted.kind,
+                static_cast<float>(wanted.count), 0};
         }
         for (std::size_t i = 0; i < wanted.count; ++i) {
             list.records.push_back(make_shadow_record(
-                views_[wanted.first_view + i],
-                kept(wanted, i).place,
-                static_cast<float>(wanted.settings.filter),
-                wanted.settings.source_size,
+                views_[wanted.first_view + i], kept(wanted, i).place,
+                static_cast<float>(wanted.settings.filter), wanted.settings.source_size,
                 wanted.settings.bias));
             list.records.back().splits = wanted.splits;
         }
@@ -301,15 +292,9 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
 }
 
 void ShadowCollector::collect(
-    const World& world,
-    const RenderView& view,
-    const MeshPool& meshes,
-    const MaterialPool& materials,
-    DeformedList& shapes,
-    std::uint64_t assets,
-    gpu::RingBuffer& ring,
-    LightList& lights,
-    ShadowList& list) {
+    const World& world, const RenderView& view, const MeshPool& meshes,
+    const MaterialPool& materials, DeformedList& shapes, std::uint64_t assets,
+    gpu::RingBuffer& ring, LightList& lights, ShadowList& list) {
     list.records.clear();
     list.due.clear();
     list.unserved = 0;
@@ -322,8 +307,7 @@ void ShadowCollector::collect(
         log_warn(
             "shadow: {} lights cast no shadows: the atlas of {} texels is full; lower their "
             "resolution",
-            list.unserved,
-            atlas_.size());
+            list.unserved, atlas_.size());
         reported_ = true;
     }
     if (list.records.empty()) {

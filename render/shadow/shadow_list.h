@@ -53,15 +53,9 @@ class ShadowCollector {
   public:
     /// Sets LightRecord::shadow and LightList::shadows of the lights that are served.
     void collect(
-        const World& world,
-        const RenderView& view,
-        const MeshPool& meshes,
-        const MaterialPool& materials,
-        DeformedList& shapes,
-        std::uint64_t assets,
-        gpu::RingBuffer& ring,
-        LightList& lights,
-        ShadowList& list);
+        const World& world, const RenderView& view, const MeshPool& meshes,
+        const MaterialPool& materials, DeformedList& shapes, std::uint64_t assets,
+        gpu::RingBuffer& ring, LightList& lights, ShadowList& list);
 
   private:
     /// A view that has a place, by light and number.

@@ -31,13 +31,11 @@ class Welder {
         const DVec3 scaled = DVec3(p - origin_) / (2.0 * static_cast<double>(tolerance_));
         const DVec3 cell = glm::floor(scaled);
         const DVec3 side = {
-            scaled.x - cell.x < 0.5 ? -1.0 : 1.0,
-            scaled.y - cell.y < 0.5 ? -1.0 : 1.0,
+            scaled.x - cell.x < 0.5 ? -1.0 : 1.0, scaled.y - cell.y < 0.5 ? -1.0 : 1.0,
             scaled.z - cell.z < 0.5 ? -1.0 : 1.0};
         for (int i = 0; i < 8; ++i) {
             const DVec3 at = {
-                cell.x + ((i & 1) != 0 ? side.x : 0),
-                cell.y + ((i & 2) != 0 ? side.y : 0),
+                cell.x + ((i & 1) != 0 ? side.x : 0), cell.y + ((i & 2) != 0 ? side.y : 0),
                 cell.z + ((i & 4) != 0 ? side.z : 0)};
             const auto [begin, end] = cells_.equal_range(key_of(at));
             for (auto found = begin; found != end; ++found) {
@@ -140,8 +138,7 @@ void find_edges(ShadowMesh& mesh) {
             const std::uint64_t from = mesh.triangles[t][k];
             const std::uint64_t to = mesh.triangles[t][(k + 1) % 3];
             sides.push_back(
-                {std::min(from, to) << 32 | std::max(from, to),
-                 static_cast<std::uint32_t>(t),
+                {std::min(from, to) << 32 | std::max(from, to), static_cast<std::uint32_t>(t),
                  from < to});
         }
     }
@@ -163,9 +160,7 @@ void find_edges(ShadowMesh& mesh) {
             const Side& down = sides[i].rising ? sides[i + 1] : sides[i];
             mesh.edges.push_back(
                 {static_cast<std::uint32_t>(sides[i].edge >> 32),
-                 static_cast<std::uint32_t>(sides[i].edge),
-                 up.triangle,
-                 down.triangle});
+                 static_cast<std::uint32_t>(sides[i].edge), up.triangle, down.triangle});
         }
         i = end;
     }
@@ -196,14 +191,10 @@ std::string describe(const ManifoldReport& report) {
     std::string text;
     append_count(text, report.open_edges, "open edge", "open edges");
     append_count(
-        text,
-        report.crowded_edges,
-        "edge of more than two triangles",
+        text, report.crowded_edges, "edge of more than two triangles",
         "edges of more than two triangles");
     append_count(
-        text,
-        report.inconsistent_edges,
-        "edge between triangles that face opposite ways",
+        text, report.inconsistent_edges, "edge between triangles that face opposite ways",
         "edges between triangles that face opposite ways");
     append_count(text, report.duplicated, "triangle twice", "triangles twice");
     if (text.empty()) {
@@ -263,8 +254,8 @@ VolumeGeometry make_edge_volume(const ShadowMesh& mesh) {
 VolumeGeometry make_triangle_volume(const ShadowMesh& mesh) {
     // Corners 0 1 2 of the near cap and 3 4 5 beneath them.
     constexpr std::array<std::uint32_t, 6> kCaps = {0, 1, 2, 5, 4, 3};
-    constexpr std::array<std::uint32_t, 18> kSides = {
-        0, 3, 4, 0, 4, 1, 1, 4, 5, 1, 5, 2, 2, 5, 3, 2, 3, 0};
+    constexpr std::array<std::uint32_t, 18> kSides = {0, 3, 4, 0, 4, 1, 1, 4, 5,
+                                                      1, 5, 2, 2, 5, 3, 2, 3, 0};
     VolumeGeometry volume;
     const std::size_t sides = is_closed(mesh.report) ? 1 : 2;
     volume.vertices.reserve(6 * sides * mesh.triangles.size());

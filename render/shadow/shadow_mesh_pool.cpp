@@ -69,9 +69,7 @@ void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
     if (vertices > vertex_capacity_) {
         const std::size_t capacity = std::max({vertices, 2 * vertex_capacity_, kFirstVertices});
         corners_ = gpu::grown_buffer(
-            "volume corners",
-            corners_,
-            vertex_count_ * sizeof(VolumeVertex),
+            "volume corners", corners_, vertex_count_ * sizeof(VolumeVertex),
             capacity * sizeof(VolumeVertex));
         vertex_capacity_ = capacity;
         vertices_.set_vertices(kVolumeCornerStream, corners_, 0, sizeof(VolumeVertex));
@@ -88,8 +86,7 @@ VolumeRange ShadowMeshPool::upload(const VolumeGeometry& geometry) {
     reserve(vertex_count_ + geometry.vertices.size(), index_count_ + geometry.indices.size());
     const VolumeRange range = {
         static_cast<std::uint32_t>(index_count_),
-        static_cast<std::uint32_t>(geometry.indices.size()),
-        geometry.cap_indices,
+        static_cast<std::uint32_t>(geometry.indices.size()), geometry.cap_indices,
         static_cast<std::int32_t>(vertex_count_)};
     if (!geometry.indices.empty()) {
         corners_.write(

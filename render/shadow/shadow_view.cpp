@@ -52,21 +52,12 @@ ShadowView perspective_view(
 }  // namespace
 
 ShadowView make_spot_view(
-    const Vec3& eye,
-    const Vec3& axis,
-    float half_angle,
-    float near,
-    int resolution,
-    int guard,
+    const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard,
     const Vec3& right) {
     const float tangent = std::tan(std::min(half_angle, kWidestSpotView));
     return perspective_view(
-        eye,
-        axes_along(axis, right),
-        std::max(tangent, 1e-3f) * widening(resolution, guard),
-        near,
-        resolution,
-        guard);
+        eye, axes_along(axis, right), std::max(tangent, 1e-3f) * widening(resolution, guard), near,
+        resolution, guard);
 }
 
 ShadowView make_cube_view(const Vec3& eye, int face, float near, int resolution, int guard) {
@@ -92,11 +83,7 @@ std::array<float, kMaxCascades> split_cascades(float near, float far, int count)
 }
 
 ShadowView make_cascade_view(
-    const RenderView& camera,
-    const Vec3& to_sun,
-    float slice_near,
-    float slice_far,
-    int resolution,
+    const RenderView& camera, const Vec3& to_sun, float slice_near, float slice_far, int resolution,
     int guard) {
     // The smallest ball about the slice of the pyramid: its middle lies on the axis.
     const Vec2 tangent = widest_tangent(camera);
@@ -146,10 +133,7 @@ ShadowView make_cascade_view(
 }
 
 Frustum shading_planes(
-    const RenderView& camera,
-    const Vec3& to_sun,
-    double slice_near,
-    double slice_far,
+    const RenderView& camera, const Vec3& to_sun, double slice_near, double slice_far,
     double margin) {
     const auto& pose = camera.world_from_camera.row;
     const auto column = [&](int i) { return glm::dvec3(pose[0][i], pose[1][i], pose[2][i]); };
@@ -262,9 +246,7 @@ layout::ShadowViewRecord make_shadow_record(
     record.plane_r = Vec4(world_from_shadow[2]);
     record.rect = {place.x, place.y, place.x + place.size, place.y + place.size};
     record.settings = {
-        filter,
-        bias,
-        view.penumbra * scale * source_size,
+        filter, bias, view.penumbra * scale * source_size,
         static_cast<float>(std::max(view.guard - 2, 0))};
     record.splits = Vec4(INFINITY);
     return record;

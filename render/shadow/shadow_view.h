@@ -37,12 +37,7 @@ inline constexpr float kWidestSpotView = radians(75.0f);
 /// run along `right` if that is across the axis: where light grazes a wall, edges beside it have no
 /// steps.
 [[nodiscard]] ShadowView make_spot_view(
-    const Vec3& eye,
-    const Vec3& axis,
-    float half_angle,
-    float near,
-    int resolution,
-    int guard,
+    const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard,
     const Vec3& right = {0, 0, 0});
 
 /// Face 0 .. 5 looks along +x, -x, +y, -y, +z, -z.
@@ -59,21 +54,14 @@ inline constexpr int kMaxCascades = 4;
 /// around that slice, moves in whole texels and keeps its size, so that the texels stay where they
 /// are on the ground when the camera moves or turns.
 [[nodiscard]] ShadowView make_cascade_view(
-    const RenderView& camera,
-    const Vec3& to_sun,
-    float slice_near,
-    float slice_far,
-    int resolution,
+    const RenderView& camera, const Vec3& to_sun, float slice_near, float slice_far, int resolution,
     int guard);
 
 /// Planes around what may shade the slice of the camera's view between two distances, `margin` [m]
 /// farther out: the slice, drawn out toward the sun, is bounded by planes through those of its
 /// edges that are its outline as the sun sees it.
 [[nodiscard]] Frustum shading_planes(
-    const RenderView& camera,
-    const Vec3& to_sun,
-    double slice_near,
-    double slice_far,
+    const RenderView& camera, const Vec3& to_sun, double slice_near, double slice_far,
     double margin);
 
 /// Area [texels] of the map under a pixel of the camera's picture that shows a surface with

@@ -125,12 +125,8 @@ bool shade_is_outside(const Bounds& box, const Vec4& light, const Frustum& frust
 }
 
 void VolumeCollector::collect(
-    const World& world,
-    const RenderView& view,
-    const DeformedList& shapes,
-    gpu::RingBuffer& ring,
-    LightList& lights,
-    VolumeList& list) {
+    const World& world, const RenderView& view, const DeformedList& shapes, gpu::RingBuffer& ring,
+    LightList& lights, VolumeList& list) {
     list = {};
     list.meshes = &meshes_;
     casters_.clear();
@@ -159,9 +155,8 @@ void VolumeCollector::collect(
         if (candidate.served && needed
             && list.lights.size() == static_cast<std::size_t>(kMaxVolumeLights)) {
             refuse(
-                candidate,
-                "shadow volumes: more than " + std::to_string(kMaxVolumeLights)
-                    + " lights have them; the others get maps");
+                candidate, "shadow volumes: more than " + std::to_string(kMaxVolumeLights)
+                               + " lights have them; the others get maps");
         }
         if (!candidate.served) {
             light.settings.method = ShadowMethod::Map;
@@ -240,16 +235,10 @@ void VolumeCollector::find_casters(
     const Frustum frustum = make_frustum(view.clip_from_world);
     world
         .query<
-            const MeshInstance,
-            const WorldTransform,
-            Optional<const PreviousWorldTransform>,
-            Optional<const Inflate>,
-            Without<NoShadow>>()
-        .each([&](Entity entity,
-                  const MeshInstance& surface,
-                  const WorldTransform& now,
-                  const PreviousWorldTransform* before,
-                  const Inflate* inflate) {
+            const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
+            Optional<const Inflate>, Without<NoShadow>>()
+        .each([&](Entity entity, const MeshInstance& surface, const WorldTransform& now,
+                  const PreviousWorldTransform* before, const Inflate* inflate) {
             if (surface.mesh.index >= assets.meshes.size()
                 || assets.meshes[surface.mesh.index].indices.size() < 3) {
                 return;
@@ -277,10 +266,9 @@ void VolumeCollector::find_casters(
                 }
                 if (inflate != nullptr || deformed) {
                     refuse(
-                        candidate,
-                        "shadow volumes: mesh " + mesh.name
-                            + (deformed ? " changes its shape" : " is inflated")
-                            + "; lights that reach it get maps");
+                        candidate, "shadow volumes: mesh " + mesh.name
+                                       + (deformed ? " changes its shape" : " is inflated")
+                                       + "; lights that reach it get maps");
                 } else {
                     add_caster(candidate, view, frustum, assets, surface, a, box);
                 }
@@ -289,13 +277,8 @@ void VolumeCollector::find_casters(
 }
 
 void VolumeCollector::add_caster(
-    Candidate& candidate,
-    const RenderView& view,
-    const Frustum& frustum,
-    const Assets& assets,
-    const MeshInstance& surface,
-    const Affine& world_from_mesh,
-    const Bounds& box) {
+    Candidate& candidate, const RenderView& view, const Frustum& frustum, const Assets& assets,
+    const MeshInstance& surface, const Affine& world_from_mesh, const Bounds& box) {
     const ShadowVolume& settings = candidate.settings;
     const ManifoldReport& report = meshes_.report(assets, surface.mesh);
     if (report.triangles == 0) {
@@ -305,17 +288,17 @@ void VolumeCollector::add_caster(
     if (settings.kind == VolumeKind::PerEdge) {
         if (!closed) {
             refuse(
-                candidate,
-                "shadow volumes: mesh " + assets.meshes[surface.mesh.index].name
-                    + " is not closed (" + describe(report) + "); lights that reach it get maps");
+                candidate, "shadow volumes: mesh " + assets.meshes[surface.mesh.index].name
+                               + " is not closed (" + describe(report)
+                               + "); lights that reach it get maps");
             return;
         }
         if (surface.material.index < assets.materials.size()
             && assets.materials[surface.material.index].alpha_mode == AlphaMode::Mask) {
             refuse(
-                candidate,
-                "shadow volumes: material " + assets.materials[surface.material.index].name
-                    + " has holes, which cannot cast; lights that reach it get maps");
+                candidate, "shadow volumes: material "
+                               + assets.materials[surface.material.index].name
+                               + " has holes, which cannot cast; lights that reach it get maps");
             return;
         }
     }
@@ -379,20 +362,14 @@ void VolumeCollector::write_draws(const Assets& assets, gpu::RingBuffer& ring, V
         }
         if (!same_light || casters_[begin - 1].state != first.state) {
             list.runs.push_back(
-                {prism,
-                 (first.state & kZFail) != 0,
-                 (first.state & kMirrored) != 0,
-                 static_cast<std::uint32_t>(commands_.size()),
-                 0});
+                {prism, (first.state & kZFail) != 0, (first.state & kMirrored) != 0,
+                 static_cast<std::uint32_t>(commands_.size()), 0});
             ++light.run_count;
         }
         ++list.runs.back().command_count;
         commands_.push_back(
-            {range.index_count - skipped,
-             static_cast<std::uint32_t>(end - begin),
-             range.first_index + skipped,
-             range.base_vertex,
-             static_cast<std::uint32_t>(begin)});
+            {range.index_count - skipped, static_cast<std::uint32_t>(end - begin),
+             range.first_index + skipped, range.base_vertex, static_cast<std::uint32_t>(begin)});
         list.triangles +=
             static_cast<std::int64_t>((range.index_count - skipped) / 3) * (end - begin);
         begin = end;

@@ -77,12 +77,8 @@ class VolumeCollector {
     /// and removes them from LightList::shadowed; makes those it cannot serve, and the maps of
     /// hybrid ones, lights with maps.
     void collect(
-        const World& world,
-        const RenderView& view,
-        const DeformedList& shapes,
-        gpu::RingBuffer& ring,
-        LightList& lights,
-        VolumeList& list);
+        const World& world, const RenderView& view, const DeformedList& shapes,
+        gpu::RingBuffer& ring, LightList& lights, VolumeList& list);
     /// After the maps: hybrid lights read the mask, too.
     static void take_over_hybrids(LightList& lights, VolumeList& list);
     /// Other assets: meshes are examined anew.
@@ -107,13 +103,8 @@ class VolumeCollector {
     void find_candidates(const World& world, const LightList& lights);
     void find_casters(const World& world, const RenderView& view, const DeformedList& shapes);
     void add_caster(
-        Candidate& candidate,
-        const RenderView& view,
-        const Frustum& frustum,
-        const Assets& assets,
-        const MeshInstance& surface,
-        const Affine& world_from_mesh,
-        const Bounds& box);
+        Candidate& candidate, const RenderView& view, const Frustum& frustum, const Assets& assets,
+        const MeshInstance& surface, const Affine& world_from_mesh, const Bounds& box);
     void refuse(Candidate& candidate, const std::string& why);
     void write_draws(const Assets& assets, gpu::RingBuffer& ring, VolumeList& list);
 

@@ -9,10 +9,7 @@
 namespace limn {
 
 DeformSource find_deform_source(
-    const World& world,
-    const Assets& assets,
-    MeshId mesh,
-    std::uint32_t joint_count,
+    const World& world, const Assets& assets, MeshId mesh, std::uint32_t joint_count,
     const Deformed& settings) {
     const std::string& name = assets.meshes[mesh.index].name;
     const bool alive = !settings.character.is_null() && world.alive(settings.character);
@@ -21,8 +18,7 @@ DeformSource find_deform_source(
     source.morphs = alive ? world.find<MorphWeights>(settings.character) : nullptr;
     if (source.pose == nullptr && source.morphs == nullptr) {
         source.fault = fmt::format(
-            "deformed mesh {}: its character {}",
-            name,
+            "deformed mesh {}: its character {}", name,
             alive ? "has neither Pose nor MorphWeights" : "is gone");
         return source;
     }
@@ -40,21 +36,14 @@ DeformSource find_deform_source(
         skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
     if (beyond != skin.joints.end()) {
         source.fault = fmt::format(
-            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}",
-            name,
-            skin.name,
-            *beyond,
-            joints);
+            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}", name,
+            skin.name, *beyond, joints);
         return source;
     }
     if (skin.joint_from_mesh.size() != skin.joints.size() || skin.joints.size() < joint_count) {
         source.fault = fmt::format(
-            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices",
-            name,
-            joint_count,
-            skin.name,
-            skin.joints.size(),
-            skin.joint_from_mesh.size());
+            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices", name,
+            joint_count, skin.name, skin.joints.size(), skin.joint_from_mesh.size());
         return source;
     }
     source.skin = joint_count > 0 ? &skin : nullptr;

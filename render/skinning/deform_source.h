@@ -20,10 +20,7 @@ struct DeformSource {
 /// `joint_count`: how many joints the mesh's weights name. The mesh itself must be whole
 /// (check_deformable).
 [[nodiscard]] DeformSource find_deform_source(
-    const World& world,
-    const Assets& assets,
-    MeshId mesh,
-    std::uint32_t joint_count,
+    const World& world, const Assets& assets, MeshId mesh, std::uint32_t joint_count,
     const Deformed& settings);
 
 }  // namespace limn

@@ -132,10 +132,7 @@ void DeformedList::reckon(Entry& entry) const {
     entry.reckoned = entry.shape;
     make_palette(entry.skin, entry.pose, settings.skinning, alpha_, entry.palette);
     make_morph_weights(
-        entry.morphs,
-        settings.first_morph,
-        entry.rest->bounds.morphs.size(),
-        alpha_,
+        entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), alpha_,
         entry.weights);
     entry.bounds =
         posed_bounds(entry.rest->bounds, entry.palette, settings.skinning, entry.weights);

@@ -11,18 +11,11 @@ namespace {
 constexpr std::uint32_t kFirstVertices = 1 << 12;
 
 void copy_vertices(
-    const gpu::Buffer& from,
-    const gpu::Buffer& to,
-    std::uint32_t from_first,
-    std::uint32_t to_first,
-    std::uint32_t count,
-    std::size_t stride) {
+    const gpu::Buffer& from, const gpu::Buffer& to, std::uint32_t from_first,
+    std::uint32_t to_first, std::uint32_t count, std::size_t stride) {
     glCopyNamedBufferSubData(
-        from.id(),
-        to.id(),
-        static_cast<GLintptr>(from_first * stride),
-        static_cast<GLintptr>(to_first * stride),
-        static_cast<GLsizeiptr>(count * stride));
+        from.id(), to.id(), static_cast<GLintptr>(from_first * stride),
+        static_cast<GLintptr>(to_first * stride), static_cast<GLsizeiptr>(count * stride));
 }
 
 }  // namespace

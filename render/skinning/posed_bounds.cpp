@@ -21,8 +21,7 @@ float widest_part(const Affine& a, const Affine& b, const Bounds& box) {
     float widest = 0;
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner = {
-            (i & 1) != 0 ? box.max.x : box.min.x,
-            (i & 2) != 0 ? box.max.y : box.min.y,
+            (i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
             (i & 4) != 0 ? box.max.z : box.min.z};
         widest =
             std::max(widest, glm::distance(transform_point(a, corner), transform_point(b, corner)));
@@ -80,9 +79,7 @@ SkinBounds make_skin_bounds(const MeshData& mesh) {
 }
 
 Bounds posed_bounds(
-    const SkinBounds& bounds,
-    std::span<const Affine> palette,
-    Skinning skinning,
+    const SkinBounds& bounds, std::span<const Affine> palette, Skinning skinning,
     std::span<const float> weights) {
     const Bounds morphs = sum_of_morphs(bounds.morphs, weights);
     if (palette.empty()) {
@@ -127,11 +124,8 @@ std::string check_deformable(const MeshData& mesh) {
                            && skin.joints.size() == skin.weights.size();
         if (!whole) {
             return fmt::format(
-                "has {} ranges, {} joints and {} weights for {} vertices",
-                skin.first.size(),
-                skin.joints.size(),
-                skin.weights.size(),
-                vertices);
+                "has {} ranges, {} joints and {} weights for {} vertices", skin.first.size(),
+                skin.joints.size(), skin.weights.size(), vertices);
         }
         for (const float weight : skin.weights) {
             if (!std::isfinite(weight)) {
@@ -150,9 +144,7 @@ std::string check_deformable(const MeshData& mesh) {
         for (const std::uint32_t vertex : target.vertices) {
             if (vertex >= vertices) {
                 return fmt::format(
-                    "has a morph target {} of vertex {}, there are {}",
-                    target.name,
-                    vertex,
+                    "has a morph target {} of vertex {}, there are {}", target.name, vertex,
                     vertices);
             }
         }

@@ -42,9 +42,7 @@ struct SkinBounds {
 /// Matrices of dual quaternions have no scale. Missing weights are 0. Not finite where a joint that
 /// moves a vertex is not.
 [[nodiscard]] Bounds posed_bounds(
-    const SkinBounds& bounds,
-    std::span<const Affine> palette,
-    Skinning skinning,
+    const SkinBounds& bounds, std::span<const Affine> palette, Skinning skinning,
     std::span<const float> weights);
 
 /// What keeps the mesh from being deformed, as part of a sentence; empty if nothing does.

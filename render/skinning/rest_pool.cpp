@@ -58,9 +58,7 @@ influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std:
             // An odd one out shares its texel with itself and no weight.
             const bool alone = i + 1 == end;
             texels.push_back(
-                {skin.joints[i],
-                 bits(skin.weights[i]),
-                 skin.joints[alone ? i : i + 1],
+                {skin.joints[i], bits(skin.weights[i]), skin.joints[alone ? i : i + 1],
                  alone ? 0 : bits(skin.weights[i + 1])});
         }
     }

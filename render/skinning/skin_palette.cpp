@@ -23,10 +23,7 @@ Quat turn_of(const Affine& a) {
 }  // namespace
 
 void make_palette(
-    const SkinData* skin,
-    const Pose* pose,
-    Skinning skinning,
-    float alpha,
+    const SkinData* skin, const Pose* pose, Skinning skinning, float alpha,
     std::vector<Affine>& palette) {
     palette.clear();
     if (skin == nullptr || pose == nullptr) {
@@ -47,10 +44,7 @@ void make_palette(
 }
 
 void make_morph_weights(
-    const MorphWeights* morphs,
-    std::size_t first,
-    std::size_t count,
-    float alpha,
+    const MorphWeights* morphs, std::size_t first, std::size_t count, float alpha,
     std::vector<float>& weights) {
     weights.assign(count, 0.0f);
     if (morphs == nullptr) {

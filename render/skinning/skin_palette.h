@@ -13,19 +13,13 @@ namespace limn {
 /// one now, componentwise (mix_affine). For dual quaternions without scale and shear. Empty without
 /// a skin or a pose. Joints must be there.
 void make_palette(
-    const SkinData* skin,
-    const Pose* pose,
-    Skinning skinning,
-    float alpha,
+    const SkinData* skin, const Pose* pose, Skinning skinning, float alpha,
     std::vector<Affine>& palette);
 
 /// `weights` gets `count` weights from place `first` on, at the moment `alpha`; 0 where there is
 /// none, or none that is finite.
 void make_morph_weights(
-    const MorphWeights* morphs,
-    std::size_t first,
-    std::size_t count,
-    float alpha,
+    const MorphWeights* morphs, std::size_t first, std::size_t count, float alpha,
     std::vector<float>& weights);
 
 /// As deform.comp reads them: three rows a joint, or a unit dual quaternion in two.

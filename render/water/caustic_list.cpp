@@ -114,15 +114,11 @@ window_of(const layout::WaterRecord& body, const Caustics& caustics, const Vec3&
 /// The same of light that is mirrored and followed up to `height`: the rim of a rectangle lies in
 /// the middle of cells, which so hold the light that they should.
 Window mirror_window(
-    const layout::WaterRecord& body,
-    const Caustics& caustics,
-    const Vec3& camera,
-    const Vec2& slant,
-    int cells) {
+    const layout::WaterRecord& body, const Caustics& caustics, const Vec3& camera,
+    const Vec2& slant, int cells) {
     // Of endless water, what throws light to the camera's surroundings.
     Window window = window_of(
-        body,
-        caustics,
+        body, caustics,
         camera
             - frame_of(body).turned_out(Vec3(slant.x, 0, slant.y)) * 0.5f * caustics.mirror_reach,
         caustics.mirror_resolution);
@@ -187,14 +183,8 @@ constexpr int kAbove = kMostCascades;
 
 /// A map, its place and its view.
 void add_map(
-    const Source& source,
-    int part,
-    const Window& window,
-    const Vec2& slant,
-    float way,
-    bool make,
-    CausticList& list,
-    ShadowList& shadows) {
+    const Source& source, int part, const Window& window, const Vec2& slant, float way, bool make,
+    CausticList& list, ShadowList& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const bool above = part == kAbove;
     const int side = above ? source.caustics.mirror_resolution : source.caustics.resolution;
@@ -212,30 +202,21 @@ void add_map(
          .world = Vec4(Vec3(source.light.position), -1),
          .grid =
              {static_cast<float>(side / std::min(source.caustics.spacing, side)),
-              static_cast<float>(side),
-              window.rim,
+              static_cast<float>(side), window.rim,
               above ? layout::kCausticsMirrored : static_cast<float>(source.caustics.method)},
          .pool =
-             {body.shape.y > 0 ? body.shape.y : 1e6f,
-              body.shape.z > 0 ? body.shape.z : 1e6f,
-              heights.x,
-              1 / std::max(heights.y - heights.x, 1e-4f)},
+             {body.shape.y > 0 ? body.shape.y : 1e6f, body.shape.z > 0 ? body.shape.z : 1e6f,
+              heights.x, 1 / std::max(heights.y - heights.x, 1e-4f)},
          .place = {0, 0, 0, source.caustics.strength}});
     shadows.waters.push_back(
-        {source.waters.entities[source.body],
-         static_cast<std::uint64_t>(part),
+        {source.waters.entities[source.body], static_cast<std::uint64_t>(part),
          make_water_view(frame_of(body), window, slant, above ? -way : way, side)});
 }
 
 /// The light that goes down from this water.
 void add_below(
-    const Source& source,
-    const Vec3& camera,
-    int light,
-    bool make,
-    layout::SunkenRecord& sunken,
-    CausticList& list,
-    ShadowList& shadows) {
+    const Source& source, const Vec3& camera, int light, bool make, layout::SunkenRecord& sunken,
+    CausticList& list, ShadowList& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const Caustics& caustics = source.caustics;
     const Vec2 slant = flat_slant(source.to_sun, body.shape.w);
@@ -244,10 +225,8 @@ void add_below(
     const bool endless = body.shape.y <= 0 || body.shape.z <= 0;
     const int count = endless ? caustics.cascades : 1;
     sunken.maps = {
-        static_cast<float>(list.places.size()),
-        static_cast<float>(count),
-        static_cast<float>(light),
-        0.999f * depth};
+        static_cast<float>(list.places.size()), static_cast<float>(count),
+        static_cast<float>(light), 0.999f * depth};
     sunken.bent = Vec4(slant, caustics.strength, static_cast<float>(caustics.shaft_steps));
     Caustics ring = caustics;
     for (int i = 0; i < count; ++i) {
@@ -267,9 +246,7 @@ void add_above(
     list.mirrors.push_back(
         {.origin = body.origin,
          .shape =
-             {body.shape.x,
-              static_cast<float>(list.places.size()),
-              static_cast<float>(light),
+             {body.shape.x, static_cast<float>(list.places.size()), static_cast<float>(light),
               0.999f * caustics.mirror_reach},
          .bent = Vec4(slant, fresnel(source.to_sun.y, body.shape.w), 0)});
     const Window window = mirror_window(body, caustics, camera, slant, cells);
@@ -372,9 +349,7 @@ struct Wanted {
     Caustics caustics;
 };
 std::vector<Wanted> choose_waters(
-    const WaterList& waters,
-    const std::vector<std::size_t>& order,
-    const Vec3& camera,
+    const WaterList& waters, const std::vector<std::size_t>& order, const Vec3& camera,
     const Frustum& frustum) {
     std::vector<Wanted> chosen;
     std::int64_t texels = 0;
@@ -467,12 +442,8 @@ void append_grid(CausticList& list) {
 }  // namespace
 
 void collect_caustics(
-    const WaterList& waters,
-    const LightList& lights,
-    const RenderView& view,
-    bool maps,
-    CausticList& list,
-    ShadowList& shadows) {
+    const WaterList& waters, const LightList& lights, const RenderView& view, bool maps,
+    CausticList& list, ShadowList& shadows) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 camera(pose[0].w, pose[1].w, pose[2].w);
     list.sunken.clear();
@@ -498,10 +469,7 @@ void collect_caustics(
         }
         const layout::LightRecord& light = lights.records[static_cast<std::size_t>(sun)];
         const Source source = {
-            waters,
-            i,
-            chosen[next++].caustics,
-            light,
+            waters, i, chosen[next++].caustics, light,
             frame_of(waters.bodies[i]).turned_in(Vec3(light.position))};
         add_below(source, camera, sun, maps, sunken, list, shadows);
         if (maps && source.caustics.mirror_reach > 0 && list.mirrors.size() < kMaxMirrorMaps) {
@@ -524,10 +492,8 @@ void place_caustics(const LightList& lights, const ShadowList& shadows, CausticL
     list.texels.clear();
     const layout::WaterLightHead head = {
         .counts =
-            {static_cast<float>(list.sunken.size()),
-             static_cast<float>(list.mirrors.size()),
-             static_cast<float>(list.places.size()),
-             0},
+            {static_cast<float>(list.sunken.size()), static_cast<float>(list.mirrors.size()),
+             static_cast<float>(list.places.size()), 0},
         .grid = Vec4(0),
         .cells = Vec4(0)};
     append(list.texels, std::vector{head});

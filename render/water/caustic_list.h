@@ -44,12 +44,8 @@ struct CausticList {
 /// Chooses waters and maps and asks `shadows` for the views they need: of waters of which `view`
 /// may see what lies in them or, where they mirror, what stands above. `maps`: also make maps.
 void collect_caustics(
-    const WaterList& waters,
-    const LightList& lights,
-    const RenderView& view,
-    bool maps,
-    CausticList& list,
-    ShadowList& shadows);
+    const WaterList& waters, const LightList& lights, const RenderView& view, bool maps,
+    CausticList& list, ShadowList& shadows);
 
 /// After the shadow views have their places.
 void place_caustics(const LightList& lights, const ShadowList& shadows, CausticList& list);

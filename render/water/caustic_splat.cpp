@@ -65,11 +65,7 @@ void add(const Sheet& sheet, float x, float y, float amount) {
 
 /// The cell with rays a, b and, a row on, c, d.
 void add_cell(
-    const Sheet& sheet,
-    const Vec4& a,
-    const Vec4& b,
-    const Vec4& c,
-    const Vec4& d,
+    const Sheet& sheet, const Vec4& a, const Vec4& b, const Vec4& c, const Vec4& d,
     const Cut& cut) {
     const auto rays_along =
         [&cut](const Vec4& one_end, const Vec4& one, const Vec4& other_end, const Vec4& other) {
@@ -117,9 +113,7 @@ std::size_t sheet_size(const layout::CausticRecord& record) {
 }
 
 void sum_stripe(
-    const layout::CausticRecord& record,
-    std::span<const Vec4> rays,
-    const Stripe& stripe,
+    const layout::CausticRecord& record, std::span<const Vec4> rays, const Stripe& stripe,
     std::uint32_t* texels) {
     const int cells = static_cast<int>(record.grid.x);
     const int stride = side_of(record) + 2 * kAside;
@@ -127,10 +121,8 @@ void sum_stripe(
     std::fill_n(texels, sheet_size(record), 0u);
     const bool mirrored = record.grid.w == layout::kCausticsMirrored;
     const Cut cut = {
-        record.grid.y / record.grid.x,
-        record.grid.w == layout::kCausticsPool,
-        mirrored ? kMirroredPerTexel : kPerTexel,
-        mirrored ? kMostMirrored : kMost};
+        record.grid.y / record.grid.x, record.grid.w == layout::kCausticsPool,
+        mirrored ? kMirroredPerTexel : kPerTexel, mirrored ? kMostMirrored : kMost};
     for (int z = stripe.first; z < stripe.last; ++z) {
         const Vec4* const row = rays.data() + z * (cells + 1);
         const Vec4* const next = row + cells + 1;
@@ -159,11 +151,8 @@ void write_row(
 }  // namespace
 
 void splat_caustics(
-    std::span<const layout::CausticRecord> records,
-    std::span<const Vec4> rays,
-    int width,
-    CausticSums& sums,
-    std::span<float> atlas) {
+    std::span<const layout::CausticRecord> records, std::span<const Vec4> rays, int width,
+    CausticSums& sums, std::span<float> atlas) {
     std::vector<Stripe> stripes;
     std::vector<std::size_t> first_sum;
     std::size_t size = 0;

@@ -21,10 +21,7 @@ struct CausticSums {
 /// that has `width` of them along x: light that arrives over that of flat water. The same for any
 /// number of threads. Texels of no map are left alone.
 void splat_caustics(
-    std::span<const layout::CausticRecord> records,
-    std::span<const Vec4> rays,
-    int width,
-    CausticSums& sums,
-    std::span<float> atlas);
+    std::span<const layout::CausticRecord> records, std::span<const Vec4> rays, int width,
+    CausticSums& sums, std::span<float> atlas);
 
 }  // namespace limn

@@ -22,9 +22,7 @@ void upload_spectra(const OceanState& state, OceanFft& fft) {
     for (const OceanCascade& cascade : state.cascades) {
         for (std::size_t i = 0; i < cascade.frequency.size(); ++i) {
             waves.emplace_back(
-                cascade.ahead_re[i],
-                cascade.ahead_im[i],
-                cascade.behind_re[i],
+                cascade.ahead_re[i], cascade.ahead_im[i], cascade.behind_re[i],
                 cascade.behind_im[i]);
         }
         frequencies.insert(frequencies.end(), cascade.frequency.begin(), cascade.frequency.end());
@@ -36,12 +34,11 @@ void upload_spectra(const OceanState& state, OceanFft& fft) {
 
 gpu::Texture make_field(const char* label, const OceanFft& fft) {
     gpu::Texture texture(
-        label,
-        {.format = GL_RGBA32F,
-         .width = fft.size,
-         .height = fft.size,
-         .depth = fft.cascades,
-         .target = GL_TEXTURE_2D_ARRAY});
+        label, {.format = GL_RGBA32F,
+                .width = fft.size,
+                .height = fft.size,
+                .depth = fft.cascades,
+                .target = GL_TEXTURE_2D_ARRAY});
     texture.set_wrap(GL_REPEAT);
     return texture;
 }
@@ -99,9 +96,7 @@ synthesize_ocean(FrameGraph& graph, const OceanFft& fft, float choppiness, doubl
         device.dispatch(size, cascades);
     });
     graph.add_pass(
-        "ocean fields",
-        {lines},
-        {image(fields.displacement), image(fields.derivatives)},
+        "ocean fields", {lines}, {image(fields.displacement), image(fields.derivatives)},
         [=, &fft](PassContext& context) {
             gpu::Device& device = context.device();
             device.use(*fft.fields_program);

@@ -28,8 +28,7 @@ class PlaneReader {
         const int below = (j + 1) % from_;
         return glm::mix(
             glm::mix(plane_[index(i, j)], plane_[index(right, j)], u),
-            glm::mix(plane_[index(i, below)], plane_[index(right, below)], u),
-            v);
+            glm::mix(plane_[index(i, below)], plane_[index(right, below)], u), v);
     }
 
   private:
@@ -90,13 +89,12 @@ void make_array(
         return;
     }
     texture = gpu::Texture(
-        label,
-        {.format = format,
-         .width = size,
-         .height = size,
-         .depth = layers,
-         .levels = levels,
-         .target = GL_TEXTURE_2D_ARRAY});
+        label, {.format = format,
+                .width = size,
+                .height = size,
+                .depth = layers,
+                .levels = levels,
+                .target = GL_TEXTURE_2D_ARRAY});
     texture.set_wrap(GL_REPEAT);
 }
 

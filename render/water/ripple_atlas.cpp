@@ -23,9 +23,7 @@ void fill_row(const RippleState& state, int z, Vec4* texels) {
     for (int x = 0; x <= last; ++x) {
         const float slope_x = here[std::min(x + 1, last)] - here[std::max(x - 1, 0)];
         texels[x + kBorder] = {
-            here[x],
-            (here[x] - before[x]) * per_second,
-            slope_x * per_cell,
+            here[x], (here[x] - before[x]) * per_second, slope_x * per_cell,
             (below[x] - above[x]) * per_cell};
     }
     texels[0] = texels[kBorder];

@@ -82,10 +82,8 @@ std::size_t WaterDetails::add(
     for (const std::size_t i : split.texture) {
         const WaveLine& line = table->lines[i];
         waves.push_back(
-            {{std::round(line.k.x * turns),
-              std::round(line.k.y * turns),
-              line.phase - line.frequency * seconds,
-              line.amplitude / turns}});
+            {{std::round(line.k.x * turns), std::round(line.k.y * turns),
+              line.phase - line.frequency * seconds, line.amplitude / turns}});
     }
     record.waves.x = static_cast<float>(ends.size());
     record.waves.y = 1 / detail->tile;

@@ -43,10 +43,7 @@ struct WaterDetails {
     /// Appends the body's record, at `time` [s]; its waves `seconds` after the end of the step.
     /// Returns how many of its lines are to move vertices.
     std::size_t
-    add(const WaterDetail* detail,
-        const WaveTable* table,
-        float spacing,
-        double time,
+    add(const WaterDetail* detail, const WaveTable* table, float spacing, double time,
         float seconds);
 };
 

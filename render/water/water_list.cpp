@@ -31,8 +31,7 @@ Moments moments_of(const World& world, const RenderView& view) {
     const auto* const time = world.find_resource<FrameTime>();
     const float step = time != nullptr ? time->step : 0.0f;
     return {
-        (view.alpha - 1) * step,
-        (view.alpha_before - 1) * step,
+        (view.alpha - 1) * step, (view.alpha_before - 1) * step,
         time != nullptr ? time->time : 0.0};
 }
 
@@ -42,24 +41,18 @@ void add_waves(const WaveTable& table, std::size_t lines, const Moments& at, Wat
         list.lines.push_back(
             {.run = Vec4(line.k, line.side),
              .phase = {
-                 line.phase - line.frequency * at.now,
-                 line.phase - line.frequency * at.before,
-                 line.amplitude,
-                 line.lean}});
+                 line.phase - line.frequency * at.now, line.phase - line.frequency * at.before,
+                 line.amplitude, line.lean}});
     }
     for (const WaveRing& ring : table.rings) {
         const float front = ring.front_speed * at.now;
         list.rings.push_back(
             {.place = {ring.center.x, ring.center.y, ring.first + front, ring.last + front},
              .phase =
-                 {ring.phase + ring.frequency * at.now,
-                  ring.phase + ring.frequency * at.before,
-                  ring.k,
-                  ring.amplitude},
+                 {ring.phase + ring.frequency * at.now, ring.phase + ring.frequency * at.before,
+                  ring.k, ring.amplitude},
              .fade = {
-                 ring.full,
-                 ring.smooth ? 1.0f : 0.0f,
-                 ring.front_speed * (at.before - at.now),
+                 ring.full, ring.smooth ? 1.0f : 0.0f, ring.front_speed * (at.before - at.now),
                  0}});
     }
 }
@@ -137,15 +130,11 @@ void place_ripples(const RippleAtlas& atlas, WaterList& list) {
 }
 
 void place_sea(
-    const OceanTextures& textures,
-    const OceanSource& sea,
-    const OceanPlace& place,
+    const OceanTextures& textures, const OceanSource& sea, const OceanPlace& place,
     layout::WaterRecord& body) {
     body.ocean = {
-        static_cast<float>(place.first_layer),
-        static_cast<float>(place.patches),
-        static_cast<float>(textures.size()),
-        body.ocean.w};
+        static_cast<float>(place.first_layer), static_cast<float>(place.patches),
+        static_cast<float>(textures.size()), body.ocean.w};
     for (int i = 0; i < place.patches; ++i) {
         body.patches[i] = 1.0f / sea.state->cascades[static_cast<std::size_t>(i)].patch;
     }
@@ -184,10 +173,7 @@ std::optional<WaterAroundView> find_around(const PatchSource& source, float dept
 }
 
 void add_body(
-    const Body& body,
-    const Moments& at,
-    const Vec3& reach,
-    const RenderView& view,
+    const Body& body, const Moments& at, const Vec3& reach, const RenderView& view,
     WaterList& list) {
     const Water& water = *body.water;
     const Affine& pose = view.world_from_camera;
@@ -229,9 +215,7 @@ void add_body(
          .absorption = Vec4(water.absorption, water.depth),
          .scattering = Vec4(water.scattering, pack_look(body.look)),
          .waves =
-             {first_line,
-              static_cast<float>(list.lines.size()) - first_line,
-              first_ring,
+             {first_line, static_cast<float>(list.lines.size()) - first_line, first_ring,
               static_cast<float>(list.rings.size()) - first_ring},
          .ripples = Vec4(0),
          .rippling = {0, 0, at.now, at.before},
@@ -263,14 +247,8 @@ float pack_look(const WaterLook& look) {
 }
 
 void collect_waters(
-    const World& world,
-    const RenderView& view,
-    bool velocity,
-    Entity planar,
-    int max_texture_size,
-    RippleAtlas& ripples,
-    OceanTextures& seas,
-    WaterList& list) {
+    const World& world, const RenderView& view, bool velocity, Entity planar, int max_texture_size,
+    RippleAtlas& ripples, OceanTextures& seas, WaterList& list) {
     list.bodies.clear();
     list.lines.clear();
     list.rings.clear();
@@ -289,24 +267,12 @@ void collect_waters(
     std::vector<Body> bodies;
     world
         .query<
-            const Water,
-            const WorldTransform,
-            Optional<const WaterLook>,
-            Optional<const WaterDetail>,
-            Optional<const WaveTable>,
-            Optional<const RippleState>,
-            Optional<const OceanState>,
-            Optional<const OceanFoam>,
-            Optional<const Caustics>>()
-        .each([&](Entity entity,
-                  const Water& water,
-                  const WorldTransform& place,
-                  const WaterLook* look,
-                  const WaterDetail* detail,
-                  const WaveTable* table,
-                  const RippleState* rippling,
-                  const OceanState* sea,
-                  const OceanFoam* foam,
+            const Water, const WorldTransform, Optional<const WaterLook>,
+            Optional<const WaterDetail>, Optional<const WaveTable>, Optional<const RippleState>,
+            Optional<const OceanState>, Optional<const OceanFoam>, Optional<const Caustics>>()
+        .each([&](Entity entity, const Water& water, const WorldTransform& place,
+                  const WaterLook* look, const WaterDetail* detail, const WaveTable* table,
+                  const RippleState* rippling, const OceanState* sea, const OceanFoam* foam,
                   const Caustics* caustics) {
             list.entities.push_back(entity);
             if (list.floor == nullptr && look != nullptr && look->floor_map.index != kNoAsset) {
@@ -314,11 +280,8 @@ void collect_waters(
             }
             list.caustics.push_back(caustics);
             bodies.push_back(
-                {&water,
-                 table,
-                 water_frame(place.world),
-                 served_look(water, look, entity == planar),
-                 detail});
+                {&water, table, water_frame(place.world),
+                 served_look(water, look, entity == planar), detail});
             list.ripples.push_back(rippling);
             list.seas.push_back({sea, foam, at.now, at.before});
         });

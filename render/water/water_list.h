@@ -52,13 +52,7 @@ struct WaterList {
 /// ripples and patches of all bodies; `velocity`: also of the moment before. `planar` has the
 /// planar reflection.
 void collect_waters(
-    const World& world,
-    const RenderView& view,
-    bool velocity,
-    Entity planar,
-    int max_texture_size,
-    RippleAtlas& ripples,
-    OceanTextures& seas,
-    WaterList& list);
+    const World& world, const RenderView& view, bool velocity, Entity planar, int max_texture_size,
+    RippleAtlas& ripples, OceanTextures& seas, WaterList& list);
 
 }  // namespace limn

@@ -3,9 +3,7 @@
 namespace limn {
 
 void advance_clips(
-    Query<ClipPlayer> players,
-    Query<MorphPlayer> morph_players,
-    Res<const Assets> assets,
+    Query<ClipPlayer> players, Query<MorphPlayer> morph_players, Res<const Assets> assets,
     Res<const FrameTime> time) {
     const auto advance = [&](auto& player) {
         if (player.clip.index < assets->clips.size()) {

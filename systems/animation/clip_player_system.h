@@ -19,9 +19,7 @@ template <typename Player>
 /// Advances every ClipPlayer, and every animation of a MorphPlayer, by one step. One without a clip
 /// keeps its time.
 void advance_clips(
-    Query<ClipPlayer> players,
-    Query<MorphPlayer> morph_players,
-    Res<const Assets> assets,
+    Query<ClipPlayer> players, Query<MorphPlayer> morph_players, Res<const Assets> assets,
     Res<const FrameTime> time);
 
 }  // namespace limn

@@ -94,10 +94,8 @@ void sample_rotations(const ClipSheet& sheet, const SheetRows& rows, std::span<Q
     for (std::size_t begin = 0; begin < count; begin += kBatch) {
         const std::size_t size = std::min(kBatch, count - begin);
         slerp_rotations(
-            rows.first(count).subspan(begin, size),
-            rows.second(count).subspan(begin, size),
-            rows.u(),
-            {blended, size});
+            rows.first(count).subspan(begin, size), rows.second(count).subspan(begin, size),
+            rows.u(), {blended, size});
         for (std::size_t i = 0; i < size; ++i) {
             rotations[sheet.rotating[begin + i]] = blended[i];
         }

@@ -20,15 +20,8 @@ namespace limn::pose {
 
 // acos x = sqrt(1 - x) (a0 + a1 x + ... + a7 x^7), 0 <= x <= 1, off by at most 2e-8 (Abramowitz and
 // Stegun 4.4.46).
-inline constexpr float kAcos[] = {
-    1.5707963050f,
-    -0.2145988016f,
-    0.0889789874f,
-    -0.0501743046f,
-    0.0308918810f,
-    -0.0170881256f,
-    0.0066700901f,
-    -0.0012624911f};
+inline constexpr float kAcos[] = {1.5707963050f, -0.2145988016f, 0.0889789874f, -0.0501743046f,
+                                  0.0308918810f, -0.0170881256f, 0.0066700901f, -0.0012624911f};
 // sin x = x + x^3 (s0 + s1 x^2 + ...), 0 <= x <= pi / 2, the series up to x^9, off by at most 4e-6
 // at the end, where the other weight is 0.
 inline constexpr float kSin[] = {-1.0f / 6, 1.0f / 120, -1.0f / 5040, 1.0f / 362880};
@@ -107,11 +100,7 @@ std::size_t slerp_rotations_vector(
         const V w = hn::Add(hn::Mul(weight_from, aw), hn::Mul(weight_to, bw));
         const V unit = hn::Div(one, hn::Sqrt(dot(x, y, z, w, x, y, z, w)));
         hn::StoreInterleaved4(
-            hn::Mul(x, unit),
-            hn::Mul(y, unit),
-            hn::Mul(z, unit),
-            hn::Mul(w, unit),
-            d,
+            hn::Mul(x, unit), hn::Mul(y, unit), hn::Mul(z, unit), hn::Mul(w, unit), d,
             reinterpret_cast<float*>(&out[first]));
     }
     return first;
@@ -161,10 +150,8 @@ void slerp_rotations_scalar(
         const float weight_from = sine_of((1.0f - u) * omega);
         const float weight_to = std::copysign(sine_of(u * omega), signed_cosine);
         const Quat sum(
-            weight_from * a.w + weight_to * b.w,
-            weight_from * a.x + weight_to * b.x,
-            weight_from * a.y + weight_to * b.y,
-            weight_from * a.z + weight_to * b.z);
+            weight_from * a.w + weight_to * b.w, weight_from * a.x + weight_to * b.x,
+            weight_from * a.y + weight_to * b.y, weight_from * a.z + weight_to * b.z);
         const float unit = 1.0f / std::sqrt(dot(sum, sum));
         out[i] = Quat(sum.w * unit, sum.x * unit, sum.y * unit, sum.z * unit);
     }

@@ -65,13 +65,8 @@ const T* find_asset(const std::vector<T>& assets, std::uint32_t index) {
 
 /// Samples the clip of one character that has a Pose.
 void step_character(
-    const Assets& assets,
-    const SkeletonData& skeleton,
-    const ClipPlayer* player,
-    const MorphPlayer* morph_player,
-    bool jumps,
-    Pose& pose,
-    MorphWeights* morph) {
+    const Assets& assets, const SkeletonData& skeleton, const ClipPlayer* player,
+    const MorphPlayer* morph_player, bool jumps, Pose& pose, MorphWeights* morph) {
     thread_local LocalPose scratch;  // keeps its memory from character to character
     const bool is_new = pose.joints.size() != skeleton.joints.size();
     if (is_new) {
@@ -101,10 +96,7 @@ void step_character(
 
 /// The same for what has morph targets alone.
 void step_weights(
-    const Assets& assets,
-    const ClipPlayer* player,
-    const MorphPlayer* morph_player,
-    bool jumps,
+    const Assets& assets, const ClipPlayer* player, const MorphPlayer* morph_player, bool jumps,
     MorphWeights& morph) {
     const bool is_new = morph.previous.size() != morph.weights.size();
     morph.previous = morph.weights;
@@ -125,11 +117,8 @@ void step_weights(
 }  // namespace
 
 void add_poses(
-    Query<const Skeleton, Without<Pose>> bare,
-    Query<const Deformed, const MeshInstance> meshes,
-    Query<const MorphWeights> weights,
-    Res<const Assets> assets,
-    Commands commands) {
+    Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
+    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands) {
     if (bare.empty()) {
         return;
     }
@@ -151,27 +140,20 @@ void add_poses(
 
 void update_poses(
     Query<
-        const Skeleton,
-        Optional<const ClipPlayer>,
-        Optional<const MorphPlayer>,
-        Optional<MorphWeights>,
-        Pose> characters,
+        const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
+        Optional<MorphWeights>, Pose>
+        characters,
     Query<
-        MorphWeights,
-        Optional<const ClipPlayer>,
-        Optional<const MorphPlayer>,
-        AnyOf<ClipPlayer, MorphPlayer>,
-        Without<Skeleton>> faces,
-    Query<const Transform, With<Teleport>> teleports,
-    Query<const Parent> parents,
+        MorphWeights, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
+        AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
+        faces,
+    Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
     Res<const Assets> assets) {
     const Jumps jumps(teleports, parents);
-    characters.chunks([&](ChunkView chunk,
-                          std::span<const Skeleton> skeletons,
+    characters.chunks([&](ChunkView chunk, std::span<const Skeleton> skeletons,
                           std::span<const ClipPlayer> players,
                           std::span<const MorphPlayer> morph_players,
-                          std::span<MorphWeights> morphs,
-                          std::span<Pose> poses) {
+                          std::span<MorphWeights> morphs, std::span<Pose> poses) {
         const std::span<const Entity> entities = chunk.entities();
         parallel_for(poses.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -179,20 +161,14 @@ void update_poses(
                     find_asset(assets->skeletons, skeletons[i].skeleton.index);
                 if (skeleton != nullptr) {
                     step_character(
-                        *assets,
-                        *skeleton,
-                        players.empty() ? nullptr : &players[i],
-                        morph_players.empty() ? nullptr : &morph_players[i],
-                        jumps.has(entities[i]),
-                        poses[i],
-                        morphs.empty() ? nullptr : &morphs[i]);
+                        *assets, *skeleton, players.empty() ? nullptr : &players[i],
+                        morph_players.empty() ? nullptr : &morph_players[i], jumps.has(entities[i]),
+                        poses[i], morphs.empty() ? nullptr : &morphs[i]);
                 }
             }
         });
     });
-    faces.each([&](Entity entity,
-                   MorphWeights& morph,
-                   const ClipPlayer* player,
+    faces.each([&](Entity entity, MorphWeights& morph, const ClipPlayer* player,
                    const MorphPlayer* morph_player) {
         step_weights(*assets, player, morph_player, jumps.has(entity), morph);
     });
@@ -230,12 +206,8 @@ void add_morph_animations(
 }
 
 void evaluate_pose(
-    const SkeletonData& skeleton,
-    const ClipData* clip,
-    float time,
-    LocalPose& scratch,
-    std::span<Affine> joints,
-    std::span<float> weights) {
+    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& scratch,
+    std::span<Affine> joints, std::span<float> weights) {
     scratch.translations = skeleton.rest.translations;
     scratch.rotations = skeleton.rest.rotations;
     scratch.scales = skeleton.rest.scales;

@@ -19,28 +19,20 @@ namespace limn {
 /// Gives a Pose to every Skeleton that lacks one, and then MorphWeights of 0 to those whose meshes
 /// have morph targets but that have no weights. Before update_poses, with a sync point between.
 void add_poses(
-    Query<const Skeleton, Without<Pose>> bare,
-    Query<const Deformed, const MeshInstance> meshes,
-    Query<const MorphWeights> weights,
-    Res<const Assets> assets,
-    Commands commands);
+    Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
+    Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands);
 
 /// Samples the clips: writes Pose and MorphWeights. Allocates only when a character is new.
 void update_poses(
     Query<
-        const Skeleton,
-        Optional<const ClipPlayer>,
-        Optional<const MorphPlayer>,
-        Optional<MorphWeights>,
-        Pose> characters,
+        const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
+        Optional<MorphWeights>, Pose>
+        characters,
     Query<
-        MorphWeights,
-        Optional<const ClipPlayer>,
-        Optional<const MorphPlayer>,
-        AnyOf<ClipPlayer, MorphPlayer>,
-        Without<Skeleton>> faces,
-    Query<const Transform, With<Teleport>> teleports,
-    Query<const Parent> parents,
+        MorphWeights, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
+        AnyOf<ClipPlayer, MorphPlayer>, Without<Skeleton>>
+        faces,
+    Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
     Res<const Assets> assets);
 
 /// Writes the Transform of what is attached to a joint. Where the character has no such joint, it
@@ -55,11 +47,7 @@ void add_morph_animations(
 /// names joints or weights that are not there. `scratch` keeps its memory from call to call; there
 /// is a matrix for each joint; weights that the clip does not move stay.
 void evaluate_pose(
-    const SkeletonData& skeleton,
-    const ClipData* clip,
-    float time,
-    LocalPose& scratch,
-    std::span<Affine> joints,
-    std::span<float> weights);
+    const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& scratch,
+    std::span<Affine> joints, std::span<float> weights);
 
 }  // namespace limn

@@ -330,8 +330,7 @@ HWY_INLINE void find_rows(const skin::Work<Joint>& work, Influences by, Rows<Joi
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         for (std::size_t at = 0; at < skin::kStride<Joint>; at += hn::MaxLanes(Some<Joint>())) {
             hn::Store(
-                mean_of<kCount>(work, by, at),
-                Some<Joint>(),
+                mean_of<kCount>(work, by, at), Some<Joint>(),
                 rows.of + skin::kStride<Joint> * lane + at);
         }
         by.joints += kCount;
@@ -609,16 +608,13 @@ HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std
     store_entries(
         hn::IfThenElse(turned, hn::Mul(tx, tangent_unit), x),
         hn::IfThenElse(turned, hn::Mul(ty, tangent_unit), y),
-        hn::IfThenElse(turned, hn::Mul(tz, tangent_unit), z),
-        w,
-        &work.moved.tangents[at].x);
+        hn::IfThenElse(turned, hn::Mul(tz, tangent_unit), z), w, &work.moved.tangents[at].x);
 
     load_entries(&work.rest.positions[at].x, x, y, z);
     store_entries(
         hn::Add(dot3(m.xx, m.xy, m.xz, x, y, z), m.xt),
         hn::Add(dot3(m.yx, m.yy, m.yz, x, y, z), m.yt),
-        hn::Add(dot3(m.zx, m.zy, m.zz, x, y, z), m.zt),
-        &work.moved.positions[at].x);
+        hn::Add(dot3(m.zx, m.zy, m.zz, x, y, z), m.zt), &work.moved.positions[at].x);
 }
 
 template <typename Joint>
@@ -654,9 +650,7 @@ HWY_EXPORT(skin_dual_vector);
 namespace {
 
 void check_spans(
-    const SkinWeights& skin,
-    const RestVertices& rest,
-    const MovedVertices& moved,
+    const SkinWeights& skin, const RestVertices& rest, const MovedVertices& moved,
     std::size_t end) {
     const std::size_t count = rest.positions.size();
     LIMN_CHECK(rest.normals.size() == count && rest.tangents.size() == count);
@@ -681,12 +675,8 @@ hwy::AlignedFreeUniquePtr<float[]> make_palette(std::span<const Joint> joints) {
 }  // namespace
 
 void skin_linear(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
+    const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
     const auto numbers = make_palette(palette);
     const skin::Work<Affine> work = {skin, palette, numbers.get(), rest, moved};
@@ -695,12 +685,8 @@ void skin_linear(
 }
 
 void skin_dual(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
     const auto numbers = make_palette(palette);
     const skin::Work<DualQuaternion> work = {skin, palette, numbers.get(), rest, moved};

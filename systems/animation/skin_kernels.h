@@ -50,41 +50,24 @@ void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion
 
 /// Moves the vertices begin .. end by the mean of matrices. Those without influences stay.
 void skin_linear(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end);
+    const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end);
 void skin_linear_scalar(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end);
+    const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end);
 
 /// Moves them by the mean of screw motions.
 void skin_dual(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end);
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end);
 void skin_dual_scalar(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end);
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end);
 
 /// Adds weights[i] times target i to vertices, which hold those at rest; targets beyond the weights
 /// are off. Normals and tangents are left as long as they become: unit again after skinning.
 void add_morphs(
-    std::span<const MorphTarget> morphs,
-    std::span<const float> weights,
+    std::span<const MorphTarget> morphs, std::span<const float> weights,
     const MovedVertices& vertices);
 
 /// The `most` largest influences of each vertex, made to sum to 1 again (char.skin-limits).

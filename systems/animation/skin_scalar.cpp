@@ -86,10 +86,7 @@ Vec3 turn_by_strongest(
 /// By the inverse transpose of `mean`, that of vertex `v`.
 template <typename Joint>
 Vec3 turn_normal(
-    const Affine& mean,
-    const SkinWeights& skin,
-    std::span<const Joint> palette,
-    const Vec3& rest,
+    const Affine& mean, const SkinWeights& skin, std::span<const Joint> palette, const Vec3& rest,
     std::size_t v) {
     const Vec3 x(mean.row[0]);
     const Vec3 y(mean.row[1]);
@@ -111,12 +108,8 @@ Vec4 turn_tangent(const Affine& mean, const Vec4& rest) {
 
 template <typename Joint>
 void move_vertices(
-    const SkinWeights& skin,
-    std::span<const Joint> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
+    const SkinWeights& skin, std::span<const Joint> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
         const Affine mean = mean_matrix(skin, palette, v);
         moved.normals[v] = turn_normal(mean, skin, palette, rest.normals[v], v);
@@ -156,9 +149,7 @@ Vec3 moved_normal(
 }
 
 Vec3 moved_normal(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const Vec3& rest,
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const Vec3& rest,
     std::size_t v) {
     return turn_normal(mean_matrix(skin, palette, v), skin, palette, rest, v);
 }
@@ -187,28 +178,19 @@ void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion
 }
 
 void skin_linear_scalar(
-    const SkinWeights& skin,
-    std::span<const Affine> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
+    const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end) {
     skin::move_vertices(skin, palette, rest, moved, begin, end);
 }
 
 void skin_dual_scalar(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const RestVertices& rest,
-    const MovedVertices& moved,
-    std::size_t begin,
-    std::size_t end) {
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
+    const MovedVertices& moved, std::size_t begin, std::size_t end) {
     skin::move_vertices(skin, palette, rest, moved, begin, end);
 }
 
 void add_morphs(
-    std::span<const MorphTarget> morphs,
-    std::span<const float> weights,
+    std::span<const MorphTarget> morphs, std::span<const float> weights,
     const MovedVertices& vertices) {
     const std::size_t count = std::min(morphs.size(), weights.size());
     for (std::size_t t = 0; t < count; ++t) {

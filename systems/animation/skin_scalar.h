@@ -27,9 +27,7 @@ mean_motion(const SkinWeights& skin, std::span<const DualQuaternion> palette, st
 [[nodiscard]] Vec3 moved_normal(
     const SkinWeights& skin, std::span<const Affine> palette, const Vec3& rest, std::size_t v);
 [[nodiscard]] Vec3 moved_normal(
-    const SkinWeights& skin,
-    std::span<const DualQuaternion> palette,
-    const Vec3& rest,
+    const SkinWeights& skin, std::span<const DualQuaternion> palette, const Vec3& rest,
     std::size_t v);
 
 }  // namespace limn::skin

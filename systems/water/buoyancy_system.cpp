@@ -24,11 +24,9 @@ struct Body {
 
 void update_floating_bodies(
     Query<
-        const Water,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        Optional<RippleState>> waters,
+        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
+        Optional<RippleState>>
+        waters,
     Query<const WaterTouch, Floating, Transform, Without<Parent>> bodies,
     Res<const FrameTime> time) {
     thread_local std::vector<WaterSurface> surface_memory;  // kept from step to step
@@ -44,11 +42,8 @@ void update_floating_bodies(
     if (afloat.empty()) {
         return;
     }
-    waters.each([&](const Water& water,
-                    const WorldTransform& place,
-                    const OceanState* ocean,
-                    const WaveTable* waves,
-                    RippleState* state) {
+    waters.each([&](const Water& water, const WorldTransform& place, const OceanState* ocean,
+                    const WaveTable* waves, RippleState* state) {
         surfaces.push_back({water_frame(place.world), water, ocean, waves, state});
         ripples.push_back(state);
     });

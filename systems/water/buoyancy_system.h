@@ -18,11 +18,9 @@ namespace limn {
 /// update_transforms.
 void update_floating_bodies(
     Query<
-        const Water,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        Optional<RippleState>> waters,
+        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
+        Optional<RippleState>>
+        waters,
     Query<const WaterTouch, Floating, Transform, Without<Parent>> bodies,
     Res<const FrameTime> time);
 

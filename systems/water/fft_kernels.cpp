@@ -69,11 +69,7 @@ HWY_INLINE Complex<D> unit_root(D d, const FftPlan& plan, std::size_t turn) {
 /// One step of radix 4: the columns are `stride` interleaved sequences of `length` each.
 template <typename D>
 void radix4_pass(
-    D d,
-    const FftPlan& plan,
-    std::size_t length,
-    std::size_t stride,
-    const FftColumns& from,
+    D d, const FftPlan& plan, std::size_t length, std::size_t stride, const FftColumns& from,
     const FftColumns& to) {
     const std::size_t quarter = length / 4;
     for (std::size_t p = 0; p < quarter; ++p) {
@@ -228,11 +224,8 @@ void transpose_columns(const float* block, std::size_t rows, float* to, std::siz
 }
 
 void inverse_fft_2d(
-    const FftPlan& plan,
-    std::span<const float> spectrum_re,
-    std::span<const float> spectrum_im,
-    std::span<float> field_re,
-    std::span<float> field_im) {
+    const FftPlan& plan, std::span<const float> spectrum_re, std::span<const float> spectrum_im,
+    std::span<float> field_re, std::span<float> field_im) {
     const std::size_t size = plan.size;
     LIMN_CHECK(spectrum_re.size() == size * size && spectrum_im.size() == size * size);
     LIMN_CHECK(field_re.size() == size * size && field_im.size() == size * size);
@@ -245,8 +238,7 @@ void inverse_fft_2d(
         // The transform reads, but never writes, what it is given.
         const FftColumns from = {
             const_cast<float*>(spectrum_re.data()) + first,
-            const_cast<float*>(spectrum_im.data()) + first,
-            size};
+            const_cast<float*>(spectrum_im.data()) + first, size};
         const FftColumns block = {memory.data(), memory.data() + plane, kFftColumns};
         inverse_fft_columns(plan, from, block, std::span(memory).subspan(2 * plane));
         transpose_columns(block.re, size, field_re.data() + first * size, size);

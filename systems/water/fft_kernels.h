@@ -59,10 +59,7 @@ void transpose_columns(const float* block, std::size_t rows, float* to, std::siz
 /// Both directions, on all threads: spectrum(n, m) at n * size + m becomes field(x, z) at
 /// z * size + x. No plane may be another.
 void inverse_fft_2d(
-    const FftPlan& plan,
-    std::span<const float> spectrum_re,
-    std::span<const float> spectrum_im,
-    std::span<float> field_re,
-    std::span<float> field_im);
+    const FftPlan& plan, std::span<const float> spectrum_re, std::span<const float> spectrum_im,
+    std::span<float> field_re, std::span<float> field_im);
 
 }  // namespace limn

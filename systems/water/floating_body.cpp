@@ -169,10 +169,8 @@ LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, fl
     const float reach = radius * 0.70710678f;
     const Vec2 at = {center.x, center.z};
     const std::array<WaterPoint, 4> around = {
-        sample_water(surface, at + Vec2(reach, 0)),
-        sample_water(surface, at - Vec2(reach, 0)),
-        sample_water(surface, at + Vec2(0, reach)),
-        sample_water(surface, at - Vec2(0, reach))};
+        sample_water(surface, at + Vec2(reach, 0)), sample_water(surface, at - Vec2(reach, 0)),
+        sample_water(surface, at + Vec2(0, reach)), sample_water(surface, at - Vec2(0, reach))};
     WaterPoint mean = sample_water(surface, at);
     if (!std::all_of(
             around.begin(), around.end(), [](const WaterPoint& point) { return point.is_water; })) {
@@ -308,13 +306,8 @@ struct Motion {
 /// along the hull's own axes. The latter is that of the velocity before, so that it balances what
 /// makes it grow exactly.
 void resist(
-    const Hull& hull,
-    const Floating& floating,
-    const Quat& rotation,
-    const Lift& lift,
-    const Vec3& gained,
-    float step,
-    Motion& motion) {
+    const Hull& hull, const Floating& floating, const Quat& rotation, const Lift& lift,
+    const Vec3& gained, float step, Motion& motion) {
     const float share = lift.volume / hull.volume;
     const float damping = positive(floating.damping) * kWaterDensity * lift.volume / hull.mass;
     const Vec3 drag = {
@@ -488,8 +481,7 @@ displaced_water(const WaterTouch& touch, const Transform& transform, const Water
     sample_columns(hull, place, surface, columns);
     const Lift lift = lift_hull(hull, place, columns);
     return {
-        lift.volume,
-        lift.volume > 0 ? place.center + lift.moment / lift.volume : place.center,
+        lift.volume, lift.volume > 0 ? place.center + lift.moment / lift.volume : place.center,
         hull.volume};
 }
 
@@ -508,10 +500,7 @@ RippleImpulse splash_of(float mass, float radius, float speed) {
 }
 
 std::optional<Splash> step_floating_body(
-    std::span<const WaterSurface> surfaces,
-    const WaterTouch& touch,
-    float step,
-    Floating& floating,
+    std::span<const WaterSurface> surfaces, const WaterTouch& touch, float step, Floating& floating,
     Transform& transform) {
     const Hull hull = make_hull(touch, floating, transform.scale);
     const Quat rotation = unit_or_none(transform.rotation);

@@ -56,10 +56,7 @@ struct Splash {
 /// Moves a body by `step` [s]: `floating`'s velocities and `transform`. Bodies without volume, and
 /// those that are nowhere, stay as they are.
 [[nodiscard]] std::optional<Splash> step_floating_body(
-    std::span<const WaterSurface> surfaces,
-    const WaterTouch& touch,
-    float step,
-    Floating& floating,
+    std::span<const WaterSurface> surfaces, const WaterTouch& touch, float step, Floating& floating,
     Transform& transform);
 
 }  // namespace limn

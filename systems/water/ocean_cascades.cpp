@@ -94,22 +94,10 @@ OceanCascade make_flat_cascade(int size, double patch) {
     }
     const std::size_t points = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
     for (std::vector<float>* plane :
-         {&cascade.frequency,
-          &cascade.ahead_re,
-          &cascade.ahead_im,
-          &cascade.behind_re,
-          &cascade.behind_im,
-          &cascade.height,
-          &cascade.shift_x,
-          &cascade.shift_z,
-          &cascade.slope_x,
-          &cascade.slope_z,
-          &cascade.shift_xx,
-          &cascade.shift_zz,
-          &cascade.shift_xz,
-          &cascade.last_height,
-          &cascade.last_shift_x,
-          &cascade.last_shift_z}) {
+         {&cascade.frequency, &cascade.ahead_re, &cascade.ahead_im, &cascade.behind_re,
+          &cascade.behind_im, &cascade.height, &cascade.shift_x, &cascade.shift_z, &cascade.slope_x,
+          &cascade.slope_z, &cascade.shift_xx, &cascade.shift_zz, &cascade.shift_xz,
+          &cascade.last_height, &cascade.last_shift_x, &cascade.last_shift_z}) {
         plane->resize(points);
     }
     return cascade;

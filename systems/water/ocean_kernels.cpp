@@ -58,12 +58,8 @@ HWY_INLINE SinCos<D> sin_cos_of_turns(D d, hn::Vec<D> turns) {
 /// `Doubles` says how many lanes; phases need its precision.
 template <typename Doubles>
 void evolve(
-    Doubles dd,
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
-    float* pairs) {
+    Doubles dd, const OceanCascade& cascade, float choppiness, double time,
+    std::size_t first_column, float* pairs) {
     using D = hn::Rebind<float, Doubles>;
     using V = hn::Vec<D>;
     const D d;
@@ -101,8 +97,7 @@ void evolve(
             // Spectra of a: h, -kx push_x h, -kz push_z h, -kx push_z h;
             // of b: i push_x h, i kx h, i kz h, i push_z h.
             const V factors[kOceanPairs] = {
-                hn::Sub(one, push_x),
-                hn::Neg(hn::Add(hn::Mul(kx, push_x), kx)),
+                hn::Sub(one, push_x), hn::Neg(hn::Add(hn::Mul(kx, push_x), kx)),
                 hn::Neg(hn::Add(hn::Mul(kz, push_z), kz)),
                 hn::Neg(hn::Add(hn::Mul(kx, push_z), push_z))};
             for (std::size_t pair = 0; pair < kOceanPairs; ++pair) {
@@ -116,14 +111,8 @@ void evolve(
 
 template <typename D>
 std::size_t foam(
-    D d,
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    float* coverage,
-    std::size_t begin,
-    std::size_t end) {
+    D d, const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    std::size_t begin, std::size_t end) {
     using V = hn::Vec<D>;
     const V one = hn::Set(d, 1.0f);
     std::size_t i = begin;
@@ -144,42 +133,26 @@ using WideDoubles = hn::CappedTag<double, kFftColumns>;
 using OneDouble = hn::FixedTag<double, 1>;
 
 void evolve_vector(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     float* pairs) {
     evolve(WideDoubles(), cascade, choppiness, time, first_column, pairs);
 }
 
 void evolve_one_lane(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     float* pairs) {
     evolve(OneDouble(), cascade, choppiness, time, first_column, pairs);
 }
 
 std::size_t foam_vector(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    float* coverage,
-    std::size_t begin,
-    std::size_t end) {
+    const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    std::size_t begin, std::size_t end) {
     return foam(hn::ScalableTag<float>(), cascade, threshold, gain, fade, coverage, begin, end);
 }
 
 std::size_t foam_one_lane(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    float* coverage,
-    std::size_t begin,
-    std::size_t end) {
+    const OceanCascade& cascade, float threshold, float gain, float fade, float* coverage,
+    std::size_t begin, std::size_t end) {
     return foam(hn::FixedTag<float, 1>(), cascade, threshold, gain, fade, coverage, begin, end);
 }
 
@@ -205,33 +178,22 @@ void check_columns(
 }  // namespace
 
 void evolve_waves(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs) {
     check_columns(cascade, first_column, pairs);
     HWY_DYNAMIC_DISPATCH(evolve_vector)(cascade, choppiness, time, first_column, pairs.data());
 }
 
 void evolve_waves_scalar(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs) {
     check_columns(cascade, first_column, pairs);
     HWY_STATIC_DISPATCH(evolve_one_lane)(cascade, choppiness, time, first_column, pairs.data());
 }
 
 void step_foam(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    std::span<float> coverage,
-    std::size_t begin,
-    std::size_t end) {
+    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
+    std::size_t begin, std::size_t end) {
     LIMN_CHECK(end <= coverage.size() && end <= cascade.shift_xx.size());
     const std::size_t done = HWY_DYNAMIC_DISPATCH(foam_vector)(
         cascade, threshold, gain, fade, coverage.data(), begin, end);
@@ -239,13 +201,8 @@ void step_foam(
 }
 
 void step_foam_scalar(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    std::span<float> coverage,
-    std::size_t begin,
-    std::size_t end) {
+    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
+    std::size_t begin, std::size_t end) {
     LIMN_CHECK(end <= coverage.size() && end <= cascade.shift_xx.size());
     HWY_STATIC_DISPATCH(foam_one_lane)
     (cascade, threshold, gain, fade, coverage.data(), begin, end);

@@ -25,16 +25,10 @@ enum class OceanPair : std::uint8_t {
 /// p begins at p * 2 * kFftColumns * size: rows of kFftColumns real parts, then the imaginary
 /// ones. Off by at most 2e-7 of |h| for 1e8 radians of phase.
 void evolve_waves(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs);
 void evolve_waves_scalar(
-    const OceanCascade& cascade,
-    float choppiness,
-    double time,
-    std::size_t first_column,
+    const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs);
 
 /// Foam of the points begin .. end: d coverage / dt = growth (1 - coverage) - coverage / decay,
@@ -42,20 +36,10 @@ void evolve_waves_scalar(
 /// water: the determinant of d shifted / d rest. `gain` is rate * dt, `fade` e^(-dt / decay).
 /// Implicit in the growth: coverage stays within 0 .. 1 for any dt.
 void step_foam(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    std::span<float> coverage,
-    std::size_t begin,
-    std::size_t end);
+    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
+    std::size_t begin, std::size_t end);
 void step_foam_scalar(
-    const OceanCascade& cascade,
-    float threshold,
-    float gain,
-    float fade,
-    std::span<float> coverage,
-    std::size_t begin,
-    std::size_t end);
+    const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
+    std::size_t begin, std::size_t end);
 
 }  // namespace limn

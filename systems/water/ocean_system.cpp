@@ -58,8 +58,7 @@ std::array<PairPlanes, kOceanPairs> planes_of(OceanCascade& cascade) {
 
 void add_ocean_states(
     Query<const Ocean, Without<OceanState>> stateless,
-    Query<const Ocean, Without<OceanFoam>> foamless,
-    Commands commands) {
+    Query<const Ocean, Without<OceanFoam>> foamless, Commands commands) {
     stateless.each([&](Entity entity, const Ocean&) { commands.add(entity, OceanState{}); });
     foamless.each([&](Entity entity, const Ocean&) { commands.add(entity, OceanFoam{}); });
 }

@@ -23,8 +23,7 @@ namespace limn {
 /// Gives each Ocean its OceanState and OceanFoam.
 void add_ocean_states(
     Query<const Ocean, Without<OceanState>> stateless,
-    Query<const Ocean, Without<OceanFoam>> foamless,
-    Commands commands);
+    Query<const Ocean, Without<OceanFoam>> foamless, Commands commands);
 
 /// Moves the waves to the end of this step. Draws the spectra anew where an Ocean has changed; an
 /// Ocean beyond its limits is brought within, with a line in the log.

@@ -155,10 +155,7 @@ float heading_of(const Quat& rotation) {
 }
 
 float apparent_wind_angle(
-    const Sailboat& boat,
-    const Floating& floating,
-    const Quat& rotation,
-    const Vec3& scale,
+    const Sailboat& boat, const Floating& floating, const Quat& rotation, const Vec3& scale,
     const Vec3& wind) {
     const Vec3 arm = rotation * ((boat.sail_center - floating.balance) * scale);
     const Vec3 past =
@@ -167,13 +164,8 @@ float apparent_wind_angle(
 }
 
 void step_sailboat(
-    std::span<const WaterSurface> surfaces,
-    const Vec3& wind,
-    const WaterTouch& touch,
-    const Transform& transform,
-    float step,
-    Sailboat& boat,
-    Floating& floating) {
+    std::span<const WaterSurface> surfaces, const Vec3& wind, const WaterTouch& touch,
+    const Transform& transform, float step, Sailboat& boat, Floating& floating) {
     Rigid body;
     body.mass = body_mass(touch, floating, transform.scale);
     body.rotation = unit_or_none(transform.rotation);
@@ -208,18 +200,12 @@ void step_sailboat(
     const float sail_area = positive(boat.sail_area) * (1 - wet_sail.share);
     push_foil({sail, sail_area, boat.boom, kAirDensity}, air, step, body);
     push_foil(
-        {keel, positive(boat.keel_area) * wet_keel.share, 0, kWaterDensity},
-        wet_keel.flow,
-        step,
+        {keel, positive(boat.keel_area) * wet_keel.share, 0, kWaterDensity}, wet_keel.flow, step,
         body);
     push_foil(
-        {rudder,
-         positive(boat.rudder_area) * wet_rudder.share,
-         -boat.rudder * kMostRudder,
+        {rudder, positive(boat.rudder_area) * wet_rudder.share, -boat.rudder * kMostRudder,
          kWaterDensity},
-        wet_rudder.flow,
-        step,
-        body);
+        wet_rudder.flow, step, body);
     const float length = 2 * std::abs(touch.half.z * transform.scale.z);
     const float hull_speed = std::sqrt(static_cast<float>(kGravity) * length / (2 * kPi));
     if (floating.under > 0) {
@@ -232,11 +218,7 @@ void step_sailboat(
 }
 
 void trim_sail(
-    const Floating& floating,
-    const Quat& rotation,
-    const Vec3& scale,
-    const Vec3& wind,
-    float step,
+    const Floating& floating, const Quat& rotation, const Vec3& scale, const Vec3& wind, float step,
     Sailboat& boat) {
     const float blows = std::abs(apparent_wind_angle(boat, floating, rotation, scale, wind));
     const float wanted = (blows - kBest - kTightestBoom) / (kSlackestBoom - kTightestBoom);
@@ -245,12 +227,8 @@ void trim_sail(
 }
 
 void follow_course(
-    const PathData& course,
-    const WaterTouch& touch,
-    const Floating& floating,
-    const Transform& transform,
-    const Vec3& wind,
-    Sailboat& boat) {
+    const PathData& course, const WaterTouch& touch, const Floating& floating,
+    const Transform& transform, const Vec3& wind, Sailboat& boat) {
     const Vec2 here = {transform.position.x, transform.position.z};
     const float reach = kLookAhead * 2 * std::abs(touch.half.z * transform.scale.z);
     const auto goal = [&] {

@@ -39,39 +39,23 @@ struct FoilForce {
 /// Where the wind blows to as seen from the boat's sail: 0 from ahead to astern, > 0 to port
 /// [rad]. `scale` of the boat.
 [[nodiscard]] float apparent_wind_angle(
-    const Sailboat& boat,
-    const Floating& floating,
-    const Quat& rotation,
-    const Vec3& scale,
+    const Sailboat& boat, const Floating& floating, const Quat& rotation, const Vec3& scale,
     const Vec3& wind);
 
 /// Lets the boom swing for `step` [s] as far as the sheet lets it, and adds to `floating` what
 /// sail, keel and rudder do in it.
 void step_sailboat(
-    std::span<const WaterSurface> surfaces,
-    const Vec3& wind,
-    const WaterTouch& touch,
-    const Transform& transform,
-    float step,
-    Sailboat& boat,
-    Floating& floating);
+    std::span<const WaterSurface> surfaces, const Vec3& wind, const WaterTouch& touch,
+    const Transform& transform, float step, Sailboat& boat, Floating& floating);
 
 /// Hauls in and lets out the sheet as the wind wants it.
 void trim_sail(
-    const Floating& floating,
-    const Quat& rotation,
-    const Vec3& scale,
-    const Vec3& wind,
-    float step,
+    const Floating& floating, const Quat& rotation, const Vec3& scale, const Vec3& wind, float step,
     Sailboat& boat);
 
 /// Steers along `course`: straight at it where the wind lets it, else by tacks.
 void follow_course(
-    const PathData& course,
-    const WaterTouch& touch,
-    const Floating& floating,
-    const Transform& transform,
-    const Vec3& wind,
-    Sailboat& boat);
+    const PathData& course, const WaterTouch& touch, const Floating& floating,
+    const Transform& transform, const Vec3& wind, Sailboat& boat);
 
 }  // namespace limn

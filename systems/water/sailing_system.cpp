@@ -67,9 +67,7 @@ void update_sailboats(World& world) {
     const auto boats =
         world.query<Sailboat, const WaterTouch, Floating, const Transform, Without<Parent>>();
     std::vector<Sailing> sailing;
-    boats.each([&](Sailboat& boat,
-                   const WaterTouch& touch,
-                   Floating& floating,
+    boats.each([&](Sailboat& boat, const WaterTouch& touch, Floating& floating,
                    const Transform& transform) {
         const auto* camera = settings.find<Camera>(boat.camera);
         const bool listens = boat.player && (camera == nullptr || camera->active);
@@ -82,16 +80,10 @@ void update_sailboats(World& world) {
     }
     std::vector<WaterSurface> surfaces;
     const auto waters = world.query<
-        const Water,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
+        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
         Optional<const RippleState>>();
-    waters.each([&](const Water& water,
-                    const WorldTransform& place,
-                    const OceanState* ocean,
-                    const WaveTable* waves,
-                    const RippleState* ripples) {
+    waters.each([&](const Water& water, const WorldTransform& place, const OceanState* ocean,
+                    const WaveTable* waves, const RippleState* ripples) {
         surfaces.push_back({water_frame(place.world), water, ocean, waves, ripples});
     });
     const Vec3 wind = wind_of(world);
@@ -109,11 +101,7 @@ void update_sailboats(World& world) {
             }
             if (boat.trims_itself) {
                 trim_sail(
-                    floating,
-                    unit_or_none(transform.rotation),
-                    transform.scale,
-                    wind,
-                    time->step,
+                    floating, unit_or_none(transform.rotation), transform.scale, wind, time->step,
                     boat);
             }
             step_sailboat(surfaces, wind, touch, transform, time->step, boat, floating);

@@ -59,8 +59,7 @@ void leave_walls(
     for (const Ground& ground : grounds) {
         const Vec3 local = transform_point(ground.local_from_world, feet);
         const Vec3 past = {
-            ground.half.x + walker.radius - std::abs(local.x),
-            0,
+            ground.half.x + walker.radius - std::abs(local.x), 0,
             ground.half.z + walker.radius - std::abs(local.z)};
         const bool beside = local.y + step < ground.half.y && local.y + walker.eye > -ground.half.y;
         if (past.x <= 0 || past.z <= 0 || !beside) {
@@ -106,12 +105,8 @@ Ground make_ground(const Footing& footing, const Affine& world) {
 }
 
 void step_walker(
-    std::span<const Ground> grounds,
-    std::span<const WaterSurface> waters,
-    const Input& input,
-    float step,
-    Walker& walker,
-    Vec3& position) {
+    std::span<const Ground> grounds, std::span<const WaterSurface> waters, const Input& input,
+    float step, Walker& walker, Vec3& position) {
     if (!is_finite(position) || !is_finite(walker.velocity) || !(step > 0)) {
         return;
     }
@@ -186,16 +181,10 @@ void update_walkers(World& world) {
     std::vector<WaterSurface> waters;
     world
         .query<
-            const Water,
-            const WorldTransform,
-            Optional<const OceanState>,
-            Optional<const WaveTable>,
-            Optional<const RippleState>>()
-        .each([&](const Water& water,
-                  const WorldTransform& place,
-                  const OceanState* ocean,
-                  const WaveTable* waves,
-                  const RippleState* ripples) {
+            const Water, const WorldTransform, Optional<const OceanState>,
+            Optional<const WaveTable>, Optional<const RippleState>>()
+        .each([&](const Water& water, const WorldTransform& place, const OceanState* ocean,
+                  const WaveTable* waves, const RippleState* ripples) {
             waters.push_back({water_frame(place.world), water, ocean, waves, ripples});
         });
     struct Eyes {

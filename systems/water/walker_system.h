@@ -32,11 +32,7 @@ void update_walkers(World& world);
 
 /// One step [s]; `position` is between its feet.
 void step_walker(
-    std::span<const Ground> grounds,
-    std::span<const WaterSurface> waters,
-    const Input& input,
-    float step,
-    Walker& walker,
-    Vec3& position);
+    std::span<const Ground> grounds, std::span<const WaterSurface> waters, const Input& input,
+    float step, Walker& walker, Vec3& position);
 
 }  // namespace limn

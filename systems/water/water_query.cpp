@@ -34,8 +34,7 @@ WavePoint evaluate_cascade(const OceanCascade& cascade, float step, const Vec2& 
         const float* const near = plane.data() + corner.y * cascade.size;
         const float* const far = plane.data() + next_z * cascade.size;
         return glm::mix(
-            glm::mix(near[corner.x], near[next_x], u.x),
-            glm::mix(far[corner.x], far[next_x], u.x),
+            glm::mix(near[corner.x], near[next_x], u.x), glm::mix(far[corner.x], far[next_x], u.x),
             u.y);
     };
     WavePoint point;

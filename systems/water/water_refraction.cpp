@@ -51,8 +51,7 @@ float depth_at(const DepthGrid& grid, const Vec2& at) {
     const float* const first = grid.depth.data() + corner.y * grid.points.x + corner.x;
     return glm::mix(
         glm::mix(first[0], first[1], u.x),
-        glm::mix(first[grid.points.x], first[grid.points.x + 1], u.x),
-        u.y);
+        glm::mix(first[grid.points.x], first[grid.points.x + 1], u.x), u.y);
 }
 
 bool is_grid(const DepthGrid& grid) {
@@ -133,11 +132,7 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
 }
 
 std::vector<Vec2> trace_wave_ray(
-    const DepthGrid& grid,
-    float period,
-    const Vec2& from,
-    float direction,
-    float length,
+    const DepthGrid& grid, float period, const Vec2& from, float direction, float length,
     float step) {
     LIMN_CHECK(is_grid(grid));
     LIMN_CHECK(step > 0);

@@ -39,11 +39,7 @@ inline constexpr float kLeastWaveDepth = 0.05f;
 /// A ray of the same waves: from `from` [m] in `direction` [rad] for `length` [m], a point each
 /// `step` [m]. Ends at land and at the edge of the grid, whose point (0, 0) is at the origin.
 [[nodiscard]] std::vector<Vec2> trace_wave_ray(
-    const DepthGrid& grid,
-    float period,
-    const Vec2& from,
-    float direction,
-    float length,
+    const DepthGrid& grid, float period, const Vec2& from, float direction, float length,
     float step);
 
 /// Angle to the shore's normal over depth `to` of waves that have `angle` over depth `from` [rad].

@@ -70,9 +70,7 @@ void close_border(RippleState& state, std::vector<float>& field) {
 /// The border carries waves on as they come (Mur 1981, first order): `next` is one sub-step after
 /// `now`, both have their inner cells.
 void open_border(
-    const RippleState& state,
-    const std::vector<float>& now,
-    std::vector<float>& next,
+    const RippleState& state, const std::vector<float>& now, std::vector<float>& next,
     float courant) {
     const float share = (courant - 1) / (courant + 1);
     const auto carry = [&](std::size_t ghost, std::size_t inner) {
@@ -264,8 +262,7 @@ void push_all(RippleState& state) {
                 log_warn(
                     "ripples: {} impulses of one step dropped, all others push {} cells "
                     "(kMaxPushedCells)",
-                    state.dropped,
-                    cells);
+                    state.dropped, cells);
             });
             break;
         }
@@ -317,19 +314,15 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
             close_border(state, state.height);
         }
         parallel_for(
-            static_cast<std::size_t>(state.cells.y),
-            kRowGrain,
+            static_cast<std::size_t>(state.cells.y), kRowGrain,
             [&](std::size_t begin, std::size_t end) {
                 for (std::size_t z = begin; z < end; ++z) {
                     const int row = static_cast<int>(z);
                     const float* const heights = state.height.data();
                     step_ripple_row(
-                        {heights + state.at(0, row - 1),
-                         heights + state.at(0, row),
+                        {heights + state.at(0, row - 1), heights + state.at(0, row),
                          heights + state.at(0, row + 1)},
-                        {state.before.data() + state.at(0, row), width},
-                        columns,
-                        row_keeps[z],
+                        {state.before.data() + state.at(0, row), width}, columns, row_keeps[z],
                         courant2);
                 }
                 close_faces(state, begin, end, courant2 / 6.0f);
@@ -360,8 +353,7 @@ RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
     const auto blend = [&](const std::vector<float>& field) {
         return glm::mix(
             glm::mix(field[first], field[first + 1], u.x),
-            glm::mix(field[below], field[below + 1], u.x),
-            u.y);
+            glm::mix(field[below], field[below + 1], u.x), u.y);
     };
     const std::vector<float>& h = state.height;
     RipplePoint point;
@@ -370,8 +362,7 @@ RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
     point.slope = glm::mix(
         glm::mix(slope_at(state, corner.x, corner.y), slope_at(state, corner.x + 1, corner.y), u.x),
         glm::mix(
-            slope_at(state, corner.x, corner.y + 1),
-            slope_at(state, corner.x + 1, corner.y + 1),
+            slope_at(state, corner.x, corner.y + 1), slope_at(state, corner.x + 1, corner.y + 1),
             u.x),
         u.y);
     return point;

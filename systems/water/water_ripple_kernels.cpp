@@ -11,10 +11,7 @@ namespace limn::HWY_NAMESPACE {
 
 /// Returns how many cells it has done, from the first on; the rest is for the scalar version.
 std::size_t step_ripple_row_vector(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2) {
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
     (void)rows;
@@ -63,12 +60,8 @@ HWY_EXPORT(step_ripple_row_vector);
 namespace {
 
 void step_cells(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
-    float courant2,
-    std::size_t first) {
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
+    float courant2, std::size_t first) {
     const float factor = courant2 / 6.0f;
     for (std::size_t x = first; x < before.size(); ++x) {
         const float* n = rows.north + x;
@@ -85,10 +78,7 @@ void step_cells(
 }  // namespace
 
 void step_ripple_row(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2) {
     const std::size_t done =
         HWY_DYNAMIC_DISPATCH(step_ripple_row_vector)(rows, before, keep, keep_row, courant2);
@@ -96,10 +86,7 @@ void step_ripple_row(
 }
 
 void step_ripple_row_scalar(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2) {
     step_cells(rows, before, keep, keep_row, courant2, 0);
 }

@@ -23,16 +23,10 @@ struct RippleRows {
 /// L is the isotropic Laplacian of nine points (Patra and Karttunen 2006), (4 edges + corners - 20)
 /// / 6; stable for courant2 = (c dt / cell)^2 <= 3/4. What a cell gains by it a neighbor loses.
 void step_ripple_row(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2);
 void step_ripple_row_scalar(
-    const RippleRows& rows,
-    std::span<float> before,
-    const float* keep,
-    float keep_row,
+    const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2);
 
 }  // namespace limn

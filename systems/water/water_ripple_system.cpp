@@ -118,8 +118,7 @@ void step_pool(const Pool& pool, const Surroundings& around, Random& random, flo
 }  // namespace
 
 void add_ripple_states(
-    Query<const Water, const WaterRipples, Without<RippleState>> bare,
-    Res<const FrameTime> time,
+    Query<const Water, const WaterRipples, Without<RippleState>> bare, Res<const FrameTime> time,
     Commands commands) {
     bare.each([&](Entity entity, const Water& water, const WaterRipples& ripples) {
         commands.add(entity, make_ripples(water, ripples, time->step));
@@ -128,22 +127,15 @@ void add_ripple_states(
 
 void update_water_ripples(
     Query<
-        const Water,
-        const WaterRipples,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        RippleState> waters,
+        const Water, const WaterRipples, const WorldTransform, Optional<const OceanState>,
+        Optional<const WaveTable>, RippleState>
+        waters,
     Query<
-        const WaterTouch,
-        const WorldTransform,
-        Optional<const TouchParts>,
-        Optional<const Deformed>> bodies,
-    Query<const Pose> poses,
-    Query<const WaterWall, const WorldTransform> walls,
-    Res<const Assets> assets,
-    Res<const RandomSeed> seed,
-    Res<const FrameTime> time) {
+        const WaterTouch, const WorldTransform, Optional<const TouchParts>,
+        Optional<const Deformed>>
+        bodies,
+    Query<const Pose> poses, Query<const WaterWall, const WorldTransform> walls,
+    Res<const Assets> assets, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     thread_local Surroundings surroundings;  // all keep their memory from step to step
     thread_local std::vector<TouchingShape> shapes;
     thread_local std::vector<Pool> pools;
@@ -152,18 +144,12 @@ void update_water_ripples(
     surroundings.widest = 0;
     pools.clear();
     shapes.clear();
-    bodies.each([&](const WaterTouch& touch,
-                    const WorldTransform& place,
-                    const TouchParts* parts,
+    bodies.each([&](const WaterTouch& touch, const WorldTransform& place, const TouchParts* parts,
                     const Deformed* deformed) {
         const bool skinned = deformed != nullptr && deformed->skin.index < assets->skins.size();
         add_touching_shapes(
-            touch,
-            place.world,
-            parts,
-            skinned ? &assets->skins[deformed->skin.index] : nullptr,
-            skinned ? poses.find<const Pose>(deformed->character) : nullptr,
-            shapes);
+            touch, place.world, parts, skinned ? &assets->skins[deformed->skin.index] : nullptr,
+            skinned ? poses.find<const Pose>(deformed->character) : nullptr, shapes);
     });
     for (const TouchingShape& shape : shapes) {
         const float x = transform_point(shape.world, shape.offset).x;
@@ -181,12 +167,8 @@ void update_water_ripples(
     });
     sort_along_x(surroundings.bodies);
     sort_along_x(surroundings.walls);
-    waters.each([&](Entity entity,
-                    const Water& water,
-                    const WaterRipples& ripples,
-                    const WorldTransform& place,
-                    const OceanState* ocean,
-                    const WaveTable* waves,
+    waters.each([&](Entity entity, const Water& water, const WaterRipples& ripples,
+                    const WorldTransform& place, const OceanState* ocean, const WaveTable* waves,
                     RippleState& state) {
         const WaterSurface surface = {water_frame(place.world), water, ocean, waves};
         pools.push_back({entity, &ripples, surface, &state});

@@ -18,29 +18,21 @@ namespace limn {
 /// Gives a RippleState at rest to every Water with WaterRipples that lacks one. Before
 /// update_water_ripples, with a sync point between.
 void add_ripple_states(
-    Query<const Water, const WaterRipples, Without<RippleState>> bare,
-    Res<const FrameTime> time,
+    Query<const Water, const WaterRipples, Without<RippleState>> bare, Res<const FrameTime> time,
     Commands commands);
 
 /// Walls, what touches the water, rain, then a step of the wave equation. A state whose grid no
 /// longer fits the settings begins anew, at rest.
 void update_water_ripples(
     Query<
-        const Water,
-        const WaterRipples,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        RippleState> waters,
+        const Water, const WaterRipples, const WorldTransform, Optional<const OceanState>,
+        Optional<const WaveTable>, RippleState>
+        waters,
     Query<
-        const WaterTouch,
-        const WorldTransform,
-        Optional<const TouchParts>,
-        Optional<const Deformed>> bodies,
-    Query<const Pose> poses,
-    Query<const WaterWall, const WorldTransform> walls,
-    Res<const Assets> assets,
-    Res<const RandomSeed> seed,
-    Res<const FrameTime> time);
+        const WaterTouch, const WorldTransform, Optional<const TouchParts>,
+        Optional<const Deformed>>
+        bodies,
+    Query<const Pose> poses, Query<const WaterWall, const WorldTransform> walls,
+    Res<const Assets> assets, Res<const RandomSeed> seed, Res<const FrameTime> time);
 
 }  // namespace limn

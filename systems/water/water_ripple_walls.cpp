@@ -155,8 +155,7 @@ void make_faces(RippleState& state, std::span<const IVec2> dry) {
                 if (change != 0) {
                     state.faces.push_back(
                         {static_cast<std::uint32_t>(at),
-                         static_cast<std::uint32_t>(state.at(other.x, other.y)),
-                         change});
+                         static_cast<std::uint32_t>(state.at(other.x, other.y)), change});
                 }
             }
         }
@@ -307,10 +306,7 @@ void lower_bodies(RippleState& state) {
 }  // namespace
 
 std::optional<PlacedWall> place_wall(
-    const WaterWall& wall,
-    const Affine& world,
-    const WaterFrame& frame,
-    float depth,
+    const WaterWall& wall, const Affine& world, const WaterFrame& frame, float depth,
     const Vec2& extent) {
     const WaterShape shape = place_shape(wall.shape, wall.half, wall.offset, world, frame);
     const Mat3 axes(shape.axes[0], shape.axes[1], shape.axes[2]);

@@ -26,10 +26,7 @@ namespace limn {
 /// What a wall at `world` is to a field of this extent with a bottom at `depth` (0: none); nothing
 /// if it is not in it, or nowhere.
 [[nodiscard]] std::optional<PlacedWall> place_wall(
-    const WaterWall& wall,
-    const Affine& world,
-    const WaterFrame& frame,
-    float depth,
+    const WaterWall& wall, const Affine& world, const WaterFrame& frame, float depth,
     const Vec2& extent);
 
 /// Makes these its walls. What stands there before the first step was there before the water;

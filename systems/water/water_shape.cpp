@@ -29,10 +29,7 @@ float unit_volume(WallShape shape) {
 }  // namespace
 
 WaterShape place_shape(
-    WallShape shape,
-    const Vec3& half,
-    const Vec3& offset,
-    const Affine& world,
+    WallShape shape, const Vec3& half, const Vec3& offset, const Affine& world,
     const WaterFrame& frame) {
     WaterShape placed;
     placed.shape = shape;

@@ -19,10 +19,7 @@ struct WaterShape {
 
 /// `half` extents about `offset`, both in the space of an entity at `world`.
 [[nodiscard]] WaterShape place_shape(
-    WallShape shape,
-    const Vec3& half,
-    const Vec3& offset,
-    const Affine& world,
+    WallShape shape, const Vec3& half, const Vec3& offset, const Affine& world,
     const WaterFrame& frame);
 
 /// What of it is below `height`, in the water's own space [m^3].

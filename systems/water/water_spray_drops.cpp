@@ -71,10 +71,7 @@ float steepness(const WaveLine& line) {
 }
 
 void spray_crests(
-    const WaterSurface& surface,
-    const SpraySource& source,
-    float step,
-    Random& random,
+    const WaterSurface& surface, const SpraySource& source, float step, Random& random,
     std::vector<SprayDrop>& drops) {
     if (surface.waves == nullptr) {
         return;
@@ -113,13 +110,8 @@ float impact_share(float phase) {
 }
 
 void spray_impact(
-    const WaterSurface& surface,
-    const SprayObstacle& obstacle,
-    const Vec3& point,
-    const Vec3& normal,
-    float step,
-    Random& random,
-    std::vector<SprayDrop>& drops) {
+    const WaterSurface& surface, const SprayObstacle& obstacle, const Vec3& point,
+    const Vec3& normal, float step, Random& random, std::vector<SprayDrop>& drops) {
     if (surface.waves == nullptr) {
         return;
     }

@@ -23,10 +23,7 @@ namespace limn {
 /// Adds the drops that fly in a step from crests of waves steeper than `source` says: from random
 /// places within 5 % of the crest's height, at about Q along the wave.
 void spray_crests(
-    const WaterSurface& surface,
-    const SpraySource& source,
-    float step,
-    Random& random,
+    const WaterSurface& surface, const SpraySource& source, float step, Random& random,
     std::vector<SprayDrop>& drops);
 
 /// Share of the most spray while the wave is `phase` [rad] away from its crest: cos^4, 0 from a
@@ -36,12 +33,7 @@ void spray_crests(
 /// Adds the drops that fly in a step from where the strongest wave hits a wall at `point`: at about
 /// Q, in a cone about the way that it would be thrown back. `normal` is unit.
 void spray_impact(
-    const WaterSurface& surface,
-    const SprayObstacle& obstacle,
-    const Vec3& point,
-    const Vec3& normal,
-    float step,
-    Random& random,
-    std::vector<SprayDrop>& drops);
+    const WaterSurface& surface, const SprayObstacle& obstacle, const Vec3& point,
+    const Vec3& normal, float step, Random& random, std::vector<SprayDrop>& drops);
 
 }  // namespace limn

@@ -24,28 +24,18 @@ void add_spray_drops(
 
 void update_spray(
     Query<
-        const Water,
-        const WorldTransform,
-        const WaveTable,
-        Optional<const OceanState>,
-        Optional<const RippleState>,
-        Optional<const SpraySource>,
-        Optional<SprayDrops>> waters,
+        const Water, const WorldTransform, const WaveTable, Optional<const OceanState>,
+        Optional<const RippleState>, Optional<const SpraySource>, Optional<SprayDrops>>
+        waters,
     Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
-    Res<const RandomSeed> seed,
-    Res<const FrameTime> time) {
+    Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const auto random_of = [&](Entity entity) {
         return Random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
     };
     std::vector<WaterSurface> surfaces;
-    waters.each([&](Entity entity,
-                    const Water& water,
-                    const WorldTransform& place,
-                    const WaveTable& waves,
-                    const OceanState* ocean,
-                    const RippleState* ripples,
-                    const SpraySource* source,
-                    SprayDrops* drops) {
+    waters.each([&](Entity entity, const Water& water, const WorldTransform& place,
+                    const WaveTable& waves, const OceanState* ocean, const RippleState* ripples,
+                    const SpraySource* source, SprayDrops* drops) {
         const WaterSurface surface = {water_frame(place.world), water, ocean, &waves, ripples};
         surfaces.push_back(surface);
         if (source != nullptr && drops != nullptr) {
@@ -54,9 +44,7 @@ void update_spray(
             spray_crests(surface, *source, time->step, random, drops->drops);
         }
     });
-    obstacles.each([&](Entity entity,
-                       const SprayObstacle& obstacle,
-                       const WorldTransform& place,
+    obstacles.each([&](Entity entity, const SprayObstacle& obstacle, const WorldTransform& place,
                        SprayDrops& drops) {
         drops.drops.clear();
         Random random = random_of(entity);

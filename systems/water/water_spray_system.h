@@ -23,15 +23,10 @@ void add_spray_drops(
 /// fill_wave_tables.
 void update_spray(
     Query<
-        const Water,
-        const WorldTransform,
-        const WaveTable,
-        Optional<const OceanState>,
-        Optional<const RippleState>,
-        Optional<const SpraySource>,
-        Optional<SprayDrops>> waters,
+        const Water, const WorldTransform, const WaveTable, Optional<const OceanState>,
+        Optional<const RippleState>, Optional<const SpraySource>, Optional<SprayDrops>>
+        waters,
     Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
-    Res<const RandomSeed> seed,
-    Res<const FrameTime> time);
+    Res<const RandomSeed> seed, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -58,16 +58,12 @@ void create_stone(
 }  // namespace
 
 void throw_stones(
-    Query<StoneThrower> throwers,
-    Query<const ThrownStone> stones,
+    Query<StoneThrower> throwers, Query<const ThrownStone> stones,
     Query<
-        const Water,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        Optional<RippleState>> waters,
-    Res<Input> input,
-    Commands commands) {
+        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
+        Optional<RippleState>>
+        waters,
+    Res<Input> input, Commands commands) {
     if (!std::as_const(*input).click) {
         return;
     }
@@ -78,11 +74,8 @@ void throw_stones(
     }
     throwers.each([&](StoneThrower& thrower) {
         std::optional<Target> target;
-        waters.each([&](const Water& water,
-                        const WorldTransform& place,
-                        const OceanState* ocean,
-                        const WaveTable* waves,
-                        RippleState* ripples) {
+        waters.each([&](const Water& water, const WorldTransform& place, const OceanState* ocean,
+                        const WaveTable* waves, RippleState* ripples) {
             const WaterSurface surface = {water_frame(place.world), water, ocean, waves, ripples};
             const auto point = hit_water(surface, input->eye, along, thrower.reach);
             const float distance = point ? glm::distance(point->position, input->eye) : 0.0f;

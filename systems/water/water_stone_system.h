@@ -16,16 +16,12 @@ namespace limn {
 /// Takes a click: one stone for each StoneThrower, if the pointer is on water. Before
 /// update_floating_bodies, which lets them fly from the next step on.
 void throw_stones(
-    Query<StoneThrower> throwers,
-    Query<const ThrownStone> stones,
+    Query<StoneThrower> throwers, Query<const ThrownStone> stones,
     Query<
-        const Water,
-        const WorldTransform,
-        Optional<const OceanState>,
-        Optional<const WaveTable>,
-        Optional<RippleState>> waters,
-    Res<Input> input,
-    Commands commands);
+        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
+        Optional<RippleState>>
+        waters,
+    Res<Input> input, Commands commands);
 
 /// Velocity with which what falls freely from `from` is at `to` after the time that it takes at
 /// `speed` along the straight way [m/s].

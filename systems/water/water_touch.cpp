@@ -81,13 +81,9 @@ TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin) {
 void add_touch_parts(
     Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Optional<TouchParts>>
         bodies,
-    Res<const Assets> assets,
-    Commands commands) {
-    bodies.each([&](Entity entity,
-                    const WaterTouch& touch,
-                    const MeshInstance& instance,
-                    const Deformed* deformed,
-                    TouchParts* parts) {
+    Res<const Assets> assets, Commands commands) {
+    bodies.each([&](Entity entity, const WaterTouch& touch, const MeshInstance& instance,
+                    const Deformed* deformed, TouchParts* parts) {
         if (touch.shape != TouchShape::Mesh || instance.mesh.index >= assets->meshes.size()) {
             return;
         }
@@ -111,12 +107,8 @@ void add_touch_parts(
 }
 
 void add_touching_shapes(
-    const WaterTouch& touch,
-    const Affine& world,
-    const TouchParts* parts,
-    const SkinData* skin,
-    const Pose* pose,
-    std::vector<TouchingShape>& shapes) {
+    const WaterTouch& touch, const Affine& world, const TouchParts* parts, const SkinData* skin,
+    const Pose* pose, std::vector<TouchingShape>& shapes) {
     switch (touch.shape) {
     case TouchShape::Ball:
         shapes.push_back({WallShape::Ball, Vec3(touch.half.x), touch.offset, world});

@@ -43,18 +43,13 @@ struct TouchingShape {
 void add_touch_parts(
     Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Optional<TouchParts>>
         bodies,
-    Res<const Assets> assets,
-    Commands commands);
+    Res<const Assets> assets, Commands commands);
 
 /// Adds the shapes of one body to `shapes`. `parts`: of a mesh, or nullptr; the joints of a mesh
 /// without pose or skin are at rest.
 void add_touching_shapes(
-    const WaterTouch& touch,
-    const Affine& world,
-    const TouchParts* parts,
-    const SkinData* skin,
-    const Pose* pose,
-    std::vector<TouchingShape>& shapes);
+    const WaterTouch& touch, const Affine& world, const TouchParts* parts, const SkinData* skin,
+    const Pose* pose, std::vector<TouchingShape>& shapes);
 
 /// What `shape` pushes up in water whose surface, without ripples, is `surface`, `level` [m]
 /// higher. Nothing where its middle is not over a field of this extent.

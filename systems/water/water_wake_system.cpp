@@ -22,12 +22,8 @@ constexpr int kMostAStep = 16;
 
 /// A ring that began at `at` of the world some time ago.
 void add_ring(
-    const WakeEmitter& wake,
-    const Vec2& at,
-    float speed,
-    float age,
-    Query<const Water, const WorldTransform, WaterWaves> waters,
-    float height) {
+    const WakeEmitter& wake, const Vec2& at, float speed, float age,
+    Query<const Water, const WorldTransform, WaterWaves> waters, float height) {
     waters.each([&](const Water& water, const WorldTransform& place, WaterWaves& waves) {
         const WaterFrame frame = water_frame(place.world);
         const Vec3 local = frame.local({at.x, height, at.y});
@@ -54,8 +50,7 @@ float kelvin_length(float speed) {
 
 void emit_wakes(
     Query<WakeEmitter, const WorldTransform> emitters,
-    Query<const Water, const WorldTransform, WaterWaves> waters,
-    Res<const FrameTime> time) {
+    Query<const Water, const WorldTransform, WaterWaves> waters, Res<const FrameTime> time) {
     emitters.each([&](WakeEmitter& wake, const WorldTransform& place) {
         const Affine& world = place.world;
         const Vec2 now = {world.row[0].w, world.row[2].w};

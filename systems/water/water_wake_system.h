@@ -25,7 +25,6 @@ inline constexpr float kKelvinAngle = 0.33983691f;
 /// age_wave_packets. Who stands, jumps or is away from water leaves none.
 void emit_wakes(
     Query<WakeEmitter, const WorldTransform> emitters,
-    Query<const Water, const WorldTransform, WaterWaves> waters,
-    Res<const FrameTime> time);
+    Query<const Water, const WorldTransform, WaterWaves> waters, Res<const FrameTime> time);
 
 }  // namespace limn

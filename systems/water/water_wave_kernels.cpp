@@ -79,9 +79,7 @@ HWY_INLINE SinCos sin_cos(V angle) {
 
 /// Returns how many points it has done, from the first on; the rest is for the scalar version.
 std::size_t sum_waves_vector(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets) {
     const std::size_t lanes = hn::Lanes(d);
     const V zero = hn::Zero(d);
@@ -150,11 +148,8 @@ ScalarSinCos sin_cos(float angle) {
 }
 
 void sum_from(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
-    const WaveOffsets& offsets,
-    std::size_t first) {
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
+    const WaveOffsets& offsets, std::size_t first) {
     for (std::size_t i = first; i < x.size(); ++i) {
         Vec3 sum(0);
         for (const WaveLine& line : lines) {
@@ -177,17 +172,13 @@ void sum_from(
 }  // namespace
 
 void sum_waves(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets) {
     sum_from(lines, x, z, offsets, HWY_DYNAMIC_DISPATCH(sum_waves_vector)(lines, x, z, offsets));
 }
 
 void sum_waves_scalar(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets) {
     sum_from(lines, x, z, offsets, 0);
 }

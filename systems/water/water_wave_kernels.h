@@ -22,14 +22,10 @@ struct WaveOffsets {
 /// them. Off by 1e-6 of the sum of amplitudes within 1e4 waves of the origin. All spans have one
 /// length.
 void sum_waves(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets);
 void sum_waves_scalar(
-    std::span<const WaveLine> lines,
-    std::span<const float> x,
-    std::span<const float> z,
+    std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets);
 
 }  // namespace limn

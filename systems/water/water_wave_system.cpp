@@ -26,9 +26,7 @@ void age_wave_packets(Query<WaterWaves> waters, Res<const FrameTime> time) {
 void fill_wave_tables(
     Query<const Water, const WaterWaves, WaveTable, Optional<const WaterDetail>> waters,
     Res<const FrameTime> time) {
-    waters.each([&](const Water& water,
-                    const WaterWaves& waves,
-                    WaveTable& table,
+    waters.each([&](const Water& water, const WaterWaves& waves, WaveTable& table,
                     const WaterDetail* detail) {
         fill_wave_table(water, waves, time->time, table);
         if (detail != nullptr && detail->split > 0) {

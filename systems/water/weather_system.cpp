@@ -26,8 +26,7 @@ constexpr float kWetLens = 0.45f;   // of LensRain::amount
 Weather turn_weather(const Weather& weather, const Vec3& turn, float step) {
     Weather turned = weather;
     turned.wind_speed = std::clamp(
-        turned.wind_speed + turn.y * kWindPace * step,
-        0.0f,
+        turned.wind_speed + turn.y * kWindPace * step, 0.0f,
         std::max(turned.wind_speed, kStrongestWind));
     turned.wind_direction =
         std::remainder(turned.wind_direction + turn.x * kTurnPace * step, 2 * kPi);

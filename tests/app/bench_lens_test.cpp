@@ -108,8 +108,8 @@ TEST_CASE("bench_lens: limn bench lens runs each effect's own passes") {
     CHECK(run.exit_code == 0);
     CHECK(run.out.find("temporal antialiasing") != std::string::npos);
     const nlohmann::json json = nlohmann::json::parse(test::read_text(folder.file("b.json")));
-    const char* passes[] = {
-        nullptr, "temporal", "ripple", "motion blur", "focus.compose", "glow", "glare", "ripple"};
+    const char* passes[] = {nullptr,         "temporal", "ripple", "motion blur",
+                            "focus.compose", "glow",     "glare",  "ripple"};
     REQUIRE(json["points"].size() == std::size(passes));
     for (std::size_t i = 0; i < std::size(passes); ++i) {
         const auto& its = json["points"][i]["passes"];

@@ -96,17 +96,8 @@ TEST_CASE("bench_lights: the table has a line a number of lights, and says what 
 TEST_CASE("bench_lights: limn bench lights measures all five methods in one run") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
-        folder,
-        {"bench",
-         "lights",
-         "--frames",
-         "1",
-         "--warmup",
-         "1",
-         "--size",
-         "32x18",
-         "--json",
-         "b.json"});
+        folder, {"bench", "lights", "--frames", "1", "--warmup", "1", "--size", "32x18", "--json",
+                 "b.json"});
     CHECK(run.exit_code == 0);
     CHECK(run.out.find("light_major") != std::string::npos);
     const nlohmann::json json = nlohmann::json::parse(test::read_text(folder.file("b.json")));

@@ -58,14 +58,7 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play",
-          "render",
-          "bench",
-          "hash",
-          "quality",
-          "compare",
-          "info",
-          "levels",
+         {"play", "render", "bench", "hash", "quality", "compare", "info", "levels",
           "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
@@ -120,15 +113,8 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
     test::write_text(folder.file("junk.glb"), "this is no GLB file at all, is it");
     std::filesystem::create_directory(folder.file("folder.glb"));
     for (const char* scene :
-         {"missing.glb",
-          "missing.level.json",
-          "folder.glb",
-          "empty.glb",
-          "empty.gltf",
-          "empty.level.json",
-          "junk.glb",
-          ".",
-          "no-such-level"}) {
+         {"missing.glb", "missing.level.json", "folder.glb", "empty.glb", "empty.gltf",
+          "empty.level.json", "junk.glb", ".", "no-such-level"}) {
         check_fails(folder, {"render", scene, "-o", "a.png"}, 1, scene);
         check_fails(folder, {"hash", scene, "--frames", "1"}, 1, scene);
         check_fails(folder, {"info", scene}, 1, scene);

@@ -11,20 +11,8 @@ TEST_CASE("command_values: a size is two whole numbers of pixels") {
     REQUIRE(size);
     CHECK(*size == IVec2(1280, 720));
     for (const char* bad :
-         {"",
-          "x",
-          "640",
-          "640x",
-          "x360",
-          "640x360x2",
-          "640 x 360",
-          "0x360",
-          "-1x5",
-          "640x99999",
-          "16384x16384",
-          "99999999999x1",
-          "6e2x360",
-          "640X360"}) {
+         {"", "x", "640", "640x", "x360", "640x360x2", "640 x 360", "0x360", "-1x5", "640x99999",
+          "16384x16384", "99999999999x1", "6e2x360", "640X360"}) {
         CAPTURE(bad);
         CHECK_FALSE(parse_size(bad));
     }

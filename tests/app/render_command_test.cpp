@@ -64,17 +64,8 @@ TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by
     const Picture picture = read_picture(folder.file("a.exr"));
     REQUIRE(picture.whole);
     for (const char* name :
-         {"R",
-          "G",
-          "B",
-          "depth.Z",
-          "normal.X",
-          "normal.Y",
-          "normal.Z",
-          "albedo.R",
-          "velocity.X",
-          "velocity.Y",
-          "emission.B"}) {
+         {"R", "G", "B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "albedo.R", "velocity.X",
+          "velocity.Y", "emission.B"}) {
         CAPTURE(name);
         CHECK(picture.channel(name) >= 0);
     }
@@ -112,17 +103,8 @@ TEST_CASE("render_command: the EXR of a matte plane under a point light is the c
     constexpr int kWidth = 64;
     constexpr int kHeight = 36;
     check_ok(run_limn(
-        folder,
-        {"render",
-         "plane.level.json",
-         "-o",
-         "a.exr",
-         "--size",
-         "64x36",
-         "--spp",
-         "1",
-         "--aov",
-         "depth,normal,albedo"}));
+        folder, {"render", "plane.level.json", "-o", "a.exr", "--size", "64x36", "--spp", "1",
+                 "--aov", "depth,normal,albedo"}));
     const Picture picture = read_picture(folder.file("a.exr"));
     REQUIRE(picture.whole);
     REQUIRE(picture.width == kWidth);
@@ -242,19 +224,8 @@ TEST_CASE("render_command: killed at any moment, it leaves whole files only") {
 TEST_CASE("render_command: bench writes JSON and CSV that hold a line a pass") {
     const TemporaryFolder folder;
     const ProgramRun run = run_limn(
-        folder,
-        {"bench",
-         "gallery",
-         "--frames",
-         "3",
-         "--warmup",
-         "1",
-         "--size",
-         "64x36",
-         "--json",
-         "b.json",
-         "--csv",
-         "b.csv"});
+        folder, {"bench", "gallery", "--frames", "3", "--warmup", "1", "--size", "64x36", "--json",
+                 "b.json", "--csv", "b.csv"});
     check_ok(run);
     CHECK(run.out.find("median") != std::string::npos);
     const std::string json = test::read_text(folder.file("b.json"));

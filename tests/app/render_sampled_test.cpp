@@ -125,28 +125,12 @@ TEST_CASE(
         "");
     // The middle of the way is at 1 s: 24 sin(0.1) = 2.396 m, so the camera looks there.
     const Picture blurred = render(
-        folder,
-        text,
-        {"--frames",
-         "2:2",
-         "--fps",
-         "2",
-         "--spp",
-         "256",
-         "--set",
+        folder, text,
+        {"--frames", "2:2", "--fps", "2", "--spp", "256", "--set",
          "view.transform.position=[2.396,0,2]"});
     const Picture still = render(
-        folder,
-        text,
-        {"--frames",
-         "2:2",
-         "--fps",
-         "2",
-         "--spp",
-         "256",
-         "--set",
-         "motion_blur.shutter=0",
-         "--set",
+        folder, text,
+        {"--frames", "2:2", "--fps", "2", "--spp", "256", "--set", "motion_blur.shutter=0", "--set",
          "view.transform.position=[2.396,0,2]"});
     const double way = 24 * 0.1 * std::cos(0.1) * 0.25 * 27;  // [px]
     const double width = 0.5 * 27;
@@ -195,8 +179,7 @@ TEST_CASE("render sampled: out of focus a small light is a disc of the circle of
     // f = 0.024 m / 2 behind tan(0.4636) = 0.5; the eye is 2 m away and focused at 1 m.
     const TemporaryFolder folder;
     const std::string text = level(
-        "",
-        R"json(, "transform": {"position": [0, 0, 0], "scale": [0.1, 0.1, 1]})json",
+        "", R"json(, "transform": {"position": [0, 0, 0], "scale": [0.1, 0.1, 1]})json",
         R"json(, "lens": {"f_number": 0.125, "focus_distance": 1})json");
     const Picture picture = render(folder, text, {"--spp", "1024"});
     // Film 0.024 m high behind a field of view of 2 tan = 1: v = 0.024, 1/F = 1/v + 1.

@@ -81,23 +81,15 @@ TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
     };
     for (const Setting& s : {Setting{0, 0, 0, 2.2}, Setting{2.5, 0.01, 0.7, 2.8}}) {
         const test::Pixels picture = shown(
-            folder,
-            {"--ev",
-             std::to_string(s.ev),
-             "--defog",
-             std::to_string(s.defog),
-             "--contrast",
-             std::to_string(s.contrast),
-             "--gamma",
-             std::to_string(s.gamma)});
+            folder, {"--ev", std::to_string(s.ev), "--defog", std::to_string(s.defog), "--contrast",
+                     std::to_string(s.contrast), "--gamma", std::to_string(s.gamma)});
         REQUIRE(picture.width == kWidth);
         REQUIRE(picture.height == kHeight);
         int wrong = 0;
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             for (int c = 0; c < 3; ++c) {
                 const double want = oracle::knee_map(
-                    pixels[i][c],
-                    s.defog * mean[c],
+                    pixels[i][c], s.defog * mean[c],
                     {.exposure = std::exp2(s.ev), .contrast = s.contrast, .exponent = 1 / s.gamma});
                 const double code = std::round(255 * std::min(want, 1.0));
                 wrong += std::abs(picture.bytes[3 * i + c] - code) > 1 ? 1 : 0;

@@ -71,19 +71,10 @@ class VirtualDisplay {
                 std::to_string(kDisplayWidth) + "x" + std::to_string(kDisplayHeight) + "x24";
             const std::string path = folder.path();
             execlp(
-                "Xvfb",
-                "Xvfb",
-                "-displayfd",
-                "9",
-                "-screen",
-                "0",
-                size.c_str(),
-                "-fbdir",
+                "Xvfb", "Xvfb", "-displayfd", "9", "-screen", "0", size.c_str(), "-fbdir",
                 path.c_str(),
                 "-nocursor",  // the screen's memory would hold the pointer
-                "-nolisten",
-                "tcp",
-                nullptr);
+                "-nolisten", "tcp", nullptr);
             _exit(127);
         }
         close(ends[1]);

@@ -110,10 +110,8 @@ void check_growth(
     }
     const double blocks = static_cast<double>(work[1].blocks) / static_cast<double>(work[0].blocks);
     std::printf(
-        "complexity: %-40s %7.1f blocks each, x %.2f, %7.1f heap bytes each\n",
-        what.c_str(),
-        static_cast<double>(work[0].blocks) / static_cast<double>(n),
-        blocks,
+        "complexity: %-40s %7.1f blocks each, x %.2f, %7.1f heap bytes each\n", what.c_str(),
+        static_cast<double>(work[0].blocks) / static_cast<double>(n), blocks,
         static_cast<double>(work[0].bytes) / static_cast<double>(n));
     CAPTURE(what);
     CHECK(blocks <= 2.3);

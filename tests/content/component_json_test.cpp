@@ -377,8 +377,7 @@ TEST_CASE("component json: assets are found at any depth") {
     Material material;
     int images = 0;
     for_each_asset(
-        component_info<Material>().fields,
-        &material,
+        component_info<Material>().fields, &material,
         [&](std::string_view kind, std::uint32_t& index) {
             CHECK(kind == "image");
             index = 3;

@@ -54,9 +54,7 @@ const Gait& gait_named(std::string_view name) {
 }
 
 constexpr CreatureJoint kFeet[kLegs] = {
-    CreatureJoint::LeftPaw,
-    CreatureJoint::RightPaw,
-    CreatureJoint::LeftFoot,
+    CreatureJoint::LeftPaw, CreatureJoint::RightPaw, CreatureJoint::LeftFoot,
     CreatureJoint::RightFoot};
 
 std::vector<Affine> joints_at(const ClipData& clip, float time) {

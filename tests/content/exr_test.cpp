@@ -101,10 +101,7 @@ TEST_CASE("exr: every half goes through a float and back without a change") {
 TEST_CASE("exr: a half picture reads back bit for bit with every compression") {
     const ExrImage image = make_all_halves();
     for (const ExrCompression compression :
-         {ExrCompression::None,
-          ExrCompression::Rle,
-          ExrCompression::Zips,
-          ExrCompression::Zip,
+         {ExrCompression::None, ExrCompression::Rle, ExrCompression::Zips, ExrCompression::Zip,
           ExrCompression::Piz}) {
         const std::vector<std::byte> bytes = bytes_of(image, compression);
         const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};

@@ -84,12 +84,7 @@ struct Arm {
             "skins": [{{"name": "cloth", "joints": {}, "inverseBindMatrices": 5}}],
             "nodes": {}, "scenes": [{{"nodes": {}}}],
             "animations": [{{"name": "wave", "channels": {}, "samplers": {}}}]}})",
-            numbers.json(),
-            joints,
-            nodes,
-            roots,
-            channels,
-            samplers);
+            numbers.json(), joints, nodes, roots, channels, samplers);
         return parse_gltf(make_glb(json, numbers.bytes()), "arm.glb", "");
     }
 };

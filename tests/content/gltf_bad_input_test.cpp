@@ -57,8 +57,7 @@ std::string write_gltf(const TemporaryFolder& folder, const std::string& uri) {
 /// The square with a base color from the image `uri`.
 std::string textured_json(const std::string& image) {
     return replace_once(
-        kSquareJson,
-        R"({"name": "paint"}])",
+        kSquareJson, R"({"name": "paint"}])",
         R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
            "textures": [{"source": 0}], "images": [)"
             + image + "]");
@@ -131,52 +130,41 @@ TEST_CASE("gltf: every change of one byte loads or is refused, and no more") {
 
 TEST_CASE("gltf: values of a wrong type or range are refused at their place") {
     check_all_refused({
-        {R"("version": "2.0")",
-         R"("version": "1.0")",
+        {R"("version": "2.0")", R"("version": "1.0")",
          "asset.version: found \"1.0\", expected 2.x"},
-        {R"("version": "2.0")",
-         R"("version": 2)",
+        {R"("version": "2.0")", R"("version": 2)",
          "asset.version: found the number 2, expected a string"},
         {R"("asset": {"version": "2.0"},)", "", "asset: found nothing, expected an object"},
         {R"("name": "paint")", R"("name": 7)", "materials[0].name: found the number 7"},
-        {R"("name": "paint")",
-         R"("pbrMetallicRoughness": {"metallicFactor": 2})",
+        {R"("name": "paint")", R"("pbrMetallicRoughness": {"metallicFactor": 2})",
          "metallicFactor: found the number 2, expected a number from 0 to 1"},
-        {R"("name": "paint")",
-         R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]})",
+        {R"("name": "paint")", R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]})",
          "baseColorFactor: found"},
         {R"("name": "paint")", R"("alphaMode": "GLASS")", "expected one of OPAQUE MASK BLEND"},
-        {R"("name": "paint")",
-         R"("normalTexture": {"index": 0})",
+        {R"("name": "paint")", R"("normalTexture": {"index": 0})",
          "materials[0].normalTexture.index: found the number 0, expected no index, since there are "
          "no textures"},
-        {R"("name": "paint")",
-         R"("normalTexture": {})",
+        {R"("name": "paint")", R"("normalTexture": {})",
          "materials[0].normalTexture.index: found nothing"},
         {R"("translation": [1, 2, 3])", R"("translation": [1, 2, 1e40])", "nodes[1].translation"},
         {R"("translation": [1, 2, 3])", R"("translation": [1, 2])", "nodes[1].translation"},
-        {R"("translation": [1, 2, 3])",
-         R"("rotation": [0, 0, 0, 0])",
+        {R"("translation": [1, 2, 3])", R"("rotation": [0, 0, 0, 0])",
          "nodes[1].rotation: found a quaternion of length 0"},
-        {R"("translation": [1, 2, 3])",
-         R"("matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1])",
+        {R"("translation": [1, 2, 3])", R"("matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1])",
          "nodes[1].matrix"},
-        {R"("mesh": 0)",
-         R"("mesh": 1)",
+        {R"("mesh": 0)", R"("mesh": 1)",
          "nodes[1].mesh: found the number 1, expected an index below 1"},
         {R"("mesh": 0)", R"("mesh": -1)", "nodes[1].mesh"},
         {R"("mesh": 0)", R"("mesh": 0.5)", "nodes[1].mesh"},
         {R"("mesh": 0)", R"("mesh": 99999999999999999999)", "nodes[1].mesh"},
         {R"("mesh": 0)", R"("mesh": 4294967296)", "nodes[1].mesh"},
         {R"("mesh": 0)", R"("camera": 0)", "nodes[1].camera"},
-        {R"("mesh": 0)",
-         R"("extensions": {"KHR_lights_punctual": {"light": 0}})",
+        {R"("mesh": 0)", R"("extensions": {"KHR_lights_punctual": {"light": 0}})",
          "nodes[1].extensions.KHR_lights_punctual.light"},
         {R"("scene": 0)", R"("scene": 3)", "scene: found the number 3"},
         {R"("material": 0)", R"("material": 1)", "meshes[0].primitives[0].material"},
         {R"("material": 0)", R"("mode": 7)", "meshes[0].primitives[0].mode"},
-        {R"("scene": 0)",
-         R"("extensionsRequired": ["KHR_draco_mesh_compression"])",
+        {R"("scene": 0)", R"("extensionsRequired": ["KHR_draco_mesh_compression"])",
          "extensionsRequired[0]: found \"KHR_draco_mesh_compression\", expected one of "
          "KHR_lights_punctual"},
     });
@@ -187,35 +175,27 @@ TEST_CASE("gltf: an accessor out of bounds is refused") {
     const std::string accessor =
         R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"})";
     check_all_refused({
-        {R"("byteLength": 92)",
-         R"("byteLength": 1000)",
+        {R"("byteLength": 92)", R"("byteLength": 1000)",
          "buffers[0].byteLength: found 1000, expected at most the 92"},
-        {view,
-         R"({"buffer": 0, "byteOffset": 80, "byteLength": 48})",
+        {view, R"({"buffer": 0, "byteOffset": 80, "byteLength": 48})",
          "bufferViews[0]: found 48 bytes from byte 80"},
-        {view,
-         R"({"buffer": 0, "byteOffset": 9007199254740991, "byteLength": 48})",
+        {view, R"({"buffer": 0, "byteOffset": 9007199254740991, "byteLength": 48})",
          "bufferViews[0]"},
-        {view,
-         R"({"buffer": 0, "byteOffset": 18446744073709551600, "byteLength": 48})",
+        {view, R"({"buffer": 0, "byteOffset": 18446744073709551600, "byteLength": 48})",
          "bufferViews[0].byteOffset"},
         {view, R"({"buffer": 1, "byteOffset": 0, "byteLength": 48})", "bufferViews[0].buffer"},
         {view, R"({"buffer": 0, "byteOffset": 0, "byteLength": 0})", "bufferViews[0].byteLength"},
         {view, R"({"buffer": 0, "byteLength": 48, "byteStride": 8})", "found a stride of 8"},
-        {view,
-         R"({"buffer": 0, "byteLength": 48, "byteStride": 16})",
+        {view, R"({"buffer": 0, "byteLength": 48, "byteStride": 16})",
          "elements that end at byte 60, expected to stay within the 48"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5126, "count": 5, "type": "VEC3"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 5, "type": "VEC3"})",
          "found 5 elements that end at byte 60"},
         {accessor,
          R"({"bufferView": 0, "componentType": 5126, "count": 4294967295, "type": "VEC3"})",
          "accessors[0]"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5126, "count": 89478485, "type": "VEC3"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 89478485, "type": "VEC3"})",
          "accessors[0]: found 89478485 elements"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5126, "count": 0, "type": "VEC3"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 0, "type": "VEC3"})",
          "accessors[0].count"},
         {accessor,
          R"({"bufferView": 0, "byteOffset": 4, "componentType": 5126, "count": 4, "type": "VEC3"})",
@@ -223,20 +203,15 @@ TEST_CASE("gltf: an accessor out of bounds is refused") {
         {accessor,
          R"({"bufferView": 0, "byteOffset": 9007199254740990, "componentType": 5126, "count": 4, "type": "VEC3"})",
          "accessors[0]"},
-        {accessor,
-         R"({"bufferView": 7, "componentType": 5126, "count": 4, "type": "VEC3"})",
+        {accessor, R"({"bufferView": 7, "componentType": 5126, "count": 4, "type": "VEC3"})",
          "accessors[0].bufferView"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5124, "count": 4, "type": "VEC3"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5124, "count": 4, "type": "VEC3"})",
          "componentType: found 5124"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC7"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC7"})",
          "accessors[0].type"},
-        {accessor,
-         R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2"})",
+        {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2"})",
          "found 2 numbers an element, expected 3"},
-        {accessor,
-         R"({"componentType": 5126, "count": 80000000, "type": "VEC3"})",
+        {accessor, R"({"componentType": 5126, "count": 80000000, "type": "VEC3"})",
          "without a bufferView"},
         {R"("indices": 1)", R"("indices": 0)", "meshes[0].primitives[0].indices: accessors[0]"},
         {R"("indices": 1)", R"("indices": 9)", "meshes[0].primitives[0].indices"},
@@ -259,8 +234,7 @@ TEST_CASE("gltf: abused sparse accessors are refused") {
     const std::string uses_sparse =
         replace_once(kSquareJson, R"({"POSITION": 0})", R"({"POSITION": 2})");
     const std::string indices = R"({"bufferView": 2, "componentType": 5121})";
-    const auto refused = [&](const std::string& from,
-                             const std::string& to,
+    const auto refused = [&](const std::string& from, const std::string& to,
                              const std::string& expected) {
         CAPTURE(to);
         check_refused(
@@ -270,8 +244,7 @@ TEST_CASE("gltf: abused sparse accessors are refused") {
     };
     REQUIRE(parse_gltf(make_glb(uses_sparse, square_binary()), "square.glb", "").ok());
     refused(
-        R"("sparse": {"count": 2)",
-        R"("sparse": {"count": 5)",
+        R"("sparse": {"count": 2)", R"("sparse": {"count": 5)",
         "sparse.count: found 5, expected at most 4");
     refused(
         R"("sparse": {"count": 2)", R"("sparse": {"count": 3)", "sparse.indices: found 3 elements");
@@ -282,8 +255,7 @@ TEST_CASE("gltf: abused sparse accessors are refused") {
     refused(
         indices, R"({"bufferView": 2, "byteOffset": 1, "componentType": 5121})", "end at byte 3");
     refused(
-        indices,
-        R"({"bufferView": 2, "byteOffset": 2147483647, "componentType": 5121})",
+        indices, R"({"bufferView": 2, "byteOffset": 2147483647, "componentType": 5121})",
         "sparse.indices");
     refused(indices, R"({"bufferView": 8, "componentType": 5121})", "sparse.indices.bufferView");
     refused(R"({"bufferView": 3})", R"({"bufferView": 1})", "sparse.values");
@@ -322,19 +294,16 @@ TEST_CASE("gltf: node graphs that are no trees are refused") {
     check_all_refused({
         {R"({"name": "leaf",)", R"({"children": [0],)", "is its own ancestor"},
         {R"("children": [1])", R"("children": [0])", "is its own ancestor"},
-        {R"("children": [1])",
-         R"("children": [1, 1])",
+        {R"("children": [1])", R"("children": [1, 1])",
          "found node 1, which is a child of nodes[0] already"},
         {R"("children": [1])", R"("children": [2])", "nodes[0].children[0]: found the number 2"},
-        {R"([{"nodes": [0]}])",
-         R"([{"nodes": [1]}])",
+        {R"([{"nodes": [0]}])", R"([{"nodes": [1]}])",
          "scenes[0].nodes: found node 1, which has a parent"},
         {R"([{"nodes": [0]}])", R"([{"nodes": [0, 0]}])", "is there twice"},
     });
     // A cycle off to the side of the scene is refused as well.
     const std::string loop = replace_once(
-        kSquareJson,
-        R"("translation": [1, 2, 3]})",
+        kSquareJson, R"("translation": [1, 2, 3]})",
         R"("translation": [1, 2, 3]}, {"children": [3]}, {"children": [2]})");
     check_refused(
         parse_gltf(make_glb(loop, square_binary()), "square.glb", ""), "nodes[2].children");
@@ -462,10 +431,8 @@ TEST_CASE("gltf: what one file may cost is bounded") {
     limits.max_pixels = 63;
     check_refused(
         parse_gltf(
-            make_glb(textured_json(R"({"uri": "good.png"})"), square_binary()),
-            "square.glb",
-            folder.path(),
-            limits),
+            make_glb(textured_json(R"({"uri": "good.png"})"), square_binary()), "square.glb",
+            folder.path(), limits),
         "found 8 x 8 pixels");
 }
 

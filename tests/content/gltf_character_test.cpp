@@ -51,8 +51,7 @@ std::string puppet_json(const Numbers& numbers, const std::string& knee_extras) 
             {{"name": "grin",
               "channels": [{{"sampler": 0, "target": {{"node": 0, "path": "weights"}}}}],
               "samplers": [{{"input": 3, "output": 5}}]}}]}})",
-        numbers.json(),
-        knee_extras);
+        numbers.json(), knee_extras);
 }
 
 std::vector<std::byte> puppet_glb(const std::string& knee_extras = "") {

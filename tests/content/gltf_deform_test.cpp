@@ -20,8 +20,8 @@ namespace {
 /// be spoiled.
 struct Flag {
     std::vector<std::uint8_t> joints = {0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 9, 9};
-    std::vector<float> weights = {
-        1, 0, 0, 0, 0.25f, 0.75f, 0, 0, 0.5f, 0.25f, 0.25f, 0, 0.5f, 0.5f, 0, 0};
+    std::vector<float> weights = {1,    0,     0,     0, 0.25f, 0.75f, 0, 0,
+                                  0.5f, 0.25f, 0.25f, 0, 0.5f,  0.5f,  0, 0};
     std::vector<std::uint16_t> more_joints = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     std::vector<std::uint16_t> more_weights = std::vector<std::uint16_t>(16, 0);
     std::vector<float> rise = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
@@ -69,14 +69,7 @@ struct Flag {
             "animations": [{{"name": "blow",
                 "channels": [{{"sampler": 0, "target": {{"node": 0, "path": "weights"}}}}],
                 "samplers": [{{"input": 7, "output": 8, "interpolation": "{}"}}]}}]}})",
-            json,
-            mesh_weights,
-            extras,
-            attributes,
-            normals,
-            targets,
-            node_weights,
-            interpolation);
+            json, mesh_weights, extras, attributes, normals, targets, node_weights, interpolation);
         return parse_gltf(make_glb(json, numbers.bytes()), "flag.glb", "");
     }
 };

@@ -48,25 +48,17 @@ class Numbers {
     }
     template <typename T>
     void add_typed(
-        const char* type,
-        std::size_t width,
-        int component_type,
-        bool normalized,
+        const char* type, std::size_t width, int component_type, bool normalized,
         const std::vector<T>& values) {
         bytes_.resize((bytes_.size() + 3) / 4 * 4);
         const std::size_t at = bytes_.size();
         append_values(bytes_, values);
         views_ += fmt::format(
-            R"(,{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})",
-            at,
+            R"(,{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})", at,
             values.size() * sizeof(T));
         accessors_ += fmt::format(
             R"(,{{"bufferView": {}, "componentType": {}, "normalized": {}, "count": {}, "type": "{}"}})",
-            count_,
-            component_type,
-            normalized,
-            values.size() / width,
-            type);
+            count_, component_type, normalized, values.size() / width, type);
         ++count_;
     }
     /// A further accessor as JSON; views are numbered as the lists are.
@@ -74,9 +66,7 @@ class Numbers {
     [[nodiscard]] std::string json() const {
         return fmt::format(
             R"("buffers": [{{"byteLength": {}}}], "bufferViews": [{}], "accessors": [{}])",
-            bytes_.size(),
-            views_.substr(1),
-            accessors_.substr(1));
+            bytes_.size(), views_.substr(1), accessors_.substr(1));
     }
     [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
 

@@ -52,24 +52,19 @@ const std::string kAttributes = R"({"POSITION": 0})";
 /// The square with one more attribute, whose bytes are `values`.
 template <typename T>
 GltfScene load_with_attribute(
-    const std::string& name,
-    const std::vector<T>& values,
-    int component_type,
-    const std::string& type,
-    bool normalized) {
+    const std::string& name, const std::vector<T>& values, int component_type,
+    const std::string& type, bool normalized) {
     std::vector<std::byte> binary = square_binary();
     append_values(binary, values);
     const std::size_t size = values.size() * sizeof(T);
     const std::string total = std::to_string(binary.size());
     return load_square(
         {{"\"byteLength\": 92", "\"byteLength\": " + total},
-         {kViewsEnd,
-          kViewsEnd + R"(, {"buffer": 0, "byteOffset": 92, "byteLength": )" + std::to_string(size)
-              + "}"},
-         {kAccessorsEnd,
-          kAccessorsEnd + R"(, {"bufferView": 4, "count": 4, "componentType": )"
-              + std::to_string(component_type) + R"(, "type": ")" + type + R"(", "normalized": )"
-              + (normalized ? "true}" : "false}")},
+         {kViewsEnd, kViewsEnd + R"(, {"buffer": 0, "byteOffset": 92, "byteLength": )"
+                         + std::to_string(size) + "}"},
+         {kAccessorsEnd, kAccessorsEnd + R"(, {"bufferView": 4, "count": 4, "componentType": )"
+                             + std::to_string(component_type) + R"(, "type": ")" + type
+                             + R"(", "normalized": )" + (normalized ? "true}" : "false}")},
          {kAttributes, R"({"POSITION": 0, ")" + name + R"(": 3})"}},
         std::move(binary));
 }
@@ -142,9 +137,8 @@ TEST_CASE("gltf: indices of every type and none give the same triangles") {
         append_values<T>(binary, {0, 1, 2, 0, 2, 3});
         return load_square(
             {{"\"byteLength\": 92", "\"byteLength\": " + std::to_string(binary.size())},
-             {view,
-              R"({"buffer": 0, "byteOffset": )" + std::to_string(at) + R"(, "byteLength": )"
-                  + std::to_string(6 * sizeof(T)) + "}"},
+             {view, R"({"buffer": 0, "byteOffset": )" + std::to_string(at) + R"(, "byteLength": )"
+                        + std::to_string(6 * sizeof(T)) + "}"},
              {accessor, replace_once(accessor, "5123", type)}},
             binary);
     };
@@ -215,10 +209,7 @@ TEST_CASE("gltf: sparse elements replace those of the view, and zeros without on
 TEST_CASE("gltf: normalized integers are 0 .. 1 or -1 .. 1, others keep their value") {
     const auto colors = [](const GltfScene& scene) { return scene.meshes.at(0).colors; };
     const GltfScene bytes = load_with_attribute<std::uint8_t>(
-        "COLOR_0",
-        {255, 0, 51, 255, 0, 0, 0, 0, 255, 255, 255, 255, 1, 2, 3, 4},
-        5121,
-        "VEC4",
+        "COLOR_0", {255, 0, 51, 255, 0, 0, 0, 0, 255, 255, 255, 255, 1, 2, 3, 4}, 5121, "VEC4",
         true);
     CHECK(glm::length(colors(bytes)[0] - Vec4(1, 0, 0.2f, 1)) < 1e-6f);
     const GltfScene shorts = load_with_attribute<std::uint16_t>(
@@ -325,9 +316,8 @@ TEST_CASE("gltf: an image in a buffer view and one in a data: URI are read") {
     binary.insert(binary.end(), png.begin(), png.end());
     const GltfScene scene = load_square(
         {{"\"byteLength\": 92", "\"byteLength\": " + std::to_string(binary.size())},
-         {kViewsEnd,
-          kViewsEnd + R"(, {"buffer": 0, "byteOffset": 92, "byteLength": )"
-              + std::to_string(png.size()) + "}"},
+         {kViewsEnd, kViewsEnd + R"(, {"buffer": 0, "byteOffset": 92, "byteLength": )"
+                         + std::to_string(png.size()) + "}"},
          {R"({"name": "paint"}])",
           R"({"emissiveTexture": {"index": 0}, "normalTexture": {"index": 1}}], "textures": [{"source": 0}, {"source": 1}],
              "images": [{"bufferView": 4, "mimeType": "image/png"}, {"uri": "data:image/png;base64,)"
@@ -450,8 +440,7 @@ TEST_CASE("gltf: extras.limn adds our components, and they may name nodes and ma
         assets.meshes.resize(5);
         const std::vector<Entity> roots =
             spawn_gltf(
-                world,
-                assets,
+                world, assets,
                 load_square(
                     {{R"("translation": [1, 2, 3])", R"("extras": {"limn": )" + form + "}"}}))
                 .roots;

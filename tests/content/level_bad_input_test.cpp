@@ -321,27 +321,15 @@ TEST_CASE("bad level: files outside its folder, missing and corrupt ones") {
     std::ofstream(folder.file("broken.glb")) << "glTF";
     std::ofstream(folder.file("secret.png")) << "x";
     for (const char* name :
-         {"../secret.png",
-          "/etc/passwd",
-          "http://example.org/a.png",
-          "file:///etc/passwd",
-          "inner/../../x.png",
-          "..",
-          "",
-          "none.png",
-          "broken.png",
-          "inner"}) {
+         {"../secret.png", "/etc/passwd", "http://example.org/a.png", "file:///etc/passwd",
+          "inner/../../x.png", "..", "", "none.png", "broken.png", "inner"}) {
         CAPTURE(name);
         const std::string image = scene_error_of(
             folder, R"({"images": {"a": {"file": ")" + std::string(name) + R"("}}})");
         CHECK(has(image, "t.level.json:1:18: images.a"));
     }
     for (const char* name :
-         {"../fox.glb",
-          "/fox.glb",
-          "http://example.org/fox.glb",
-          "none.glb",
-          "broken.glb",
+         {"../fox.glb", "/fox.glb", "http://example.org/fox.glb", "none.glb", "broken.glb",
           "inner"}) {
         CAPTURE(name);
         const std::string gltf =

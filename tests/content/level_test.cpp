@@ -376,10 +376,9 @@ TEST_CASE("level: noise blurs where one item of a pick ends and the next begins"
     const auto count_strays = [](const char* noise) {
         World world;
         spawn_into(
-            world,
-            std::string(R"({"entities": [{"point_light": {}, "repeat": {"count": [200, 1, 1],
+            world, std::string(R"({"entities": [{"point_light": {}, "repeat": {"count": [200, 1, 1],
             "vary": {"point_light.intensity": {"by": "x", "pick": [1, 2], "noise": )")
-                + noise + "}}}}]}");
+                       + noise + "}}}}]}");
         int strays = 0;
         world.query<const Transform, const PointLight>().each(
             [&](const Transform& t, const PointLight& light) {

@@ -111,8 +111,8 @@ template <typename Found>
 int open_edges(const MeshData& mesh, Found&& found) {
     std::map<std::array<float, 6>, int> edges;
     const auto key = [](const Vec3& a, const Vec3& b) {
-        return std::array<float, 6>{
-            a.x + 0.0f, a.y + 0.0f, a.z + 0.0f, b.x + 0.0f, b.y + 0.0f, b.z + 0.0f};
+        return std::array<float, 6>{a.x + 0.0f, a.y + 0.0f, a.z + 0.0f,
+                                    b.x + 0.0f, b.y + 0.0f, b.z + 0.0f};
     };
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const Vec3 p[3] = {corner(mesh, 3 * t), corner(mesh, 3 * t + 1), corner(mesh, 3 * t + 2)};
@@ -142,8 +142,7 @@ inline int crowded_edges(const MeshData& mesh) {
     std::map<std::array<float, 6>, int> edges;
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
         const Vec3 p[3] = {
-            corner(mesh, 3 * t) + 0.0f,
-            corner(mesh, 3 * t + 1) + 0.0f,
+            corner(mesh, 3 * t) + 0.0f, corner(mesh, 3 * t + 1) + 0.0f,
             corner(mesh, 3 * t + 2) + 0.0f};
         if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
             continue;

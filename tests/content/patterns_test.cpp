@@ -123,8 +123,7 @@ TEST_CASE("patterns: normals are unit, point outwards and have no lean") {
         for (int y = 0; y < 128; ++y) {
             for (int x = 0; x < 128; ++x) {
                 const Vec3 n = Vec3(
-                                   channel(maps.normal, x, y, 0),
-                                   channel(maps.normal, x, y, 1),
+                                   channel(maps.normal, x, y, 0), channel(maps.normal, x, y, 1),
                                    channel(maps.normal, x, y, 2))
                                    / 127.5f
                                - 1.0f;

@@ -24,8 +24,8 @@ float degrees_between(const Vec3& a, const Vec3& b) {
 
 /// A cube with eight shared vertices; bit f of `diagonals` chooses how face f is cut.
 MeshData make_cube(unsigned diagonals) {
-    constexpr std::uint32_t kFaces[6][4] = {
-        {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    constexpr std::uint32_t kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     MeshData cube;
     for (int i = 0; i < 8; ++i) {
         cube.positions.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
@@ -59,8 +59,7 @@ MeshData make_sphere(int columns, int rows) {
             const float longitude = 2 * kPi * uv.x;
             const float polar = kPi * uv.y;
             sphere.positions.emplace_back(
-                std::sin(polar) * std::sin(longitude),
-                std::cos(polar),
+                std::sin(polar) * std::sin(longitude), std::cos(polar),
                 std::sin(polar) * std::cos(longitude));
             sphere.normals.push_back(sphere.positions.back());
             sphere.uvs.push_back(uv);
@@ -72,12 +71,8 @@ MeshData make_sphere(int columns, int rows) {
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
             for (const std::uint32_t index :
-                 {at(row, column),
-                  at(row + 1, column),
-                  at(row + 1, column + 1),
-                  at(row, column),
-                  at(row + 1, column + 1),
-                  at(row, column + 1)}) {
+                 {at(row, column), at(row + 1, column), at(row + 1, column + 1), at(row, column),
+                  at(row + 1, column + 1), at(row, column + 1)}) {
                 sphere.indices.push_back(index);
             }
         }

@@ -267,16 +267,16 @@ TEST_CASE("commands: entities get their handles in the order in which they were 
 }
 
 TEST_CASE("commands: a parallel loop within a task of another keeps the order") {
-    static constexpr auto nested =
-        [](Query<const Position> outer, Query<const Mass> inner, Commands commands) {
-            outer.par_each([&](const Position& position) {
-                commands.create(Heat{static_cast<int>(position.x) * 10'000});
-                inner.par_each([&](const Mass& mass) {
-                    commands.create(Heat{
-                        static_cast<int>(position.x) * 10'000 + 1 + static_cast<int>(mass.value)});
-                });
+    static constexpr auto nested = [](Query<const Position> outer, Query<const Mass> inner,
+                                      Commands commands) {
+        outer.par_each([&](const Position& position) {
+            commands.create(Heat{static_cast<int>(position.x) * 10'000});
+            inner.par_each([&](const Mass& mass) {
+                commands.create(
+                    Heat{static_cast<int>(position.x) * 10'000 + 1 + static_cast<int>(mass.value)});
             });
-        };
+        });
+    };
     World world;
     for (int i = 0; i < 3; ++i) {
         world.create(Position{static_cast<float>(i), 0, 0});

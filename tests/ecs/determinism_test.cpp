@@ -202,10 +202,8 @@ void place(HierarchyRef hierarchy, Query<const Spot> spots, Query<Place> places)
 }
 
 void add_up(
-    Query<const Glow> glowing,
-    Query<const Spot, Changed<Spot>> moved,
-    Query<const Age, Changed<Age>> aged,
-    Res<Totals> totals) {
+    Query<const Glow> glowing, Query<const Spot, Changed<Spot>> moved,
+    Query<const Age, Changed<Age>> aged, Res<Totals> totals) {
     std::vector<float> partial(moved.chunk_count());
     moved.par_chunks([&](ChunkView chunk, std::span<const Spot> spots) {
         for (const Spot& spot : spots) {

@@ -69,11 +69,8 @@ class Recorder {
             break;
         case Planned::Op::CreateMixed:
             placeholders_[planned.target] = commands_.create(
-                make<ModelWarmth>(number, {}),
-                make<ModelSerial>(number, {}),
-                make<ModelTitle>(number, {}),
-                ModelBadge{},
-                make<ModelTeam>(number, {}),
+                make<ModelWarmth>(number, {}), make<ModelSerial>(number, {}),
+                make<ModelTitle>(number, {}), ModelBadge{}, make<ModelTeam>(number, {}),
                 make<ModelLink>(number, link));
             break;
         case Planned::Op::Destroy:

@@ -40,9 +40,7 @@ class ComparedQueries : public ComparedValues {
             break;
         case 2:
             compare_query<
-                const ModelPlace,
-                Optional<const ModelSpeed>,
-                Optional<const ModelWarmth>>();
+                const ModelPlace, Optional<const ModelSpeed>, Optional<const ModelWarmth>>();
             break;
         case 3:
             compare_query<const ModelWarmth, const ModelPlace>();
@@ -58,9 +56,7 @@ class ComparedQueries : public ComparedValues {
             break;
         case 7:
             compare_query<
-                Optional<const ModelTally>,
-                Optional<const ModelTitle>,
-                With<ModelPlace>>();
+                Optional<const ModelTally>, Optional<const ModelTitle>, With<ModelPlace>>();
             break;
         case 8:
             compare_query<const ModelSerial, Without<ModelSpeed, ModelWarmth>>();

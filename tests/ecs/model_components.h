@@ -134,21 +134,8 @@ namespace limn::test::model {
 
 /// In the order of Kind.
 using Components = std::tuple<
-    ModelSerial,
-    ModelPlace,
-    ModelSpeed,
-    ModelTitle,
-    ModelTally,
-    ModelBadge,
-    ModelLink,
-    Parent,
-    ModelWarmth,
-    ModelMemo,
-    ModelChosen,
-    ModelPose,
-    ModelLamp,
-    ModelAwake,
-    ModelTeam>;
+    ModelSerial, ModelPlace, ModelSpeed, ModelTitle, ModelTally, ModelBadge, ModelLink, Parent,
+    ModelWarmth, ModelMemo, ModelChosen, ModelPose, ModelLamp, ModelAwake, ModelTeam>;
 static_assert(std::tuple_size_v<Components> == kKinds);
 
 /// The kinds that make_prefab leaves out.
@@ -238,8 +225,7 @@ template <typename T>
         return 0;
     } else if constexpr (
         std::is_same_v<
-            T,
-            ModelSerial> || std::is_same_v<T, ModelLink> || std::is_same_v<T, ModelTeam>) {
+            T, ModelSerial> || std::is_same_v<T, ModelLink> || std::is_same_v<T, ModelTeam>) {
         return value.number;
     } else if constexpr (std::is_same_v<T, ModelPlace>) {
         return value.y == 2 * value.x && value.z == -value.x ? static_cast<std::int64_t>(value.x)

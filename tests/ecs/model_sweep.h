@@ -180,8 +180,8 @@ class ModelSweep : public ModelRun {
             }
             return;
         }
-        constexpr Kind kOften[] = {
-            Kind::Tally, Kind::Memo, Kind::Badge, Kind::Pose, Kind::Lamp, Kind::Team};
+        constexpr Kind kOften[] = {Kind::Tally, Kind::Memo, Kind::Badge,
+                                   Kind::Pose,  Kind::Lamp, Kind::Team};
         const Kind kind = kOften[roll(std::size(kOften))];
         const Value value = any_value(kind, kNoId);
         with_kind(kind, [&]<typename T>() {

@@ -42,8 +42,7 @@ struct ThreadCount {
 
 void print(std::uint32_t seed, const model::ModelWorld& world) {
     std::printf(
-        "model: seed %u: %llu operations, %llu comparisons:",
-        seed,
+        "model: seed %u: %llu operations, %llu comparisons:", seed,
         static_cast<unsigned long long>(world.done()),
         static_cast<unsigned long long>(world.comparisons()));
     for (const auto& [what, count] : world.counts()) {

@@ -100,17 +100,10 @@ TEST_CASE("query: each hands out the entity's own components, writable where the
     const std::vector<Entity> all = fill(world, 300);
     world
         .query<
-            const Mass,
-            Velocity,
-            Optional<const Position>,
-            Optional<Heat>,
+            const Mass, Velocity, Optional<const Position>, Optional<Heat>,
             Optional<const Marked>>()
-        .each([&](Entity entity,
-                  const Mass& mass,
-                  Velocity& velocity,
-                  const Position* position,
-                  Heat* heat,
-                  const Marked* marked) {
+        .each([&](Entity entity, const Mass& mass, Velocity& velocity, const Position* position,
+                  Heat* heat, const Marked* marked) {
             const int i = static_cast<int>(mass.value);
             CHECK(entity == all[static_cast<std::size_t>(i)]);
             CHECK(velocity.y == 2);
@@ -402,16 +395,8 @@ TEST_CASE(
     }
     const auto query = world.query<const Position, Optional<Mass>>();
     for (const std::size_t size :
-         {list.size(),
-          std::size_t{0},
-          std::size_t{1},
-          std::size_t{15},
-          std::size_t{16},
-          std::size_t{17},
-          std::size_t{63},
-          std::size_t{64},
-          std::size_t{65},
-          std::size_t{129}}) {
+         {list.size(), std::size_t{0}, std::size_t{1}, std::size_t{15}, std::size_t{16},
+          std::size_t{17}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{129}}) {
         std::vector<std::size_t> seen;
         const std::size_t found = query.gather(
             std::span<const Entity>(list).first(size),

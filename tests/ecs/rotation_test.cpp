@@ -327,10 +327,9 @@ TEST_CASE("rotation: squad has no corner at a key where slerp has one, and turns
         const auto second = [&](float u) { return squad(q[2], inner[2], inner[3], q[3], u); };
         CHECK(corner(first, second) < 5e-3f);
         largest_corner = std::max<double>(
-            largest_corner,
-            corner(
-                [&](float u) { return slerp_along(q[1], q[2], u); },
-                [&](float u) { return slerp_along(q[2], q[3], u); }));
+            largest_corner, corner(
+                                [&](float u) { return slerp_along(q[1], q[2], u); },
+                                [&](float u) { return slerp_along(q[2], q[3], u); }));
         const Quat p = quats.next();
         for (const float u : {0.2f, 0.7f}) {
             CHECK(glm::length(first(u)) == doctest::Approx(1).epsilon(1e-5));

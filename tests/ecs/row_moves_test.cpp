@@ -106,8 +106,8 @@ void close_gaps_of(std::vector<std::uint32_t>& rows, const std::vector<RowRange>
     rows.resize(left);
 }
 
-constexpr std::uint32_t kSizes[] = {
-    1, 2, 15, 16, 17, 300, 1023, 1024, 1025, 2047, 2048, 2049, 3072, 5000};
+constexpr std::uint32_t kSizes[] = {1,    2,    15,   16,   17,   300,  1023,
+                                    1024, 1025, 2047, 2048, 2049, 3072, 5000};
 
 }  // namespace
 

@@ -346,8 +346,8 @@ TEST_CASE("shared: another value is a change, and nothing that observers of it h
     world.add(entity, Region{5, 0});
     world.destroy(entity);
     world.clear();
-    const std::vector<std::string> expected = {
-        "add 1", "add 2", "remove 3", "add 5", "remove 5", "remove 2"};
+    const std::vector<std::string> expected = {"add 1", "add 2",    "remove 3",
+                                               "add 5", "remove 5", "remove 2"};
     CHECK(log == expected);
 }
 

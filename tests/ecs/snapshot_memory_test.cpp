@@ -63,12 +63,8 @@ void for_each_alteration(const std::vector<std::byte>& bytes, const Call& call) 
             call(altered);
         }
         for (const std::uint64_t value :
-             {std::uint64_t{0xffff},
-              std::uint64_t{0xffffff},
-              std::uint64_t{0x3ffffff},
-              std::uint64_t{0x7fffffff},
-              std::uint64_t{0xffffffff},
-              std::uint64_t{0xffffffffff},
+             {std::uint64_t{0xffff}, std::uint64_t{0xffffff}, std::uint64_t{0x3ffffff},
+              std::uint64_t{0x7fffffff}, std::uint64_t{0xffffffff}, std::uint64_t{0xffffffffff},
               ~std::uint64_t{0}}) {
             for (const std::size_t size : {std::size_t{4}, std::size_t{8}}) {
                 std::vector<std::byte> altered = bytes;

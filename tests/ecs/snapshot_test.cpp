@@ -372,9 +372,7 @@ TEST_CASE("snapshot: a component this program does not know, or knows differentl
     std::vector<std::byte> renamed = bytes;
     const char name[] = "transform";
     const auto at = std::search(
-        renamed.begin(),
-        renamed.end(),
-        reinterpret_cast<const std::byte*>(name),
+        renamed.begin(), renamed.end(), reinterpret_cast<const std::byte*>(name),
         reinterpret_cast<const std::byte*>(name) + 9);
     REQUIRE(at != renamed.end());
     *at = std::byte{'T'};

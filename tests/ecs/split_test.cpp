@@ -83,8 +83,8 @@ bool contains(const std::string& text, const char* part) {
 }
 
 /// The row counts at which chunks and vectors begin and end.
-constexpr std::uint32_t kSizes[] = {
-    1, 15, 16, 17, 63, 64, 500, 1023, 1024, 1025, 2047, 2048, 2049, 4095, 4096, 4097};
+constexpr std::uint32_t kSizes[] = {1,    15,   16,   17,   63,   64,   500,  1023,
+                                    1024, 1025, 2047, 2048, 2049, 4095, 4096, 4097};
 
 }  // namespace
 
@@ -359,16 +359,16 @@ TEST_CASE("split: each, chunks and their parallel forms write the same values") 
             value.radius += charge.value;
             value.center.y *= 2;
         };
-        const auto chunk =
-            [](ChunkView, SplitSpan<BallSplit> balls, SplitSpan<const Charge> charges) {
-                const std::span<float> radius = balls.field<&BallSplit::radius>();
-                const std::span<float> y = balls.lane(1);
-                const std::span<const float> charge = charges.lane(0);
-                for (std::size_t i = 0; i < radius.size(); ++i) {
-                    radius[i] += charge[i];
-                    y[i] *= 2;
-                }
-            };
+        const auto chunk = [](ChunkView, SplitSpan<BallSplit> balls,
+                              SplitSpan<const Charge> charges) {
+            const std::span<float> radius = balls.field<&BallSplit::radius>();
+            const std::span<float> y = balls.lane(1);
+            const std::span<const float> charge = charges.lane(0);
+            for (std::size_t i = 0; i < radius.size(); ++i) {
+                radius[i] += charge[i];
+                y[i] *= 2;
+            }
+        };
         worlds[0].query<BallSplit, const Charge>().each(row);
         worlds[1].query<BallSplit, const Charge>().par_each(row);
         worlds[2].query<BallSplit, const Charge>().chunks(chunk);
@@ -515,8 +515,8 @@ TEST_CASE("split: observers hear of it coming and going, and not of new values")
     world.create_many(10, ball<BallSplit>(5));
     world.clear();
     CHECK(world.entity_count() == 0);
-    const std::vector<std::string> expected = {
-        "add 3", "remove 9", "add 12", "remove 12", "add 15", "remove 15"};
+    const std::vector<std::string> expected = {"add 3",     "remove 9", "add 12",
+                                               "remove 12", "add 15",   "remove 15"};
     CHECK(log == expected);
 }
 

@@ -651,8 +651,7 @@ struct Watched {
 };
 
 void watch(
-    Query<With<Body>, Changed<Power>> powers,
-    Query<With<Body>, Changed<Lit>> lights,
+    Query<With<Body>, Changed<Power>> powers, Query<With<Body>, Changed<Lit>> lights,
     Res<Watched> watched) {
     *watched = {powers.count(), lights.count()};
 }

@@ -115,11 +115,8 @@ TEST_CASE("statistics: a query says what it asks for, what it visits and how oft
     REQUIRE(stats.queries.size() == 2);
     const QueryStats& one = stats.queries[stats.queries[0].calls > 0 ? 0 : 1];
     const std::string names[] = {
-        component_info<Position>().name,
-        component_info<Velocity>().name,
-        component_info<Heat>().name,
-        component_info<Frozen>().name,
-        component_info<Mass>().name};
+        component_info<Position>().name, component_info<Velocity>().name,
+        component_info<Heat>().name, component_info<Frozen>().name, component_info<Mass>().name};
     CHECK(
         one.terms
         == "const " + names[0] + ", " + names[1] + ", With<" + names[2] + ">, Without<" + names[3]

@@ -89,8 +89,8 @@ TEST_CASE("world: a slot whose generations are used up is retired, not started o
 
 TEST_CASE(
     "world: a slot holds every archetype and row up to the limits, apart from its neighbors") {
-    constexpr std::uint32_t kArchetypes[] = {
-        0, 1, 63, 64, 1000, 65'535, 1u << 21, kMaxArchetypes - 1};
+    constexpr std::uint32_t kArchetypes[] = {0,    1,      63,       64,
+                                             1000, 65'535, 1u << 21, kMaxArchetypes - 1};
     constexpr std::uint32_t kRows[] = {0, 1, 1023, 65'536, kMaxRowsOfSlot - 1};
     EntityTable table;
     const Entity before = table.allocate();
@@ -300,10 +300,7 @@ TEST_CASE("world: everything can be done without types") {
     const Note note{"sparse"};
     world.add_copy(entity, component_id<Note>, &note);
     std::vector<ComponentId> expected = {
-        label,
-        component_id<Marked>,
-        component_id<Selected>,
-        component_id<Owner>,
+        label, component_id<Marked>, component_id<Selected>, component_id<Owner>,
         component_id<Note>};
     std::sort(expected.begin(), expected.end());
     CHECK(world.components_of(entity) == expected);
@@ -386,8 +383,7 @@ TEST_CASE("world: a restored world has the same handles, rows and next handles")
         Archetype& restored = copy.restore_rows(rows->components(), rows->entities());
         for (std::size_t i = 0; i < rows->columns().size(); ++i) {
             std::memcpy(
-                restored.columns()[i].data,
-                rows->columns()[i].data,
+                restored.columns()[i].data, rows->columns()[i].data,
                 rows->size() * rows->columns()[i].size);
         }
     }

@@ -119,11 +119,8 @@ void check_scene(const limn::GltfScene& scene) {
     check_characters(scene);
     for (const limn::Material& material : scene.materials) {
         for (const limn::TextureSlot* slot :
-             {&material.base_color_texture,
-              &material.metal_rough_texture,
-              &material.normal_texture,
-              &material.occlusion_texture,
-              &material.emission_texture}) {
+             {&material.base_color_texture, &material.metal_rough_texture, &material.normal_texture,
+              &material.occlusion_texture, &material.emission_texture}) {
             require(slot->image.index == limn::kNoAsset || slot->image.index < scene.images.size());
         }
     }

@@ -36,8 +36,7 @@ TEST_CASE_FIXTURE(
         world.clear();
         for (const int i : order) {
             place(
-                square,
-                layers[i].first,
+                square, layers[i].first,
                 affine_from({0, 0, layers[i].second}, {1, 0, 0, 0}, Vec3(3)));
         }
         const Vec3 got = middle();
@@ -51,8 +50,7 @@ TEST_CASE_FIXTURE(
     PaneScene, "blend: what is behind an opaque surface is hidden, nothing is written to depth") {
     const MeshId square = add(make_square());
     place(
-        square,
-        add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        square, add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         at({0, 0, 0}));
     place(square, add(pane({1, 0, 0}, 0.5f)), at({0, 0, -0.5f}));
     CHECK(middle() == Vec3(1));

@@ -220,10 +220,7 @@ TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions")
         mirrors);
     for (int i = 0; i < 256; ++i) {
         const MirroredVertex expected = mirror_vertex(
-            start_of(i),
-            ray_of(i),
-            {1, 4, 2},
-            {{0, 1, 0}, -1.5f},
+            start_of(i), ray_of(i), {1, 4, 2}, {{0, 1, 0}, -1.5f},
             {.power_plane = 1, .power_surface = 4, .farthest = 20});
         const Vec4 found = sent[static_cast<std::size_t>(i)];
         CHECK(glm::distance(Vec3(found), expected.position) < 2e-3f);

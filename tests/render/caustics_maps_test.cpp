@@ -24,8 +24,7 @@ class Floor : public Scene {
         const MaterialId white = add(Material{
             .shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}, .specular = Vec3(0)});
         place(
-            add(make_square()),
-            white,
+            add(make_square()), white,
             affine_from({0, -kDepth, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(300)));
         shine(
             DirectionalLight{.color = {1, 1, 1}, .illuminance = 1},
@@ -37,16 +36,14 @@ class Floor : public Scene {
     Entity sea(const Caustics& caustics) {
         const Entity water = fill(
             {.size = {0, 0}, .depth = kDepth, .absorption = Vec3(1e-5f), .scattering = Vec3(0)},
-            {0, 0, 0},
-            caustics);
+            {0, 0, 0}, caustics);
         WaveTable table;
         fill_wave_table(
             world.get<Water>(water),
             {.waves =
                  {{.amplitude = 0.03f, .length = 4.2f, .direction = 0.3f},
                   {.amplitude = 0.02f, .length = 5.7f, .direction = 1.9f, .phase = 1}}},
-            1.0,
-            table);
+            1.0, table);
         world.add(water, table);
         return water;
     }
@@ -156,9 +153,7 @@ TEST_CASE_FIXTURE(Floor, "caustics: a pool that is not seen has no map") {
     const auto is_made = [&](const Vec3& eye, const Vec3& target) {
         const Affine pose = look_at(eye, target);
         draw(make_render_view(
-            {.fov_y = radians(40.0f), .near = 0.01f},
-            pose,
-            pose,
+            {.fov_y = radians(40.0f), .near = 0.01f}, pose, pose,
             {.width = kSize, .height = kSize}));
         return graph.was_run("caustic rays");
     };

@@ -40,8 +40,7 @@ class Grotto : public Scene {
     Entity fill(const Caustics& caustics) {
         return world.create(
             Water{.size = {2 * kHalf, 2 * kHalf}, .depth = 1, .scattering = Vec3(0)},
-            WorldTransform{at({0, 0, 0})},
-            caustics);
+            WorldTransform{at({0, 0, 0})}, caustics);
     }
     Entity sun(const Vec3& to_sun) {
         return shine(
@@ -61,8 +60,7 @@ class Grotto : public Scene {
     /// Faces down.
     Entity lay(const Vec3& middle, float half) {
         return place(
-            add(make_square()),
-            white_,
+            add(make_square()), white_,
             affine_from(middle, glm::angleAxis(radians(90), Vec3(1, 0, 0)), Vec3(half)));
     }
     /// Light at the point of the ceiling straight above `eye`.
@@ -167,13 +165,8 @@ TEST_CASE_FIXTURE(Grotto, "caustics: all light that waves mirror arrives above, 
         const Entity light = sun(to_sun);
         const Map found = map();
         const oracle::CausticLight traced = oracle::trace_mirrored_photons(
-            {.half = glm::dvec2(kHalf), .boxes = {}},
-            surface_of(world.get<WaveTable>(water)),
-            glm::dvec3(to_sun),
-            kCeiling,
-            glm::dvec2(0),
-            64,
-            90000);
+            {.half = glm::dvec2(kHalf), .boxes = {}}, surface_of(world.get<WaveTable>(water)),
+            glm::dvec3(to_sun), kCeiling, glm::dvec2(0), 64, 90000);
         double sum = 0;
         for (const float texel : found.texels) {
             sum += static_cast<double>(texel);
@@ -191,13 +184,8 @@ TEST_CASE_FIXTURE(Grotto, "caustics: what waves throw onto a ceiling is that of 
     constexpr int kCells = 32;
     const glm::dvec2 aside = glm::dvec2(mirrored_slant(to_sun)) * static_cast<double>(kCeiling);
     const oracle::CausticLight traced = oracle::trace_mirrored_photons(
-        {.half = glm::dvec2(kHalf), .boxes = {}},
-        surface_of(world.get<WaveTable>(water)),
-        glm::dvec3(to_sun),
-        kCeiling,
-        aside,
-        kCells,
-        1000000);
+        {.half = glm::dvec2(kHalf), .boxes = {}}, surface_of(world.get<WaveTable>(water)),
+        glm::dvec3(to_sun), kCeiling, aside, kCells, 1000000);
     const Map found = map();
     double error = 0;
     double all = 0;
@@ -257,9 +245,7 @@ TEST_CASE_FIXTURE(Grotto, "caustics: a wall gets mirrored light, and the same by
     const float direct = to_sun.x / kPi;
     const float expected = direct * (1 + fresnel(to_sun.y, kIndex));
     for (const LightMethod method :
-         {LightMethod::Clustered,
-          LightMethod::FullScreen,
-          LightMethod::ObjectMajor,
+         {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
           LightMethod::LightMajor}) {
         world.resource<Rendering>().lights = method;
         CHECK(rgb_at(radiance(view), 16, 16).x / expected == doctest::Approx(1).epsilon(0.003));

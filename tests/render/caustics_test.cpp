@@ -43,8 +43,7 @@ class Pool : public Scene {
         const MaterialId white =
             add(Material{.shading = ShadingModel::Blinn, .base_color = {1, 1, 1, 1}});
         floor_ = place(
-            add(make_square()),
-            white,
+            add(make_square()), white,
             affine_from({0, -kDepth, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), {4, 4, 4}));
         white_ = white;
     }
@@ -56,8 +55,7 @@ class Pool : public Scene {
                 .depth = kDepth,
                 .absorption = Vec3(kClear),
                 .scattering = Vec3(0)},
-            WorldTransform{at({0, 0, 0})},
-            caustics);
+            WorldTransform{at({0, 0, 0})}, caustics);
     }
     Entity sun(const Vec3& to_sun) {
         return shine(
@@ -71,8 +69,7 @@ class Pool : public Scene {
     }
     Entity block(const Vec3& middle, float half) {
         return place(
-            add(make_square()),
-            white_,
+            add(make_square()), white_,
             affine_from(middle, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(half)));
     }
 
@@ -243,10 +240,7 @@ TEST_CASE_FIXTURE(
     constexpr int kCells = 40;
     const oracle::CausticLight traced = oracle::trace_photons(
         {.half = glm::dvec2(kHalf), .depth = kDepth, .boxes = {}},
-        surface_of(world.get<WaveTable>(water)),
-        glm::dvec3(to_sun),
-        kCells,
-        1500000);
+        surface_of(world.get<WaveTable>(water)), glm::dvec3(to_sun), kCells, 1500000);
     double before = 1;
     for (const int spacing : {8, 4, 2}) {
         world.get<Caustics>(water).spacing = spacing;
@@ -431,8 +425,7 @@ TEST_CASE_FIXTURE(Pool, "caustics: a mirror sends the sun where the book says, a
     const MaterialId black =
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}});
     const Entity mirror = place(
-        square,
-        black,
+        square, black,
         affine_from(
             {1, floor_height + 1, 0}, glm::angleAxis(radians(-90), Vec3(0, 1, 0)), Vec3(0.2f)));
     sun(glm::normalize(Vec3(-1, 1, 0)));

@@ -30,9 +30,7 @@ class RandomLights {
     RenderView view() {
         const Affine pose = look_at(in_cube(15), in_cube(15));
         return make_render_view(
-            {.fov_y = radians(70 + 40 * signed_unit()), .near = 0.1f},
-            pose,
-            pose,
+            {.fov_y = radians(70 + 40 * signed_unit()), .near = 0.1f}, pose, pose,
             {.width = 333, .height = 190, .jitter = {0.3f * signed_unit(), 0.4f}});
     }
 
@@ -144,8 +142,7 @@ TEST_CASE_FIXTURE(
     const oracle::ReadClusters again = build(view, list_of(reach));
     CHECK(lists.cells == again.cells);
     CHECK(std::equal(
-        lists.indices.begin(),
-        lists.indices.begin() + static_cast<std::ptrdiff_t>(lists.total()),
+        lists.indices.begin(), lists.indices.begin() + static_cast<std::ptrdiff_t>(lists.total()),
         again.indices.begin()));
 }
 

@@ -82,8 +82,7 @@ TEST_CASE_FIXTURE(RenderTest, "cube_map: the hardware finds the same texel") {
     }
     device().bind_texture(3, cube);
     const std::vector<Vec4> texels = evaluate_shader(
-        "layout(binding = 3) uniform samplerCube cube;",
-        "y = textureLod(cube, x.xyz, 0.0);",
+        "layout(binding = 3) uniform samplerCube cube;", "y = textureLod(cube, x.xyz, 0.0);",
         directions);
     for (std::size_t i = 0; i < directions.size(); ++i) {
         const CubePoint point = cube_point(Vec3(directions[i]));
@@ -100,11 +99,10 @@ TEST_CASE_FIXTURE(RenderTest, "normalise_cube: a cube of unit vectors makes any 
     constexpr int kSize = 64;
     for (const bool floats : {true, false}) {
         gpu::Texture cube(
-            "unit vectors",
-            {.format = static_cast<GLenum>(floats ? GL_RGBA32F : GL_RGBA8),
-             .width = kSize,
-             .height = kSize,
-             .target = GL_TEXTURE_CUBE_MAP});
+            "unit vectors", {.format = static_cast<GLenum>(floats ? GL_RGBA32F : GL_RGBA8),
+                             .width = kSize,
+                             .height = kSize,
+                             .target = GL_TEXTURE_CUBE_MAP});
         cube.set_filter(GL_LINEAR, GL_LINEAR);
         std::vector<Vec4> centers;
         for (int face = 0; face < kCubeFaces; ++face) {
@@ -123,8 +121,7 @@ TEST_CASE_FIXTURE(RenderTest, "normalise_cube: a cube of unit vectors makes any 
             device().bind_texture(3, cube);
             return evaluate_shader(
                 "layout(binding = 3) uniform samplerCube cube;",
-                "y.xyz = 2.0 * textureLod(cube, x.xyz, 0.0).xyz - 1.0;",
-                vectors);
+                "y.xyz = 2.0 * textureLod(cube, x.xyz, 0.0).xyz - 1.0;", vectors);
         };
         const double most = floats ? 1e-3 : 0.39 * 3.14159265358979 / 180;
         const std::vector<Vec4> found = look_up(centers);

@@ -105,8 +105,8 @@ TEST_CASE("culling: what lies behind, above or beside the camera is dropped") {
     const Frustum frustum = make_frustum(view.clip_from_world);
     const auto block = std::make_unique<BoxBlock>();
     const Vec3 unit = Vec3(0.5f);
-    const Vec3 centers[] = {
-        {0, 0, 0}, {0, 0, -1e6f}, {0, 0, 6}, {0, 20, 0}, {0, -20, 0}, {20, 0, 0}, {-20, 0, 0}};
+    const Vec3 centers[] = {{0, 0, 0},   {0, 0, -1e6f}, {0, 0, 6},  {0, 20, 0},
+                            {0, -20, 0}, {20, 0, 0},    {-20, 0, 0}};
     for (int i = 0; i < 7; ++i) {
         put(*block, i, {centers[i] - unit, centers[i] + unit});
     }
@@ -135,8 +135,7 @@ TEST_CASE("culling: a transformed box holds every transformed corner, tightly if
         const Quat rotation =
             glm::normalize(Quat(unit(random), unit(random), unit(random), unit(random)));
         const Affine a = affine_from(
-            {unit(random), unit(random), unit(random)},
-            n % 2 == 0 ? rotation : Quat(1, 0, 0, 0),
+            {unit(random), unit(random), unit(random)}, n % 2 == 0 ? rotation : Quat(1, 0, 0, 0),
             {3 * unit(random), 0.1f, -2});
         const Bounds moved = transform_bounds(a, box);
         Bounds tight;

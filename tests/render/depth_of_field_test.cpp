@@ -67,10 +67,7 @@ class Darkroom : public RenderTest {
         FrameGraph& graph = shared_graph();
         graph.begin_frame();
         const TextureId out = draw_depth_of_field(
-            graph,
-            shared_pass(),
-            view,
-            graph.import("radiance", radiance),
+            graph, shared_pass(), view, graph.import("radiance", radiance),
             graph.import("depth", depths));
         graph.keep(out);
         graph.execute();
@@ -249,8 +246,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: discs are even, round and crisp") {
             const float angle = 2 * kPi * static_cast<float>(i) / 64;
             const auto along = [&](float radius) {
                 return light_at(
-                    disc,
-                    static_cast<int>(80.5f + radius * std::cos(angle)),
+                    disc, static_cast<int>(80.5f + radius * std::cos(angle)),
                     static_cast<int>(80.5f + radius * std::sin(angle)));
             };
             for (const float radius : {0.0f, 6.0f, 12.0f, 17.5f}) {
@@ -271,8 +267,7 @@ TEST_CASE_FIXTURE(
         const float side = diameter > 0 ? 1.0f : -1.0f;
         const auto at_right = [&](float x, float y) {
             return light_at(
-                disc,
-                static_cast<int>(std::floor(80.5f + side * radius * x)),
+                disc, static_cast<int>(std::floor(80.5f + side * radius * x)),
                 static_cast<int>(std::floor(80.5f + radius * y)));
         };
         const float even = 1000 / (0.75f * std::sqrt(3.0f) * square(radius));

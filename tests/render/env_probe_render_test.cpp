@@ -24,8 +24,8 @@ Affine wall_at(const Vec3& center, const Vec3& toward, float size) {
 }
 
 /// Color of each wall of the room, in the order of a cube map's faces.
-const Vec3 kWallColors[kCubeFaces] = {
-    {1, 0, 0}, {0, 1, 1}, {0, 1, 0}, {1, 0, 1}, {0, 0, 1}, {1, 1, 0}};
+const Vec3 kWallColors[kCubeFaces] = {{1, 0, 0}, {0, 1, 1}, {0, 1, 0},
+                                      {1, 0, 1}, {0, 0, 1}, {1, 1, 0}};
 
 struct ProbeScene : Scene {
     Entity wall(const Vec3& color, const Affine& pose) {
@@ -148,9 +148,8 @@ TEST_CASE_FIXTURE(ProbeScene, "env_probe: its entity and what is below that is n
 }
 
 TEST_CASE_FIXTURE(
-    ProbeScene,
-    "env_probe: in a box a mirror shows the point of the wall that its ray "
-    "meets") {
+    ProbeScene, "env_probe: in a box a mirror shows the point of the wall that its ray "
+                "meets") {
     room(4);
     // A plane mirror off the middle, and a probe in it: without the box, what is seen from there.
     const Vec3 place_of_mirror = {0, -3, 0};

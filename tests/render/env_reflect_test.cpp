@@ -57,8 +57,7 @@ double worst_reflection(MirrorScene& scene, const Vec3& eye, Normal&& normal) {
             }
             const Vec3 in_view = {
                 ((static_cast<float>(x) + 0.5f) * 2 / kSide - 1) * view.tangent.x * d,
-                (1 - (static_cast<float>(y) + 0.5f) * 2 / kSide) * view.tangent.y * d,
-                -d};
+                (1 - (static_cast<float>(y) + 0.5f) * 2 / kSide) * view.tangent.y * d, -d};
             const DVec3 p = transform_point({{r[0], r[1], r[2]}}, in_view);
             const DVec3 n = normal(p);
             const DVec3 v = p - DVec3(eye);

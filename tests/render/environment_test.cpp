@@ -32,9 +32,8 @@ Vec3 gathered(const layout::EnvironmentBlock& block, const Vec3& normal) {
         for (int j = 0; j < kSteps; ++j) {
             const float phi = 2 * kPi * (static_cast<float>(j) + 0.5f) / kSteps;
             sum += sky_radiance(
-                block,
-                sine * (std::cos(phi) * t + std::sin(phi) * b)
-                    + std::sqrt(1 - sine * sine) * normal);
+                block, sine * (std::cos(phi) * t + std::sin(phi) * b)
+                           + std::sqrt(1 - sine * sine) * normal);
         }
     }
     return Vec3(sum / double(kSteps * kSteps));
@@ -161,8 +160,7 @@ TEST_CASE_FIXTURE(BallScene, "environment: a mirror shows the sky where it is, w
             for (int x = 0; x < 64; ++x) {
                 const Vec3 ray = glm::normalize(Vec3(
                     (static_cast<float>(x) + 0.5f) / 32 - 1,
-                    1 - (static_cast<float>(y) + 0.5f) / 32,
-                    -1));
+                    1 - (static_cast<float>(y) + 0.5f) / 32, -1));
                 // Of the unit ball seen from (0, 0, 2).
                 const float b = glm::dot(Vec3(0, 0, 2), ray);
                 const float under_root = b * b - 3;

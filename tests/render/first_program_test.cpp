@@ -48,8 +48,7 @@ class PairTest : public RenderTest {
     }
 
     void draw(
-        const std::vector<Vertex>& vertices,
-        const gpu::PipelineState& state = {},
+        const std::vector<Vertex>& vertices, const gpu::PipelineState& state = {},
         const std::string& fragment = kPassFragment) {
         const gpu::VertexAttribute attributes[] = {
             {.location = 0, .components = 4},
@@ -86,12 +85,11 @@ full_quad(float w_left, float w_right, const Vec3& left, const Vec3& right, floa
 }
 
 // The cube of the book: vertex numbers of its six faces. They turn clockwise, seen from outside.
-constexpr int kCubeFaceVertices[6][4] = {
-    {0, 1, 2, 3}, {3, 2, 6, 7}, {7, 6, 5, 4}, {4, 5, 1, 0}, {5, 6, 2, 1}, {7, 4, 0, 3}};
+constexpr int kCubeFaceVertices[6][4] = {{0, 1, 2, 3}, {3, 2, 6, 7}, {7, 6, 5, 4},
+                                         {4, 5, 1, 0}, {5, 6, 2, 1}, {7, 4, 0, 3}};
 Vec3 cube_vertex(int i) {
     return {
-        i < 4 ? -1.0f : 1.0f,
-        i == 0 || i == 1 || i == 4 || i == 5 ? -1.0f : 1.0f,
+        i < 4 ? -1.0f : 1.0f, i == 0 || i == 1 || i == 4 || i == 5 ? -1.0f : 1.0f,
         i == 0 || i == 3 || i == 4 || i == 7 ? 1.0f : -1.0f};
 }
 
@@ -357,8 +355,7 @@ TEST_CASE_FIXTURE(PairTest, "derivatives: of 3 x + 5 y they are 3 and 5 at every
     for (const std::string variant : {"", "Fine", "Coarse"}) {
         depth.clear({0, 0, 0, 0});
         draw(
-            full_quad(1, 1, Vec3(0), Vec3(1)),
-            {},
+            full_quad(1, 1, Vec3(0), Vec3(1)), {},
             "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() {\n"
             "    float a = 3.0 * gl_FragCoord.x + 5.0 * gl_FragCoord.y;\n"
             "    color = vec4(dFdx"
@@ -384,8 +381,7 @@ TEST_CASE_FIXTURE(
         color.clear({0, 0, 0, 0});
         depth.clear({0, 0, 0, 0});
         draw(
-            vertices,
-            {.cull = GL_NONE},
+            vertices, {.cull = GL_NONE},
             "#version 450\nlayout(location = 0) in vec3 passed;\n"
             "layout(location = 0) out vec4 color;\nvoid main() {\n"
             "    color = vec4(normalize(cross(dFdx"

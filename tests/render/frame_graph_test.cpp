@@ -24,10 +24,8 @@ TEST_CASE_FIXTURE(
     const TextureId mask = graph.create(spec("mask", GL_R32UI));
     const TextureId depth = graph.create(spec("depth", GL_DEPTH32F_STENCIL8));
     graph.add_pass(
-        "clear",
-        {},
-        {cleared(color, {1, 2, 3, 4}),
-         cleared(mask, {9, 0, 0, 0}),
+        "clear", {},
+        {cleared(color, {1, 2, 3, 4}), cleared(mask, {9, 0, 0, 0}),
          cleared(depth, {0.25f, 1, 0, 0})},
         [](PassContext& context) { CHECK(context.size() == IVec2(8, 8)); });
     graph.keep(color);

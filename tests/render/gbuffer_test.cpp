@@ -61,10 +61,7 @@ TEST_CASE_FIXTURE(
     const MeshId ball = add(make_ball(64));
     const MaterialId gray = add(Material{});
     for (const Vec3& scale :
-         {Vec3(1, 1, 1),
-          Vec3(1.5f, 0.5f, 1),
-          Vec3(-1, 1, 1),
-          Vec3(0.7f, -1.2f, -0.9f),
+         {Vec3(1, 1, 1), Vec3(1.5f, 0.5f, 1), Vec3(-1, 1, 1), Vec3(0.7f, -1.2f, -0.9f),
           Vec3(-1, -1, -1)}) {
         world.clear();
         const Quat rotation = turn({1, 2, 0.5f}, 40);
@@ -185,9 +182,7 @@ TEST_CASE_FIXTURE(
         place(mesh, add(material), at({0, 0, 0}));
         const gpu::FloatImage picture = radiance(look({0, 0, 1}, {0, 0, 0}, 8, 8));
         return std::array{
-            rgb_at(picture, 1, 1),
-            rgb_at(picture, 6, 1),
-            rgb_at(picture, 1, 6),
+            rgb_at(picture, 1, 1), rgb_at(picture, 6, 1), rgb_at(picture, 1, 6),
             rgb_at(picture, 6, 6)};
     };
     TextureSlot slot = nearest(image);
@@ -245,16 +240,16 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: a missing or broken image is magenta") {
 TEST_CASE_FIXTURE(
     Scene, "gbuffer: a normal map leans along u with red and up the image with green") {
     const MeshId square = add(make_square());
-    const auto normal_of =
-        [&](std::array<std::uint8_t, 4> texel, const Affine& place_at, float strength) {
-            world.clear();
-            Material material;
-            material.normal_texture.image = add(plain_image(texel));
-            material.normal_scale = strength;
-            material.double_sided = true;
-            place(square, add(material), place_at);
-            return rgb_at(aov(look({0, 0, 1}, {0, 0, 0}, 9, 9), "normal"), 4, 4);
-        };
+    const auto normal_of = [&](std::array<std::uint8_t, 4> texel, const Affine& place_at,
+                               float strength) {
+        world.clear();
+        Material material;
+        material.normal_texture.image = add(plain_image(texel));
+        material.normal_scale = strength;
+        material.double_sided = true;
+        place(square, add(material), place_at);
+        return rgb_at(aov(look({0, 0, 1}, {0, 0, 0}, 9, 9), "normal"), 4, 4);
+    };
     const Affine upright = at({0, 0, 0});
     const float s = std::sqrt(0.5f);
     // 45 degrees along +u, which is +x of the square.
@@ -317,16 +312,13 @@ TEST_CASE_FIXTURE(
     const Affine before = affine_from({-0.2f, 0.05f, 0.1f}, turn({0, 1, 1}, 10), {1, 1, 1});
     const Affine now = affine_from({0, 0, 0}, turn({0, 1, 1}, 14), {1, 1, 1});
     world.create(
-        MeshInstance{square, add(Material{.double_sided = true})},
-        WorldTransform{now},
+        MeshInstance{square, add(Material{.double_sided = true})}, WorldTransform{now},
         PreviousWorldTransform{before});
     const Affine eye_before = look_at({0.1f, 0.02f, 1.6f}, {0, 0, 0});
     const Affine eye_now = look_at({0, 0, 1.5f}, {0.02f, 0, 0});
     for (const Vec2& jitter : {Vec2(0), Vec2(0.4f, -0.3f)}) {
         const RenderView view = make_render_view(
-            {.fov_y = radians(70)},
-            eye_now,
-            eye_before,
+            {.fov_y = radians(70)}, eye_now, eye_before,
             {.width = 160, .height = 120, .jitter = jitter});
         const FrameOutput out = draw(view, {.aovs = {"depth", "velocity"}});
         REQUIRE(out.aovs.size() == 2);
@@ -371,15 +363,12 @@ TEST_CASE_FIXTURE(Scene, "velocity: it is zero in the step of the spawn and for 
 TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from picture to picture") {
     const MeshId square = add(make_square());
     world.create(
-        MeshInstance{square, add(Material{})},
-        WorldTransform{at({0.4f, 0, 0})},
+        MeshInstance{square, add(Material{})}, WorldTransform{at({0.4f, 0, 0})},
         PreviousWorldTransform{at({0, 0, 0})});
     const Affine eye = look_at({0, 0, 1}, {0, 0, 0});
     // 32 pixels show 1 m. From a quarter to three quarters of the step: 0.2 m.
     const RenderView view = make_render_view(
-        {.fov_y = radians(90)},
-        eye,
-        eye,
+        {.fov_y = radians(90)}, eye, eye,
         {.width = 64, .height = 64, .alpha = 0.75f, .alpha_before = 0.25f});
     CHECK(velocity_at(aov(view, "velocity"), 40, 32).x == doctest::Approx(0.2f * 32).epsilon(2e-3));
     // The plate stands at 0.3: from -0.7 on.

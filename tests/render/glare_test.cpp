@@ -117,8 +117,7 @@ TEST_CASE_FIXTURE(RenderTest, "glare: what is no number never spreads") {
 TEST_CASE_FIXTURE(Scene, "glare: switched off, it adds no pass and changes no bit") {
     place(
         add(make_square()),
-        add(Material{.shading = ShadingModel::Unlit, .base_color = {9, 9, 9, 1}}),
-        at({0, 0, 0}));
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {9, 9, 9, 1}}), at({0, 0, 0}));
     const RenderView view = look({0, 0, 3}, {0, 0, 0}, 40, 32);
     const gpu::FloatImage without = radiance(view);
     world.insert_resource(Glare{.strength = 0});

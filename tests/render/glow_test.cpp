@@ -282,8 +282,7 @@ TEST_CASE_FIXTURE(Scene, "glow: a lamp behind a black wall adds nothing, by any 
     }
     place(
         add(make_square()),
-        add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}}),
-        at({0, 0, 0}));
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}}), at({0, 0, 0}));
     for (const glm::dvec3& pixel : picture_of(radiance(view)).pixels) {
         CHECK(pixel == glm::dvec3(0));
     }

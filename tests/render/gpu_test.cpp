@@ -36,8 +36,7 @@ void main() { color = scale * texture(source, gl_FragCoord.xy / 4.0); })");
 }
 
 gpu::Pipeline load(
-    gpu::ShaderLibrary& library,
-    const char* fragment,
+    gpu::ShaderLibrary& library, const char* fragment,
     const gpu::PipelineState& state = gpu::kFullscreenState) {
     const auto program = library.load({.vertex = "full.vert", .fragment = fragment});
     REQUIRE_MESSAGE(program.ok(), (program.ok() ? "" : program.error().message));
@@ -91,8 +90,8 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: an object carries its label") {
 
 TEST_CASE_FIXTURE(test::RenderTest, "gpu: texels come back the way they went, top row first") {
     // 3 x 2 with rows that are no multiple of four bytes.
-    const std::array<std::uint8_t, 18> rgb = {
-        1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18};
+    const std::array<std::uint8_t, 18> rgb = {1,  2,  3,  4,  5,  6,  7,  8,  9,
+                                              10, 11, 12, 13, 14, 15, 16, 17, 18};
     Texture bytes("bytes", {.format = GL_RGB8, .width = 3, .height = 2});
     bytes.upload(std::span<const std::uint8_t>(rgb), GL_RGB, GL_UNSIGNED_BYTE);
     const gpu::ByteImage image = gpu::read_bytes(bytes);
@@ -157,11 +156,9 @@ TEST_CASE_FIXTURE(
     const gpu::DeviceCaps& caps = device().caps();
     CHECK(gpu::check_texture(caps, {.width = caps.max_texture_size, .height = 1}).ok());
     for (const gpu::TextureDesc& bad :
-         {gpu::TextureDesc{.width = caps.max_texture_size + 1},
-          gpu::TextureDesc{.width = 0},
+         {gpu::TextureDesc{.width = caps.max_texture_size + 1}, gpu::TextureDesc{.width = 0},
           gpu::TextureDesc{.depth = caps.max_texture_layers + 1, .target = GL_TEXTURE_2D_ARRAY},
-          gpu::TextureDesc{.samples = caps.max_samples + 1},
-          gpu::TextureDesc{.format = GL_RGBA}}) {
+          gpu::TextureDesc{.samples = caps.max_samples + 1}, gpu::TextureDesc{.format = GL_RGBA}}) {
         const Status status = gpu::check_texture(caps, bad);
         REQUIRE(!status.ok());
         CHECK(status.error().message.find("expected") != std::string::npos);

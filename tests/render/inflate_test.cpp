@@ -21,8 +21,7 @@ std::vector<Vec3> inflate_vertices(const MeshData& mesh, float distance, float s
     }
     const std::vector<Vec4> moved = evaluate_shader(
         "#include \"lib/inflate.glsl\"\n",
-        "y.xyz = i % 2u == 0u ? inflate(x.xyz, inputs[i + 1u].xyz, x.w) : vec3(0.0);",
-        inputs);
+        "y.xyz = i % 2u == 0u ? inflate(x.xyz, inputs[i + 1u].xyz, x.w) : vec3(0.0);", inputs);
     std::vector<Vec3> positions;
     for (std::size_t i = 0; i < moved.size(); i += 2) {
         positions.emplace_back(moved[i]);

@@ -14,11 +14,9 @@ struct CrowdScene : Scene {
             const float x = (static_cast<float>(i % side) + 0.5f) / static_cast<float>(side);
             const float y = (static_cast<float>(i / side) + 0.5f) / static_cast<float>(side);
             entities.push_back(place(
-                mesh,
-                material,
+                mesh, material,
                 affine_from(
-                    {2 * x - 1, 2 * y - 1, 0},
-                    {1, 0, 0, 0},
+                    {2 * x - 1, 2 * y - 1, 0}, {1, 0, 0, 0},
                     Vec3(0.6f / static_cast<float>(side)))));
         }
     }
@@ -129,8 +127,7 @@ TEST_CASE_FIXTURE(
     }
     for (int i = 0; i < 5000; ++i) {
         place(
-            meshes[i % 2],
-            materials[i % 9],
+            meshes[i % 2], materials[i % 9],
             affine_from(
                 {unit(random), unit(random), unit(random) - 0.5f}, {1, 0, 0, 0}, Vec3(0.03f)));
     }

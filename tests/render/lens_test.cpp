@@ -42,11 +42,8 @@ std::vector<std::string> passes() {
 }
 
 constexpr MotionBlurMode kMotionBlurModes[] = {
-    MotionBlurMode::Reconstruct,
-    MotionBlurMode::Accumulate,
-    MotionBlurMode::Camera,
-    MotionBlurMode::Flow,
-    MotionBlurMode::Stretch};
+    MotionBlurMode::Reconstruct, MotionBlurMode::Accumulate, MotionBlurMode::Camera,
+    MotionBlurMode::Flow, MotionBlurMode::Stretch};
 
 /// A bright ball that goes by before a wall, seen by a camera that walks.
 class Moving : public Scene {
@@ -57,17 +54,14 @@ class Moving : public Scene {
         place(add(make_square()), add(Material{}), affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(4)));
         mover = place(
             add(make_ball(12)),
-            add(Material{.shading = ShadingModel::Unlit, .base_color = {5, 4, 3, 1}}),
-            pose(0));
+            add(Material{.shading = ShadingModel::Unlit, .base_color = {5, 4, 3, 1}}), pose(0));
         world.get<PreviousWorldTransform>(mover).world = pose(-0.3f);
     }
     static Affine pose(float x) { return affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.4f)); }
     [[nodiscard]] RenderView seen(int width = 48, int height = 32) const {
         return make_render_view(
-            {.fov_y = radians(90.0f), .near = 0.05f},
-            look_at({0, 0, 1}, {0, 0, 0}),
-            look_at({0.1f, 0, 1}, {0, 0, 0}),
-            {.width = width, .height = height});
+            {.fov_y = radians(90.0f), .near = 0.05f}, look_at({0, 0, 1}, {0, 0, 0}),
+            look_at({0.1f, 0, 1}, {0, 0, 0}), {.width = width, .height = height});
     }
     Entity mover;
 };
@@ -84,8 +78,7 @@ std::vector<LensEffect> lens_effects() {
     std::vector<LensEffect> effects;
     for (const GlowKind kind : {GlowKind::Lens, GlowKind::Mask}) {
         effects.push_back(
-            {kind == GlowKind::Lens ? "glow" : "glow by a mask",
-             "glow",
+            {kind == GlowKind::Lens ? "glow" : "glow by a mask", "glow",
              [kind](Moving& scene, RenderView&, float strength) {
                  scene.world.insert_resource(Glow{.kind = kind, .strength = strength});
              }});
@@ -112,16 +105,14 @@ std::vector<LensEffect> lens_effects() {
                        }});
     for (const MotionBlurMode mode : kMotionBlurModes) {
         effects.push_back(
-            {"motion blur " + std::to_string(static_cast<int>(mode)),
-             "motion",
+            {"motion blur " + std::to_string(static_cast<int>(mode)), "motion",
              [mode](Moving& scene, RenderView&, float strength) {
                  scene.world.insert_resource(MotionBlur{.mode = mode, .shutter = 360 * strength});
              }});
     }
     for (const FocusMethod method : {FocusMethod::Gather, FocusMethod::Mip}) {
         effects.push_back(
-            {method == FocusMethod::Gather ? "depth of field" : "depth of field by mips",
-             "focus",
+            {method == FocusMethod::Gather ? "depth of field" : "depth of field by mips", "focus",
              [method](Moving&, RenderView& view, float strength) {
                  view.lens = {
                      .aperture_radius = 0.1f * strength,
@@ -219,21 +210,18 @@ TEST_CASE("lens: whatever number any setting has, the picture is one of numbers"
     try_numbers("screen ripple", ScreenRipple{.age = 0.25f}, component);
     for (const MotionBlurMode mode : kMotionBlurModes) {
         try_numbers(
-            "motion blur " + std::to_string(static_cast<int>(mode)),
-            MotionBlur{.mode = mode},
+            "motion blur " + std::to_string(static_cast<int>(mode)), MotionBlur{.mode = mode},
             resource);
     }
     try_numbers(
-        "speed lines",
-        SpeedLines{.count = 10, .min_speed = 1},
+        "speed lines", SpeedLines{.count = 10, .min_speed = 1},
         [](Moving& scene, RenderView&, const SpeedLines& lines) {
             scene.world.add(scene.mover, lines);
             return Entity{};
         });
     for (const FocusMethod method : {FocusMethod::Gather, FocusMethod::Mip}) {
         try_numbers(
-            "lens",
-            Lens{.f_number = 0.05f, .focus_distance = 0.5f, .method = method},
+            "lens", Lens{.f_number = 0.05f, .focus_distance = 0.5f, .method = method},
             [](Moving&, RenderView& view, const Lens& lens) {
                 const Result<LensView> made = make_lens_view(lens, Camera{});
                 view.lens = made ? *made : LensView{};

@@ -13,9 +13,7 @@ namespace {
 RenderView looking(const Vec3& eye, const Vec3& target, float near = 0.1f, Vec2 jitter = {0, 0}) {
     const Affine pose = look_at(eye, target);
     return make_render_view(
-        {.fov_y = radians(60.0f), .near = near},
-        pose,
-        pose,
+        {.fov_y = radians(60.0f), .near = near}, pose, pose,
         {.width = 320, .height = 180, .jitter = jitter});
 }
 
@@ -167,8 +165,7 @@ TEST_CASE("caster_cull: no box that a spot's cone touches is dropped, those behi
         dropped += kept ? 0 : 1;
         for (int k = 0; k < 200; ++k) {
             const Vec3 p = {
-                random.number(box.min.x, box.max.x),
-                random.number(box.min.y, box.max.y),
+                random.number(box.min.x, box.max.x), random.number(box.min.y, box.max.y),
                 random.number(box.min.z, box.max.z)};
             const float d = glm::length(p);
             if (d <= reach.radius && glm::dot(p, axis) >= reach.cosine * d) {

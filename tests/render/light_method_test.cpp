@@ -15,10 +15,7 @@ namespace limn::test {
 namespace {
 
 constexpr LightMethod kMethods[] = {
-    LightMethod::Clustered,
-    LightMethod::FullScreen,
-    LightMethod::Volumes,
-    LightMethod::ObjectMajor,
+    LightMethod::Clustered, LightMethod::FullScreen, LightMethod::Volumes, LightMethod::ObjectMajor,
     LightMethod::LightMajor};
 constexpr int kWidth = 160;
 constexpr int kHeight = 90;
@@ -225,8 +222,7 @@ TEST_CASE_FIXTURE(Methods, "light methods: surfaces in one place are lit once") 
     // Two floors, and more lights than a stencil has numbers.
     floor();
     place(
-        add(make_square()),
-        add(Material{.base_color = {0.9f, 0.2f, 0.1f, 1}}),
+        add(make_square()), add(Material{.base_color = {0.9f, 0.2f, 0.1f, 1}}),
         affine_from({1, 0, 0}, {1, 0, 0, 0}, {39, 40, 1}));
     for (int i = 0; i < 300; ++i) {
         const auto angle = static_cast<float>(i);

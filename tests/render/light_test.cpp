@@ -125,9 +125,7 @@ TEST_CASE("light: the smooth fall-off has the values of engine.light-falloff") {
 
 TEST_CASE("light: no fall-off ever rises with the distance, and each ends at the radius") {
     for (const Attenuation& a :
-         {Attenuation{},
-          polynomial(1, 0.7f, 1.8f),
-          smooth(3),
+         {Attenuation{}, polynomial(1, 0.7f, 1.8f), smooth(3),
           Attenuation{.falloff = Falloff::None}}) {
         double last = INFINITY;
         for (double d = 0; d < 6; d += 0.01) {
@@ -263,11 +261,7 @@ TEST_CASE("light: a matte plane under a point light is the closed form to 1e-3")
 
 TEST_CASE("light: every fall-off on the GPU equals the oracle") {
     for (const Attenuation& a :
-         {Attenuation{},
-          polynomial(1, 0.7f, 1.8f),
-          polynomial(0, 1, 0),
-          smooth(1),
-          smooth(2.5f),
+         {Attenuation{}, polynomial(1, 0.7f, 1.8f), polynomial(0, 1, 0), smooth(1), smooth(2.5f),
           Attenuation{.falloff = Falloff::None}}) {
         for (const float radius : {0.0f, 0.9f, 3.0f}) {
             PlaneScene scene;
@@ -283,10 +277,7 @@ TEST_CASE("light: every fall-off on the GPU equals the oracle") {
                         const oracle::Arriving one =
                             oracle::arrive(light, {0.3, -0.2, 0.5}, DVec3(p), kUp);
                         return oracle::blinn(
-                            as_oracle(matte({1, 1, 1})),
-                            DVec3(0),
-                            {&one, 1},
-                            kUp,
+                            as_oracle(matte({1, 1, 1})), DVec3(0), {&one, 1}, kUp,
                             glm::normalize(kEye - DVec3(p)));
                     })
                 <= 1e-3);
@@ -316,10 +307,7 @@ TEST_CASE("light: every spot profile on the GPU equals the oracle") {
                     const oracle::Arriving one =
                         oracle::arrive(light, DVec3(place), axis, DVec3(p), kUp);
                     return oracle::blinn(
-                        as_oracle(matte({1, 1, 1})),
-                        DVec3(0),
-                        {&one, 1},
-                        kUp,
+                        as_oracle(matte({1, 1, 1})), DVec3(0), {&one, 1}, kUp,
                         glm::normalize(kEye - DVec3(p)));
                 })
             <= 1e-3);

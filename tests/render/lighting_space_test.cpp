@@ -92,8 +92,7 @@ TEST_CASE_FIXTURE(
         .specular = {0.3f, 0.3f, 0.3f},
         .shininess = 20});
     place(
-        add(make_square()),
-        material,
+        add(make_square()), material,
         affine_from(place_ws, {turn.w, turn.x, turn.y, turn.z}, {1, 1, 1}));
     const Vec3 lamp = {1.2f, 0.8f, 2.2f};
     shine(
@@ -140,8 +139,7 @@ TEST_CASE_FIXTURE(
     }
     plane.bounds = {{-1, -1, -1}, {1, 1, 1}};
     place(
-        add(std::move(plane)),
-        add(Material{.double_sided = true}),
+        add(std::move(plane)), add(Material{.double_sided = true}),
         affine_from({0, 0, 0}, {1, 0, 0, 0}, {2, 1, 1}));
     const gpu::FloatImage normal = aov(look({1, 2, 0}, {0, 0, 0}), "normal");
     CHECK(glm::distance(rgb_at(normal, 32, 32), Vec3(0.4472f, 0.8944f, 0)) < 1e-3f);

@@ -170,8 +170,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: of two things that cross, each smears a
     const auto move = [&](const Vec2& middle, const Vec2& way) {
         const auto pose = [](const Vec2& pixel) {
             return affine_from(
-                Vec3((pixel - 0.5f * kSize) / kPerMeter, 0),
-                {1, 0, 0, 0},
+                Vec3((pixel - 0.5f * kSize) / kPerMeter, 0), {1, 0, 0, 0},
                 {6 / kPerMeter, 6 / kPerMeter, 1});
         };
         const Entity entity = place(square, unlit({1, 1, 1}), pose(middle));
@@ -206,9 +205,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
     };
     const auto view = [&](double moment) {
         return make_render_view(
-            {.fov_y = radians(90.0f)},
-            pose(moment),
-            pose(moment - 1),
+            {.fov_y = radians(90.0f)}, pose(moment), pose(moment - 1),
             {.width = kSize, .height = kSize});
     };
     oracle::MeanPicture mean;

@@ -244,8 +244,7 @@ TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of
         {0, 0, -1, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0.6f, 0, -0.8f, 0}, {0, 1, 0, 1}};
     const std::vector<Vec4> found = evaluate_shader(
         "#include \"lib/motion.glsl\"\n",
-        "y.xyz = flow_offset(x.xyz, x.w > 0.5 ? vec3(0.0) : vec3(0.0, 0.0, -2.0));",
-        normals);
+        "y.xyz = flow_offset(x.xyz, x.w > 0.5 ? vec3(0.0) : vec3(0.0, 0.0, -2.0));", normals);
     CHECK(Vec3(found[0]) == Vec3(0, 0, -2));                     // ahead: the motion
     CHECK(Vec3(found[1]) == Vec3(0));                            // along: nothing
     CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                      // behind: backward

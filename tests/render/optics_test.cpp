@@ -95,13 +95,8 @@ TEST_CASE("optics: where there is no boundary light goes on and nothing is mirro
 TEST_CASE("optics: water mirrors as much as Fresnel says") {
     CHECK(fresnel(1, kWater) == doctest::Approx(0.0200593).epsilon(1e-5));
     CHECK(fresnel(1, 1.3f) == doctest::Approx(0.0170132).epsilon(1e-5));
-    const double pairs[][2] = {
-        {30, 0.0211125},
-        {45, 0.0275214},
-        {53.06123, 0.0385538},
-        {60, 0.0591256},
-        {75, 0.211427},
-        {85, 0.582728}};
+    const double pairs[][2] = {{30, 0.0211125}, {45, 0.0275214}, {53.06123, 0.0385538},
+                               {60, 0.0591256}, {75, 0.211427},  {85, 0.582728}};
     for (const auto& pair : pairs) {
         CHECK(fresnel_at(static_cast<float>(pair[0])) == doctest::Approx(pair[1]).epsilon(2e-5));
     }

@@ -69,8 +69,7 @@ TEST_CASE_FIXTURE(RenderTest, "panorama: the GPU's mappings are the CPU's") {
         inputs.emplace_back(normal(random), normal(random), normal(random), i % 3);
     }
     const std::vector<Vec4> got = evaluate_shader(
-        "#include \"lib/panorama.glsl\"",
-        "y.xy = panorama_uv(int(x.w), x.xyz, 0.785398163);",
+        "#include \"lib/panorama.glsl\"", "y.xy = panorama_uv(int(x.w), x.xyz, 0.785398163);",
         inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const auto mapping = static_cast<PanoramaMapping>(static_cast<int>(inputs[i].w));

@@ -36,16 +36,12 @@ DVec3 random_in(std::mt19937& random, double low, double high) {
 /// Lights of all kinds about a camera that looks along -z: homogeneous, none in the picture.
 const std::vector<Vec4>& lights_about() {
     static const std::vector<Vec4> lights = {
-        {0, 1, 0, 0},           // above
-        {0.5f, 0.6f, 0.1f, 0},  // from the side and a little behind
-        {0.5f, 0.6f, -0.1f, 0},
-        {0.1f, 0.5f, -0.9f, 0},  // ahead: the worst case
-        {-0.2f, 0.4f, 0.9f, 0},  // behind
-        {0, 0, 1, 0},
-        {0, 30, -10, 1},  // lamps
-        {20, 12, 5, 1},
-        {-3, 4, 9, 1},
-        {0.5f, 15, 0, 1},
+        {0, 1, 0, 0},                                    // above
+        {0.5f, 0.6f, 0.1f, 0},                           // from the side and a little behind
+        {0.5f, 0.6f, -0.1f, 0}, {0.1f, 0.5f, -0.9f, 0},  // ahead: the worst case
+        {-0.2f, 0.4f, 0.9f, 0},                          // behind
+        {0, 0, 1, 0},           {0, 30, -10, 1},         // lamps
+        {20, 12, 5, 1},         {-3, 4, 9, 1},          {0.5f, 15, 0, 1},
     };
     return lights;
 }
@@ -167,11 +163,8 @@ TEST_CASE("perspective map: near the camera it has more texels than a uniform ma
         make_render_view({.fov_y = radians(60.0f)}, pose, pose, {.width = 640, .height = 360});
     const Vec3 sun = glm::normalize(Vec3(0.6f, 1, 0.1f));
     const auto perspective = make_perspective_view(
-        camera,
-        Vec4(sun, 0),
-        {.near = 0.1, .far = 40, .low = -camera.tangent, .high = camera.tangent},
-        1024,
-        4);
+        camera, Vec4(sun, 0),
+        {.near = 0.1, .far = 40, .low = -camera.tangent, .high = camera.tangent}, 1024, 4);
     REQUIRE(perspective);
     const ShadowView uniform = make_cascade_view(camera, sun, 0, 40, 1024, 4);
     const auto gain = [&](float distance) {
@@ -194,8 +187,7 @@ struct PostScene : ShadowTest {
         const MeshId post = add(make_box({.size = {0.4f, 1.6f, 0.4f}}));
         for (int i = 0; i < 15; ++i) {
             place(
-                post,
-                white,
+                post, white,
                 at({static_cast<float>(i % 3) * 3 - 3, 0.8f, 6 - 3 * static_cast<float>(i / 3)}));
         }
     }
@@ -214,9 +206,7 @@ constexpr Shadow kPerspective = {
 TEST_CASE_FIXTURE(PostScene, "perspective map: suns from all sides shade as rays say, in one map") {
     const oracle::ShadowScene rays(world);
     for (const Vec3& toward :
-         {Vec3(0.1f, 1, 0.05f),
-          Vec3(0.7f, 0.9f, 0.4f),
-          Vec3(0.2f, 0.5f, -0.8f),      // into the camera
+         {Vec3(0.1f, 1, 0.05f), Vec3(0.7f, 0.9f, 0.4f), Vec3(0.2f, 0.5f, -0.8f),  // into the camera
           Vec3(-0.1f, 0.35f, 0.9f)}) {  // from behind: the posts there shade what is seen
         const DVec3 to_sun = glm::normalize(DVec3(toward));
         const Entity sun = shine(DirectionalLight{}, look_at(toward, {0, 0, 0}));

@@ -120,14 +120,13 @@ TEST_CASE_FIXTURE(WallScene, "projector: what stands before the wall keeps the i
 
 TEST_CASE_FIXTURE(WallScene, "projector: a film goes from frame to frame with the time") {
     world.add(
-        lamp,
-        Projector{
-            .image = add(four_colors()),
-            .width = radians(40.0f),
-            .columns = 2,
-            .rows = 2,
-            .frames = 4,
-            .fps = 1});
+        lamp, Projector{
+                  .image = add(four_colors()),
+                  .width = radians(40.0f),
+                  .columns = 2,
+                  .rows = 2,
+                  .frames = 4,
+                  .fps = 1});
     for (int frame = 0; frame < 4; ++frame) {
         FrameTime time;
         time.time = frame + 0.5;
@@ -196,15 +195,14 @@ TEST_CASE_FIXTURE(
     const float nan = std::nanf("");
     const ImageId image = add(four_colors());
     world.add(
-        lamp,
-        Projector{
-            .image = image,
-            .width = nan,
-            .aspect = -1,
-            .columns = 0,
-            .rows = -3,
-            .frames = -1,
-            .fps = nan});
+        lamp, Projector{
+                  .image = image,
+                  .width = nan,
+                  .aspect = -1,
+                  .columns = 0,
+                  .rows = -3,
+                  .frames = -1,
+                  .fps = nan});
     for (const float value : wall().pixels) {
         REQUIRE(std::isfinite(value));
     }

@@ -91,8 +91,7 @@ TEST_CASE_FIXTURE(Scene, "render frame: assets that did not change are not uploa
 TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is drawn") {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
     place(
-        add(make_square()),
-        add(Material{.shading = ShadingModel::Unlit}),
+        add(make_square()), add(Material{.shading = ShadingModel::Unlit}),
         affine_from({0, 0, -1}, {1, 0, 0, 0}, Vec3(3)));
     const Vec3 before = rgb_at(radiance(view), 4, 4);
     // Large enough for the vertex buffers to grow.
@@ -199,9 +198,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < samples; ++i) {
             const Vec2 lens = {std::cos(static_cast<float>(i)), std::sin(static_cast<float>(i))};
             accumulate(
-                shared_renderer(),
-                world,
-                with_lens_sample(view, lens),
+                shared_renderer(), world, with_lens_sample(view, lens),
                 1.0f / static_cast<float>(samples));
         }
         const FrameOutput mean = finish_accumulation(shared_renderer(), world, view);

@@ -73,13 +73,8 @@ inline MeshData make_ball(int rings = 48) {
     for (int i = 0; i < rings; ++i) {
         for (int j = 0; j < sectors; ++j) {
             mesh.indices.insert(
-                mesh.indices.end(),
-                {index(i, j),
-                 index(i + 1, j),
-                 index(i + 1, j + 1),
-                 index(i, j),
-                 index(i + 1, j + 1),
-                 index(i, j + 1)});
+                mesh.indices.end(), {index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j),
+                                     index(i + 1, j + 1), index(i, j + 1)});
         }
     }
     mesh.bounds = {{-1, -1, -1}, {1, 1, 1}};
@@ -124,9 +119,7 @@ class Scene : public RenderTest {
     look(const Vec3& eye, const Vec3& target, int width = 64, int height = 64) const {
         const Affine pose = look_at(eye, target);
         return make_render_view(
-            {.fov_y = radians(90.0f), .near = 0.05f},
-            pose,
-            pose,
+            {.fov_y = radians(90.0f), .near = 0.05f}, pose, pose,
             {.width = width, .height = height});
     }
 

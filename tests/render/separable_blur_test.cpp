@@ -17,8 +17,7 @@ constexpr BlurKernel kBox = {1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.
 constexpr BlurKernel kAskew = {0.3f, 0.05f, 0.1f, 0.2f, 0.05f, 0.05f, 0.25f};
 
 LightPicture blurred(
-    const LightPicture& picture,
-    const BlurKernel& kernel,
+    const LightPicture& picture, const BlurKernel& kernel,
     BlurOrder order = BlurOrder::AcrossFirst) {
     static const SeparableBlur blur = *create_separable_blur(shared_device());
     static FrameGraph graph(shared_device());

@@ -16,16 +16,15 @@ inline std::vector<Vec4> evaluate_shader(
     gpu::Device& device = shared_device();
     gpu::ShaderFiles files = gpu::ShaderFiles::standard();
     files.put(
-        "eval.comp",
-        "#version 450\nlayout(local_size_x = 64) in;\n"
-        "layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };\n"
-        "layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };\n"
-            + before
-            + "\nvoid main() {\n"
-              "    uint i = gl_GlobalInvocationID.x;\n"
-              "    if (i >= uint(inputs.length())) { return; }\n"
-              "    vec4 x = inputs[i];\n    vec4 y = vec4(0.0);\n"
-            + body + "\n    outputs[i] = y;\n}\n");
+        "eval.comp", "#version 450\nlayout(local_size_x = 64) in;\n"
+                     "layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };\n"
+                     "layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };\n"
+                         + before
+                         + "\nvoid main() {\n"
+                           "    uint i = gl_GlobalInvocationID.x;\n"
+                           "    if (i >= uint(inputs.length())) { return; }\n"
+                           "    vec4 x = inputs[i];\n    vec4 y = vec4(0.0);\n"
+                         + body + "\n    outputs[i] = y;\n}\n");
     gpu::ShaderLibrary library(device.caps(), files);
     const Result<const gpu::Program*> program = library.load({.compute = "eval.comp"});
     REQUIRE_MESSAGE(program.ok(), (program ? "" : program.error().message));

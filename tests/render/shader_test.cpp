@@ -77,11 +77,10 @@ TEST_CASE("shader: what stands for C++ in a shared layout is left out") {
     ShaderFiles files;
     files.put("a.frag", "#version 450\n#include \"x_gpu.h\"\nend\n");
     files.put(
-        "x_gpu.h",
-        "#pragma once\n#ifdef __cplusplus\n#include \"ecs/base/math.h\"\n#if "
-        "1\ncpp\n#endif\n#else\nglsl\n#endif\n"
-        "struct\n#ifndef __cplusplus\nglsl too\n#if X\nkept\n#endif\n#else\nmore "
-        "cpp\n#endif\nlast\n");
+        "x_gpu.h", "#pragma once\n#ifdef __cplusplus\n#include \"ecs/base/math.h\"\n#if "
+                   "1\ncpp\n#endif\n#else\nglsl\n#endif\n"
+                   "struct\n#ifndef __cplusplus\nglsl too\n#if X\nkept\n#endif\n#else\nmore "
+                   "cpp\n#endif\nlast\n");
     const auto source = gpu::assemble_shader(files, "a.frag");
     REQUIRE_MESSAGE(source.ok(), message_of(source));
     CHECK(source->text == "#version 450\nglsl\nstruct\nglsl too\n#if X\nkept\n#endif\nlast\nend\n");

@@ -73,8 +73,8 @@ TEST_CASE_FIXTURE(RenderTest, "vector_ops: matrices of the CPU move points as th
         const Mat4 m = to_mat4(a);
         const Vec4 p = &a == &shift ? Vec4(0, 0, 0, 1) : Vec4(0.3f, 0.7f, -2, 1);
         // Rows as an instance has them, columns as a uniform has them.
-        const std::vector<Vec4> inputs = {
-            m[0], m[1], m[2], m[3], p, p, p, a.row[0], a.row[1], a.row[2]};
+        const std::vector<Vec4> inputs = {m[0], m[1], m[2],     m[3],     p,
+                                          p,    p,    a.row[0], a.row[1], a.row[2]};
         const std::vector<Vec4> got = evaluate_shader(
             "",
             "mat4 m = mat4(inputs[0], inputs[1], inputs[2], inputs[3]);\n"
@@ -137,8 +137,7 @@ TEST_CASE_FIXTURE(
     check(
         {{"y = lit(x.x, x.y, x.z);", {0.5f, 0.8f, 2, 0}, {1, 0.5f, 0.64f, 1}},
          {"y = lit(x.x, x.y, x.z);", {-0.5f, 0.8f, 2, 0}, {1, 0, 0, 1}}},
-        1e-5f,
-        "#include \"lib/brdf.glsl\"\n");
+        1e-5f, "#include \"lib/brdf.glsl\"\n");
 }
 
 TEST_CASE_FIXTURE(RenderTest, "stdlib: functions of one number are those of mathematics to 1e-3") {

@@ -204,9 +204,7 @@ TEST_CASE_FIXTURE(
         world.get<PointLight>(near).radius = 0;
         const Affine pose = look_at({0, 0, distance}, {0, 0, 0});
         const RenderView view = make_render_view(
-            {.fov_y = 2 * std::atan(1 / distance), .near = 0.05f},
-            pose,
-            pose,
+            {.fov_y = 2 * std::atan(1 / distance), .near = 0.05f}, pose, pose,
             {.width = kSide, .height = kSide});
         const gpu::FloatImage finite = picture(ShadingRate::Pixel, view);
         world.destroy(near);

@@ -86,9 +86,7 @@ TEST_CASE_FIXTURE(
         std::vector<Entity> broken;
         const Quat turned = {kNan, 0, 0, 1};
         for (const Affine& nowhere :
-             {at({kNan, 1, 0}),
-              at({0, kInfinity, 0}),
-              affine_from({0, 1.5f, 0}, turned, {1, 1, 1}),
+             {at({kNan, 1, 0}), at({0, kInfinity, 0}), affine_from({0, 1.5f, 0}, turned, {1, 1, 1}),
               affine_from({0, 1.5f, 0}, {1, 0, 0, 0}, {kNan, 1, 1}),
               affine_from({0, 1.5f, 0}, {1, 0, 0, 0}, {1e38f, 1e38f, 1e38f}),
               affine_from({0, 1.5f, 0}, {1, 0, 0, 0}, {0, 0, 0})}) {
@@ -134,8 +132,7 @@ TEST_CASE_FIXTURE(
     BoxScene, "shadow input: lights that are nowhere, or turned nowhere, break no picture") {
     for (const ShadowMethod method : kMethods) {
         for (const Affine& pose :
-             {at({kNan, 1, 0}),
-              at({0, -kInfinity, 0}),
+             {at({kNan, 1, 0}), at({0, -kInfinity, 0}),
               affine_from(kLamp, {kNan, 0, 1, 0}, {1, 1, 1}),
               affine_from(kLamp, {1, 0, 0, 0}, {0, 0, 0})}) {
             CAPTURE(name_of(method));
@@ -205,12 +202,11 @@ TEST_CASE_FIXTURE(
             const Entity light = shine(PointLight{.radius = number}, at(kLamp));
             world.add(light, Shadow{.method = ShadowMethod::Volume});
             world.add(
-                light,
-                ShadowVolume{
-                    .kind = VolumeKind::PerTriangle,
-                    .extrusion = extrusion,
-                    .distance = number,
-                    .cap_bias = number});
+                light, ShadowVolume{
+                           .kind = VolumeKind::PerTriangle,
+                           .extrusion = extrusion,
+                           .distance = number,
+                           .cap_bias = number});
             CAPTURE(number);
             CAPTURE(static_cast<int>(extrusion));
             check_finite();

@@ -37,9 +37,8 @@ class FilterTest : public RenderTest {
     static gpu::ShaderFiles files() {
         gpu::ShaderFiles files = gpu::ShaderFiles::standard();
         files.put(
-            "probe.frag",
-            "#version 450\n#include \"light_gpu.h\"\n#include \"lib/shadow.glsl\"\n"
-            R"(uniform vec2 st;
+            "probe.frag", "#version 450\n#include \"light_gpu.h\"\n#include \"lib/shadow.glsl\"\n"
+                          R"(uniform vec2 st;
 uniform float filter_kind;
 layout(location = 0) out vec4 lit;
 void main() {
@@ -171,11 +170,10 @@ TEST_CASE_FIXTURE(
                 .outer_angle = radians(30.0f)},
             look_at({0, 3, 0}, {0, 0, 0}));
         world.add(
-            lamp,
-            Shadow{
-                .filter = ShadowFilter::ContactHardening,
-                .resolution = 1024,
-                .source_size = source});
+            lamp, Shadow{
+                      .filter = ShadowFilter::ContactHardening,
+                      .resolution = 1024,
+                      .source_size = source});
         // Seen from the side, under the half plane; one row of pixels across the edge.
         double sum = 0;
         double sum_x = 0;
@@ -228,13 +226,12 @@ TEST_CASE_FIXTURE(
     put(make_box({.size = {0.3f, 0.3f, 0.3f}}), {1.5f, 4, 0});  // for a deep map: a wide search
     const Entity sun = shine(DirectionalLight{}, look_at({0, 1, 0}, {0, 0, 0}));
     world.add(
-        sun,
-        Shadow{
-            .filter = ShadowFilter::ContactHardening,
-            .resolution = 1024,
-            .source_size = 0.25f,
-            .cascades = 1,
-            .distance = 5});
+        sun, Shadow{
+                 .filter = ShadowFilter::ContactHardening,
+                 .resolution = 1024,
+                 .source_size = 0.25f,
+                 .cascades = 1,
+                 .distance = 5});
     int count = 0;
     int lit = 0;
     for (const Receiver& r : receivers(sun, look({0.5f, 0.25f, 0}, {0, 0, 0}, 128, 128))) {

@@ -65,8 +65,7 @@ class ShadowTest : public Scene {
     static oracle::DVec3 point_of(const RenderView& view, int x, int y, double distance) {
         const oracle::DVec3 in_view = {
             ((x + 0.5) / view.width * 2 - 1) * double(view.tangent.x) * distance,
-            (1 - (y + 0.5) / view.height * 2) * double(view.tangent.y) * distance,
-            -distance};
+            (1 - (y + 0.5) / view.height * 2) * double(view.tangent.y) * distance, -distance};
         oracle::DVec3 point;
         for (int i = 0; i < 3; ++i) {
             const Vec4& r = view.world_from_camera.row[i];

@@ -93,9 +93,7 @@ TEST_CASE_FIXTURE(
         return dark;
     };
     for (const ShadowFilter filter :
-         {ShadowFilter::Hard,
-          ShadowFilter::Bilinear,
-          ShadowFilter::Soft,
+         {ShadowFilter::Hard, ShadowFilter::Bilinear, ShadowFilter::Soft,
           ShadowFilter::ContactHardening}) {
         for (const float slope : {0.0f, 15.0f, 30.0f, 45.0f, 60.0f, 75.0f, 85.0f}) {
             CAPTURE(static_cast<int>(filter));
@@ -119,8 +117,7 @@ TEST_CASE_FIXTURE(
         world.add(lamp, shadow);
         const DVec3 from = place_of(pose);
         const WrongPixels wrong = wrong_pixels(
-            receivers(lamp, view()),
-            2 * texel_at(shadow, radians(20.0f), 6),
+            receivers(lamp, view()), 2 * texel_at(shadow, radians(20.0f), 6),
             [&](const DVec3& p) { return glm::normalize(from - p); },
             [&](const DVec3& p) { return rays.blocked(p, from); });
         CAPTURE(toward.y);
@@ -323,8 +320,7 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: turned by 90 degrees six faces give t
     const auto picture = [&](const Quat& turn) {
         const auto turned = [&](const Vec3& p) { return affine_from(turn * p, turn, {1, 1, 1}); };
         const std::vector<Entity> made = {
-            place(floor, white, turned({0, -1, 0})),
-            place(post, white, turned({1, -0.5f, 0.3f})),
+            place(floor, white, turned({0, -1, 0})), place(post, white, turned({1, -0.5f, 0.3f})),
             place(post, white, turned({-0.8f, -0.5f, 0.9f})),
             shine(PointLight{.radius = 0}, at({0, 0, 0}))};
         world.add(made.back(), Shadow{.filter = ShadowFilter::Hard, .resolution = 128});
@@ -377,8 +373,7 @@ struct ColumnScene : ShadowTest {
         const MeshId column = add(make_cylinder({.radius = 0.3f, .height = 3, .segments = 24}));
         for (int i = 0; i < 12; ++i) {
             place(
-                column,
-                white,
+                column, white,
                 at({static_cast<float>(i % 4) * 3 - 4, 1.5f, -static_cast<float>(i / 4) * 5}));
         }
         sun = shine(DirectionalLight{}, look_at(to_sun, {0, 0, 0}));
@@ -454,9 +449,7 @@ TEST_CASE_FIXTURE(ColumnScene, "shadow map: cascades go over into each other wit
     const oracle::ShadowScene rays(world);
     const auto all = receivers(sun, view());
     const WrongPixels wrong = wrong_pixels(
-        all,
-        0.3,
-        [&](const DVec3&) { return DVec3(to_sun); },
+        all, 0.3, [&](const DVec3&) { return DVec3(to_sun); },
         [&](const DVec3& p) { return rays.blocked_toward(p, DVec3(to_sun)); });
     CHECK(wrong.acne == 0);
     CHECK(wrong.floating == 0);
@@ -528,8 +521,7 @@ TEST_CASE_FIXTURE(
             const float a = angle + 2 * kPi * static_cast<float>(i) / 3;
             const Quat rotation = {std::cos(0.5f * a), 0, std::sin(0.5f * a), 0};
             blades.push_back(place(
-                blade,
-                white,
+                blade, white,
                 affine_from({0.5f * std::cos(a), 1, -0.5f * std::sin(a)}, rotation, {1, 1, 1})));
         }
     };

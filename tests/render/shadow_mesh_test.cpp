@@ -63,8 +63,7 @@ std::vector<DTriangle> extruded(
     std::vector<DTriangle> triangles;
     for (std::size_t i = 0; i < geometry.indices.size(); i += 3) {
         triangles.push_back(
-            {moved[geometry.indices[i]],
-             moved[geometry.indices[i + 1]],
+            {moved[geometry.indices[i]], moved[geometry.indices[i + 1]],
              moved[geometry.indices[i + 2]]});
     }
     return triangles;

@@ -15,10 +15,8 @@ Vec4 project(const layout::ShadowViewRecord& record, const Vec3& p) {
     const Vec4 point = {p, 1};
     const float q = glm::dot(record.row_q, point);
     return {
-        glm::dot(record.row_s, point) / q,
-        glm::dot(record.row_t, point) / q,
-        glm::dot(record.row_r, point) / q,
-        q};
+        glm::dot(record.row_s, point) / q, glm::dot(record.row_t, point) / q,
+        glm::dot(record.row_r, point) / q, q};
 }
 
 constexpr AtlasRect kPlace = {256, 512, 128};
@@ -119,8 +117,7 @@ TEST_CASE("shadow view: a plane's slope is that between its points") {
         const Vec3 p = {0.5f, 0.2f, 1};
         const Vec4 plane = {normal, -glm::dot(normal, p)};
         const Vec3 in_shadow = {
-            glm::dot(record.plane_s, plane),
-            glm::dot(record.plane_t, plane),
+            glm::dot(record.plane_s, plane), glm::dot(record.plane_t, plane),
             glm::dot(record.plane_r, plane)};
         const Vec4 here = project(record, p);
         for (const Vec3& step : {tangent, bitangent, tangent - bitangent}) {
@@ -206,8 +203,7 @@ TEST_CASE("shadow view: a cascade holds all that the camera sees of its slice") 
             const float z = 2 + 7 * share(random);
             const Vec3 in_view = {
                 (2 * share(random) - 1) * camera.tangent.x * z,
-                (2 * share(random) - 1) * camera.tangent.y * z,
-                -z};
+                (2 * share(random) - 1) * camera.tangent.y * z, -z};
             const Vec4 at = project(record, transform_point(pose, in_view));
             CHECK(std::abs(at.x - 320) <= 63.5f);
             CHECK(std::abs(at.y - 576) <= 63.5f);
@@ -254,8 +250,7 @@ TEST_CASE(
         for (int i = 0; i < 100; ++i) {
             const float depth = near + (far - near) * unit(random);
             const Vec3 local = {
-                0.64f * depth * (2 * unit(random) - 1),
-                0.36f * depth * (2 * unit(random) - 1),
+                0.64f * depth * (2 * unit(random) - 1), 0.36f * depth * (2 * unit(random) - 1),
                 -depth};
             const Vec3 caster = eye + turn * local + 60 * unit(random) * to_sun;
             CHECK(inside(planes, caster));

@@ -50,19 +50,16 @@ class VolumeScene : public test::Scene {
     void add_boxes() {
         add_caster(cube, at({0, 0.6f, 0}));
         add_caster(
-            cube,
-            affine_from(
-                {-1.8f, 1.4f, 0.5f},
-                glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 3))),
-                {0.4f, 1.6f, 0.3f}));
+            cube, affine_from(
+                      {-1.8f, 1.4f, 0.5f}, glm::angleAxis(0.7f, glm::normalize(Vec3(1, 2, 3))),
+                      {0.4f, 1.6f, 0.3f}));
     }
     void add_casters() {
         add_boxes();
         add_caster(
             add(make_shadow_torus()),
             affine_from(
-                {1.7f, 1.2f, -0.3f},
-                glm::angleAxis(1.1f, glm::normalize(Vec3(1, 0, 0.3f))),
+                {1.7f, 1.2f, -0.3f}, glm::angleAxis(1.1f, glm::normalize(Vec3(1, 0, 0.3f))),
                 {-1, 1, 1}));  // mirrored
         add_caster(
             add(make_sphere({.radius = 0.4f, .segments = 20, .rings = 10})),
@@ -409,9 +406,8 @@ TEST_CASE_FIXTURE(
     // Above the camera and short: its volume ends before it meets anything that is seen.
     add_caster(cube, affine_from({1, 3, 2}, {1, 0, 0, 0}, Vec3(0.2f)));
     world.add(
-        light,
-        ShadowVolume{
-            .mode = StencilMode::ZFail, .extrusion = Extrusion::Constant, .distance = 0.5f});
+        light, ShadowVolume{
+                   .mode = StencilMode::ZFail, .extrusion = Extrusion::Constant, .distance = 0.5f});
     const gpu::FloatImage before = radiance(view);
     int differ = 0;
     for (int x = 0; x < kWidth; ++x) {
@@ -510,8 +506,7 @@ TEST_CASE_FIXTURE(
     MeshData floor = test::make_square();
     world.add(
         place(
-            add(std::move(floor)),
-            matte,
+            add(std::move(floor)), matte,
             affine_from({0, 0, 0}, glm::angleAxis(-0.5f * kPi, Vec3(1, 0, 0)), {20, 20, 1})),
         NoShadow{});
     add_caster(cube, affine_from({0, 9, 0}, {1, 0, 0, 0}, {4, 0.1f, 1}));

@@ -29,10 +29,7 @@ class SkinScene : public Scene {
     }
     /// An entity that is its own character.
     Entity pose(
-        MeshId mesh,
-        MaterialId material,
-        SkinId skin,
-        Pose pose,
+        MeshId mesh, MaterialId material, SkinId skin, Pose pose,
         Skinning skinning = Skinning::Linear) {
         const Entity entity = place(mesh, material, {});
         world.add(entity, std::move(pose));

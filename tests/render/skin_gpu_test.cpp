@@ -27,10 +27,7 @@ struct SkinTest : SkinScene {
         pose.joints = random_joints(joints, 0.25f, 0.7f, scaled, random);
         pose.previous = random_joints(joints, 0.25f, 0.7f, scaled, random);
         return SkinScene::pose(
-            add(std::move(tube)),
-            gray,
-            add_skin(make_chain(joints, 0.25f)),
-            std::move(pose),
+            add(std::move(tube)), gray, add_skin(make_chain(joints, 0.25f)), std::move(pose),
             skinning);
     }
 

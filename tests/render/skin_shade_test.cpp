@@ -35,8 +35,7 @@ float green(const gpu::FloatImage& image, int x, int y) {
 
 TEST_CASE_FIXTURE(RenderTest, "skin shade: the rim has the values of both printed forms") {
     const std::vector<Vec4> found = evaluate_shader(
-        "#include \"lib/brdf.glsl\"\n",
-        "y.x = skin_rim(x.x, true); y.y = skin_rim(x.x, false);",
+        "#include \"lib/brdf.glsl\"\n", "y.x = skin_rim(x.x, true); y.y = skin_rim(x.x, false);",
         {Vec4(0), Vec4(0.25f), Vec4(0.5f), Vec4(0.75f), Vec4(1), Vec4(-0.5f), Vec4(1.5f)});
     const float wide[] = {1, 0.9375f, 0.75f, 0.4375f, 0, 1, 0};
     const float narrow[] = {1, 0.5625f, 0.25f, 0.0625f, 0, 1, 0};
@@ -104,18 +103,13 @@ TEST_CASE("skin shade: each point of a ball is as the oracle says, by any light 
                     const DVec3 n = glm::normalize(DVec3(rgb_at(normal, x, y)));
                     const std::array<oracle::Arriving, 1> lights = {oracle::arrive(
                         PointLight{.color = {1, 1, 1}, .intensity = 4, .radius = 0},
-                        DVec3(1.5, 0.5, 0.4f),
-                        point,
-                        n)};
+                        DVec3(1.5, 0.5, 0.4f), point, n)};
                     const DVec3 exact = oracle::skin(
                         {.ambient = DVec3(0),
                          .diffuse = DVec3(face.skin.base_color),
                          .specular = DVec3(face.skin.specular),
                          .shininess = 20},
-                        DVec3(face.skin.skin_color),
-                        wide,
-                        lights,
-                        n,
+                        DVec3(face.skin.skin_color), wide, lights, n,
                         glm::normalize(DVec3(0, 0, 2) - point));
                     CHECK(glm::distance(DVec3(rgb_at(image, x, y)), exact) < 6e-3 * exact.x + 1e-3);
                     ++compared;

@@ -44,16 +44,14 @@ ImageData picture_of(
                 const glm::dvec2 p(u - 0.5, v - 0.5);
                 const double away = 2 * 3.14159265358979 * glm::length(p);
                 d = glm::dvec3(
-                    std::sin(away) * p.x / glm::length(p),
-                    std::cos(away),
+                    std::sin(away) * p.x / glm::length(p), std::cos(away),
                     std::sin(away) * p.y / glm::length(p));
             } else {
                 const double latitude = mapping == PanoramaMapping::Cylindrical
                                             ? std::atan(2 * (v - 0.5))
                                             : 3.14159265358979 * (v - 0.5);
                 d = glm::dvec3(
-                    std::cos(latitude) * std::sin(phi),
-                    std::sin(latitude),
+                    std::cos(latitude) * std::sin(phi), std::sin(latitude),
                     -std::cos(latitude) * std::cos(phi));
             }
             const glm::dvec3 color = radiance(d);
@@ -145,8 +143,7 @@ TEST_CASE_FIXTURE(
         return glm::dvec3(1.5, 1, 2) + glm::dvec3(d.x * d.y, d.z, d.y);
     };
     for (const PanoramaMapping mapping :
-         {PanoramaMapping::Equirectangular,
-          PanoramaMapping::Cylindrical,
+         {PanoramaMapping::Equirectangular, PanoramaMapping::Cylindrical,
           PanoramaMapping::Angular}) {
         const bool disc = mapping == PanoramaMapping::Angular;
         surround(picture_of(smooth, mapping, 256, disc ? 256 : 128), {.mapping = mapping});
@@ -203,10 +200,8 @@ TEST_CASE_FIXTURE(RenderTest, "sky_panorama: irradiance is the integral over the
     CHECK(worst < 0.04 * glm::length(brightest));
 
     const MadeSurroundings even(picture_of(
-        [](const glm::dvec3&) { return glm::dvec3(0.5, 1, 2); },
-        PanoramaMapping::Equirectangular,
-        64,
-        32));
+        [](const glm::dvec3&) { return glm::dvec3(0.5, 1, 2); }, PanoramaMapping::Equirectangular,
+        64, 32));
     const auto flat = even.reflection.irradiance.read_value<layout::Irradiance>(0);
     for (const Vec3& n : random_directions(5)) {
         CHECK(glm::distance(irradiance_toward(flat, n), Vec3(0.5f, 1, 2)) < 1e-4f);
@@ -217,10 +212,8 @@ TEST_CASE_FIXTURE(RenderTest, "sky_panorama: rough mirrors show the GGX mean, a 
     const auto overcast = [](const glm::dvec3& d) {
         return glm::dvec3(1, 2, 3) + glm::dvec3(d.y * d.y * d.y, d.x * d.z, d.z);
     };
-    const auto error = [](const oracle::RadianceFunction& sky,
-                          const MadeSurroundings& made,
-                          int level,
-                          double roughness) {
+    const auto error = [](const oracle::RadianceFunction& sky, const MadeSurroundings& made,
+                          int level, double roughness) {
         const gpu::FloatImage& map = made.maps[level];
         std::mt19937 random(6);
         double squares = 0;
@@ -278,9 +271,8 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene,
-    "sky_panorama: another level's image in its place is noticed, a "
-    "missing one is magenta") {
+    PanoramaScene, "sky_panorama: another level's image in its place is noticed, a "
+                   "missing one is magenta") {
     const auto red = [](const glm::dvec3&) { return glm::dvec3(1, 0, 0); };
     const auto green = [](const glm::dvec3&) { return glm::dvec3(0, 1, 0); };
     surround(picture_of(red, PanoramaMapping::Equirectangular, 32, 16));
@@ -298,9 +290,7 @@ TEST_CASE_FIXTURE(
     PanoramaScene, "sky_panorama: radiance beyond half floats is cut off, below 0 is 0") {
     surround(picture_of(
         [](const glm::dvec3& d) { return glm::dvec3(1e9, -5, d.y); },
-        PanoramaMapping::Equirectangular,
-        32,
-        16));
+        PanoramaMapping::Equirectangular, 32, 16));
     const Vec3 color = seen({1, 0.5f, 0});
     CHECK(color.x == 65504);
     CHECK(color.y == 0);
@@ -312,9 +302,7 @@ TEST_CASE_FIXTURE(
     "sky_panorama: texels that are no numbers leave pictures finite, the sky elsewhere as it is") {
     ImageData image = picture_of(
         [](const glm::dvec3& d) { return glm::dvec3(0.5, 0.6, 0.7) + 0.2 * d; },
-        PanoramaMapping::Equirectangular,
-        64,
-        32);
+        PanoramaMapping::Equirectangular, 64, 32);
     const auto pictures = [&](const ImageData& of) {
         surround(of);
         const Entity ball = place(
@@ -330,8 +318,7 @@ TEST_CASE_FIXTURE(
     // Three texels right before the camera's eyes.
     for (const int at : {16 * 64 + 32, 10 * 64 + 36, 20 * 64 + 28}) {
         std::memcpy(
-            image.pixels.data() + static_cast<std::size_t>(at) * sizeof broken,
-            broken,
+            image.pixels.data() + static_cast<std::size_t>(at) * sizeof broken, broken,
             sizeof broken);
     }
     const gpu::FloatImage found = pictures(image);

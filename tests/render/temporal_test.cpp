@@ -24,8 +24,7 @@ class Temporal : public Shutter {
             const float gray = i % 2 == 0 ? 0.9f : 0.1f;
             const Quat lean = glm::angleAxis(0.08f * static_cast<float>(i), Vec3(0, 0, 1));
             place(
-                square,
-                unlit({gray, 0.5f, 1 - gray}),
+                square, unlit({gray, 0.5f, 1 - gray}),
                 affine_from({x, 0, 0}, lean, {0.012f * static_cast<float>(i + 1), 0.8f, 1}));
         }
     }

@@ -32,8 +32,7 @@ Vec3 water_color(int x, int y) {
     x = (x % kSide + kSide) % kSide;
     y = (y % kSide + kSide) % kSide;
     return {
-        0.1f + 0.05f * static_cast<float>(x),
-        0.9f - 0.05f * static_cast<float>(y),
+        0.1f + 0.05f * static_cast<float>(x), 0.9f - 0.05f * static_cast<float>(y),
         (x + y) % 2 == 0 ? 0.2f : 0.6f};
 }
 

@@ -25,9 +25,7 @@ double circle_at(double distance) {
 /// A camera somewhere, turned somehow, with a fast lens.
 RenderView lens_camera(const LensView& lens) {
     RenderView view = make_render_view(
-        Camera{},
-        look_at({3, 2, 5}, {0.5f, 1, -2}),
-        look_at({3.1f, 2, 5}, {0.5f, 1, -2}),
+        Camera{}, look_at({3, 2, 5}, {0.5f, 1, -2}), look_at({3.1f, 2, 5}, {0.5f, 1, -2}),
         {.width = 640, .height = 360});
     view.lens = lens;
     return view;

@@ -45,14 +45,9 @@ struct ToneScene : Scene {
     gpu::ByteImage bytes;
 };
 
-const Vec3 kColors[] = {
-    {0.02f, 0.05f, 0.01f},
-    {0.18f, 0.18f, 0.18f},
-    {0.5f, 0.2f, 0.7f},
-    {0.9f, 0.3f, 0.1f},
-    {2.0f, 1.0f, 0.4f},
-    {0.1f, 6.0f, 3.0f},
-    {40, 40, 40}};
+const Vec3 kColors[] = {{0.02f, 0.05f, 0.01f}, {0.18f, 0.18f, 0.18f}, {0.5f, 0.2f, 0.7f},
+                        {0.9f, 0.3f, 0.1f},    {2.0f, 1.0f, 0.4f},    {0.1f, 6.0f, 3.0f},
+                        {40, 40, 40}};
 
 }  // namespace
 
@@ -151,8 +146,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's
                     {.ev = ev, .curve = ToneCurve::Knee, .contrast = contrast, .dither = false});
                 for (int c = 0; c < 3; ++c) {
                     const double want = oracle::knee_map(
-                        color[c],
-                        0,
+                        color[c], 0,
                         {.exposure = std::exp2(ev), .contrast = contrast, .exponent = 1 / 2.2});
                     CHECK(std::abs(got[c] - 255 * std::min(want, 1.0)) <= 0.52);
                 }
@@ -160,11 +154,10 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: global curve, knee and gamma are the oracle's
         }
         for (const float gamma : {2.2f, 2.8f}) {
             const Vec3 got = shown(
-                color,
-                {.curve = ToneCurve::Linear,
-                 .encoding = DisplayEncoding::Power,
-                 .gamma = gamma,
-                 .dither = false});
+                color, {.curve = ToneCurve::Linear,
+                        .encoding = DisplayEncoding::Power,
+                        .gamma = gamma,
+                        .dither = false});
             for (int c = 0; c < 3; ++c) {
                 const double want = oracle::gamma_encode(std::min(color[c], 1.0f), gamma);
                 CHECK(std::abs(got[c] - 255 * want) <= 0.52);

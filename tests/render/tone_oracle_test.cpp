@@ -85,15 +85,8 @@ TEST_CASE("hdr: scaled by the key, the log-average is the key in any unit of lig
 }
 
 TEST_CASE("hdr: compression has its printed values, rises and stays below 1") {
-    const double known[][2] = {
-        {0, 0},
-        {0.18, 0.152542},
-        {1, 0.5},
-        {3, 0.75},
-        {9, 0.9},
-        {99, 0.99},
-        {0.018, 0.017682},
-        {1.8, 0.642857}};
+    const double known[][2] = {{0, 0},   {0.18, 0.152542}, {1, 0.5},          {3, 0.75},
+                               {9, 0.9}, {99, 0.99},       {0.018, 0.017682}, {1.8, 0.642857}};
     for (const auto& [l, shown] : known) {
         CHECK(compress(l) == near(shown, 3e-5));
     }

@@ -30,13 +30,11 @@ class Pool : public Scene {
                 .depth = kDepth,
                 .absorption = Vec3(0.05f),
                 .scattering = Vec3(0.1f)},
-            WorldTransform{at({0, 0, 0})},
-            Caustics{.resolution = 256, .spacing = 1});
+            WorldTransform{at({0, 0, 0})}, Caustics{.resolution = 256, .spacing = 1});
     }
     Entity lay(const Vec3& middle, float half, float turn) {
         return place(
-            add(make_square()),
-            white_,
+            add(make_square()), white_,
             affine_from(middle, glm::angleAxis(radians(turn), Vec3(1, 0, 0)), Vec3(half)));
     }
     void wave() {
@@ -46,8 +44,7 @@ class Pool : public Scene {
             {.waves =
                  {{.amplitude = 0.02f, .length = 1.3f, .direction = 0.3f},
                   {.amplitude = 0.015f, .length = 0.9f, .direction = 1.9f, .phase = 1}}},
-            1.0,
-            table);
+            1.0, table);
         world.add(water_, table);
     }
     Entity sun(const Vec3& to_sun) {
@@ -59,9 +56,7 @@ class Pool : public Scene {
     [[nodiscard]] RenderView level(const Vec3& eye = {0, -2, 0}) const {
         const Affine pose = look_at(eye, eye + Vec3(0, 0, -1));
         return make_render_view(
-            {.fov_y = radians(30.0f), .near = 0.01f},
-            pose,
-            pose,
+            {.fov_y = radians(30.0f), .near = 0.01f}, pose, pose,
             {.width = kSize, .height = kSize});
     }
 

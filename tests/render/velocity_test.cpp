@@ -36,9 +36,7 @@ struct VelocityScene : SkinScene {
     }
     static RenderView view_of(const oracle::CameraMotion& motion, const Vec2& jitter = {0, 0}) {
         return make_render_view(
-            motion.camera,
-            motion.current,
-            motion.previous,
+            motion.camera, motion.current, motion.previous,
             {.width = motion.width,
              .height = motion.height,
              .jitter = jitter,
@@ -128,12 +126,10 @@ Affine turned(const Vec3& place, const Vec3& axis, float angle, const Vec3& scal
 TEST_CASE_FIXTURE(
     VelocityScene, "velocity: rigid bodies, the sky and the camera move as rays say") {
     moving(
-        add(make_ball(16)),
-        turned({-0.3f, 0.5f, 0}, {0, 1, 1}, 0.2f, {0.3f, 0.4f, 0.3f}),
+        add(make_ball(16)), turned({-0.3f, 0.5f, 0}, {0, 1, 1}, 0.2f, {0.3f, 0.4f, 0.3f}),
         turned({-0.1f, 0.45f, 0.2f}, {0, 1, 1}, 0.6f, {0.3f, 0.4f, 0.35f}));
     moving(
-        add(make_square()),
-        turned({0.5f, 0.3f, -0.5f}, {1, 0, 0}, -0.3f, Vec3(0.4f)),
+        add(make_square()), turned({0.5f, 0.3f, -0.5f}, {1, 0, 0}, -0.3f, Vec3(0.4f)),
         turned({0.45f, 0.5f, -0.7f}, {1, 0, 0}, -0.5f, Vec3(0.4f)));
     check_agreement(moving_camera());
 }
@@ -320,8 +316,7 @@ TEST_CASE_FIXTURE(
     Material glass = {.base_color = {0.9f, 0.9f, 1, 0.4f}};
     glass.alpha_mode = AlphaMode::Blend;
     world.create(
-        MeshInstance{square, add(glass)},
-        WorldTransform{at({0, 0.5f, 0})},
+        MeshInstance{square, add(glass)}, WorldTransform{at({0, 0.5f, 0})},
         PreviousWorldTransform{at({0, 0, 0})});
     CHECK(aov(view, "velocity").pixels == want.pixels);
 }

@@ -261,8 +261,7 @@ TEST_CASE_FIXTURE(Tile, "water detail: layers add up as their normals, by streng
             const auto& pose = view.world_from_camera.row;
             const Vec3 in_camera = glm::normalize(Vec3(ndc * view.tangent, -1));
             const Vec3 ray(
-                glm::dot(Vec3(pose[0]), in_camera),
-                glm::dot(Vec3(pose[1]), in_camera),
+                glm::dot(Vec3(pose[0]), in_camera), glm::dot(Vec3(pose[1]), in_camera),
                 glm::dot(Vec3(pose[2]), in_camera));
             const float expected = fresnel(-glm::dot(ray, normal), 1.333f);
             CHECK(std::abs(seen.at(x, y, 0) - expected) < 0.01f * expected);

@@ -108,13 +108,11 @@ RippleState make_rough(const Water& water, float cell) {
 
 TEST_CASE_FIXTURE(Lake, "ripple atlas: its texels are what the query says, to the edge of each") {
     const RippleState states[] = {
-        make_rough({.size = {3, 2}}, 0.1f),
-        make_rough({.size = {1, 4}}, 0.1f),
-        make_rough({.size = {2, 2}}, 0.25f),
-        make_rough({.size = {5, 1}}, 0.1f)};
+        make_rough({.size = {3, 2}}, 0.1f), make_rough({.size = {1, 4}}, 0.1f),
+        make_rough({.size = {2, 2}}, 0.25f), make_rough({.size = {5, 1}}, 0.1f)};
     const RippleState none = make_ripples({}, {}, kStep);
-    const RippleState* const all[] = {
-        &states[0], nullptr, &states[1], &none, &states[2], &states[3]};
+    const RippleState* const all[] = {&states[0], nullptr,    &states[1],
+                                      &none,      &states[2], &states[3]};
     RippleAtlas atlas;
     atlas.update(all, 4096);
     const gpu::FloatImage image = gpu::read_floats(atlas.texture());
@@ -239,8 +237,7 @@ TEST_CASE_FIXTURE(Lake, "water: leaning waves mirror by the slopes that the quer
         water,
         {.waves = {{.amplitude = 0.12f, .length = 3, .direction = 0.8f, .lean = 0.8f}},
          .radial = {{.amplitude = 0.02f, .length = 2}}},
-        kNow,
-        table);
+        kNow, table);
     world.add(pour(water), table);
     WaterSurface surface;
     surface.water = water;
@@ -285,8 +282,7 @@ TEST_CASE_FIXTURE(Lake, "water: where patches of two sizes meet there is no crac
                .amplitude = {0.05f, 0.25f},
                .spread = 3,
                .seed = 5}}},
-        kNow,
-        table);
+        kNow, table);
     world.add(lake, table);
     for (const Vec3& eye : {Vec3(0, 2.5f, 0), Vec3(13, 6, 5)}) {
         const gpu::FloatImage seen = radiance(look(eye, eye + Vec3(1, -0.5f, 0.4f), 320, 200));
@@ -344,8 +340,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(Lake, "caustics: of a sun at the horizon or below it there are none") {
     surround({0.1f, 0.1f, 0.1f});
     place(
-        add(make_square()),
-        add(Material{.shading = ShadingModel::Blinn}),
+        add(make_square()), add(Material{.shading = ShadingModel::Blinn}),
         affine_from({0, -1.5f, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(4)));
     const Entity pool = pour({.size = {8, 8}, .depth = 1.5f});
     world.add(pool, table_at({.size = {8, 8}, .depth = 1.5f}, 0));
@@ -481,10 +476,8 @@ TEST_CASE_FIXTURE(Lake, "water: foam that covers a share of the sea whitens as m
     OceanState state;
     step_ocean(calm, kNow, kStep, state);
     const Entity sea = world.create(
-        Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)},
-        WorldTransform{at({0, 0, 0})},
-        state,
-        OceanFoam{});
+        Water{.absorption = {100, 100, 100}, .scattering = Vec3(0)}, WorldTransform{at({0, 0, 0})},
+        state, OceanFoam{});
     for (const float height : {6.0f, 20.0f, 60.0f}) {
         const RenderView view = look({0, height, 0.1f}, {0, 0, 0}, 96, 96);
         const auto mean_with = [&](float cover) {

@@ -60,8 +60,7 @@ Vec3 ray_through(const RenderView& view, int x, int y) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 in_camera(ndc.x * view.tangent.x, ndc.y * view.tangent.y, -1);
     return glm::normalize(Vec3(
-        glm::dot(Vec3(pose[0]), in_camera),
-        glm::dot(Vec3(pose[1]), in_camera),
+        glm::dot(Vec3(pose[0]), in_camera), glm::dot(Vec3(pose[1]), in_camera),
         glm::dot(Vec3(pose[2]), in_camera)));
 }
 
@@ -128,10 +127,8 @@ TEST_CASE_FIXTURE(
 TEST_CASE("water reflection: its camera is the picture's, mirrored, and mirrored again the same") {
     const RenderView view = with_jitter(
         make_render_view(
-            {.fov_y = 1.0f, .near = 0.1f},
-            look_at({1, 2, 3}, {-2, 0.5f, -4}),
-            look_at({1, 2, 3}, {-2, 0.5f, -4}),
-            {.width = 200, .height = 100}),
+            {.fov_y = 1.0f, .near = 0.1f}, look_at({1, 2, 3}, {-2, 0.5f, -4}),
+            look_at({1, 2, 3}, {-2, 0.5f, -4}), {.width = 200, .height = 100}),
         {0.25f, -0.4f});
     constexpr float kLevel = 0.7f;
     const RenderView mirrored = make_reflected_view(view, kLevel, 0.5f);
@@ -201,8 +198,7 @@ TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, o
     MeshData wall = make_square();
     wall.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 1, 0, 1}, {0, 1, 0, 1}};
     place(
-        add(wall),
-        add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        add(wall), add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
         affine_from({0, 0, -8}, {1, 0, 0, 0}, Vec3(12)));
     const Water water = {.size = {30, 14}, .absorption = Vec3(1000), .scattering = Vec3(0)};
     const Entity pond = world.create(water, WorldTransform{at({0, 0, 0})});
@@ -425,11 +421,10 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the picture moves as far as 
     for (const float distortion : {0.0f, 4.0f}) {
         CAPTURE(distortion);
         world.add(
-            pond,
-            WaterLook{
-                .reflection = WaterReflection::Environment,
-                .refraction = WaterRefraction::Shifted,
-                .distortion = distortion});
+            pond, WaterLook{
+                      .reflection = WaterReflection::Environment,
+                      .refraction = WaterRefraction::Shifted,
+                      .distortion = distortion});
         const gpu::FloatImage seen = radiance(view);
         const gpu::FloatImage normals = aov(view, "normal");
         int tested = 0;
@@ -481,11 +476,10 @@ TEST_CASE_FIXTURE(
         return most;
     };
     world.add(
-        pond,
-        WaterLook{
-            .reflection = WaterReflection::Environment,
-            .refraction = WaterRefraction::Shifted,
-            .distortion = 4});
+        pond, WaterLook{
+                  .reflection = WaterReflection::Environment,
+                  .refraction = WaterRefraction::Shifted,
+                  .distortion = 4});
     CHECK(green() < 0.6f);
 }
 

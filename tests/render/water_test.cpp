@@ -264,8 +264,7 @@ TEST_CASE_FIXTURE(
               {.amplitude = 0.1f, .length = 6, .direction = -1, .lean = 0.3f}},
          .radial = {{.amplitude = 0.1f, .length = 7}},
          .packets = {{.age = 1.5f, .amplitude = 0.1f, .length = 4, .waves = 1}}},
-        2.5,
-        table);
+        2.5, table);
     RippleState ripples = make_ripples(water, {.cell = 0.5f}, 1.0f / 60);
     push_ripples(ripples, {.center = {1, 2}, .radius = 6, .height = -0.4f});
     OceanState sea;

@@ -98,8 +98,7 @@ struct Pool {
     explicit Pool(int count, float size = 6) {
         schedule = make_world_schedule();
         water = world.create(
-            Transform{.position = {1, 2, 3}},
-            Water{.size = {size, size}, .depth = 2},
+            Transform{.position = {1, 2, 3}}, Water{.size = {size, size}, .depth = 2},
             WaterRipples{.cell = 0.1f},
             WaterWaves{.waves = {{.amplitude = 0.03f, .length = 2.5f, .sharpness = 1}}});
         std::mt19937 random(4);

@@ -46,8 +46,7 @@ TEST_CASE("fly_camera: the mouse to the right turns right, down tilts down, and 
     CHECK(forward(camera).y == doctest::Approx(-std::sin(0.3f)));
     for (int i = 0; i < 500; ++i) {
         step_fly_camera(
-            camera,
-            kFly,
+            camera, kFly,
             {.look =
                  {17.0f * std::sin(0.1f * static_cast<float>(i)),
                   9.0f * std::cos(0.3f * static_cast<float>(i))}},

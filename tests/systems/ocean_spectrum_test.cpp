@@ -15,9 +15,7 @@ constexpr double kTurn = 6.283185307179586;
 constexpr OceanSpectrum kSpectra[] = {
     OceanSpectrum::WindSea, OceanSpectrum::Phillips, OceanSpectrum::Jonswap, OceanSpectrum::Tma};
 constexpr OceanSpreading kSpreadings[] = {
-    OceanSpreading::WindSea,
-    OceanSpreading::Hasselmann,
-    OceanSpreading::DonelanBanner,
+    OceanSpreading::WindSea, OceanSpreading::Hasselmann, OceanSpreading::DonelanBanner,
     OceanSpreading::CosineSquared};
 
 /// Trapezoids over the logarithm: exact to many digits for what vanishes at both ends.

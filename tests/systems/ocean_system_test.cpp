@@ -135,15 +135,8 @@ TEST_CASE("ocean: every field is the sum of its travelling waves, to 1e-5 of the
                 const double spacing = static_cast<double>(cascade.patch) / cascade.size;
                 const oracle::OceanPoint sum = oracle::ocean_at(
                     cascade, 1.0, spacing * (i % cascade.size), spacing * (i / cascade.size), time);
-                const double expected[8] = {
-                    sum.height,
-                    sum.shift_x,
-                    sum.shift_z,
-                    sum.slope_x,
-                    sum.slope_z,
-                    sum.shift_xx,
-                    sum.shift_zz,
-                    sum.shift_xz};
+                const double expected[8] = {sum.height,  sum.shift_x,  sum.shift_z,  sum.slope_x,
+                                            sum.slope_z, sum.shift_xx, sum.shift_zz, sum.shift_xz};
                 for (int field = 0; field < 8; ++field) {
                     const double found = (*fields_of(cascade)[field])[i];
                     largest_error[field] =
@@ -191,10 +184,7 @@ TEST_CASE("ocean: waves run along their wave numbers as fast as the dispersion s
         float depth;
     };
     for (const Case& c :
-         {Case{1, 0, 1e4f},
-          Case{3, -2, 1e4f},
-          Case{-5, 7, 1e4f},
-          Case{2, 2, 1.0f},
+         {Case{1, 0, 1e4f}, Case{3, -2, 1e4f}, Case{-5, 7, 1e4f}, Case{2, 2, 1.0f},
           Case{0, -1, 0.3f}}) {
         OceanCascade cascade = lone_wave(32, 50, c.n, c.m, c.depth);
         const double k = kTurn / 50 * std::hypot(c.n, c.m);

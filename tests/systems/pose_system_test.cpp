@@ -72,8 +72,7 @@ std::vector<std::uint64_t> crowd_hashes(int threads, int steps) {
     Stage stage;
     for (int i = 0; i < 300; ++i) {
         const Entity character = stage.world.create(
-            Transform{},
-            Skeleton{{0}},
+            Transform{}, Skeleton{{0}},
             ClipPlayer{.clip = {1}, .time = 0.01f * static_cast<float>(i)},
             MorphWeights{{0, 0}, {}});
         stage.world.create(Transform{}, Parent{character}, JointAttachment{character, 3});
@@ -146,9 +145,7 @@ TEST_CASE("pose system: previous is what the joints were a step ago, and now in 
         CHECK(stage.world.get<const MorphWeights>(early).weights[0] == 0.5f);
     }
     const Entity late = stage.world.create(
-        Transform{},
-        Skeleton{{0}},
-        ClipPlayer{.clip = {1}, .time = 0.5f},
+        Transform{}, Skeleton{{0}}, ClipPlayer{.clip = {1}, .time = 0.5f},
         MorphWeights{{0, 0}, {}});
     stage.step();
     CHECK(equal(stage.pose(late).previous, stage.pose(late).joints));
@@ -161,10 +158,7 @@ TEST_CASE("pose system: a teleport of a character, or of what carries it, leaves
     Stage stage;
     const Entity cart = stage.world.create(Transform{});
     const Entity rider = stage.world.create(
-        Transform{},
-        Parent{cart},
-        Skeleton{{0}},
-        ClipPlayer{.clip = {0}},
+        Transform{}, Parent{cart}, Skeleton{{0}}, ClipPlayer{.clip = {0}},
         MorphWeights{{0, 0}, {}});
     start_world(stage.world);
     stage.step();
@@ -203,8 +197,7 @@ TEST_CASE("pose system: new characters get weights for the morph targets of thei
     const Entity plain = stage.world.create(Transform{}, Skeleton{{0}});
     for (const Entity followed : {character, own}) {
         stage.world.create(
-            Transform{},
-            MeshInstance{{0}, {}},
+            Transform{}, MeshInstance{{0}, {}},
             Deformed{.character = followed, .skin = {}, .first_morph = 2});
     }
     start_world(stage.world);
@@ -365,8 +358,7 @@ TEST_CASE("pose system: a world put back from a snapshot goes on bit by bit as i
     Stage stage;
     for (int i = 0; i < 20; ++i) {
         stage.world.create(
-            Transform{},
-            Skeleton{{0}},
+            Transform{}, Skeleton{{0}},
             ClipPlayer{.clip = {1}, .time = 0.1f * static_cast<float>(i), .speed = -1.5f},
             MorphWeights{{0, 0}, {}});
     }

@@ -143,9 +143,8 @@ TEST_CASE_FIXTURE(Race, "racer: who is faster goes around who is slower") {
     for (int i = 0; i < 600; ++i) {
         run(1);
         nearest = std::min(
-            nearest,
-            glm::distance(
-                world.get<Transform>(slow).position, world.get<Transform>(fast).position));
+            nearest, glm::distance(
+                         world.get<Transform>(slow).position, world.get<Transform>(fast).position));
     }
     CHECK(world.get<Racer>(fast).distance > world.get<Racer>(slow).distance + 50);
     CHECK(nearest > 1.8f);

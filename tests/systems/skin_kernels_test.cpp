@@ -115,8 +115,7 @@ Puppet make_tube(const Vec3& axis, float angle, float upper_weight) {
     for (int i = 0; i < 16; ++i) {
         const float turn = 2.0f * kPi * static_cast<float>(i) / 16.0f;
         add_vertex(
-            puppet.mesh,
-            Vec3(std::cos(turn), 1, std::sin(turn)),
+            puppet.mesh, Vec3(std::cos(turn), 1, std::sin(turn)),
             {{0, 1 - upper_weight}, {1, upper_weight}});
     }
     puppet.bind();
@@ -227,8 +226,7 @@ TEST_CASE("skin: the mean of screw motions agrees with its definition in double 
             for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
                 const glm::dvec3 exact = oracle::move_by_screws(
                     oracle::double_matrix(puppet.palette[0]),
-                    oracle::double_matrix(puppet.palette[1]),
-                    static_cast<double>(weight),
+                    oracle::double_matrix(puppet.palette[1]), static_cast<double>(weight),
                     puppet.mesh.positions[v]);
                 CHECK(error_of(puppet.moved.positions[v], exact) < 1e-5);
             }
@@ -480,8 +478,7 @@ TEST_CASE("skin: a shape that was morphed before it is skinned turns with its jo
     Puppet puppet = make_tube({0, 1, 0}, 90, 1);
     puppet.mesh.morphs.push_back({"bump", {0}, {{1, 0, 0}}, {}, {}});
     add_morphs(
-        puppet.mesh.morphs,
-        std::vector<float>{1},
+        puppet.mesh.morphs, std::vector<float>{1},
         {puppet.mesh.positions, puppet.mesh.normals, puppet.mesh.tangents});
     puppet.linear();
     CHECK(glm::distance(puppet.moved.positions[0], Vec3(0, 1, -2)) < 1e-5f);

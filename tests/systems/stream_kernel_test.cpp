@@ -60,8 +60,7 @@ void step(Elements& all, std::size_t begin, std::size_t end) {
     sway_positions(std::span<const Sway>(all.sway).subspan(begin, count), 3.7, local);
     turn_rotations(std::span<const Spin>(all.spin).subspan(begin, count), 0.02f, local);
     compose_worlds(
-        local,
-        std::span(all.world).subspan(begin, count),
+        local, std::span(all.world).subspan(begin, count),
         std::span(all.previous).subspan(begin, count));
 }
 

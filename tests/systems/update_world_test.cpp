@@ -21,8 +21,7 @@ void fill(World& world) {
     for (int i = 0; i < 3000; ++i) {
         const auto x = static_cast<float>(i);
         const Entity e = world.create(
-            Transform{.position = {x, 0, 0}},
-            Spin{.axis = {1, x, 2}, .speed = 0.1f * x},
+            Transform{.position = {x, 0, 0}}, Spin{.axis = {1, x, 2}, .speed = 0.1f * x},
             Sway{.center = {x, 1, 0}, .phase = {x, 0, 1}});
         if (i % 10 == 0) {
             world.create(Transform{.position = {0, 1, 0}}, Parent{e}, Spin{});

@@ -166,9 +166,7 @@ TEST_CASE("walker: in a world it obeys while its eyes are looked out of, and pus
     world.create(
         Transform{.position = {0, -1, 0}}, WorldTransform{}, Footing{.half = {9, 0.5f, 9}});
     const Entity water = world.create(
-        Transform{},
-        WorldTransform{},
-        Water{.size = {8, 8}, .depth = 0.5f},
+        Transform{}, WorldTransform{}, Water{.size = {8, 8}, .depth = 0.5f},
         WaterRipples{.cell = 0.1f});
     const Entity walker = world.create(
         Transform{.position = {0, -0.5f, 2}},

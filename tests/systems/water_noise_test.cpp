@@ -119,8 +119,7 @@ TEST_CASE("water noise: the same time is the same field, another time another") 
 TEST_CASE("water noise: odd settings make a level surface") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     for (const NoiseSurface& noise :
-         {NoiseSurface{.size = {0, 0}, .points = 0},
-          NoiseSurface{.amplitude = kNan},
+         {NoiseSurface{.size = {0, 0}, .points = 0}, NoiseSurface{.amplitude = kNan},
           NoiseSurface{.octaves = 0}}) {
         NoiseField field;
         fill_noise_field(noise, 1, field);

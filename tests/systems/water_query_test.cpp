@@ -259,8 +259,7 @@ TEST_CASE("water query: the sharpest waves there are, cusps, are found everywher
              {{.amplitude = amplitude,
                .length = length,
                .sharpness = length / (2 * kPi * amplitude)}}},
-        0.7,
-        waves);
+        0.7, waves);
     surface.waves = &waves;
     int most = 0;
     for (int i = 0; i < 2000; ++i) {

@@ -23,8 +23,7 @@ DepthGrid beach(int width, int length, float cell, Depth&& depth_at) {
     DepthGrid grid{.points = {width, length}, .cell = cell};
     for (int z = 0; z < length; ++z) {
         grid.depth.insert(
-            grid.depth.end(),
-            static_cast<std::size_t>(width),
+            grid.depth.end(), static_cast<std::size_t>(width),
             depth_at(static_cast<float>(z) * cell));
     }
     return grid;

@@ -144,8 +144,7 @@ TEST_CASE("water ripples: too quick, too many, too small, not a number: never Na
     const WaterRipples calm;
     RippleState state = make_ripples(pool(2, 2), calm, kStep);
     for (const RippleImpulse& bad :
-         {RippleImpulse{.center = {nan, 0}},
-          RippleImpulse{.radius = nan},
+         {RippleImpulse{.center = {nan, 0}}, RippleImpulse{.radius = nan},
           RippleImpulse{.height = std::numeric_limits<float>::infinity()},
           RippleImpulse{.center = {1e30f, 0}}}) {
         push_ripples(state, bad);
@@ -160,11 +159,10 @@ TEST_CASE("water ripples: too quick, too many, too small, not a number: never Na
     CHECK(reach(state) < 100);
     // A body of no size, or of any, does no harm.
     displace_ripples(
-        state,
-        std::vector<WaterBulge>{
-            {.radius = {0, 0}, .volume = 0.1f},
-            {.radius = {nan, 1}, .volume = 1},
-            {.volume = nan}});
+        state, std::vector<WaterBulge>{
+                   {.radius = {0, 0}, .volume = 0.1f},
+                   {.radius = {nan, 1}, .volume = 1},
+                   {.volume = nan}});
     CHECK(std::isfinite(reach(state)));
     // A hundred thousand impulses in one step.
     for (int i = 0; i < 100000; ++i) {

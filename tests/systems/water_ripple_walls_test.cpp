@@ -34,18 +34,14 @@ PlacedWall box(const RippleState& state, const Vec3& half, const Affine& place) 
 
 PlacedWall column(const RippleState& state, float radius, const Vec2& place) {
     const auto wall = place_wall(
-        {.shape = WallShape::Cylinder, .half = {radius, 2, radius}},
-        at({place.x, 0, place.y}),
-        {},
-        0,
-        state.size());
+        {.shape = WallShape::Cylinder, .half = {radius, 2, radius}}, at({place.x, 0, place.y}), {},
+        0, state.size());
     REQUIRE(wall.has_value());
     return *wall;
 }
 
 RippleState make_walled(
-    const Vec2& size,
-    const WaterRipples& ripples,
+    const Vec2& size, const WaterRipples& ripples,
     const std::function<std::vector<PlacedWall>(const RippleState&)>& walls) {
     RippleState state = make_ripples({.size = size, .depth = 2}, ripples, kStep);
     set_ripple_walls(state, walls(state), ripples.border);
@@ -182,8 +178,7 @@ class Reference {
 /// A pool with columns, a wall across a corner, and one that touches the border.
 std::vector<PlacedWall> maze(const RippleState& state) {
     return {
-        column(state, 0.3f, {0.6f, 0.2f}),
-        column(state, 0.12f, {-0.9f, -0.7f}),
+        column(state, 0.3f, {0.6f, 0.2f}), column(state, 0.12f, {-0.9f, -0.7f}),
         box(state, {0.5f, 1, 0.02f}, at({-1.2f, 0, 0.9f}, 0.6f)),
         box(state, {0.4f, 1, 0.15f}, at({0.2f, 0, -1.4f}))};
 }

@@ -22,17 +22,14 @@ TEST_CASE("water soak: after an hour of rain a pool holds its water and what flo
     constexpr float kDensity = 400;
     World world;
     const Entity pool = world.create(
-        Transform{},
-        Water{.size = {3, 2}, .depth = 1},
+        Transform{}, Water{.size = {3, 2}, .depth = 1},
         WaterRipples{.cell = 0.15f, .rain = 3, .rain_height = 0.01f});
     const Entity crate = world.create(
         Transform{.position = {0.3f, 1, -0.2f}},
-        WaterTouch{.shape = TouchShape::Box, .half = kHalf},
-        Floating{.density = kDensity});
+        WaterTouch{.shape = TouchShape::Box, .half = kHalf}, Floating{.density = kDensity});
     const Entity stone = world.create(
         Transform{.position = {-0.8f, 2, 0.4f}},
-        WaterTouch{.shape = TouchShape::Ball, .half = Vec3(0.1f)},
-        Floating{.density = 2500});
+        WaterTouch{.shape = TouchShape::Ball, .half = Vec3(0.1f)}, Floating{.density = 2500});
     start_world(world);
     Schedule schedule;  // only what an hour of this needs
     schedule.add<update_floating_bodies>();

@@ -53,9 +53,7 @@ TEST_CASE("water spray: waves that are not steep enough do not spray") {
         bool breaks;
     };
     for (const Case& c :
-         {Case{0.1f, kOfBook, false},
-          Case{0.319f, kOfBook, true},
-          Case{0.09f, 0.1f, false},
+         {Case{0.1f, kOfBook, false}, Case{0.319f, kOfBook, true}, Case{0.09f, 0.1f, false},
           Case{0.11f, 0.1f, true}}) {
         const Sea sea(wave_of(c.wave));
         std::vector<SprayDrop> drops;
@@ -161,9 +159,7 @@ TEST_CASE("water spray: a world makes its drops anew each step") {
     World world;
     Schedule schedule = make_world_schedule();
     const Entity water = world.create(
-        Transform{.position = {0, 5, 0}},
-        Water{},
-        WaterWaves{.waves = {wave_of(0.15f)}},
+        Transform{.position = {0, 5, 0}}, Water{}, WaterWaves{.waves = {wave_of(0.15f)}},
         SpraySource{.rate = 600});
     const Entity wall = world.create(
         Transform{.position = {0, 5, 0}}, SprayObstacle{.normal = {-1, 0, -1}, .rate = 6000});

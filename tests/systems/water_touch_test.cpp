@@ -35,8 +35,8 @@ void add_box(MeshData& mesh, const Vec3& middle, const Vec3& half, std::uint16_t
         mesh.skin.weights.push_back(1);
         mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
     }
-    constexpr std::uint32_t kFaces[6][4] = {
-        {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                            {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& face : kFaces) {
         for (const int corner : {0, 1, 2, 0, 2, 3}) {
             mesh.indices.push_back(first + face[corner]);
@@ -66,12 +66,8 @@ float displaced(const Swimmer& swimmer, float height, const Quat& rotation = Qua
     const TouchParts parts = make_touch_parts(swimmer.mesh, &swimmer.skin);
     std::vector<TouchingShape> shapes;
     add_touching_shapes(
-        {.shape = TouchShape::Mesh},
-        at({0, height, 0}, rotation),
-        &parts,
-        &swimmer.skin,
-        &swimmer.pose,
-        shapes);
+        {.shape = TouchShape::Mesh}, at({0, height, 0}, rotation), &parts, &swimmer.skin,
+        &swimmer.pose, shapes);
     float sum = 0;
     for (const TouchingShape& shape : shapes) {
         sum += bulge_of(shape, {.water = {.size = {9, 9}}}, 0, {9, 9}).volume;
@@ -217,10 +213,8 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
     const Entity pool =
         world.create(Transform{}, Water{.size = {6, 6}, .depth = 4}, WaterRipples{.damping = 1});
     const Entity body = world.create(
-        Transform{.position = {0, -1, 0}},
-        MeshInstance{MeshId{0}, MaterialId{}},
-        Skeleton{.skeleton = {0}},
-        WaterTouch{.shape = TouchShape::Mesh});
+        Transform{.position = {0, -1, 0}}, MeshInstance{MeshId{0}, MaterialId{}},
+        Skeleton{.skeleton = {0}}, WaterTouch{.shape = TouchShape::Mesh});
     world.add(body, Deformed{.character = body, .skin = {0}});
     for (int i = 0; i < 3; ++i) {
         step_world(world, schedule);

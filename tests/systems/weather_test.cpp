@@ -32,14 +32,10 @@ struct Bay {
         }
         world.insert_resource(LensRain{.amount = 0.1f});
         sea = world.create(
-            Transform{},
-            WorldTransform{},
-            Water{},
+            Transform{}, WorldTransform{}, Water{},
             Ocean{.wind_speed = 5, .cascades = 1, .patch = 80, .resolution = 32});
         pool = world.create(
-            Transform{.position = {0, 9, 0}},
-            WorldTransform{},
-            Water{.size = {4, 4}},
+            Transform{.position = {0, 9, 0}}, WorldTransform{}, Water{.size = {4, 4}},
             WaterRipples{.cell = 0.2f, .rain = 0.3f});
         start_world(world);
     }

@@ -5,8 +5,7 @@
 
 void blow(
     limn::Query<const Velocity, Position, limn::Optional<Burning>, limn::Without<Hidden>> all,
-    limn::Res<FrameStep> step,
-    limn::Commands commands) {
+    limn::Res<FrameStep> step, limn::Commands commands) {
     all.each([&](limn::Entity entity, const Velocity& velocity, Position& position, Burning* fire) {
         position.x += velocity.x * step->seconds;
         if (fire != nullptr) {
