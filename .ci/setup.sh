@@ -1,9 +1,9 @@
-# Sourced by play, check and .ci/run: installs what is missing on Debian 12, builds a preset, speaks in one line.
+# Sourced by play, check and .ci/run: installs missing packages on Debian 12, builds presets, prints one-line messages.
 
 packages=(
     g++ cmake ninja-build pkg-config ccache mold git ca-certificates
     libglm-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
-    libtinygltf-dev libopenexr-dev libopenimageio-dev libmeshoptimizer-dev nlohmann-json3-dev
+    libopenexr-dev libopenimageio-dev libmeshoptimizer-dev nlohmann-json3-dev
     libtbb-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
     doctest-dev libbenchmark-dev libkissfft-dev
     fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
@@ -15,14 +15,14 @@ die() { say "$(basename "$0"): $*"; exit 1; }
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
-# On other systems nothing is installed: what the build cannot find is named.
+# On other systems nothing is installed; lists the missing dependencies and fails.
 name_missing() {
     local missing=() tool module
     for tool in g++ cmake ninja pkg-config; do
         command -v "$tool" >/dev/null 2>&1 || missing+=("$tool")
     done
     if command -v pkg-config >/dev/null 2>&1; then
-        for module in glfw3 epoxy egl tinygltf OpenEXR OpenImageIO libhwy tbb imgui fmt spdlog kissfft-float; do
+        for module in glfw3 epoxy egl OpenEXR OpenImageIO libhwy tbb imgui fmt spdlog kissfft-float; do
             pkg-config --exists "$module" 2>/dev/null || missing+=("$module")
         done
     fi
@@ -31,10 +31,10 @@ name_missing() {
             printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$module" | g++ -E -x c++ - >/dev/null 2>&1 || missing+=("$module")
         done
     fi
-    [ ${#missing[@]} -eq 0 ] || die "this is not Debian 12, so nothing is installed for you; missing: ${missing[*]}"
+    [ ${#missing[@]} -eq 0 ] || die "not Debian 12, so nothing is installed automatically; missing: ${missing[*]}"
 }
 
-# install_packages NAME...: apt, as root or through sudo, only for what is not there yet.
+# install_packages NAME...: installs the missing ones with apt, as root or through sudo.
 install_packages() {
     local id="" version="" missing=() package as_root=()
     [ -r /etc/os-release ] && id=$(. /etc/os-release && echo "${ID:-}") && version=$(. /etc/os-release && echo "${VERSION_ID:-}")
@@ -69,7 +69,7 @@ build_preset() {
     mkdir -p "build/$preset"
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         tail -n 15 "$log" >&2
-        die "cmake could not configure '$preset'; the whole story: $log"
+        die "cmake could not configure '$preset'; full log: $log"
     fi
     say "Building $preset ..."
     local targets=()

@@ -31,7 +31,7 @@ AnyComponent::AnyComponent(const ComponentInfo& info) : info_(&info), data_(allo
 AnyComponent::AnyComponent(const ComponentInfo& info, const void* value)
     : info_(&info), data_(allocate(info)) {
     LIMN_CHECK_NOTE(info.ops.construct_copy != nullptr, info.name.c_str());
-    if (!info.is_tag) {  // the address of a tag in a world may not be readable
+    if (!info.is_tag) {  // `value` of a tag may not point to readable memory
         info.ops.construct_copy(data_, value, 1);
     }
 }

@@ -6,8 +6,8 @@ namespace limn {
 
 class World;
 
-/// The value of a component or resource whose type is known at run time only: what a level or a
-/// script keeps until there is an entity to give it to. Copies copy the value.
+/// A type-erased value of a component or resource, such as a level or script holds before the
+/// entity exists. Copies copy the value.
 class AnyComponent {
   public:
     AnyComponent() = default;
@@ -25,7 +25,7 @@ class AnyComponent {
 
     [[nodiscard]] bool is_empty() const { return info_ == nullptr; }
     [[nodiscard]] const ComponentInfo& info() const { return *info_; }
-    [[nodiscard]] void* data() { return data_; }  ///< never null unless empty, for a tag too
+    [[nodiscard]] void* data() { return data_; }  ///< null only if empty, even for a tag
     [[nodiscard]] const void* data() const { return data_; }
 
     /// The value, whose type must be T.
@@ -51,7 +51,7 @@ class AnyComponent {
     void* data_ = nullptr;
 };
 
-/// Makes the field at `to`, all elements of it, equal to that at `from`.
+/// Copies the field at `from`, with all its elements, to `to`.
 void copy_field(const FieldInfo& field, void* to, const void* from);
 
 }  // namespace limn

@@ -28,8 +28,8 @@ void move_bytes(std::byte* destination, const std::byte* source, std::size_t cou
     }
 }
 
-/// Calls function<size>() for the usual sizes of an element, so that copying one is a few moves
-/// instead of a call; function<0>() for the others.
+/// Calls function<size>() for common element sizes, so that copying one is a few instructions
+/// instead of a call; function<0>() for others.
 template <typename F>
 void with_fixed_size(std::uint32_t size, const F& function) {
     switch (size) {
@@ -56,7 +56,7 @@ void with_fixed_size(std::uint32_t size, const F& function) {
     }
 }
 
-/// Moves one element of the column to raw memory; `size` is the column's or 0.
+/// Moves one element of the column to raw memory; `size` is the column's element size or 0.
 template <std::uint32_t size>
 void move_element(const Column& column, std::byte* destination, std::byte* source) {
     if constexpr (size != 0) {
@@ -158,7 +158,8 @@ Archetype::Archetype(
             column_of_[id] = kSharedColumn;
             continue;
         }
-        LIMN_CHECK_NOTE(info.align <= 4096, "components are aligned to 4096 bytes at most");
+        LIMN_CHECK_NOTE(
+            info.align <= 4096, "the alignment of a component must not exceed 4096 bytes");
         column_of_[id] = static_cast<std::int16_t>(columns_.size());
         const std::size_t lanes =
             info.storage == Storage::Split ? info.size / kLaneBytes : std::size_t{1};
@@ -208,7 +209,7 @@ std::uint32_t Archetype::rows_in_block(std::size_t bytes) const {
     for (const Column& column : columns_) {
         row_bytes += column.size;
     }
-    // Alignment costs a little: take rows off until all columns fit.
+    // Alignment needs some space: reduce the rows until all columns fit.
     std::uint32_t rows = round_rows_down(std::min<std::size_t>(bytes / row_bytes, kChunkRows));
     for (; rows > 0; rows -= kRowPadding) {
         std::size_t end = rows * sizeof(Entity);
@@ -338,7 +339,7 @@ std::uint32_t Archetype::append(std::span<const Entity> entities, std::uint32_t 
     std::copy(entities.begin(), entities.end(), entities_ + first);
     size_ += count;
     touch_structure({first, count}, version);
-    bits_.rows_came(first, count);
+    bits_.rows_added(first, count);
     return first;
 }
 
@@ -346,7 +347,7 @@ void Archetype::bits_of_hole(std::uint32_t row, std::uint32_t last) {
     if (row != last) {
         bits_.rows_moved(last, row, 1);
     }
-    bits_.rows_went(last, 1);
+    bits_.rows_removed(last, 1);
 }
 
 void Archetype::fill_hole(std::uint32_t row, std::uint32_t version) {
@@ -446,7 +447,7 @@ void Archetype::clear(std::uint32_t version) {
     for (std::uint32_t chunk = 0; chunk < chunk_count(); ++chunk) {
         touch_structure(chunk * kChunkRows, version);
     }
-    bits_.rows_went(0, size_);
+    bits_.rows_removed(0, size_);
     size_ = 0;
 }
 
@@ -482,7 +483,7 @@ void Archetype::write_rows(int column, RowRange rows, std::uint32_t version) {
     }
 }
 
-void Archetype::forget_versions_before(std::uint32_t oldest) {
+void Archetype::clamp_versions(std::uint32_t oldest) {
     const auto raise = [oldest](std::uint32_t& version) { version = newer_of(version, oldest); };
     std::for_each(structure_.begin(), structure_.end(), raise);
     raise(newest_structure_);
@@ -490,7 +491,7 @@ void Archetype::forget_versions_before(std::uint32_t oldest) {
         std::for_each(column.versions.begin(), column.versions.end(), raise);
         raise(column.newest);
     }
-    bits_.forget_versions_before(oldest);
+    bits_.clamp_versions(oldest);
 }
 
 }  // namespace limn

@@ -15,18 +15,18 @@
 
 namespace limn {
 
-// All entities with the same set of components, sparse ones apart, and with the same values of
-// those of Storage::Shared, one row each. Every component has a column: an array over all rows, at
-// least 64-byte aligned, without gaps, so that a system is a plain loop over arrays. The first rows
+// All entities with the same set of components (not counting sparse ones) and the same values of
+// Storage::Shared components, one row each. Every component has a column: a contiguous array over
+// all rows, at least 64-byte aligned, so that a system is a plain loop over arrays. The first rows
 // live in a block shared by all columns; from some hundred rows on, at 1024 at the latest, each
-// column has a VirtualRange of its own and never moves again. Rows up to the next multiple of 16
-// can be read and written, so vector loops need no tail. A split component has a column, a lane,
+// column has its own VirtualRange and never moves again. Rows up to the next multiple of 16
+// can be read and written, so vector loops need no tail. A split component has one column, a lane,
 // for each of its 4-byte scalars.
 //
-// 1024 rows are a chunk, the unit of work and of change versions. A version is the number of the
-// system run (or the moment between runs) that last took the chunk of the column for writing; rows
-// that come, go or move count as a change of all columns of their chunk, and are kept apart in one
-// number a chunk.
+// A chunk is 1024 rows, the unit of work and of change versions. A column has one version per
+// chunk: the number of the system run (or of the time between runs) that last accessed it for
+// writing. Added, removed or moved rows count as a change of all columns of their chunk, and are
+// recorded separately in one structure version per chunk.
 
 inline constexpr std::uint32_t kChunkRows = 1024;
 static_assert(kChunkRows == RowMask::kRows);
@@ -39,16 +39,16 @@ inline constexpr std::uint32_t kMaxRows = 1u << 26;
 #endif
 
 /// A lane is a column that holds one scalar of a split component. The lanes of a component are
-/// neighbors, in the order of its bytes. [bytes]
+/// adjacent, in the order of its bytes. [bytes]
 inline constexpr std::size_t kLaneBytes = 4;
-/// What a lane holds, whatever its type is elsewhere.
+/// Element type of a lane, whatever the type of the scalar.
 using LaneScalar [[gnu::may_alias]] = std::uint32_t;
 
 inline constexpr int kNoColumn = -1;
-inline constexpr int kTagColumn = -2;     ///< present, but has no data
+inline constexpr int kTagColumn = -2;     ///< present, without data
 inline constexpr int kSharedColumn = -3;  ///< present, with one value for all rows
 
-/// Whether `version` is later than `since`; numbers wrap around, so only the difference counts.
+/// Whether `version` is later than `since`, modulo 2^32.
 [[nodiscard]] constexpr bool is_newer(std::uint32_t version, std::uint32_t since) {
     return static_cast<std::int32_t>(version - since) > 0;
 }
@@ -57,7 +57,7 @@ inline constexpr int kSharedColumn = -3;  ///< present, with one value for all r
     return is_newer(a, b) ? a : b;
 }
 
-/// Tasks of one system may write the same value to the same version at the same time.
+/// Atomic: tasks of one system may store the same version concurrently.
 inline void store_version(std::uint32_t& target, std::uint32_t version) {
     std::atomic_ref<std::uint32_t>(target).store(version, std::memory_order_relaxed);
 }
@@ -66,7 +66,7 @@ inline void store_version(std::uint32_t& target, std::uint32_t version) {
     return (rows + kChunkRows - 1) / kChunkRows;
 }
 
-/// Neighboring rows.
+/// Consecutive rows.
 struct RowRange {
     std::uint32_t first;
     std::uint32_t count;
@@ -78,7 +78,7 @@ struct ArchetypeRows {
     RowRange rows;
 };
 
-/// `count` neighboring rows that moved within an archetype.
+/// `count` consecutive rows that moved within an archetype.
 struct RowMove {
     std::uint32_t from;
     std::uint32_t to;
@@ -88,32 +88,32 @@ struct RowMove {
 struct Column {
     std::byte* data = nullptr;
     const ComponentInfo* info = nullptr;
-    std::uint32_t size = 0;               ///< of an element [bytes]; kLaneBytes in a lane
-    std::uint32_t lane = 0;               ///< of a split component; lane 0 has the versions
-    std::uint32_t newest = 0;             ///< no version of a chunk is newer
-    std::vector<std::uint32_t> versions;  ///< last taken for writing, a chunk
-    VirtualRange range;                   ///< empty while in a block
+    std::uint32_t size = 0;               ///< of one element [bytes]; kLaneBytes for a lane
+    std::uint32_t lane = 0;               ///< index in a split component; lane 0 has the versions
+    std::uint32_t newest = 0;             ///< upper bound of `versions`
+    std::vector<std::uint32_t> versions;  ///< last write access, per chunk
+    VirtualRange range;                   ///< empty while the column is in a block
 
     [[nodiscard]] std::byte* at(std::uint32_t row) const { return data + std::size_t{row} * size; }
 };
 
 class Archetype;
 
-/// How the row of an entity gets from one archetype to another.
+/// How to move the row of an entity from one archetype to another.
 struct RowPlan {
     struct Step {
         const Column* source;
-        Column* target;            ///< nullptr: the other archetype has no such column
-        std::uint32_t fixed_size;  ///< of an element that is moved by copying, else 0 [bytes]
+        Column* target;            ///< nullptr: the target archetype has no such column
+        std::uint32_t fixed_size;  ///< element size if it can be moved by memcpy, else 0 [bytes]
     };
     Archetype* to = nullptr;
-    std::vector<Step> steps;  ///< a column of the source each
+    std::vector<Step> steps;  ///< one per column of the source
 };
 
 class Archetype {
   public:
-    /// `components` ascending, none of Storage::Sparse.
-    /// `shared` has the values of those of Storage::Shared, in the same order.
+    /// `components` must be ascending, without Storage::Sparse. `shared` has the values of the
+    /// Storage::Shared components, in the same order.
     Archetype(
         std::uint32_t index, std::span<const ComponentId> components, BlockPool& blocks,
         std::span<const SharedValue> shared = {});
@@ -126,11 +126,11 @@ class Archetype {
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     [[nodiscard]] std::uint32_t chunk_count() const { return chunks_of(size_); }
     [[nodiscard]] std::span<const Entity> entities() const { return {entities_, size_}; }
-    /// Ascending, tags too.
+    /// Ascending, including tags.
     [[nodiscard]] std::span<const ComponentId> components() const { return components_; }
     /// The shared components and their values, ascending by component.
     [[nodiscard]] std::span<const SharedValue> shared() const { return shared_; }
-    /// nullptr: it has no such shared component.
+    /// nullptr if it has no such shared component.
     [[nodiscard]] const SharedValue* shared_value(ComponentId id) const {
         for (const SharedValue& value : shared_) {
             if (value.component == id) {
@@ -145,19 +145,19 @@ class Archetype {
         return columns_[static_cast<std::size_t>(index)];
     }
     [[nodiscard]] Column& column(int index) { return columns_[static_cast<std::size_t>(index)]; }
-    /// Where the component is: a column, kTagColumn, kSharedColumn or kNoColumn.
+    /// The component's column index, or kTagColumn, kSharedColumn or kNoColumn.
     [[nodiscard]] int column_of(ComponentId id) const {
         return id < column_of_.size() ? column_of_[id] : kNoColumn;
     }
     [[nodiscard]] bool has(ComponentId id) const { return column_of(id) != kNoColumn; }
-    /// Whether columns have reserved ranges of their own.
+    /// Whether each column has its own reserved range.
     [[nodiscard]] bool is_promoted() const { return block_ == nullptr && capacity_ > 0; }
     [[nodiscard]] bool is_trivial() const { return is_trivial_; }
     /// Memory behind the columns and the entities [bytes].
     [[nodiscard]] std::size_t committed() const;
 
-    // ---- rows; components are the caller's to construct and destroy
-    // ------------------------------
+    // ---- rows; the caller constructs and destroys components
+    // -------------------------------------
 
     /// Adds a row whose components are raw memory.
     std::uint32_t append(Entity entity, std::uint32_t version) {
@@ -168,7 +168,7 @@ class Archetype {
         entities_[row] = entity;
         touch_structure(row, version);
         if (has_row_bits_) {
-            bits_.rows_came(row, 1);
+            bits_.rows_added(row, 1);
         }
         return row;
     }
@@ -179,14 +179,14 @@ class Archetype {
             grow(rows);
         }
     }
-    /// Gives back the memory that the rows do not need. Rows may move in memory.
+    /// Releases unused memory. Rows may move in memory.
     void shrink();
-    /// Moves the last row into `row`, whose components are gone already, unless `row` is the last.
+    /// Removes `row`, whose components are already destroyed, by moving the last row into it.
     void fill_hole(std::uint32_t row, std::uint32_t version);
     /// Moves a row to the end of another archetype, and the last row into the hole. Components that
-    /// the other has more are raw memory, those it has less are gone. Returns the row there.
+    /// only the target has are raw memory, those it lacks are destroyed. Returns the new row.
     std::uint32_t move_row(std::uint32_t row, const RowPlan& plan, std::uint32_t version);
-    /// How rows get there; made once.
+    /// The cached plan for moving rows to `to`.
     [[nodiscard]] const RowPlan& plan_to(Archetype& to);
     void construct_default(std::uint32_t first, std::uint32_t count);
     void destroy_components(std::uint32_t first, std::uint32_t count) {
@@ -202,37 +202,36 @@ class Archetype {
 
     /// Appends the ranges of another archetype, in order; returns the first new row. Components
     /// that both have are moved, those only this one has are raw memory, those only `from` has are
-    /// destroyed. What is left of the ranges is a gap.
+    /// destroyed. The ranges remain in `from` as gaps.
     std::uint32_t
     append_from(Archetype& from, std::span<const RowRange> ranges, std::uint32_t version);
-    /// The same for all rows of `from`, which is empty afterwards: instead of copies, the columns
-    /// change hands. False, and nothing is done, if this archetype has rows or `from` so few that
-    /// copies are as good.
-    [[nodiscard]] bool take_over(Archetype& from, std::uint32_t version);
-    /// Takes the columns of `from`, which has the same components and no rows, as its own, which
-    /// has no rows either.
+    /// The same for all rows of `from`, which is empty afterwards, by exchanging whole columns
+    /// instead of copying. Returns false, and does nothing, if this archetype has rows or if `from`
+    /// has so few that copying is as fast.
+    [[nodiscard]] bool adopt_rows(Archetype& from, std::uint32_t version);
+    /// Takes the column memory of `from`, which has the same components; both must have no rows.
     void take_memory(Archetype& from);
-    /// Takes rows out whose components are gone already. The gaps are filled, the lowest first,
-    /// with the rows beyond the new end, the lowest first; these moves are put into `moves`.
+    /// Removes rows whose components are already destroyed. Fills the gaps in ascending order with
+    /// the rows beyond the new end, also in ascending order; appends these moves to `moves`.
     void
     close_gaps(std::span<const RowRange> gaps, std::uint32_t version, std::vector<RowMove>& moves);
 
     // ---- change versions
     // --------------------------------------------------------------------------
 
-    /// Last change of rows of the chunk: came, went, moved.
+    /// When rows of the chunk were last added, removed or moved.
     [[nodiscard]] std::uint32_t structure_version(std::uint32_t chunk) const {
         return structure_[chunk];
     }
     [[nodiscard]] std::uint32_t newest_structure() const { return newest_structure_; }
-    /// Last change of the column in the chunk, of either kind.
+    /// Last change of the column in the chunk, by writing or of structure.
     [[nodiscard]] std::uint32_t version(int column, std::uint32_t chunk) const {
         return column < 0 ? structure_[chunk]
                           : newer_of(
                               columns_[static_cast<std::size_t>(column)].versions[chunk],
                               structure_[chunk]);
     }
-    /// The same of a component; the bits of a toggled tag, which has no column, count.
+    /// The same by component; for a toggled tag, which has no column, its enable bits count.
     [[nodiscard]] std::uint32_t version_of(ComponentId id, std::uint32_t chunk) const {
         const ToggleBits* tag = toggled_tag(id);
         return tag == nullptr ? version(column_of(id), chunk)
@@ -243,15 +242,15 @@ class Archetype {
         return tag == nullptr ? newest_version(column_of(id))
                               : newer_of(tag->newest, newest_structure_);
     }
-    /// No chunk of the column changed later.
+    /// Upper bound of version() over all chunks of the column.
     [[nodiscard]] std::uint32_t newest_version(int column) const {
         return column < 0
                    ? newest_structure_
                    : newer_of(columns_[static_cast<std::size_t>(column)].newest, newest_structure_);
     }
-    /// Says that all rows are about to be written.
+    /// Marks all rows as about to be written.
     void touch_column(int column, std::uint32_t version);
-    /// Says that the row is about to be written.
+    /// Marks the row as about to be written.
     void touch_row(int column, std::uint32_t row, std::uint32_t version) {
         if (column >= 0) {
             Column& target = columns_[static_cast<std::size_t>(column)];
@@ -259,8 +258,7 @@ class Archetype {
             store_version(target.newest, version);
         }
     }
-    /// The same, and marks the row if the component tracks its rows. For code that does not know
-    /// the type.
+    /// The same, and sets the row's mark if the component tracks rows. For type-erased code.
     void write_row(int column, std::uint32_t row, std::uint32_t version) {
         touch_row(column, row, version);
         if (has_row_bits_) {
@@ -270,17 +268,17 @@ class Archetype {
         }
     }
     void write_rows(int column, RowRange rows, std::uint32_t version);
-    /// Makes versions that are older than `oldest` equal to it, so that differences never overflow.
-    void forget_versions_before(std::uint32_t oldest);
+    /// Clamps versions to be no older than `oldest`, so that differences never overflow.
+    void clamp_versions(std::uint32_t oldest);
 
-    // ---- bits a row (ecs/row_bits.h)
-    // --------------------------------------------------------------
+    // ---- bits per row (ecs/row_bits.h)
+    // ------------------------------------------------------------
 
-    /// Whether there are bits at all: some component is toggled or tracks its rows.
+    /// Whether any component is toggled or tracks its rows.
     [[nodiscard]] bool has_row_bits() const { return has_row_bits_; }
     [[nodiscard]] RowBits& bits() { return bits_; }
     [[nodiscard]] const RowBits& bits() const { return bits_; }
-    /// `toggle` is one of bits(). Returns whether it was otherwise; that is a change of the
+    /// `toggle` is one of bits(). Returns whether the bit changed, which counts as a change of the
     /// component.
     bool set_enabled(ToggleBits& toggle, std::uint32_t row, bool enabled, std::uint32_t version) {
         if (!toggle.set_enabled(row, enabled)) {
@@ -289,7 +287,7 @@ class Archetype {
         touch_toggle(toggle, row, version);
         return true;
     }
-    /// Says that the bit of the row has changed.
+    /// Records that the enable bit of the row has changed.
     void touch_toggle(ToggleBits& toggle, std::uint32_t row, std::uint32_t version) {
         if (toggle.column < 0) {
             toggle.chunks[row / kChunkRows].version = version;
@@ -300,7 +298,7 @@ class Archetype {
             touch_row(toggle.column, row, version);
         }
     }
-    /// The same by component; one that cannot be toggled stays enabled.
+    /// Sets the enable bit by component; does nothing for one that cannot be toggled.
     void set_enabled(ComponentId id, std::uint32_t row, bool enabled, std::uint32_t version) {
         if (ToggleBits* toggle = bits_.toggle(id); toggle != nullptr) {
             set_enabled(*toggle, row, enabled, version);
@@ -312,12 +310,12 @@ class Archetype {
         return toggle != nullptr ? toggle->is_enabled(row) : has(id);
     }
 
-    // ---- what the world remembers here
-    // ------------------------------------------------------------
+    // ---- data of the world
+    // ------------------------------------------------------------------------
 
-    std::vector<const RowPlan*> add_edges;     ///< to one component more, by id; null: unknown
-    std::vector<const RowPlan*> remove_edges;  ///< to one component less
-    bool observes_add = false;                 ///< some observer waits for a component of it
+    std::vector<const RowPlan*> add_edges;     ///< for adding a component, by id; null: unknown
+    std::vector<const RowPlan*> remove_edges;  ///< for removing a component
+    bool observes_add = false;                 ///< some observer is registered for a component
     bool observes_remove = false;
     std::uint64_t rows_moved_in = 0;  ///< from other archetypes, for the inspector
     std::uint64_t rows_moved_out = 0;
@@ -347,7 +345,7 @@ class Archetype {
         structure_[chunk] = version;
         newest_structure_ = version;
     }
-    /// The same of a chunk that is there.
+    /// The same for a chunk that already exists.
     void stamp_structure(std::uint32_t row, std::uint32_t version) {
         structure_[row / kChunkRows] = version;
         newest_structure_ = version;
@@ -374,16 +372,16 @@ class Archetype {
     RowBits bits_;
 };
 
-/// Moves `count` values to raw memory and ends the sources.
+/// Moves `count` values to raw memory and destroys the sources.
 void relocate_values(const ComponentInfo& info, void* destination, void* source, std::size_t count);
 /// The same with elements of a column, which may be a lane.
 void relocate_elements(const Column& column, void* destination, void* source, std::size_t count);
 
-/// Copies rows of a split component, whose first lane is `lanes`, to values side by side.
+/// Copies rows of a split component, whose first lane is `lanes`, to an array of structs.
 void gather_values(const Column* lanes, std::uint32_t row, std::size_t count, void* values);
-/// The way back; the lanes may be raw memory.
+/// The inverse of gather_values(); the lanes may be raw memory.
 void scatter_values(Column* lanes, std::uint32_t row, std::size_t count, const void* values);
-/// The same with one value for all rows.
+/// Scatters one value to all rows.
 void fill_values(Column* lanes, std::uint32_t row, std::size_t count, const void* value);
 
 }  // namespace limn

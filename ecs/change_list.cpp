@@ -155,7 +155,7 @@ std::uint32_t ChangeApplier::move_rows(const ChangeBatch& batch) {
     Archetype& source = *batch.plan->source;
     Archetype& target = *batch.plan->target;
     std::uint32_t first = 0;
-    if (batch.rows == source.size() && target.take_over(source, core.now())) {
+    if (batch.rows == source.size() && target.adopt_rows(source, core.now())) {
         ++stats.archetypes_handed_over;
         stats.rows_handed_over += batch.rows;
     } else {
@@ -195,7 +195,7 @@ void ChangeApplier::close_gaps(Archetype& archetype) {
 
 namespace {
 
-/// Copies values of kSize bytes: those of range i lie `stride` apart from records[i * step] on.
+/// Copies values of kSize bytes: those of range i start at records[i * step], `stride` bytes apart.
 template <std::size_t kSize>
 void copy_values_of(
     std::byte* data, std::span<const RowRange> ranges, std::uint32_t first, bool in_place,
@@ -222,7 +222,7 @@ void copy_values_of(
 
 }  // namespace
 
-/// The rows have places for the values: raw memory, or the values before.
+/// The target rows hold raw memory or, if they stay in place, the previous values.
 void ChangeApplier::put_values(
     const ChangeBatch& batch, const ComponentChange& change, std::uint32_t first) {
     const ChangePlan& plan = *batch.plan;
@@ -388,41 +388,41 @@ void ChangeApplier::change_sparse(
 
 namespace {
 
-/// Which entities of a plan an observer is told of; a sparse component may be there or not.
-struct Told {
+/// Which entities of a plan gain or lose a component, by presence of a sparse component.
+struct Affected {
     bool if_absent;
     bool if_present;
 };
 
-/// told(change) for the change of the component, if the plan has one.
-template <typename IsTold>
-Told told_of(const ChangePlan& plan, ComponentId id, const IsTold& is_told) {
+/// Applies the predicate to the plan's change of the component, if there is one.
+template <typename Predicate>
+Affected affected_by(const ChangePlan& plan, ComponentId id, const Predicate& is_affected) {
     for (const ComponentChange& change : plan.table) {
         if (change.info->id == id) {
-            return {is_told(change), is_told(change)};
+            return {is_affected(change), is_affected(change)};
         }
     }
     for (const SparseChange& change : plan.sparse) {
         if (change.if_present.info->id == id) {
-            return {is_told(change.if_absent), is_told(change.if_present)};
+            return {is_affected(change.if_absent), is_affected(change.if_present)};
         }
     }
     return {false, false};
 }
 
-Told told_of_loss(const ChangePlan& plan, ComponentId id) {
+Affected affected_by_loss(const ChangePlan& plan, ComponentId id) {
     if (plan.target == nullptr) {
         const bool in_table = plan.source != nullptr && plan.source->has(id);
         return {in_table, plan.source != nullptr};
     }
-    return told_of(plan, id, [](const ComponentChange& change) { return change.loses(); });
+    return affected_by(plan, id, [](const ComponentChange& change) { return change.loses(); });
 }
 
-Told told_of_gain(const ChangePlan& plan, ComponentId id) {
+Affected affected_by_gain(const ChangePlan& plan, ComponentId id) {
     if (plan.target == nullptr) {
         return {false, false};
     }
-    return told_of(plan, id, [](const ComponentChange& change) { return change.gains(); });
+    return affected_by(plan, id, [](const ComponentChange& change) { return change.gains(); });
 }
 
 }  // namespace
@@ -432,9 +432,10 @@ void ChangeApplier::collect(ObserverEvent event, ComponentId id, std::vector<Ent
     const bool is_sparse = component_info(id).storage == Storage::Sparse;
     const SparseSet* set = world_.core_.sparse_set(id);
     for (const ChangeBatch& batch : list_->batches) {
-        const Told told = event == ObserverEvent::Remove ? told_of_loss(*batch.plan, id)
-                                                         : told_of_gain(*batch.plan, id);
-        if (!told.if_absent && !told.if_present) {
+        const Affected affected = event == ObserverEvent::Remove
+                                      ? affected_by_loss(*batch.plan, id)
+                                      : affected_by_gain(*batch.plan, id);
+        if (!affected.if_absent && !affected.if_present) {
             continue;
         }
         const auto ranges = ranges_of(batch);
@@ -443,7 +444,7 @@ void ChangeApplier::collect(ObserverEvent event, ComponentId id, std::vector<Ent
             const auto all = entities_of(batch, ranges[i]);
             for (std::uint32_t k = 0; k < all.size(); ++k) {
                 const bool present = is_sparse && set != nullptr && set->has(all[k]);
-                if (present ? told.if_present : told.if_absent) {
+                if (present ? affected.if_present : affected.if_absent) {
                     keyed_.push_back({key + k, all[k]});
                 }
             }
@@ -465,10 +466,10 @@ void ChangeApplier::notify_removed() {
         if (observer.event != ObserverEvent::Remove) {
             continue;
         }
-        collect(ObserverEvent::Remove, observer.component, told_);
-        if (!told_.empty()) {
+        collect(ObserverEvent::Remove, observer.component, notified_);
+        if (!notified_.empty()) {
             const IterationGuard guard(world_.core_, IterationLock::Plain);
-            observer.function(world_, told_);
+            observer.function(world_, notified_);
         }
     }
 }
@@ -497,13 +498,13 @@ void ChangeApplier::notify_added() {
             if (added.component != observer.component) {
                 continue;
             }
-            // An observer before this one may have undone it.
-            told_.clear();
+            // An earlier observer may have removed it again.
+            notified_.clear();
             std::copy_if(
-                added.entities.begin(), added.entities.end(), std::back_inserter(told_),
+                added.entities.begin(), added.entities.end(), std::back_inserter(notified_),
                 [&](Entity entity) { return world_.has(entity, added.component); });
-            if (!told_.empty()) {
-                observer.function(world_, told_);
+            if (!notified_.empty()) {
+                observer.function(world_, notified_);
             }
         }
     }

@@ -14,24 +14,24 @@ namespace limn {
 
 class World;
 
-// What is to become of many rows, in the order in which it will be done: all rows of an archetype
-// in their order, archetype by archetype, then the entities to be created. Rows with the same plan
-// are a batch, and a batch is applied column by column.
+// Pending changes of many rows in the order of execution: archetype by archetype, the rows of each
+// in order, then the entities to create. Rows with the same plan form a batch, and a batch is
+// applied column by column.
 
 struct ChangeBatch {
     const ChangePlan* plan;
     std::uint32_t rows = 0;
     std::uint32_t range_count = 0;
     std::size_t first_range;
-    std::size_t first_record;  ///< of the first range; each range has one for every command
+    std::size_t first_record;  ///< of the first range; each range has one per command
 };
 
 class ChangeList {
   public:
     void clear();
-    /// Rows of plan.source; where the plan has none, numbers of `created`. `first_records` are
-    /// those of the first row, one for every command of the plan. `key` orders the entities for
-    /// observers. If the plan sets shared components, rows of equal values get the plan for those.
+    /// `rows` are rows of plan.source or, if that is null, indices into `created`. `first_records`
+    /// are the records of the first row, one per command of the plan. `key` orders the entities for
+    /// observers. If the plan sets shared components, rows are grouped by those values.
     void
     add(ChangePlans& plans, const ChangePlan& plan, RowRange rows,
         std::span<std::byte* const> first_records, std::uint32_t key) {
@@ -41,7 +41,7 @@ class ChangeList {
             append(plan, rows, first_records, key);
         }
     }
-    /// For so many calls of add().
+    /// Reserves memory for `count` calls of add().
     void reserve(std::size_t count);
 
     std::vector<ChangeBatch> batches;
@@ -49,7 +49,7 @@ class ChangeList {
     std::vector<std::byte*> records;
     std::vector<std::uint32_t> keys;  ///< of each range's first row
     std::vector<Entity> created;
-    /// All rows get copies of the same values; otherwise each takes its own, which is then gone.
+    /// All rows get copies of the same values; otherwise each row's own values are moved.
     bool shares_records = false;
 
   private:
@@ -71,15 +71,14 @@ class ChangeList {
         std::span<std::byte* const> first_records, std::uint32_t key);
 };
 
-/// Applies a list: tells observers of what goes, moves the rows, and gives back whom to tell of
-/// what came.
+/// Applies a list: notifies observers of removals, moves the rows, then notifies of additions.
 class ChangeApplier {
   public:
     explicit ChangeApplier(World& world) : world_(world) {}
 
-    /// on_remove, then the changes.
+    /// Calls on_remove, then makes the changes.
     void apply(ChangeList& list);
-    /// on_add, of what apply() added. The list may be gone already.
+    /// Calls on_add for what apply() added. Does not use the list any more.
     void notify_added();
 
   private:
@@ -94,7 +93,7 @@ class ChangeApplier {
 
     void notify_removed();
     void collect_added();
-    /// Entities that gain or lose the component, in the order of their keys.
+    /// Collects the entities that gain or lose the component, in the order of their keys.
     void collect(ObserverEvent event, ComponentId id, std::vector<Entity>& entities);
 
     void apply_batch(const ChangeBatch& batch);
@@ -114,7 +113,7 @@ class ChangeApplier {
     [[nodiscard]] std::span<const RowRange> ranges_of(const ChangeBatch& batch) const {
         return {list_->ranges.data() + batch.first_range, batch.range_count};
     }
-    /// Of a command of the plan; `range` counts in the batch.
+    /// The record of a command of the plan; `range` is an index within the batch.
     [[nodiscard]] std::byte*
     record_of(const ChangeBatch& batch, std::size_t range, std::size_t command) const {
         return list_->records[batch.first_record + range * batch.plan->commands.size() + command];
@@ -122,7 +121,7 @@ class ChangeApplier {
     [[nodiscard]] std::size_t stride_of(const ChangeBatch& batch, std::size_t command) const {
         return list_->shares_records ? 0 : batch.plan->commands[command].layout->stride;
     }
-    /// Before the batch is applied.
+    /// Valid only before the batch is applied.
     [[nodiscard]] std::span<const Entity>
     entities_of(const ChangeBatch& batch, RowRange range) const {
         return batch.plan->source != nullptr
@@ -132,11 +131,11 @@ class ChangeApplier {
 
     World& world_;
     ChangeList* list_ = nullptr;
-    std::vector<RowRange> gaps_;  ///< of the archetype whose rows leave
+    std::vector<RowRange> gaps_;  ///< in the archetype that the rows leave
     std::vector<RowMove> moves_;
     std::vector<Added> added_;
     std::vector<KeyedEntity> keyed_;
-    std::vector<Entity> told_;
+    std::vector<Entity> notified_;
 };
 
 }  // namespace limn

@@ -21,12 +21,12 @@ std::size_t hash_of(const Archetype* source, std::span<const CommandKind> comman
     return (hash ^ hash >> 32) * kOdd >> 20;
 }
 
-/// Whether the command brings a value of the component, which is one of its layout's.
+/// Whether the command carries a value of the component, which must be in its layout.
 bool has_value(const ComponentInfo& info, const CommandKind& kind) {
     return !info.is_tag && kind.layout->stride > 0;
 }
 
-/// `id` in all the commands, in order.
+/// Folds all commands that concern `id`, in order.
 ComponentChange fold(
     std::span<const CommandKind> commands, ComponentId id, bool was_present,
     std::vector<DroppedValue>& dropped) {
@@ -179,8 +179,8 @@ ChangePlans::with_shared(const ChangePlan& plan, std::span<std::byte* const> rec
     return *known;
 }
 
-/// The archetype with the components that the entity has afterwards. `records` are looked at if the
-/// plan sets shared components.
+/// The archetype that the entity ends up in. `records` are only read if the plan sets shared
+/// components.
 Archetype& ChangePlans::find_target(const ChangePlan& plan, std::span<std::byte* const> records) {
     std::vector<ComponentId> components;
     std::vector<SharedValue> shared;

@@ -15,9 +15,9 @@ class ChunkView {
     [[nodiscard]] std::span<const Entity> entities() const {
         return archetype_->entities().subspan(first_row(), size_);
     }
-    /// Position among the chunks of the query; those that Changed leaves out count too.
+    /// Index among the chunks of the query, including those that Changed skips.
     [[nodiscard]] std::uint32_t index() const { return index_; }
-    /// How many rows the query's chunks before it have.
+    /// Number of rows in the query's preceding chunks.
     [[nodiscard]] std::uint32_t offset() const { return offset_; }
     [[nodiscard]] const Archetype& archetype() const { return *archetype_; }
     /// Row of the archetype where the chunk begins.
@@ -29,8 +29,8 @@ class ChunkView {
     [[nodiscard]] bool has() const {
         return archetype_->has(component_id<T>);
     }
-    /// When T last changed in the chunk: taken for writing, or rows came, went or moved. T must be
-    /// there.
+    /// When T last changed in the chunk: accessed for writing, or rows added, removed or moved. The
+    /// chunk must have T.
     template <typename T>
     [[nodiscard]] std::uint32_t version() const {
         static_cast<void>(column_of<T>());
@@ -40,13 +40,13 @@ class ChunkView {
     [[nodiscard]] bool changed_since(std::uint32_t since) const {
         return is_newer(version<T>(), since);
     }
-    /// When rows last came, went or moved.
+    /// When rows were last added, removed or moved.
     [[nodiscard]] std::uint32_t structure_version() const {
         return archetype_->structure_version(chunk_);
     }
 
-    /// Takes back that this query took T for writing: nothing was written. T is a term of the
-    /// query.
+    /// Declares that T, a written term of this query, was not modified: restores its previous
+    /// version.
     template <typename T>
     void mark_unchanged() const {
         const int column = column_of<T>();
@@ -61,13 +61,13 @@ class ChunkView {
             }
         }
     }
-    /// Of a component that tracks its rows, which this query takes for writing: says that these
-    /// rows are written and no others, where all would count otherwise. Once a chunk.
+    /// For a written component that tracks its rows: marks only these rows as written, instead of
+    /// all. Call once per chunk.
     template <typename T>
     void mark_rows(const RowMask& rows) const {
         static_assert(ComponentTraits<T>::tracks_rows, "mark_rows: T does not track its rows");
         LIMN_CHECK_NOTE(
-            state_->writes(component_id<T>), "mark_rows: T is no written term of the query");
+            state_->writes(component_id<T>), "mark_rows: T is not a written term of the query");
         const int column = column_of<T>();
         for (std::size_t i = 0; i < kMaxQueryColumns; ++i) {
             if (columns_[i] == column) {
@@ -80,9 +80,9 @@ class ChunkView {
     // ---- toggled components
     // ------------------------------------------------------------------------
 
-    /// The rows that are enabled for the query: those where its toggled components are enabled, and
-    /// those of Without disabled or not there; all rows if it has none of either. As they were when
-    /// the query came to the chunk; there is at least one. Of Optional terms see enabled<T>().
+    /// The rows that are enabled for the query: where its toggled components are enabled, and those
+    /// of Without disabled or missing; all rows if the query has no such terms. A copy from when
+    /// the query reached the chunk; never empty. For Optional terms use enabled<T>().
     [[nodiscard]] const RowMask& enabled() const {
         if (all_enabled_) {
             *enabled_ = RowMask::first(size_);
@@ -90,7 +90,7 @@ class ChunkView {
         return *enabled_;
     }
     [[nodiscard]] bool all_enabled() const { return all_enabled_; }
-    /// The rows that have T enabled now; T need not be a term.
+    /// The rows where T is currently enabled; T need not be a term.
     template <typename T>
     [[nodiscard]] RowMask enabled() const {
         const ToggleBits* toggle = toggle_of<T>();
@@ -101,13 +101,12 @@ class ChunkView {
         rows -= toggle->chunks[chunk_].disabled;
         return rows;
     }
-    /// Enables or disables T, which this query takes for writing (T or Optional<T>), for row `row`
-    /// < size() of the chunk. Counts as a change of T if it was otherwise, and returns whether it
-    /// was.
+    /// Enables or disables T, a written term of this query (T or Optional<T>), for row `row` <
+    /// size() of the chunk. Returns whether the bit changed, which counts as a change of T.
     template <typename T>
     bool set_enabled(std::uint32_t row, bool enabled) const {
         LIMN_CHECK_NOTE(
-            state_->writes(component_id<T>), "set_enabled: T is no written term of the query");
+            state_->writes(component_id<T>), "set_enabled: T is not a written term of the query");
         ToggleBits* toggle = toggle_of<T>();
         LIMN_CHECK_NOTE(toggle != nullptr && row < size_, component_info<T>().name.c_str());
         return archetype_->set_enabled(*toggle, first_row() + row, enabled, version_);
@@ -139,14 +138,14 @@ class ChunkView {
     Archetype* archetype_ = nullptr;
     const std::int16_t* columns_ = nullptr;      ///< of the terms with data
     const std::uint32_t* previous_ = nullptr;    ///< their versions before the query
-    const RowMask* previous_written_ = nullptr;  ///< and marked rows; null: none tracks its rows
+    const RowMask* previous_written_ = nullptr;  ///< their marked rows; null: none tracks rows
     const QueryState* state_ = nullptr;
-    RowMask* enabled_ = nullptr;  ///< arbitrary if all are
+    RowMask* enabled_ = nullptr;  ///< unspecified if all_enabled_
     std::uint32_t chunk_ = 0;
     std::uint32_t size_ = 0;
     std::uint32_t index_ = 0;
     std::uint32_t offset_ = 0;
-    std::uint32_t version_ = 0;  ///< of what the query writes
+    std::uint32_t version_ = 0;  ///< assigned to what the query writes
     bool all_enabled_ = true;
 };
 

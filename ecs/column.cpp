@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kSmallStep = std::size_t{64} << 10;
-/// A range that starts small has so much, less its skew, before its first huge page.
+/// A range that starts small has this much, minus its skew, before its first huge page. [bytes]
 constexpr std::size_t kSmallPart = std::size_t{512} << 10;
 static_assert(2 * kSkewRange <= kSmallPart && kSmallPart < kHugePage);
 
@@ -91,16 +91,17 @@ void VirtualRange::commit_more(std::size_t bytes) {
     const std::size_t added = static_cast<std::size_t>(end - begin);
     LIMN_CHECK_NOTE(mprotect(begin, added, PROT_READ | PROT_WRITE) == 0, "out of memory");
     if (added >= kHugePage) {
-        madvise(begin, added, MADV_HUGEPAGE);  // a wish: without huge pages it is only slower
+        madvise(begin, added, MADV_HUGEPAGE);  // best effort: without huge pages it is only slower
     }
     usable_ = static_cast<std::size_t>(end - data_);
 }
 
-void expect_to_fill(const std::byte* first, std::size_t size) {
+void advise_huge_pages(const std::byte* first, std::size_t size) {
     const auto begin = round_up(reinterpret_cast<std::uintptr_t>(first), kHugePage);
     const auto end = (reinterpret_cast<std::uintptr_t>(first) + size) / kHugePage * kHugePage;
     if (begin < end) {
-        madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // a wish, as above
+        madvise(
+            reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // best effort, as above
     }
 }
 
@@ -110,7 +111,7 @@ void VirtualRange::shrink(std::size_t bytes) {
         return;
     }
     const std::size_t removed = static_cast<std::size_t>(data_ + usable_ - end);
-    // The address stays reserved, but the memory goes, and reads as zero if it is committed again.
+    // The address range stays reserved; the memory is released and reads as zero when recommitted.
     madvise(end, removed, MADV_DONTNEED);
     LIMN_CHECK(mprotect(end, removed, PROT_NONE) == 0);
     usable_ = bytes > 0 ? static_cast<std::size_t>(end - data_) : 0;

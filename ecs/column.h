@@ -6,23 +6,22 @@
 
 namespace limn {
 
-// Memory that never moves. A VirtualRange takes a large piece of the address space, which costs
-// nothing, and turns the front of it into memory as it fills; so a column of an archetype grows
-// without copies and its base pointer holds as long as the archetype. Small archetypes would waste
-// a page a column: they share the blocks of a BlockPool, one block an archetype, until they outgrow
-// the largest.
+// Memory that never moves. A VirtualRange reserves a large piece of address space, which is free,
+// and commits memory from its front as needed; so a column of an archetype grows without copies and
+// its base pointer is valid as long as the archetype. Small archetypes would waste a page per
+// column: each uses one block of a BlockPool for all columns, until it outgrows the largest size.
 //
-// Large ranges get huge pages (2 MiB): a fresh one costs a seventh of as many small ones, and
-// random access rarely misses the translation. Since these are aligned, columns would all start at
-// one offset modulo 2 MiB, that is, in one set of the cache and one bank of the memory; therefore
-// each range has a skew of its own.
+// Large ranges get huge pages (2 MiB): faulting one in costs a seventh of the same size in small
+// pages, and random access rarely misses the TLB. Since huge pages are aligned, all columns would
+// start at the same offset modulo 2 MiB, that is, in the same cache set and memory bank; therefore
+// each range is offset by a different skew.
 
 /// Skews are below this. [bytes]
 inline constexpr std::size_t kSkewRange = std::size_t{256} << 10;
 
-/// For the range at `position` among those used together: several pages and an odd number of lines
-/// of the cache apart, so that no two of 4096 are equal. A multiple of `align`, a power of two of
-/// 64 to 4096. [bytes]
+/// Skew for range number `position` of those used together: successive skews are several pages and
+/// an odd number of cache lines apart, so that no two of 4096 are equal. A multiple of `align`, a
+/// power of two from 64 to 4096. [bytes]
 [[nodiscard]] constexpr std::size_t skew_of(std::size_t position, std::size_t align = 64) {
     const std::size_t skew = position * (5 * 4096 + 39 * 64);
     return (skew + align - 1) / align * align % kSkewRange;
@@ -32,8 +31,8 @@ inline constexpr std::size_t kSkewRange = std::size_t{256} << 10;
 class VirtualRange {
   public:
     VirtualRange() = default;
-    /// Reserves at least `bytes`, which start `skew` past a page; with `expected` bytes from the
-    /// start. Stops the program if there is no address space left.
+    /// Reserves at least `bytes`, starting `skew` past a page boundary; `expected` is how much will
+    /// be committed first. Stops the program if no address space is left.
     explicit VirtualRange(std::size_t bytes, std::size_t skew = 0, std::size_t expected = 0);
     VirtualRange(VirtualRange&& other) noexcept;
     VirtualRange& operator=(VirtualRange&& other) noexcept;
@@ -41,22 +40,22 @@ class VirtualRange {
     VirtualRange& operator=(const VirtualRange&) = delete;
     ~VirtualRange();
 
-    /// Makes the first `bytes` usable, and some more: steps grow from 64 KiB to 256 KiB, and are
-    /// whole huge pages from about 512 KiB on. Stops the program when the reservation or the memory
-    /// is exhausted.
+    /// Makes at least the first `bytes` usable: steps grow from 64 KiB to 256 KiB, and are whole
+    /// huge pages from about 512 KiB on. Stops the program if the reservation or memory is
+    /// exhausted.
     void commit(std::size_t bytes) {
         if (bytes > usable_) {
             commit_more(bytes);
         }
     }
 
-    /// Gives memory back beyond the first `bytes`, whose contents stay.
+    /// Releases memory beyond the first `bytes`, whose contents stay.
     void shrink(std::size_t bytes);
 
     [[nodiscard]] std::byte* data() const { return data_; }
     /// How much can be used without commit(). [bytes]
     [[nodiscard]] std::size_t usable() const { return usable_; }
-    /// The memory it takes: what is usable, and what the skew leaves before it. [bytes]
+    /// Committed memory: the usable part and the skew before it. [bytes]
     [[nodiscard]] std::size_t committed() const { return usable_ > 0 ? lead_ + usable_ : 0; }
     [[nodiscard]] std::size_t reserved() const { return reserved_; }
 
@@ -70,19 +69,19 @@ class VirtualRange {
     std::size_t lead_ = 0;  ///< before data_, committed with it
 };
 
-/// Asks for huge pages behind memory that is about to be filled for the first time.
-void expect_to_fill(const std::byte* first, std::size_t size);
+/// Requests huge pages for memory that is about to be filled for the first time.
+void advise_huge_pages(const std::byte* first, std::size_t size);
 
-/// Blocks of 4, 8, 16, 32 and 64 KiB, page aligned, reused through a free list a size.
+/// Blocks of 4, 8, 16, 32 and 64 KiB, page aligned, reused through one free list per size.
 class BlockPool {
   public:
     static constexpr std::size_t kSmallest = 4 * 1024;
     static constexpr std::size_t kLargest = 64 * 1024;
 
-    /// A block of `bytes`, which must be one of the five sizes. Its contents are arbitrary.
+    /// A block of `bytes`, which must be one of the five sizes. Its contents are unspecified.
     [[nodiscard]] std::byte* allocate(std::size_t bytes);
     void free(std::byte* block, std::size_t bytes);
-    /// Gives memory back beyond the last block in use.
+    /// Releases memory beyond the last block in use.
     void shrink();
 
     [[nodiscard]] std::size_t committed() const { return range_.committed(); }

@@ -212,7 +212,7 @@ void CommandBuffer::discard() {
 void CommandBuffer::reset() {
     tag_ = next_tag.fetch_add(1, std::memory_order_relaxed) % (kPlaceholder >> kStreamBits);
     if (streams_.size() > (std::size_t{1} << kStreamBits) / 2) {
-        // Threads came and went; their streams are of no use to anybody.
+        // Many threads have come and gone: drop all streams, most of which are dead.
         streams_.clear();
         id_ = next_id.fetch_add(1, std::memory_order_relaxed);
     }

@@ -15,11 +15,11 @@ namespace limn {
 
 class World;
 
-// Where Commands are kept until a sync point. Every thread that records has a stream of its own in
-// the buffer. A stream is a list of runs: commands of one kind in a row, their entities in one
-// array, their values in another; to record one more is to append to both. A stream is cut into
-// segments, each with the place in the system where it was recorded (task_scope.h). Sorted by that,
-// the segments of all streams are what a single thread would have recorded.
+// Stores Commands until a sync point. Every recording thread has its own stream in the buffer. A
+// stream is a list of runs: consecutive commands of one kind, their entities in one array, their
+// values in another; recording a command appends to both. A stream is divided into segments, each
+// tagged with the point in the system where it was recorded (task_scope.h). Sorted by that, the
+// segments of all streams are what a single thread would have recorded.
 
 enum class CommandOp : std::uint8_t { Create, Destroy, Add, Set, Remove, Enable, Disable };
 
@@ -37,15 +37,14 @@ struct CommandRun {
     std::byte* records;  ///< layout->stride apart
 };
 
-/// Memory that is given out from the front and taken back all at once. Grows by doubling; what has
-/// grown over several blocks is one block the next time.
+/// Linear allocator, freed all at once. Grows by doubling; reset() merges several blocks into one.
 class CommandArena {
   public:
-    /// What is free in one piece, at least `size` bytes, from a multiple of `align` on.
+    /// The contiguous free memory, at least `size` bytes, aligned to `align`.
     [[nodiscard]] std::span<std::byte> free_piece(std::size_t size, std::size_t align);
-    /// Gives out what is before `end` in the piece.
+    /// Allocates the part of the free piece before `end`.
     void take_until(const std::byte* end);
-    /// All memory is free again; it is kept.
+    /// Frees everything, keeping the memory.
     void reset();
     [[nodiscard]] std::size_t bytes() const;
 
@@ -64,7 +63,7 @@ class CommandArena {
 
 struct CommandSegment {
     TaskScope place;
-    std::uint32_t first_run;  ///< it ends where the next segment begins
+    std::uint32_t first_run;  ///< the segment ends where the next one begins
 };
 
 class CommandStream {
@@ -72,7 +71,7 @@ class CommandStream {
     CommandStream(std::uint64_t of_thread, std::uint32_t position)
         : thread(of_thread), number(position) {}
 
-    /// Appends a command; returns where its values go.
+    /// Appends a command; returns memory for its values.
     std::byte* record(CommandKind kind, Entity entity) {
         const TaskScope task = current_task;
         if (kind != open_.kind || task.sequence != place_.sequence || task.chunk != place_.chunk
@@ -87,13 +86,13 @@ class CommandStream {
     void close_run();
     void reset();
     [[nodiscard]] bool empty() const { return open_.count == 0 && runs.empty(); }
-    /// Commands.
+    /// Number of commands.
     [[nodiscard]] std::size_t size() const;
     [[nodiscard]] std::size_t bytes() const;
 
     const std::uint64_t thread;
-    const std::uint32_t number;  ///< in the buffer
-    std::uint32_t created = 0;   ///< placeholders given out
+    const std::uint32_t number;  ///< index in the buffer
+    std::uint32_t created = 0;   ///< placeholders handed out
     std::vector<CommandRun> runs;
     std::vector<CommandSegment> segments;
 
@@ -101,7 +100,7 @@ class CommandStream {
     void open_run(CommandKind kind, TaskScope task);
 
     CommandRun open_ = {};
-    std::uint32_t limit_ = 0;  ///< of open_.count
+    std::uint32_t limit_ = 0;  ///< capacity of open_
     TaskScope place_;          ///< of the last segment
     CommandArena entities_;
     CommandArena values_;
@@ -121,22 +120,22 @@ class CommandBuffer {
     CommandBuffer& operator=(const CommandBuffer&) = delete;
     ~CommandBuffer();
 
-    /// Returns a placeholder for an entity to come; `values` is where those of the layout go.
+    /// Returns a placeholder for a future entity; sets `values` to the memory for its components.
     [[nodiscard]] Entity create(const RecordLayout& layout, std::byte*& values) {
         CommandStream& target = stream();
         const Entity entity{target.created++, placeholder_generation(target)};
         values = target.record({&layout, CommandOp::Create}, entity);
         return entity;
     }
-    /// Returns where the values of the layout go: the caller constructs them.
+    /// Returns the memory where the caller must construct the values of the layout.
     std::byte* record(CommandOp op, Entity entity, const RecordLayout& layout) {
         return stream().record({&layout, op}, entity);
     }
 
     [[nodiscard]] bool empty() const;
-    /// How many are recorded.
+    /// Number of recorded commands.
     [[nodiscard]] std::size_t size() const;
-    /// Forgets everything, values included.
+    /// Drops all commands and destroys their values.
     void discard();
     [[nodiscard]] std::size_t bytes() const;
 
@@ -154,22 +153,22 @@ class CommandBuffer {
     [[nodiscard]] std::uint32_t placeholder_generation(const CommandStream& stream) const {
         return kPlaceholder | (tag_ << kStreamBits) | stream.number;
     }
-    /// The stream that gave the placeholder out; nullptr: it is of another recording.
+    /// The stream that created the placeholder; nullptr if it is from another recording.
     [[nodiscard]] const CommandStream* stream_of(Entity placeholder) const;
     void close_runs();
-    /// After the values have been moved away or destroyed.
+    /// The values must have been moved out or destroyed.
     void reset();
 
     std::uint64_t id_;   ///< unique, so that threads recognize the buffer they last recorded into
-    std::uint32_t tag_;  ///< tells placeholders of different recordings apart
+    std::uint32_t tag_;  ///< distinguishes placeholders of different recordings
     std::vector<std::unique_ptr<CommandStream>> streams_;
-    std::mutex mutex_;  ///< of streams_
+    std::mutex mutex_;  ///< protects streams_
 };
 
 /// Destroys the values of one record.
 void destroy_record(const RecordLayout& layout, std::byte* record);
 
-/// The sync point: applies everything recorded in the buffers, in their order, and empties them.
+/// A sync point: applies all commands of the buffers, in order, and empties them.
 void apply_commands(World& world, std::span<CommandBuffer* const> buffers);
 
 }  // namespace limn

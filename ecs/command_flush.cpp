@@ -42,7 +42,7 @@ void CommandFlush::run(CommandKind kind, std::byte* record, std::span<const Arch
 
 namespace {
 
-/// The world's CommandFlush for one use; one of its own for a use within another, by an observer.
+/// Borrows the world's CommandFlush; creates a temporary one for nested use by an observer.
 class FlushLoan {
   public:
     FlushLoan(World& world, std::unique_ptr<CommandFlush>& home)

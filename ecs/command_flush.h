@@ -11,14 +11,14 @@ namespace limn {
 
 class World;
 
-/// Applies commands. A world keeps one, whose lists have grown to their size after a few frames;
-/// then a sync point allocates nothing.
+/// Applies commands. A world keeps one, whose lists reach their final size after a few frames, so
+/// that a sync point then allocates nothing.
 class CommandFlush {
   public:
     explicit CommandFlush(World& world);
 
     void run(std::span<CommandBuffer* const> buffers);
-    /// One command for all the rows, which ascend; `record` has the values for all of them.
+    /// Applies one command to all the rows, which must ascend; they share the values in `record`.
     void run(CommandKind kind, std::byte* record, std::span<const ArchetypeRows> rows);
 
   private:

@@ -39,7 +39,7 @@ void CommandOrder::collect(CommandBuffer& buffer) {
         return a.place.sequence != b.place.sequence ? a.place.sequence < b.place.sequence
                                                     : a.place.chunk < b.place.chunk;
     };
-    // Segments of one place were recorded by one thread, in the order of its runs.
+    // Segments with equal scope were recorded by one thread, in the order of its runs.
     std::sort(segments_.begin(), segments_.end(), [&](const Segment& a, const Segment& b) {
         if (before(a, b) || before(b, a)) {
             return before(a, b);
@@ -51,8 +51,8 @@ void CommandOrder::collect(CommandBuffer& buffer) {
         LIMN_CHECK_NOTE(
             segments_[i - 1].stream == segments_[i].stream
                 || before(segments_[i - 1], segments_[i]),
-            "several threads recorded commands without par_chunks or par_each: no order is "
-            "defined");
+            "several threads recorded commands outside par_chunks and par_each, so their order is "
+            "undefined");
     }
 
     creations_.clear();
@@ -96,7 +96,7 @@ std::uint32_t CommandOrder::number_of(const CommandBuffer& buffer, Entity placeh
     return creation.number + (placeholder.index - creation.placeholder);
 }
 
-/// Placeholders in the values become entities; those of another run or system name nothing.
+/// Replaces placeholders in the values by entities; those of another run or system become null.
 void CommandOrder::resolve_fields(const Run& run) {
     const RecordLayout& layout = *run.commands.kind.layout;
     for (std::uint32_t i = 0; i < layout.size && layout.stride > 0; ++i) {
@@ -130,7 +130,7 @@ void CommandOrder::locate(std::uint32_t run) {
 
 namespace {
 
-/// How many of the first `count` are the same.
+/// Length of the common prefix, at most `count`.
 std::uint32_t common_length(const Entity* a, const Entity* b, std::uint32_t count) {
     constexpr std::uint32_t kBlock = 64;
     std::uint32_t same = 0;
@@ -183,7 +183,7 @@ void CommandOrder::locate_entities(std::uint32_t run) {
         }
         ++open.count;
         if (place.archetype != kNoArchetype) {
-            // Two neighbors: there may be many more, and rows are quicker to compare than to find.
+            // Two consecutive rows: there may be more, and comparing is faster than looking up.
             const Archetype& rows = *core_.archetypes[place.archetype];
             const std::uint32_t more = common_length(
                 entities + i + 1, rows.entities().data() + place.row + 1,
@@ -206,7 +206,7 @@ void CommandOrder::add_piece(const Piece& piece) {
 
 namespace {
 
-/// By the upper half, which does not exceed `max`, stable.
+/// Stable sort by the upper 32 bits, which must not exceed `max`.
 void radix_sort(
     std::vector<std::uint64_t>& values, std::vector<std::uint64_t>& scratch, std::uint32_t max) {
     constexpr int kBits = 11;
@@ -219,7 +219,7 @@ void radix_sort(
         };
         for (std::size_t i = 0; i < values.size(); ++i) {
             ++next[bucket(values[i])];
-            // In order, memory comes quickly; scattered stores would wait for each line of it.
+            // Sequential prefetch is fast; the scattered stores would stall on each cache line.
             __builtin_prefetch(&scratch[i], 1);
         }
         std::uint32_t begin = 0;
@@ -251,7 +251,7 @@ void CommandOrder::sort_pieces() {
         });
         return;
     }
-    // Rows counted over all archetypes fit into 32 bits; the entities to create come last.
+    // Global row indices over all archetypes fit into 32 bits; the entities to create come last.
     first_rows_.clear();
     std::uint32_t rows = 0;
     for (const auto& archetype : core_.archetypes) {
@@ -306,14 +306,14 @@ Archetype* CommandOrder::source_of(const Piece& piece) const {
     return piece.archetype == kNoArchetype ? nullptr : core_.archetypes[piece.archetype].get();
 }
 
-/// Walks over the places where a piece begins or ends: between two, all rows have the same
+/// Sweeps over the rows where a piece begins or ends: between two of these, all rows have the same
 /// commands.
 std::size_t CommandOrder::fold_overlap(std::size_t at, FlushStats& stats) {
     active_.clear();
     std::uint64_t begin = piece(at).begin();
     while (true) {
         while (at < pieces_.size() && piece(at).begin() == begin) {
-            // In the order of the commands; of one place they come in that order.
+            // Keep command order; pieces that begin at the same row already are.
             const auto index = static_cast<std::uint32_t>(&piece(at) - pieces_.data());
             active_.insert(std::upper_bound(active_.begin(), active_.end(), index), index);
             ++at;
@@ -332,7 +332,7 @@ std::size_t CommandOrder::fold_overlap(std::size_t at, FlushStats& stats) {
     }
 }
 
-/// The rows from `begin` to `end` have the commands of all active pieces.
+/// Emits the rows from `begin` to `end`, which have the commands of all active pieces.
 void CommandOrder::emit(std::uint64_t begin, std::uint64_t end) {
     kinds_.clear();
     records_.clear();

@@ -11,11 +11,11 @@
 
 namespace limn {
 
-// Structural changes for later: a system records them, also from the tasks of par_chunks and
-// par_each (threads of your own have no order, and the sync point refuses them), and the next sync
-// point applies them. The order is that of the systems in the schedule, then chunks, then calls,
-// for any number of threads; so the entities get the same handles everywhere. All commands for one
-// entity become at most one move; commands for an entity that is gone by then are dropped.
+// Deferred structural changes: a system records them, also from the tasks of par_chunks and
+// par_each (but not from your own threads, whose order is undefined: the sync point stops), and the
+// next sync point applies them. The order is that of the systems in the schedule, then chunks, then
+// calls, for any number of threads, so entity handles are deterministic. All commands for one
+// entity become at most one move; commands for an entity destroyed by then are dropped.
 //
 //     void update_spray(Query<const Nozzle> nozzles, Commands commands) {
 //         nozzles.par_each([&](const Nozzle& nozzle) {
@@ -24,23 +24,23 @@ namespace limn {
 //         });
 //     }
 //
-// create() returns a placeholder: it is good for further commands of the same run of the same
-// system and for the Entity fields (of visit_fields) of components given to them, where the final
-// handle takes its place. It is no handle: to the world it is stale.
+// create() returns a placeholder, valid for further commands in the same run of the same system and
+// in the Entity fields (of LIMN_FIELDS) of their components, where it is replaced by the final
+// handle. It is not a handle: to the world it is stale.
 //
-// Where the rows go is defined too. Archetype by archetype, in the order of their creation, the
-// rows that leave it are appended to their new archetypes in the order they had; then the gaps are
-// filled, the lowest first, with the rows beyond the new end (Archetype::close_gaps). Entities that
-// are created come last, in the order of their create().
+// Row order is deterministic too. Archetype by archetype, in creation order, the rows that leave it
+// are appended to their new archetypes in their current order; then the gaps are filled, the lowest
+// first, with the rows beyond the new end (Archetype::close_gaps). New entities come last, in the
+// order of their create().
 //
-// Commands of one kind in a row are cheapest: recording is to append to an array, and rows that are
-// neighbors move together, a whole archetype by exchanging the columns.
+// Consecutive commands of the same kind are cheapest: recording appends to an array, and adjacent
+// rows move together, a whole archetype by exchanging columns.
 
 class Commands {
   public:
     explicit Commands(CommandBuffer& buffer) : buffer_(&buffer) {}
 
-    /// Each component once.
+    /// Each component type at most once.
     template <typename... Ts>
     Entity create(Ts&&... components) const {
         using Layout = detail::RecordLayoutOf<true, std::remove_cvref_t<Ts>...>;
@@ -56,7 +56,7 @@ class Commands {
     void add(Entity entity, T component = T{}) const {
         put(buffer_->record(CommandOp::Add, entity, record_layout<T>), std::move(component));
     }
-    /// Replaces the value if the entity has the component by then.
+    /// Replaces the value if the entity has the component at the sync point.
     template <typename T>
     void set(Entity entity, T component) const {
         put(buffer_->record(CommandOp::Set, entity, record_layout<T>), std::move(component));
@@ -65,8 +65,8 @@ class Commands {
     void remove(Entity entity) const {
         buffer_->record(CommandOp::Remove, entity, key_layout<T>);
     }
-    /// Enables or disables the component (Storage::Toggle) if the entity has it by then. Adding it
-    /// afterwards enables it.
+    /// Enables or disables the component (Storage::Toggle) if the entity has it at the sync point.
+    /// Adding it afterwards enables it.
     template <typename T>
     void enable(Entity entity) const {
         set_enabled<T>(entity, true);
@@ -82,8 +82,8 @@ class Commands {
         buffer_->record(enabled ? CommandOp::Enable : CommandOp::Disable, entity, key_layout<T>);
     }
 
-    // ---- without types
-    // ----------------------------------------------------------------------------
+    // ---- type-erased
+    // ------------------------------------------------------------------------------
 
     void add_default(Entity entity, ComponentId id) const;
     void add_copy(Entity entity, ComponentId id, const void* value) const;

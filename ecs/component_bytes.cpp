@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-/// Neither strings nor lists: as many bytes for every value.
+/// Whether the field has a fixed size: contains neither strings nor lists.
 bool is_flat(const FieldInfo& field) {
     return field.shape != FieldShape::List && field.type != FieldType::String
            && std::all_of(field.fields.begin(), field.fields.end(), is_flat);
@@ -22,7 +22,7 @@ bool is_flat(const ComponentInfo& info) {
               });
 }
 
-/// Whether some bytes are no value of the type.
+/// Whether some byte patterns are not valid values of the type.
 bool has_invalid_bytes(const std::vector<FieldInfo>& fields) {
     return std::any_of(fields.begin(), fields.end(), [](const FieldInfo& field) {
         return field.type == FieldType::Bool || field.type == FieldType::Enum
@@ -30,7 +30,7 @@ bool has_invalid_bytes(const std::vector<FieldInfo>& fields) {
     });
 }
 
-/// Bytes of a value that follow each other.
+/// Consecutive bytes of a value.
 struct ByteRun {
     std::uint32_t offset;
     std::uint32_t size;
@@ -58,24 +58,24 @@ std::vector<ByteRun> runs_of(const ComponentInfo& info) {
     return runs;
 }
 
-std::size_t least_bytes_of(const std::vector<FieldInfo>& fields);
+std::size_t min_bytes_of(const std::vector<FieldInfo>& fields);
 
-std::size_t least_bytes_of_element(const FieldInfo& field) {
+std::size_t min_bytes_of_element(const FieldInfo& field) {
     switch (field.type) {
     case FieldType::String:
         return sizeof(std::uint32_t);
     case FieldType::Struct:
-        return least_bytes_of(field.fields);
+        return min_bytes_of(field.fields);
     default:
         return field.size;
     }
 }
 
-std::size_t least_bytes_of(const std::vector<FieldInfo>& fields) {
+std::size_t min_bytes_of(const std::vector<FieldInfo>& fields) {
     std::size_t sum = 0;
     for (const FieldInfo& field : fields) {
         sum += field.shape == FieldShape::List ? sizeof(std::uint32_t)
-                                               : field.count * least_bytes_of_element(field);
+                                               : field.count * min_bytes_of_element(field);
     }
     return sum;
 }
@@ -105,7 +105,7 @@ void write_fields(const std::vector<FieldInfo>& fields, const void* around, Byte
     }
 }
 
-/// Whether the bytes of a bool or enum are one of its values.
+/// Whether the bytes of a bool or enum are a valid value.
 bool is_valid(const FieldInfo& field, const std::byte* bytes) {
     std::uint64_t value = 0;
     std::memcpy(&value, bytes, std::min<std::size_t>(field.size, sizeof value));
@@ -113,7 +113,7 @@ bool is_valid(const FieldInfo& field, const std::byte* bytes) {
                                          : field.values.empty() || value < field.values.size();
 }
 
-/// The same for all elements at `bytes`, and for the flat fields in them.
+/// The same for all elements at `bytes`, including nested flat fields.
 bool are_valid(const FieldInfo& field, const std::byte* bytes, std::size_t count) {
     if (field.type == FieldType::Bool || field.type == FieldType::Enum) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -135,7 +135,7 @@ bool are_valid(const FieldInfo& field, const std::byte* bytes, std::size_t count
 
 bool read_fields(const std::vector<FieldInfo>& fields, void* around, ByteReader& in);
 
-/// Plain elements are looked at before they are copied: a bool of 2 must never be in memory.
+/// Plain elements are validated before they are copied: a bool of 2 must never be in memory.
 bool read_plain(const FieldInfo& field, void* first, std::size_t count, ByteReader& in) {
     const std::span<const std::byte> bytes = in.bytes(count * field.size);
     if (in.failed() || !are_valid(field, bytes.data(), count)) {
@@ -152,7 +152,7 @@ bool read_fields(const std::vector<FieldInfo>& fields, void* around, ByteReader&
         void* const data = field_ptr(around, field);
         if (field.shape == FieldShape::List) {
             const std::uint32_t count =
-                in.count(std::max<std::size_t>(least_bytes_of_element(field), 1));
+                in.count(std::max<std::size_t>(min_bytes_of_element(field), 1));
             if (in.failed()) {
                 return false;
             }
@@ -177,7 +177,7 @@ bool read_fields(const std::vector<FieldInfo>& fields, void* around, ByteReader&
     return !in.failed();
 }
 
-/// Calls call(values, count) for the rows of a split component, a chunk's worth at a time.
+/// Calls call(values, count) for the rows of a split component, up to a chunk at a time.
 template <typename Call>
 void each_gathered(
     const Column& column, std::uint32_t first, std::uint32_t count, const Call& call) {
@@ -209,7 +209,7 @@ std::uint64_t layout_of(const std::vector<FieldInfo>& fields, std::uint64_t hash
 
 void write_values(
     const ComponentInfo& info, const void* first, std::size_t count, ByteWriter& out) {
-    LIMN_CHECK_NOTE(has_bytes(info), info.name.c_str());
+    LIMN_CHECK_NOTE(is_serializable(info), info.name.c_str());
     if (info.is_tag || count == 0) {
         return;
     }
@@ -231,7 +231,7 @@ void write_values(
 }
 
 bool read_values(const ComponentInfo& info, void* first, std::size_t count, ByteReader& in) {
-    LIMN_CHECK_NOTE(has_bytes(info), info.name.c_str());
+    LIMN_CHECK_NOTE(is_serializable(info), info.name.c_str());
     if (info.is_tag || count == 0) {
         return true;
     }
@@ -287,12 +287,12 @@ bool read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteRea
     return true;
 }
 
-bool takes_any_bytes(const ComponentInfo& info) {
+bool accepts_any_bytes(const ComponentInfo& info) {
     return info.value_bytes == ValueBytes::All && !has_invalid_bytes(info.fields);
 }
 
-std::size_t least_bytes(const ComponentInfo& info) {
-    return info.value_bytes == ValueBytes::All ? info.size : least_bytes_of(info.fields);
+std::size_t min_serialized_size(const ComponentInfo& info) {
+    return info.value_bytes == ValueBytes::All ? info.size : min_bytes_of(info.fields);
 }
 
 std::uint64_t
@@ -323,7 +323,7 @@ std::uint64_t layout_hash(const ComponentInfo& info) {
     const std::uint64_t kind = hash_combine(
         static_cast<std::uint64_t>(info.value_bytes),
         info.is_tag                       ? 1
-        : info.storage == Storage::Shared ? 2  // one value, not one a row
+        : info.storage == Storage::Shared ? 2  // one value, not one per row
                                           : 0);
     return layout_of(
         info.fields, hash_combine(kind, info.value_bytes == ValueBytes::All ? info.size : 0));

@@ -7,46 +7,46 @@
 
 namespace limn {
 
-// The value of a component as bytes, for snapshots and hashes: without padding, with the contents
-// of strings and lists. Types without padding are copied as they are, others field by field. What
-// is neither (no visit_fields, but padding or a destructor) has no bytes.
+// Serialization of component values for snapshots and hashes: without padding, with the contents
+// of strings and lists. Types without padding are copied whole, others field by field. Types with
+// padding or a destructor but no LIMN_FIELDS cannot be serialized.
 
-[[nodiscard]] inline bool has_bytes(const ComponentInfo& info) {
+[[nodiscard]] inline bool is_serializable(const ComponentInfo& info) {
     return info.value_bytes != ValueBytes::Opaque;
 }
 
-/// Appends `count` neighbors.
+/// Appends an array of `count` values.
 void write_values(const ComponentInfo& info, const void* first, std::size_t count, ByteWriter& out);
 
-/// Fills `count` living neighbors. False: the bytes end too early or hold what the type cannot (a
-/// bool of 2, an enumerator that is none); the values are then valid but arbitrary.
+/// Overwrites an array of `count` constructed values. Returns false if the bytes end too early or
+/// hold invalid values (a bool of 2, an unknown enumerator); the result is then valid but
+/// unspecified.
 [[nodiscard]] bool
 read_values(const ComponentInfo& info, void* first, std::size_t count, ByteReader& in);
 
-/// The same for `count` rows of a column of an archetype; the lanes of a split component are
-/// written, read and hashed as the structs that they make up.
+/// The same for `count` rows of an archetype's column; a split component is written, read and
+/// hashed as structs, not as lanes.
 void write_rows(const Column& column, std::uint32_t first, std::uint32_t count, ByteWriter& out);
 [[nodiscard]] bool
 read_rows(Column& column, std::uint32_t first, std::uint32_t count, ByteReader& in);
 
-/// Whether its values are all their bytes, and all bytes are values: they may be copied unseen.
-[[nodiscard]] bool takes_any_bytes(const ComponentInfo& info);
+/// Whether every byte belongs to the value and any bytes are a valid value: no checks are needed.
+[[nodiscard]] bool accepts_any_bytes(const ComponentInfo& info);
 
-/// No value is written in fewer bytes.
-[[nodiscard]] std::size_t least_bytes(const ComponentInfo& info);
+/// Minimum serialized size of a value [bytes].
+[[nodiscard]] std::size_t min_serialized_size(const ComponentInfo& info);
 
-/// Of what write_values would write; quick where there is no padding.
+/// Hash of what write_values would write; fast for types without padding.
 [[nodiscard]] std::uint64_t
 hash_values(const ComponentInfo& info, const void* first, std::size_t count, std::uint64_t seed);
-/// The same of rows, a chunk at most.
+/// The same for rows, at most one chunk.
 [[nodiscard]] std::uint64_t
 hash_rows(const Column& column, std::uint32_t first, std::uint32_t count, std::uint64_t seed);
 
-/// Tells apart what write_values of two programs would write for this type: names, types and sizes
-/// of the fields.
+/// Identifies the serialized layout of the type: hash of names, types and sizes of its fields.
 [[nodiscard]] std::uint64_t layout_hash(const ComponentInfo& info);
 
-/// Calls call(Entity&) for every entity that the component names, at any depth.
+/// Calls call(Entity&) for every Entity field of the component, at any depth.
 template <typename Call>
 void for_each_entity(const std::vector<FieldInfo>& fields, void* around, const Call& call) {
     for (const FieldInfo& field : fields) {

@@ -5,8 +5,8 @@
 
 namespace limn {
 
-/// Handle of an entity: a slot and the generation of its tenant. A handle that outlives its entity
-/// is stale, and every use of it finds that out; it never names another entity.
+/// Handle of an entity: slot index and generation. A handle that outlives its entity is stale,
+/// which every use detects; it never refers to another entity.
 struct Entity {
     static constexpr std::uint32_t kNullIndex = 0xffffffffu;
 
@@ -14,7 +14,7 @@ struct Entity {
     std::uint32_t generation = 0;
 
     [[nodiscard]] constexpr bool is_null() const { return index == kNullIndex; }
-    /// Both numbers in one, different for different entities.
+    /// Index and generation packed into one number, unique per entity.
     [[nodiscard]] constexpr std::uint64_t bits() const {
         return (static_cast<std::uint64_t>(generation) << 32) | index;
     }

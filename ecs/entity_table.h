@@ -11,16 +11,15 @@
 
 namespace limn {
 
-// Which handle is alive, and where its row is. A slot is 10 bytes in memory that never moves: the
-// generation, and archetype and row packed into the other six. Free slots wait in a queue, first
-// freed first used, and none is used again before kReuseDistance others are free: a stale handle
-// that somebody kept meets its successor as late as possible. Generations differ all the same, so
-// that such a handle is found out, never mistaken.
+// Maps handles to rows and tracks which are alive. A slot is 10 bytes in memory that never moves:
+// the generation, and archetype and row packed into the other six. Free slots wait in a FIFO, and
+// none is reused before kReuseDistance others are free, so that stale handles meet a reused slot as
+// late as possible. Even then the generation differs, so a stale handle is always detected.
 
 inline constexpr std::uint32_t kNoArchetype = 0xffffffffu;
-/// Generations stay below this bit; handles above it are placeholders of Commands.
+/// Set in the generation of Commands placeholders only.
 inline constexpr std::uint32_t kPlaceholderBit = 0x80000000u;
-/// What a slot has room for.
+/// Limits of what a slot can store.
 inline constexpr std::uint32_t kMaxArchetypes = 0xffffu << 6;
 inline constexpr std::uint32_t kMaxRowsOfSlot = 1u << 26;
 
@@ -29,13 +28,13 @@ struct EntityPlace {
     std::uint32_t archetype = kNoArchetype;
     std::uint32_t row = 0;
 
-    /// False: the handle was stale or null.
+    /// False if the handle was stale or null.
     [[nodiscard]] explicit operator bool() const { return archetype != kNoArchetype; }
 };
 
-/// Everything a snapshot needs to give out the same handles later.
+/// What a snapshot needs to allocate the same handles later.
 struct EntityTableImage {
-    std::vector<std::uint32_t> generations;  ///< of every slot
+    std::vector<std::uint32_t> generations;  ///< per slot
     std::vector<std::uint32_t> free_slots;   ///< in the order of reuse
 };
 
@@ -43,12 +42,12 @@ class EntityTable {
   public:
     static constexpr std::uint32_t kMaxEntities = 1u << 28;
     static constexpr std::uint32_t kReuseDistance = 1024;
-    /// How far ahead loops over entities in any order prefetch their slots.
+    /// How many entities ahead loops in random order prefetch slots.
     static constexpr std::size_t kPrefetch = 16;
 
     EntityTable();
 
-    /// A new handle, which find() does not know before place().
+    /// A new handle; find() fails until place() is called.
     [[nodiscard]] Entity allocate() {
         if (free_count_ <= kReuseDistance) {
             return allocate_new();
@@ -62,7 +61,7 @@ class EntityTable {
     void free(Entity entity) {
         const std::uint32_t generation = entity.generation + 1;
         if (generation == kPlaceholderBit) {
-            // Worn out: no handle has generation 0, and the slot is not used again.
+            // Generations exhausted: retire the slot. No handle has generation 0.
             set_free(entity.index, 0, kEnd);
             return;
         }
@@ -75,7 +74,7 @@ class EntityTable {
         last_free_ = entity.index;
     }
     void allocate(std::span<Entity> entities);
-    /// In this order.
+    /// Frees the entities in this order.
     void free(std::span<const Entity> entities);
     void place(Entity entity, std::uint32_t archetype, std::uint32_t row) {
         Slot slot = slot_at(entity.index);
@@ -83,7 +82,7 @@ class EntityTable {
         slot.set_high(static_cast<std::uint16_t>(archetype >> (32 - kRowBits)));
     }
 
-    /// In neighboring rows.
+    /// Places the entities in consecutive rows.
     void place(std::span<const Entity> entities, std::uint32_t archetype, std::uint32_t first_row);
 
     [[nodiscard]] EntityPlace find(Entity entity) const {
@@ -100,7 +99,7 @@ class EntityTable {
             low & (kMaxRowsOfSlot - 1)};
     }
 
-    /// Says that find() will follow soon.
+    /// Prefetches the slot for find().
     void prefetch(Entity entity) const {
         if (entity.index < slot_count_) {
             __builtin_prefetch(slots_ + std::size_t{entity.index} * kSlotBytes);
@@ -112,17 +111,17 @@ class EntityTable {
     [[nodiscard]] std::size_t committed() const { return range_.committed(); }
 
     [[nodiscard]] EntityTableImage image() const;
-    /// All slots as in `image`, none of them placed.
+    /// Restores all slots from `image`, none of them placed.
     void restore(const EntityTableImage& image);
 
   private:
     static constexpr std::uint32_t kEnd = 0xffffffffu;
     static constexpr int kRowBits = 26;
-    static constexpr std::uint16_t kFree = 0xffff;  ///< as high part: no row; low is the next slot
+    static constexpr std::uint16_t kFree = 0xffff;  ///< high(): no row; low() is the next free slot
     static constexpr std::size_t kSlotBytes = 10;
 
-    /// Three fields read and written each in one piece, so that a read soon after a write need not
-    /// wait for the cache.
+    /// Each of the three fields is read and written with one access of the same width, so that
+    /// store-to-load forwarding works.
     class Slot {
       public:
         explicit Slot(std::byte* bytes) : bytes_(bytes) {}

@@ -1,5 +1,6 @@
 #include "ecs/field_access.h"
 
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
+#include <set>
 
 namespace limn {
 
@@ -44,12 +47,22 @@ void set_unsigned(const FieldInfo& field, void* element, std::uint64_t value) {
     std::memcpy(element, &value, field.size);  // little-endian: the low bytes come first
 }
 
-bool is_whole(FieldType type) {
+/// Warns once for each old name; `renamed` identifies the field.
+void warn_renamed(const char* renamed, std::string_view old_name, std::string_view new_name) {
+    static std::mutex mutex;
+    static std::set<std::pair<const char*, std::string>> warned;
+    const std::lock_guard lock(mutex);
+    if (warned.emplace(renamed, old_name).second) {
+        log_warn("{} is renamed to {}; the next version rejects the old name", old_name, new_name);
+    }
+}
+
+bool is_integer(FieldType type) {
     return type == FieldType::Int || type == FieldType::UInt || type == FieldType::IVec2
            || type == FieldType::IVec3;
 }
 
-/// Smallest and largest value of the type that a double can say exactly.
+/// Smallest and largest value of the type that a double represents exactly.
 std::pair<double, double> type_range(const FieldInfo& field) {
     constexpr double kExact = 9007199254740992.0;  // 2^53
     switch (field.type) {
@@ -72,10 +85,10 @@ std::pair<double, double> type_range(const FieldInfo& field) {
     }
 }
 
-/// Whether `value` is one that a field of type float may have: a limit like 0.1 is compared as a
-/// float, too.
+/// Whether `value` is in the field's range. For float fields the limits, like 0.1, are rounded to
+/// float too.
 bool in_range(const FieldInfo& field, double value) {
-    if (field.type == FieldType::Double || is_whole(field.type)) {
+    if (field.type == FieldType::Double || is_integer(field.type)) {
         return value >= field.meta.min && value <= field.meta.max;
     }
     const auto x = static_cast<float>(value);
@@ -84,14 +97,14 @@ bool in_range(const FieldInfo& field, double value) {
 
 std::string expected_number(const FieldInfo& field) {
     const std::string range = range_text(field.meta);
-    const char* const noun = is_whole(field.type) ? "a whole number" : "a number";
+    const char* const noun = is_integer(field.type) ? "a whole number" : "a number";
     return range.empty() ? noun : range;
 }
 
 Status check_number(const FieldInfo& field, double value) {
     const auto [low, high] = type_range(field);
     if (!std::isfinite(value) || value < low || value > high || !in_range(field, value)
-        || (is_whole(field.type) && value != std::floor(value))) {
+        || (is_integer(field.type) && value != std::floor(value))) {
         return fail("found {}, expected {}", value, expected_number(field));
     }
     return Done{};
@@ -122,7 +135,7 @@ Status validate_element(const FieldInfo& field, const void* element) {
     }
     case FieldType::Int:
     case FieldType::UInt: {
-        // Beyond 2^53 a double is not exact, so the type's own limits are not asked for here.
+        // Beyond 2^53 a double is not exact, so the type's own limits are not checked here.
         const double value = get_number(field, element);
         if (!in_range(field, value)) {
             return fail("{}: found {}, expected {}", field.name, value, expected_number(field));
@@ -140,7 +153,7 @@ Status validate_element(const FieldInfo& field, const void* element) {
     }
 }
 
-/// One step of a path.
+/// Removes and returns the first step of a path.
 std::string_view take_step(std::string_view& path) {
     const std::size_t dot = std::min(path.find('.'), path.size());
     const std::string_view step = path.substr(0, dot);
@@ -173,10 +186,39 @@ const void* element_ptr(const FieldInfo& field, const void* data, std::size_t in
 }
 
 const FieldInfo* find_field(const std::vector<FieldInfo>& fields, std::string_view name) {
-    const auto found = std::find_if(fields.begin(), fields.end(), [name](const FieldInfo& field) {
-        return field.name == name;
-    });
-    return found == fields.end() ? nullptr : &*found;
+    for (const FieldInfo& field : fields) {
+        if (field.name == name) {
+            return &field;
+        }
+    }
+    for (const FieldInfo& field : fields) {
+        const std::vector<std::string_view> old_names = detail::split_words(field.meta.renamed);
+        if (std::find(old_names.begin(), old_names.end(), name) != old_names.end()) {
+            warn_renamed(field.meta.renamed, name, field.name);
+            return &field;
+        }
+    }
+    return nullptr;
+}
+
+std::optional<std::uint64_t> find_enumerator(const FieldInfo& field, std::string_view name) {
+    const auto index = [&field](std::string_view value) -> std::optional<std::uint64_t> {
+        const auto found = std::find(field.values.begin(), field.values.end(), value);
+        return found == field.values.end()
+                   ? std::nullopt
+                   : std::optional(std::uint64_t(found - field.values.begin()));
+    };
+    if (const auto found = index(name)) {
+        return found;
+    }
+    for (const std::string_view word : detail::split_words(field.meta.renamed)) {
+        const std::size_t equals = word.find('=');
+        if (equals != std::string_view::npos && word.substr(0, equals) == name) {
+            warn_renamed(field.meta.renamed, name, word.substr(equals + 1));
+            return index(word.substr(equals + 1));
+        }
+    }
+    return std::nullopt;
 }
 
 std::string field_suggestion(const std::vector<FieldInfo>& fields, std::string_view name) {
@@ -329,14 +371,14 @@ std::string_view get_enum(const FieldInfo& field, const void* element) {
 }
 
 Status set_enum(const FieldInfo& field, void* element, std::string_view name) {
-    const auto found = std::find(field.values.begin(), field.values.end(), name);
-    if (found == field.values.end()) {
+    const std::optional<std::uint64_t> value = find_enumerator(field, name);
+    if (!value) {
         const std::string nearest = nearest_name(name, field.values);
         return fail(
             "found \"{}\", expected {}{}", name, type_text(field),
             nearest.empty() ? "" : " (did you mean " + nearest + "?)");
     }
-    set_unsigned(field, element, static_cast<std::uint64_t>(found - field.values.begin()));
+    set_unsigned(field, element, *value);
     return Done{};
 }
 
@@ -474,7 +516,7 @@ std::string value_text(const FieldInfo& field, const void* element) {
     std::string text = numbers > 1 ? "[" : "";
     for (int lane = 0; lane < numbers; ++lane) {
         text += lane > 0 ? ", " : "";
-        // As a float where it is one: 0.1, not 0.10000000149011612.
+        // Print floats as float: 0.1, not 0.10000000149011612.
         const double number = get_number(field, element, lane);
         text += field.type == FieldType::Double ? format_text("{}", number)
                                                 : format_text("{}", static_cast<float>(number));

@@ -58,7 +58,7 @@ void Hierarchy::refresh(const World& world, std::uint32_t now) {
     do {
         group_links();
         walk_down();
-    } while (nodes_.size() < links_.size() && open_cycle());
+    } while (nodes_.size() < links_.size() && break_cycle());
 
     ++version_;
     seen_version_ = now;
@@ -146,9 +146,9 @@ void Hierarchy::walk_down() {
     }
 }
 
-bool Hierarchy::open_cycle() {
-    // Every entity that was not reached has a chain of parents that ends in a cycle. The lowest
-    // entity on any cycle loses its link for this order; the component stays as it is.
+bool Hierarchy::break_cycle() {
+    // Every unreached entity has a chain of parents that ends in a cycle. Ignore the link of the
+    // lowest entity on a cycle in this hierarchy; its Parent component does not change.
     std::vector<Entity> reached = children_;
     std::sort(reached.begin(), reached.end());
     std::vector<Link> open;
@@ -164,7 +164,8 @@ bool Hierarchy::open_cycle() {
             open.begin(), open.end(), child,
             [](const Link& link, Entity entity) { return link.child < entity; });
     };
-    // As many steps up as there are links lead onto the cycle; once around finds its lowest entity.
+    // After as many steps up as there are links we are on the cycle; walk around it once to find
+    // its lowest entity.
     Entity on_cycle = open.front().child;
     for (std::size_t i = 0; i < open.size(); ++i) {
         on_cycle = link_of(on_cycle)->parent;
@@ -174,7 +175,7 @@ bool Hierarchy::open_cycle() {
          entity = link_of(entity)->parent) {
         lowest = std::min(lowest, entity);
     }
-    log_error("hierarchy: {} is below itself; it is taken as a root", name_of(lowest));
+    log_error("hierarchy: {} is its own ancestor; it is treated as a root", name_of(lowest));
     std::erase_if(links_, [lowest](const Link& link) { return link.child == lowest; });
     return true;
 }
@@ -190,24 +191,24 @@ const Hierarchy& hierarchy(World& world) {
 
 Status set_parent(World& world, Entity child, Entity parent) {
     if (!world.alive(child)) {
-        return fail("set_parent: the child, {}, is gone", name_of(child));
+        return fail("set_parent: the child, {}, does not exist", name_of(child));
     }
     if (parent.is_null()) {
         world.remove<Parent>(child);
         return Done{};
     }
     if (!world.alive(parent)) {
-        return fail("set_parent: the parent, {}, is gone", name_of(parent));
+        return fail("set_parent: the parent, {}, does not exist", name_of(parent));
     }
     std::size_t steps = 0;
     for (Entity above = parent; !above.is_null(); above = parent_of(world, above)) {
         if (above == child) {
             return fail(
                 "set_parent: {} cannot be the parent of {}: it is {}", name_of(parent),
-                name_of(child), parent == child ? "the same" : "below it");
+                name_of(child), parent == child ? "the same entity" : "its descendant");
         }
         if (++steps > world.entity_count()) {
-            return fail("set_parent: {} is below itself already", name_of(parent));
+            return fail("set_parent: {} is already its own ancestor", name_of(parent));
         }
     }
     if (world.find_resource<SiblingOrder>() == nullptr) {
@@ -228,7 +229,7 @@ std::span<const Entity> children_of(World& world, Entity entity) {
 
 std::uint32_t depth_of(const World& world, Entity entity) {
     std::uint32_t depth = 0;
-    const std::size_t limit = world.entity_count();  // in a cycle the way up has no end
+    const std::size_t limit = world.entity_count();  // stops on cycles
     for (Entity above = parent_of(world, entity); !above.is_null() && depth < limit;
          above = parent_of(world, above)) {
         ++depth;
@@ -245,7 +246,7 @@ std::vector<Entity> subtree_of(const Hierarchy& hierarchy, Entity root) {
         subtree.push_back(entity);
         const std::span<const Entity> children = hierarchy.children_of(entity);
         for (auto child = children.rbegin(); child != children.rend(); ++child) {
-            if (*child != root) {  // an opened cycle may lead back
+            if (*child != root) {  // a broken cycle may lead back to the root
                 stack.push_back(*child);
             }
         }
@@ -256,7 +257,7 @@ std::vector<Entity> subtree_of(const Hierarchy& hierarchy, Entity root) {
 void destroy_tree(World& world, Entity root) {
     const std::vector<Entity> subtree = subtree_of(hierarchy(world), root);
     for (auto entity = subtree.rbegin(); entity != subtree.rend(); ++entity) {
-        if (world.alive(*entity)) {  // an observer may have been quicker
+        if (world.alive(*entity)) {  // an observer may have destroyed it already
             world.destroy(*entity);
         }
     }

@@ -10,58 +10,55 @@
 
 namespace limn {
 
-// Parents and children. A link is data of the child, its Parent; who the children of an entity are,
-// and the order from the roots down in which matrices are computed, follows from all links and is
-// kept in the resource Hierarchy, which is rebuilt when a link changed. So entities, level files,
-// Commands and snapshots deal with Parent like with any component:
+// Parents and children. A link is stored in the child, as its Parent; the children of each entity
+// and the top-down order in which matrices are computed are derived from all links and cached in
+// the resource Hierarchy, which is rebuilt when a link changed. So entities, level files, Commands
+// and snapshots treat Parent like any other component:
 //
 //     world.create(Transform{}, Parent{lamp_post});
 //     commands.add(entity, Parent{other});
-//     set_parent(world, child, parent);                  behind the children there are; refuses
-//     cycles for (Entity child : children_of(world, lamp_post)) ...
+//     set_parent(world, child, parent);              // appends to the children; rejects cycles
+//     for (Entity child : children_of(world, lamp_post)) ...
 //
-// A link to an entity that is gone does not count: its children become roots, where they are. A
-// cycle, which only a Parent written directly can close, is reported as an error in the log and
-// opened at its lowest entity.
+// A link to a destroyed entity is ignored: its children become roots and stay in place. A cycle,
+// which only a Parent written directly can create, is logged as an error and broken at its lowest
+// entity.
 
 struct Parent {
     Entity entity;
-    std::uint32_t order = 0;  ///< among siblings; equal ones are in the order of their index
+    std::uint32_t order = 0;  ///< among siblings; ties are ordered by entity index
 };
 
-template <typename Visitor>
-void visit_fields(Parent& parent, Visitor&& visit) {
-    visit("entity", parent.entity, {.doc = "whose child it is"});
-    visit("order", parent.order, {.doc = "place among its siblings"});
+LIMN_FIELDS(Parent) {
+    LIMN_FIELD(entity, "the parent entity");
+    LIMN_FIELD(order, "position among its siblings");
 }
 
-/// Resource: the next Parent::order that set_parent gives.
+/// Resource: the next Parent::order that set_parent assigns.
 struct SiblingOrder {
     std::uint32_t next = 1;
 };
 
-template <typename Visitor>
-void visit_fields(SiblingOrder& order, Visitor&& visit) {
-    visit("next", order.next, {.doc = "order of the next child"});
+LIMN_FIELDS(SiblingOrder) {
+    LIMN_FIELD(next, "order assigned to the next child");
 }
 
-/// An entity with a parent that is alive.
+/// An entity whose parent is alive.
 struct HierarchyNode {
     static constexpr std::uint32_t kRoot = 0xffffffffu;
 
     Entity entity;
     Entity parent;
-    std::uint32_t parent_node =
-        kRoot;                ///< index of the parent in nodes(); kRoot: the parent has no parent
-    std::uint32_t depth = 1;  ///< links up to the root
+    std::uint32_t parent_node = kRoot;  ///< parent's index in nodes(); kRoot: the parent is a root
+    std::uint32_t depth = 1;            ///< number of links up to the root
 };
 
-/// All links of a world, from the roots down.
+/// All links of a world in top-down order.
 class Hierarchy {
   public:
-    /// Ascending depth; siblings side by side and in their order.
+    /// By ascending depth; siblings are adjacent and in order.
     [[nodiscard]] std::span<const HierarchyNode> nodes() const { return nodes_; }
-    /// The nodes of one depth, 1 .. depth_count(): they do not depend on each other.
+    /// The nodes of one depth, 1 .. depth_count(), which are independent of each other.
     [[nodiscard]] std::span<const HierarchyNode> level(std::uint32_t depth) const {
         return std::span<const HierarchyNode>(nodes_).subspan(
             level_begin_[depth - 1], level_begin_[depth] - level_begin_[depth - 1]);
@@ -70,12 +67,12 @@ class Hierarchy {
         return static_cast<std::uint32_t>(level_begin_.size()) - 1;
     }
     [[nodiscard]] std::span<const Entity> children_of(Entity entity) const;
-    /// Raised by every rebuild.
+    /// Incremented by every rebuild.
     [[nodiscard]] std::uint64_t version() const { return version_; }
 
-    /// Rebuilds if a link, or the life of a parent, changed since the last call. Cheap if not: a
-    /// look at every archetype with Parent and at every parent. `now`: what is written later has a
-    /// later version.
+    /// Rebuilds if a link changed or a parent was destroyed since the last call. Otherwise cheap:
+    /// checks every archetype with Parent and every parent. Later writes must have versions newer
+    /// than `now`.
     void refresh(const World& world, std::uint32_t now);
 
   private:
@@ -84,7 +81,7 @@ class Hierarchy {
         Entity parent;
         std::uint32_t order;
     };
-    /// Links of one parent.
+    /// The links to one parent.
     struct Group {
         Entity parent;
         std::uint32_t first_link;
@@ -99,7 +96,7 @@ class Hierarchy {
     void group_links();
     void walk_down();
     void add_children(std::uint32_t group, std::uint32_t parent_node, std::uint32_t depth);
-    bool open_cycle();
+    bool break_cycle();
 
     std::vector<HierarchyNode> nodes_;
     std::vector<Entity> children_;  ///< entity of each node
@@ -114,25 +111,25 @@ class Hierarchy {
     bool was_built_ = false;
 };
 
-/// Up to date; inserted where there is none.
+/// The up-to-date Hierarchy resource, inserted if missing.
 [[nodiscard]] const Hierarchy& hierarchy(World& world);
 
-/// Makes `child` the last child of `parent`, or a root where `parent` is null. Fails, and changes
-/// nothing, if one of them is gone or `parent` is `child` or below it.
+/// Makes `child` the last child of `parent`, or a root if `parent` is null. Fails, and changes
+/// nothing, if one of them is destroyed or if `parent` is `child` or its descendant.
 [[nodiscard]] Status set_parent(World& world, Entity child, Entity parent);
 
-/// Null for roots, and where the parent is gone.
+/// Null for roots and if the parent is destroyed.
 [[nodiscard]] Entity parent_of(const World& world, Entity entity);
-/// In order; good until the next change of the hierarchy.
+/// In order; valid until the next change of the hierarchy.
 [[nodiscard]] std::span<const Entity> children_of(World& world, Entity entity);
-/// Links up to the root.
+/// Number of links up to the root.
 [[nodiscard]] std::uint32_t depth_of(const World& world, Entity entity);
-/// The entity and everything below it, parents before children, siblings in order.
+/// The entity and its descendants, parents before children, siblings in order.
 [[nodiscard]] std::vector<Entity> subtree_of(const Hierarchy& hierarchy, Entity root);
-/// Destroys the entity and everything below it, children first.
+/// Destroys the entity and its descendants, children first.
 void destroy_tree(World& world, Entity root);
 
-/// The hierarchy as a parameter of a system: `void update_transforms(HierarchyRef hierarchy, ...)`.
+/// The hierarchy as a system parameter: `void update_transforms(HierarchyRef hierarchy, ...)`.
 /// Up to date when the system starts. Counts as reading Parent.
 class HierarchyRef {
   public:
@@ -157,7 +154,7 @@ struct SystemParam<HierarchyRef> {
     }
     HierarchyRef get(World& world, std::uint32_t version, std::uint32_t) {
         Hierarchy& present = world.resource<Hierarchy>();
-        // Not this moment: the version of a system behind this one may have been given out already.
+        // Not World::version(): a later system's version may have been assigned already.
         present.refresh(world, version);
         return HierarchyRef(present);
     }

@@ -50,17 +50,17 @@ void World::notify(
             observer.function(*this, entities);
             continue;
         }
-        std::span<const Entity> told = entities;
+        std::span<const Entity> notified = entities;
         if (called) {
-            // Those before may have destroyed entities or taken the component again.
+            // Earlier observers may have destroyed entities or removed the component again.
             left.clear();
             std::copy_if(
                 entities.begin(), entities.end(), std::back_inserter(left),
                 [&](Entity entity) { return has(entity, observer.component); });
-            told = left;
+            notified = left;
         }
-        if (!told.empty()) {
-            observer.function(*this, told);
+        if (!notified.empty()) {
+            observer.function(*this, notified);
             called = true;
         }
     }

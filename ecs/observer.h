@@ -14,23 +14,21 @@ namespace limn {
 
 class World;
 
-// Functions that are told when a component comes or goes: how objects on the GPU are made and
-// freed.
+// Callbacks for added and removed components, for example to create and free GPU objects.
 //
-// Observers are called in the order they were registered in, each with all entities of the
-// operation at once: one for world.create, n for create_many, and for a sync point of Commands all
-// entities that gained (lost) the component there, in the order of the commands.
-//     on_add     after everything is in place; may change the structure. An entity that an earlier
-//     observer
-//                destroyed, or took the component from, is left out.
-//     on_remove  before anything is gone: the component can still be read. Must not change the
-//     structure.
-// Replacing a value is neither, and nor is enabling or disabling. World::clear and the world's end
-// call on_remove for all that is left.
+// Observers are called in registration order, each with all entities of the operation at once: one
+// for world.create, n for create_many, and for a sync point of Commands all entities that gained
+// (lost) the component there, in the order of the commands.
+//     on_add     after everything is in place; may change the structure. Skips entities that an
+//                earlier observer destroyed or took the component from.
+//     on_remove  before anything is removed: the component can still be read. Must not change
+//                the structure.
+// Replacing a value, enabling and disabling trigger neither. World::clear and the destructor of
+// World call on_remove for everything left.
 
 enum class ObserverEvent : std::uint8_t { Add, Remove };
 
-/// A function object of any type behind one kind of call.
+/// A type-erased, move-only observer callback.
 class ObserverFunction {
   public:
     template <typename F>
@@ -38,7 +36,7 @@ class ObserverFunction {
         : body_(new F(std::move(function)), [](void* body) { delete static_cast<F*>(body); }),
           call_([](void* body, World& world, std::span<const Entity> entities) {
               if constexpr (std::is_invocable_v<F&, World&, std::span<const Entity>>) {
-                  (*static_cast<F*>(body))(world, entities);  // or on_add has said what is wrong
+                  (*static_cast<F*>(body))(world, entities);  // otherwise on_add reports the error
               }
           }) {}
     void operator()(World& world, std::span<const Entity> entities) const {

@@ -8,7 +8,7 @@ namespace limn {
 
 namespace {
 
-/// Gives `entities`, one for each of the prefab's, their components.
+/// Records the components of one copy; `entities` has one entity for each of the prefab's.
 void record_copy(Commands commands, const Prefab& prefab, std::span<const Entity> entities) {
     for (std::size_t i = 0; i < entities.size(); ++i) {
         for (const AnyComponent& component : prefab.entities[i].components) {

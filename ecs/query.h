@@ -19,23 +19,23 @@
 
 namespace limn {
 
-// Entities by what they are made of. A query is a parameter of a system, or world.query<const A,
-// B>().
+// Iterates over entities by their components. A query is a parameter of a system, or
+// world.query<const A, B>().
 //
 //     query.each([](const A& a, B& b) { ... });                    one entity at a time
 //     query.each([](Entity entity, const A& a, B& b) { ... });
 //     query.chunks([](ChunkView chunk, std::span<const A> a, std::span<B> b) { ... });
 //     query.par_chunks(...), query.par_each(...)                   the same on several threads
-//     query.gather(entities, [](std::size_t i, const A& a, B& b) { ... });    those of a list
+//     query.gather(entities, [](std::size_t i, const A& a, B& b) { ... });    a list of entities
 //
 // The terms are in ecs/query_terms.h. The order is that of the archetypes' creation, then rows, for
-// any number of threads; archetypes with equal values of the shared components that it reads follow
-// each other. With a required sparse component, the order of the values of the first
-// such component. The loop of each() runs over arrays, without a call or a look-up a row, unless a
-// sparse component is involved.
+// any number of threads; archetypes with equal values of the shared components that the query reads
+// are adjacent. With a required sparse component, the order is that of the values of the first one.
+// The loop of each() runs over arrays, without a call or look-up per row, unless a sparse component
+// is involved.
 //
-// While a query iterates, nothing may be created, destroyed, added or removed: Commands record that
-// for later. The tasks of par_chunks may write what they are given and nothing else.
+// While a query iterates, nothing may be created, destroyed, added or removed: use Commands to
+// defer that. The tasks of par_chunks may write only their own arguments.
 
 template <typename... Terms>
 class Query {
@@ -44,17 +44,17 @@ class Query {
     static constexpr bool kFollowsSparse = (detail::TermTraits<Terms>::needs_sparse || ...);
     static constexpr bool kKeyed = (std::is_same_v<Terms, detail::Keyed> || ...);
     static constexpr bool kFiltersRows = (detail::TermTraits<Terms>::filters_rows || ...);
-    /// Rows are left out by their enable bits.
+    /// Rows are filtered by their enable bits.
     static constexpr bool kToggles = (detail::TermTraits<Terms>::is_toggled || ...);
-    /// Something that tracks its rows is written.
+    /// A component that tracks its rows is written.
     static constexpr bool kTracks = (detail::TermTraits<Terms>::is_tracked || ...);
     static constexpr bool kTakes = (detail::TermTraits<Terms>::is_take || ...);
     using Data = detail::DataTerms<Terms...>;
     static_assert(Data::size <= kMaxQueryColumns, "too many components in one query");
-    static_assert(detail::has_each_once<Data>, "a query has each component once");
+    static_assert(detail::has_each_once<Data>, "a query must list each component only once");
     static_assert(
         !(detail::term_is_excluded<Terms, Terms...> || ...),
-        "a query that asks for a component Without itself has no entities");
+        "a query that both requires and excludes a component matches no entities");
 
   public:
     static constexpr bool kReadOnly = !(detail::TermTraits<Terms>::is_write || ...) && !kTakes;
@@ -62,12 +62,12 @@ class Query {
     Query(WorldCore& core, QueryState& state, IterationLock lock)
         : core_(&core), state_(&state), lock_(lock) {}
 
-    /// For systems: what is written gets `version`; Changed means later than `since`.
+    /// For systems: writes are stamped with `version`; Changed means later than `since`.
     Query(WorldCore& core, QueryState& state, std::uint32_t version, std::uint32_t since)
         : core_(&core), state_(&state), version_(version), since_(since), has_since_(true),
           lock_(IterationLock::System) {}
 
-    /// The same query with Changed meaning later than `version`, of World::version().
+    /// The same query with Changed meaning later than `version`, a result of World::version().
     [[nodiscard]] Query since(std::uint32_t version) const {
         Query copy = *this;
         copy.since_ = version;
@@ -75,8 +75,8 @@ class Query {
         return copy;
     }
 
-    /// The same query of the entities only whose shared component T equals `key`, byte by byte. T
-    /// need not be a term. Looks at the archetypes with that value and no others.
+    /// The same query restricted to entities whose shared component T equals `key` bytewise. T need
+    /// not be a term. Visits only archetypes with that value.
     template <typename T>
     [[nodiscard]] auto where(const T& key) const {
         static_assert(detail::is_shared<T>, "where: T must be a component of Storage::Shared");
@@ -104,8 +104,8 @@ class Query {
         }
     }
 
-    /// each() on several threads, a chunk a task. With a required sparse component, a chunk is 1024
-    /// of its values.
+    /// each() on several threads, one task per chunk. With a required sparse component, a chunk is
+    /// 1024 of its values.
     template <typename F>
     void par_each(F&& function) const {
         check_row_function<F>(Data{});
@@ -150,17 +150,17 @@ class Query {
         });
     }
 
-    /// function(index, arguments as in each()...) for those of the entities that are alive and of
-    /// the query, in the order of the list; returns how many were. Faster than a find() each for
-    /// many entities in any order: what comes next is fetched while the function runs.
+    /// Calls function(index, arguments as in each()...) for the entities that are alive and match
+    /// the query, in list order; returns how many. For many entities in random order faster than
+    /// find(): the next ones are prefetched while the function runs.
     template <typename F>
     std::size_t gather(std::span<const Entity> entities, F&& function) const {
         check_gather_function<F>(Data{});
         const IterationGuard guard(*core_, lock_);
         state_->begin_call(*core_);
         const std::uint32_t version = write_version();
-        // Rows are fetched a batch at a time and slots a batch ahead. Of 16 .. 128, the smallest
-        // that hides most of the latency.
+        // Rows are prefetched one batch at a time, slots one batch ahead. Among 16 .. 128 this is
+        // the smallest size that hides most of the latency.
         constexpr std::size_t kBatch = 64;
         std::size_t found = 0;
         for (std::size_t first = 0; first < entities.size(); first += kBatch) {
@@ -225,8 +225,8 @@ class Query {
     }
     [[nodiscard]] bool empty() const { return count() == 0; }
 
-    /// Calls visit(archetype, first_row, count) for the rows that each() would visit: neighbors
-    /// together, unless each row is looked at for a sparse or toggled component.
+    /// Calls visit(archetype, first_row, count) for the rows that each() would visit: in ranges, or
+    /// one by one if a sparse or toggled component must be checked per row.
     template <typename Visit>
     void ranges(const Visit& visit) const {
         state_->update(*core_);
@@ -253,7 +253,7 @@ class Query {
         }
     }
 
-    /// Bound of ChunkView::index().
+    /// Exclusive upper bound of ChunkView::index().
     [[nodiscard]] std::uint32_t chunk_count() const {
         state_->update(*core_);
         std::uint32_t total = 0;
@@ -261,23 +261,23 @@ class Query {
         return total;
     }
 
-    /// The arguments of the only entity; there must be exactly one.
+    /// The components of the only matching entity; there must be exactly one.
     [[nodiscard]] auto single() const { return single(Data{}, Indices{}); }
     [[nodiscard]] Entity single_entity() const {
         const Place place = find_single();
         return place.match->archetype->entities()[place.row];
     }
 
-    /// Whether the entity is alive and one of the query's; Changed is not looked at.
+    /// Whether the entity is alive and matches the query, ignoring Changed.
     [[nodiscard]] bool contains(Entity entity) const { return locate(entity).match != nullptr; }
 
-    /// The component of another entity of the query, nullptr if it is none. T is a term as it was
-    /// written: find<const A>, find<B>, and B is marked as changed.
+    /// The component of any entity, nullptr if it does not match the query. T is a term as written
+    /// in the query: find<const A>, find<B>; B is marked as changed.
     template <typename T>
     [[nodiscard]] T* find(Entity entity) const {
         static_assert(
             (std::is_same_v<typename ValueOf<Terms>::Type, T> || ...),
-            "find: T must be a term of the query, const if it is const there");
+            "find: T must be a term of the query, const if the term is const");
         static_assert(
             !detail::is_split<T>,
             "find: a split component has no address; use value<T>(entity) and set(entity, value)");
@@ -285,22 +285,21 @@ class Query {
         return place.match == nullptr ? nullptr : find_in<T>(place, Data{}, Indices{});
     }
 
-    /// A copy of the split component of another entity, which must be one of the query and have it.
+    /// A copy of the split component of an entity, which must match the query and have it.
     template <typename T>
     [[nodiscard]] T value(Entity entity) const {
         static_assert(
             detail::is_split<T>,
-            "value: for split components; find<const T>() gives others in place");
+            "value: only for split components; use find<const T>() for others");
         const Place place = locate(entity);
         return detail::Lanes<const T>(split_column<T>(place), 0).load(place.row);
     }
-    /// Replaces it; T is a term that is not const.
+    /// Replaces the value; T is a non-const term.
     template <typename T>
     void set(Entity entity, const T& value) const {
         static_assert(
             detail::is_split<T> && (std::is_same_v<typename ValueOf<Terms>::Type, T> || ...),
-            "set: for split components that are terms and not const; find<T>() gives others in "
-            "place");
+            "set: only for split components that are non-const terms; use find<T>() for others");
         const Place place = locate(entity);
         detail::Lanes<T>(split_column<T>(place), 0).store(place.row, value);
         place.match->archetype->touch_row(
@@ -339,8 +338,8 @@ class Query {
         std::uint32_t index;
         std::uint32_t offset;
     };
-    /// The chunks of a parallel loop, in memory that the thread keeps for its next one. A loop
-    /// within the loop finds it taken and has its own.
+    /// The chunks of a parallel loop, in memory that the thread reuses for its next one. A nested
+    /// loop allocates its own.
     struct ChunkTasks {
         ChunkTasks(const Query& query, std::uint32_t version) : list(std::move(kept)) {
             list.clear();
@@ -357,23 +356,23 @@ class Query {
         std::uint32_t row = 0;
     };
 
-    // ---- what can be wrong with the function, in one line
-    // ----------------------------------------
+    // ---- one-line errors for wrong functions
+    // ------------------------------------------------------
 
     template <typename F, typename... Ts>
     static constexpr void check_row_function(detail::TypeList<Ts...>) {
-        static_assert(!kTakes, "each: TakeRows comes by chunk; use chunks or par_chunks");
+        static_assert(!kTakes, "each: TakeRows is per chunk; use chunks or par_chunks");
         static_assert(
             std::is_invocable_v<
                 F&, detail::RowArgument<
                         Ts>...> || std::is_invocable_v<F&, Entity, detail::RowArgument<Ts>...>,
             "each: the function takes the query's components in order (const A&, B&, Optional as "
             "C*), "
-            "before them an Entity if it wants one");
+            "optionally preceded by an Entity");
     }
     template <typename F, typename... Ts>
     static constexpr void check_gather_function(detail::TypeList<Ts...>) {
-        static_assert(!kChanged, "gather: looks at no versions; use a query without Changed");
+        static_assert(!kChanged, "gather: ignores versions; use a query without Changed");
         static_assert(
             std::is_invocable_v<F&, std::size_t, detail::RowArgument<Ts>...>,
             "gather: the function takes the index in the list, a std::size_t, and then the query's "
@@ -382,17 +381,16 @@ class Query {
     template <typename F, typename... Ts>
     static constexpr void check_chunk_function(detail::TypeList<Ts...>) {
         static_assert(
-            !kFiltersRows, "chunks: sparse components come row by row; use each or par_each");
+            !kFiltersRows, "chunks: sparse components are not in chunks; use each or par_each");
         static_assert(!(is_plain_tag<Ts> || ...), "chunks: tags have no array; use With<Tag>");
         static_assert(
             std::is_invocable_v<F&, ChunkView, detail::ChunkArgument<Ts>...>,
-            "chunks: the function takes a ChunkView and one std::span a component, in order: "
-            "std::span<const A>, std::span<B>; of a split component, SplitSpan<const C>; of a "
-            "shared "
-            "one, const D&; of TakeRows, const RowMask&");
+            "chunks: the function takes a ChunkView and one std::span per component, in order: "
+            "std::span<const A>, std::span<B>; for a split component, SplitSpan<const C>; for a "
+            "shared one, const D&; for TakeRows, const RowMask&");
     }
 
-    /// A toggled tag may be there, to be enabled and disabled: its array is empty.
+    /// A toggled tag is allowed, to enable and disable it; its array is empty.
     template <typename Term>
     static constexpr bool is_plain_tag =
         std::is_empty_v<
@@ -414,7 +412,7 @@ class Query {
         return has_since_ ? since_ : core_->now() - kNeverRan;
     }
 
-    /// Whether the archetype has the values that where() asks for.
+    /// Whether the archetype has the values given to where().
     [[nodiscard]] bool has_keys([[maybe_unused]] const QueryMatch& match) const {
         if constexpr (kKeyed) {
             return keys_.are_in(*match.archetype);
@@ -425,7 +423,7 @@ class Query {
     template <typename Visit>
     void each_match(const Visit& visit) const {
         if constexpr (kKeyed) {
-            // By way of the value's list: there may be a thousand others.
+            // Use the list of archetypes with this value: there may be a thousand other values.
             for (const std::uint32_t archetype : keys_.archetypes(core_->shared)) {
                 const QueryMatch* match = state_->match_of(archetype);
                 if (match != nullptr && has_keys(*match)) {
@@ -439,7 +437,7 @@ class Query {
         }
     }
 
-    /// visit(match, begin, end): whole archetypes or, with Changed, their changed chunks.
+    /// Calls visit(match, begin, end) for whole archetypes or, with Changed, for changed chunks.
     template <typename Visit>
     void each_range(const Visit& visit) const {
         if constexpr (kChanged) {
@@ -498,7 +496,7 @@ class Query {
         return state_->enabled_rows(*task.match->archetype, task.chunk, rows);
     }
 
-    /// visit(match, row) for the rows that pass all filters, in order.
+    /// Calls visit(match, row) for the rows that pass all filters, in order.
     template <typename Visit>
     void each_enabled_row(const Visit& visit) const {
         each_chunk([&](const ChunkTask& task) {
@@ -518,7 +516,7 @@ class Query {
         });
     }
 
-    /// The function for each enabled row of the chunk; a plain loop if that is all of them.
+    /// Calls the function for each enabled row of the chunk; a plain loop if all are.
     template <typename F>
     void run_enabled(const ChunkTask& task, std::uint32_t version, F& function) const {
         const QueryMatch& match = *task.match;
@@ -540,8 +538,8 @@ class Query {
         run_rows(match, begin, end, version, function, Data{}, Indices{});
     }
 
-    /// The chunks to visit; their columns' upper bounds are raised already, since tasks must not
-    /// share them.
+    /// Lists the chunks to visit and raises the `newest` of their columns, which tasks must not
+    /// share.
     void list_chunks(std::uint32_t version, std::vector<ChunkTask>& tasks) const {
         each_chunk([&](const ChunkTask& task) {
             if constexpr (kToggles) {
@@ -559,11 +557,11 @@ class Query {
     static void par_tasks(std::size_t count, const Work& work) {
         if (current_task.chunk != 0) {
             for (std::size_t i = 0; i < count; ++i) {
-                work(i);  // a loop within a task: its commands belong to the task, in order
+                work(i);  // nested in a task: keeps the task's commands in order
             }
             return;
         }
-        // Handing out a range costs as much as some hundred rows: enough of them for every thread.
+        // Scheduling a range costs as much as some hundred rows: 32 ranges per thread are enough.
         const std::size_t grain = 1 + count / (32 * static_cast<std::size_t>(thread_count()));
         const std::uint32_t sequence = ++current_task.sequence;
         parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
@@ -601,7 +599,7 @@ class Query {
             [&](Column& column) {
                 std::uint32_t* const versions = column.versions.data();
                 const std::uint32_t first = begin / kChunkRows;
-                versions[first] = version;  // many archetypes have but one chunk: no loop for them
+                versions[first] = version;  // many archetypes have only one chunk: skip the loop
                 for (std::uint32_t chunk = first + 1; chunk < chunks_of(end); ++chunk) {
                     versions[chunk] = version;
                 }
@@ -615,8 +613,8 @@ class Query {
             match, [&](Column& column) { store_version(column.newest, version); }, list);
     }
 
-    /// mark(tracked rows, toggle bits if only enabled rows are handed out) for every written term
-    /// that tracks its rows.
+    /// Calls mark(tracked rows, toggle bits or null) for every written term that tracks its rows;
+    /// with toggle bits only enabled rows are passed to the function.
     template <typename Mark, typename... Ts>
     static void each_tracked(const QueryMatch& match, const Mark& mark, detail::TypeList<Ts...>) {
         [[maybe_unused]] const auto one = [&]<typename Term>() {
@@ -644,7 +642,7 @@ class Query {
                     }
                     for (std::uint32_t row = begin; row < end; ++row) {
                         if (toggle == nullptr || toggle->is_enabled(row)) {
-                            track.mark_shared(row);  // tasks that follow a set share chunks
+                            track.mark_shared(row);  // tasks over a sparse set share chunks
                         }
                     }
                 },
@@ -697,7 +695,7 @@ class Query {
         loop(detail::access_term<Ts>(*core_, match, Positions, version)...);
     }
 
-    /// The rows of the chunk at `begin` that are in `rows`.
+    /// Calls the function for the rows in `rows` of the chunk at `begin`.
     template <typename F, typename... Ts, std::size_t... Positions>
     void run_masked(
         const QueryMatch& match, std::uint32_t begin, const RowMask& rows,
@@ -726,25 +724,26 @@ class Query {
         loop(detail::access_term<Ts>(*core_, match, Positions, version)...);
     }
 
-    /// A small function that has nothing of its own to change is handed on as a copy: the compiler
-    /// knows all who can reach it, and what it captured stays in registers.
+    /// A small function without mutable state is passed by value: the compiler then knows that
+    /// nothing aliases it, and its captures stay in registers.
     template <typename F, typename... Ts>
-    static constexpr bool is_copied_of(detail::TypeList<Ts...>) {
+    static constexpr bool is_passed_by_value(detail::TypeList<Ts...>) {
         return std::is_trivially_copyable_v<F> && sizeof(F) <= 64
                && std::is_invocable_v<const F&, ChunkView, detail::ChunkArgument<Ts>...>;
     }
     template <typename F>
-    using Handed = std::conditional_t<is_copied_of<F>(Data{}), const std::remove_const_t<F>, F&>;
+    using PassedFunction =
+        std::conditional_t<is_passed_by_value<F>(Data{}), const std::remove_const_t<F>, F&>;
 
-    /// Not inlined: the loop of the function would have to share its registers with the loops here.
+    /// Not inlined: the function's loop would compete for registers with the loops here.
     template <typename F, typename... Ts, std::size_t... Positions>
     [[gnu::noinline]] void run_chunk(
-        const ChunkTask& task, std::uint32_t version, Handed<F> function,
+        const ChunkTask& task, std::uint32_t version, PassedFunction<F> function,
         detail::TypeList<Ts...> list, std::index_sequence<Positions...>) const {
         const QueryMatch& match = *task.match;
         const std::uint32_t begin = task.chunk * kChunkRows;
         const std::uint32_t size = chunk_end(begin, match.archetype->size()) - begin;
-        RowMask enabled;  // written by ChunkView::enabled() if all are
+        RowMask enabled;  // filled lazily by ChunkView::enabled() if all rows are enabled
         bool all_enabled = true;
         if constexpr (kToggles) {
             const EnabledRows found = enabled_rows(task, enabled);
@@ -828,7 +827,7 @@ class Query {
     // ---- sparse components
     // ------------------------------------------------------------------------
 
-    /// Whether the row passes the filters that need a look at each row.
+    /// Whether the row passes the per-row filters.
     [[nodiscard]] bool passes(const QueryMatch& match, std::uint32_t row) const {
         if (!state_->row_matches(*core_, *match.archetype, match.archetype->entities()[row])) {
             return false;
@@ -906,7 +905,7 @@ class Query {
         }
     }
 
-    /// The state is up to date.
+    /// state_ must be up to date.
     [[nodiscard]] Place place_of(Entity entity) const {
         const EntityPlace place = core_->entities.find(entity);
         if (!place) {

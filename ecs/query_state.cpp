@@ -16,12 +16,12 @@ bool has_data(TermKind kind) {
            || kind == TermKind::OptionalWrite || kind == TermKind::TakeRows;
 }
 
-/// Whether rows that are disabled are left out.
-bool wants_enabled(TermKind kind) {
+/// Whether the term skips disabled rows.
+bool requires_enabled(TermKind kind) {
     return is_required(kind) && kind != TermKind::TakeRows;
 }
 
-/// Whether test(term) holds for some Changed term of every group.
+/// Whether every group has a Changed term for which test(term) holds.
 template <typename Test>
 bool all_groups(
     const std::vector<std::uint8_t>& groups, const std::vector<QueryTerm>& terms,
@@ -67,7 +67,7 @@ QueryState::QueryState(std::span<const QueryTerm> terms) : terms_(terms.begin(),
     }
 }
 
-/// `if_sparse`: what to think of sparse components, which are decided by row.
+/// `if_sparse` is the result assumed for sparse components, which are checked per row.
 bool QueryState::group_matches(
     const Archetype& archetype, std::uint8_t group, bool if_sparse) const {
     return std::any_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
@@ -79,13 +79,13 @@ bool QueryState::group_matches(
 bool QueryState::matches(const Archetype& archetype) const {
     return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
         if (term.is_sparse) {
-            return true;  // decided by row
+            return true;  // checked per row
         }
         if (term.kind == TermKind::AnyOf) {
             return group_matches(archetype, term.group, true);
         }
         if (term.kind == TermKind::Without) {
-            return term.is_toggle || !archetype.has(term.id);  // disabled rows are without
+            return term.is_toggle || !archetype.has(term.id);  // disabled rows match Without
         }
         return !is_required(term.kind) || archetype.has(term.id);
     });
@@ -221,7 +221,7 @@ QueryState::enabled_rows(const Archetype& archetype, std::uint32_t chunk, RowMas
             continue;  // Without or Optional
         }
         const ToggleChunk& bits = toggle->chunks[chunk];
-        if (wants_enabled(term.kind) && bits.disabled_count > 0) {
+        if (requires_enabled(term.kind) && bits.disabled_count > 0) {
             if (bits.disabled_count == size) {
                 return EnabledRows::None;
             }
@@ -239,7 +239,7 @@ QueryState::enabled_rows(const Archetype& archetype, std::uint32_t chunk, RowMas
 bool QueryState::row_enabled(const Archetype& archetype, std::uint32_t row) const {
     return std::all_of(terms_.begin(), terms_.end(), [&](const QueryTerm& term) {
         const bool matters =
-            term.is_toggle && (wants_enabled(term.kind) || term.kind == TermKind::Without);
+            term.is_toggle && (requires_enabled(term.kind) || term.kind == TermKind::Without);
         return !matters || archetype.is_enabled(term.id, row) == (term.kind != TermKind::Without);
     });
 }

@@ -11,37 +11,36 @@
 
 namespace limn {
 
-// The terms of a query and what they mean. Query<const A, B, Optional<const C>, With<D>,
-// Without<E>, Changed<A>> visits the entities that have A, B and D, not E, and whose A may have
-// changed since the system last ran; it reads A, writes B, and reads C where there is one.
+// The terms of a query. Query<const A, B, Optional<const C>, With<D>, Without<E>, Changed<A>>
+// visits the entities that have A, B and D, not E, and whose A may have changed since the system
+// last ran; it reads A, writes B, and reads C if present.
 
-/// Must have all of them; they are not touched.
+/// Requires all of them, without accessing them.
 template <typename... Ts>
 struct With {};
 
-/// Must have none of them.
+/// Excludes entities that have any of them.
 template <typename... Ts>
 struct Without {};
 
-/// Must have at least one of them; ChunkView::has<T>() tells which.
+/// Requires at least one of them; ChunkView::has<T>() tells which.
 template <typename... Ts>
 struct AnyOf {};
 
-/// Arrives as T*, null where the entity has none.
+/// Passed as T*, null if the entity has none.
 template <typename T>
 struct Optional {};
 
-/// Must have all of them, and one must have changed (enabling and disabling count); several Changed
-/// terms must all hold. What is known is that something in the chunk of 1024 rows was taken for
-/// writing, came, went or moved.
+/// Requires all of them, and at least one must have changed (enabling and disabling count); several
+/// Changed terms must all hold. Conservative: something in the chunk of 1024 rows was accessed for
+/// writing, added, removed or moved.
 template <typename... Ts>
 struct Changed {};
 
-/// For components that track their rows (ComponentTraits<T>::tracks_rows): chunks() are given a
-/// const RowMask& of the rows that were written since they were last taken, and none counts as
-/// written afterwards. Rows that came or moved are among them, and rows that were enabled or
-/// disabled; T must be there, enabled or not. The marks are for one consumer: it takes them from
-/// all others, and so counts as writing T.
+/// For components that track their rows (ComponentTraits<T>::tracks_rows): chunks() receives a
+/// const RowMask& of the rows written since they were last fetched, and clears the marks. Added,
+/// moved, enabled and disabled rows count as written; requires T, enabled or not. Only one consumer
+/// can use the marks, since fetching clears them; so this counts as writing T.
 template <typename T>
 struct TakeRows {};
 
@@ -72,7 +71,7 @@ inline constexpr bool is_shared =
 template <typename T>
 using Added = std::conditional_t<is_split<T> || is_shared<T>, void, T&>;
 
-/// A component type as such, not a pointer, a reference or another term.
+/// A component type, not a pointer, a reference or another term.
 template <typename T>
 concept Component =
     std::is_object_v<T> && !std::is_pointer_v<
@@ -83,7 +82,7 @@ struct TermTraits {
     static_assert(
         Component<T>,
         "a query term is T, const T, Optional<T>, With<..>, Without<..>, AnyOf<..> or Changed<..>; "
-        "entities arrive without being asked for");
+        "an Entity parameter needs no term");
     static_assert(
         !is_shared<T> || std::is_const_v<T>,
         "a shared component is read as const T; world.set or commands.set gives an entity another");
@@ -135,7 +134,7 @@ struct TermTraits<TakeRows<T>> {
         tracks_rows<T>, "TakeRows takes a component whose ComponentTraits say tracks_rows = true");
     static constexpr bool is_data = true;
     static constexpr bool is_optional = false;
-    static constexpr bool is_write = false;  // of values and versions; access is declared as one
+    static constexpr bool is_write = false;  // changes no values or versions; declared as a write
     static constexpr bool needs_sparse = false;
     static constexpr bool filters_rows = false;
     static constexpr bool is_toggled = false;
@@ -186,7 +185,7 @@ struct TermTraits<AnyOf<Ts...>> : FilterTraits<Ts...> {
     static_assert(sizeof...(Ts) > 0, "AnyOf takes one component type or more");
     static_assert(
         !(is_toggle<Ts> || ...),
-        "AnyOf looks at archetypes, not at enable bits: ask for Optional<const T> instead");
+        "AnyOf checks archetypes, not enable bits: use Optional<const T> instead");
     static constexpr bool needs_sparse = false;
     static constexpr bool is_changed = false;
     template <typename Sink>
@@ -195,7 +194,7 @@ struct TermTraits<AnyOf<Ts...>> : FilterTraits<Ts...> {
     }
 };
 
-/// What Query::where adds to the terms: the values are in the query.
+/// Added to the terms by Query::where; the values are in the query.
 struct Keyed {};
 template <>
 struct TermTraits<Keyed> {
@@ -222,7 +221,7 @@ struct TermTraits<Changed<Ts...>> : FilterTraits<Ts...> {
     }
 };
 
-/// Whether T (without const) is among the components that the term asks for, or excludes.
+/// Whether the term excludes T (without const).
 template <typename T, typename Term>
 inline constexpr bool term_excludes = false;
 template <typename T, typename... Ts>
@@ -243,7 +242,7 @@ template <typename... Ts>
 inline constexpr bool has_each_once<TypeList<Ts...>> =
     all_different<std::remove_const_t<typename TermTraits<Ts>::Value>...>;
 
-/// The terms that arrive as arguments, in order.
+/// The terms that are passed as arguments, in order.
 template <typename Found, typename... Terms>
 struct DataTermsOf {
     using Type = Found;
@@ -256,12 +255,12 @@ struct DataTermsOf<TypeList<Found...>, Term, Rest...>
 template <typename... Terms>
 using DataTerms = typename DataTermsOf<TypeList<>, Terms...>::Type;
 
-/// What a term without data in its column refers to: tags have one value.
+/// The value that tag terms refer to.
 template <typename T>
 inline std::remove_const_t<T> tag_value{};
 
-// How a term finds its argument from the row. Simple enough that a loop over rows of several
-// becomes a loop over arrays.
+// Maps a row to the argument of a term. Simple enough that a loop over rows with several of these
+// compiles to a loop over arrays.
 
 template <typename T>
 struct TableAccess {
@@ -284,7 +283,7 @@ struct OptionalTagAccess {
 };
 template <typename T>
 struct ToggleOptionalAccess {
-    T* base;  ///< not read of tags
+    T* base;  ///< unused for tags
     const ToggleBits* bits;
     T* operator[](std::uint32_t row) const {
         if (bits == nullptr || !bits->is_enabled(row)) {
@@ -336,7 +335,7 @@ struct SharedOptionalAccess {
     T* value;
     T* operator[](std::uint32_t) const { return value; }
 };
-/// nullptr: the archetype has none.
+/// nullptr if the archetype has none.
 template <typename T>
 T* find_shared(const Archetype& archetype) {
     const SharedValue* found = archetype.shared_value(component_id<std::remove_const_t<T>>);
@@ -354,7 +353,7 @@ struct SplitOptionalAccess {
     SplitOptionalRow<T> operator[](std::uint32_t row) const { return {lanes, row}; }
 };
 
-/// Whether each match has a column for the term, whatever its entities: no need to ask.
+/// Whether every match has a column for the term, so that no check is needed.
 template <typename Term>
 inline constexpr bool always_has_column =
     !TermTraits<Term>::is_optional
@@ -412,13 +411,13 @@ auto access_term(
     }
 }
 
-/// What the function of each() is given for a term: const T&, T& or T*.
+/// The argument of each()'s function for a term: const T&, T& or T*.
 template <typename Term>
 using RowArgument = std::conditional_t<
     TermTraits<Term>::is_optional, typename TermTraits<Term>::Value*,
     typename TermTraits<Term>::Value&>;
 
-/// What the function of chunks() is given for a term.
+/// The argument of chunks()'s function for a term.
 template <typename Term, typename T = typename TermTraits<Term>::Value>
 struct ChunkArgumentOf {
     using Type = std::conditional_t<
@@ -431,7 +430,7 @@ struct ChunkArgumentOf<TakeRows<T>> {
 };
 template <typename Term>
 using ChunkArgument = typename ChunkArgumentOf<Term>::Type;
-/// What it is made from: a value where the argument is a reference.
+/// The value behind it if the argument is a reference.
 template <typename Term>
 using ChunkValue = std::remove_cvref_t<ChunkArgument<Term>>;
 

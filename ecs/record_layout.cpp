@@ -17,7 +17,7 @@ struct OneComponent {
 
 using Table = std::array<std::atomic<const RecordLayout*>, kMaxComponents>;
 
-/// Made when first asked for, and as long as the program.
+/// Created on first use; lives as long as the program.
 const RecordLayout& find_or_make(Table& table, ComponentId id, bool has_value) {
     if (const RecordLayout* made = table[id].load(std::memory_order_acquire); made != nullptr) {
         return *made;

@@ -8,15 +8,15 @@
 
 namespace limn {
 
-// Which components a command is about, and where their values lie in its record: one behind the
-// other, as in a struct. The layout of each combination of types is a constant, so that two
-// commands are alike if they point to the same one.
+// The components of a command and the offsets of their values in its record, which is laid out like
+// a struct. There is one constant per combination of types, so that layouts can be compared by
+// address.
 
 struct RecordLayout {
-    std::uint32_t size;             ///< components, tags too
+    std::uint32_t size;             ///< number of components, including tags
     std::uint32_t stride;           ///< from one record to the next [bytes]; 0: no values
     std::uint32_t align;            ///< of a record [bytes]
-    const ComponentId* const* ids;  ///< where the ids will be: they are numbered before main
+    const ComponentId* const* ids;  ///< pointers, because ids are assigned before main
     const std::uint32_t* offsets;   ///< from the start of the record [bytes]
 
     [[nodiscard]] ComponentId id(std::uint32_t index) const { return *ids[index]; }
@@ -61,14 +61,14 @@ struct RecordLayoutOf {
 
 }  // namespace detail
 
-/// A value of each.
+/// With a value of each component.
 template <typename... Ts>
 inline constexpr const RecordLayout& record_layout = detail::RecordLayoutOf<true, Ts...>::kLayout;
-/// The components without values: what is removed.
+/// Without values, for removal.
 template <typename... Ts>
 inline constexpr const RecordLayout& key_layout = detail::RecordLayoutOf<false, Ts...>::kLayout;
 
-/// The same for one component of a type that is not known; `id` must exist.
+/// Type-erased versions for one component; `id` must exist.
 [[nodiscard]] const RecordLayout& record_layout_of(ComponentId id);
 [[nodiscard]] const RecordLayout& key_layout_of(ComponentId id);
 

@@ -9,8 +9,7 @@ namespace limn {
 
 namespace {
 
-/// Infos are written once, under the mutex, before their id is known to anybody; reading needs no
-/// lock.
+/// Infos are written once, under the mutex, before their id is published; reading needs no lock.
 struct Registry {
     std::mutex mutex;
     std::atomic<std::uint32_t> count = 0;
@@ -93,7 +92,7 @@ ComponentId add_component_info(ComponentInfo info) {
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
     const ComponentId id = all.count.load(std::memory_order_relaxed);
-    LIMN_CHECK_NOTE(id < kMaxComponents, "too many types of components");
+    LIMN_CHECK_NOTE(id < kMaxComponents, "too many component types");
     info.id = id;
     all.infos[id] = new ComponentInfo(std::move(info));
     all.count.store(id + 1, std::memory_order_release);

@@ -20,46 +20,57 @@
 
 namespace limn {
 
-// What the engine knows of a type of component (or resource) at run time: its name, how to move it
-// about, and its fields with documentation, unit, range and default. It is said once, beside the
+// Run-time type information of a component (or resource): its name, how to move, copy and destroy
+// it, and its fields with documentation, unit, range and default. Declared once, after the
 // component:
 //
-//     template <typename Visitor>
-//     void visit_fields(Spin& spin, Visitor&& visit) {
-//         visit("axis", spin.axis, {.doc = "axis of the rotation"});
-//         visit("speed", spin.speed, {.doc = "angular speed", .unit = "rad/s", .min = -100, .max =
-//         100});
+//     struct Spin {
+//         Vec3 axis = {0, 1, 0};
+//         float speed = 1;
+//     };
+//     LIMN_FIELDS(Spin) {
+//         LIMN_FIELD(axis, "axis of the rotation");
+//         LIMN_FIELD(speed, "angular speed", "rad/s", -100, 100);
 //     }
 //
-// and feeds level files, their schema, the inspector, snapshots, hashes and prefabs. Fields may be
-// numbers, bool, enums (name the enumerators in .values), vectors and matrices, std::string,
-// Entity, asset ids, structs with visit_fields of their own, and C arrays, std::array and
-// std::vector of these. A type without visit_fields has no fields; it is moved, copied and
-// destroyed all the same.
+// and used by level files, their schema, the inspector, snapshots, hashes and prefabs. Fields may
+// be numbers, bool, enums (name the enumerators in .values), vectors and matrices, std::string,
+// Entity, asset ids, structs with their own fields, and C arrays, std::array and std::vector
+// of these. A type without them has no fields, but is still moved, copied and destroyed.
 //
 // component_id<T> is a plain load: types get their ids before main. register_component<T>()
-// additionally makes the type known by its name; ids depend on the program, names do not, so files
-// hold names. Reading and writing fields without knowing the type is in ecs/field_access.h.
+// also makes the type known by name; ids depend on the program, names do not, so files use names.
+// Type-erased access to fields is in ecs/field_access.h.
 
-/// What a person should know of a field. Numbers outside min .. max are refused in files.
+/// Documentation of a field for people. Numbers outside min .. max are rejected in files.
 struct FieldMeta {
     const char* doc = "";
     const char* unit = "";
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
-    const char* values =
-        "";              ///< names of the enumerators 0, 1, 2 ... of an enum, one space between
-    bool color = false;  ///< linear RGB or RGBA
+    const char* values = "";  ///< names of the enumerators 0, 1, 2 ..., separated by one space
+    bool color = false;       ///< linear RGB or RGBA
+    /// Old names that files may still use, separated by spaces: of the field, and of enumerators as
+    /// "old=new". find_field() and find_enumerator() warn about each once.
+    const char* renamed = "";
 };
 
-/// How often a field holds its type.
+/// Begins the list of the fields of Type, which is a function template that calls visit(name,
+/// field, meta) for each field: visit_fields(Type&, visitor).
+#define LIMN_FIELDS(Type)                                                                          \
+    template <typename Visitor>                                                                    \
+    void visit_fields([[maybe_unused]] Type& self, [[maybe_unused]] Visitor&& visit)
+/// A field of it with the members of its FieldMeta, in order or designated: doc, unit, min, max ...
+#define LIMN_FIELD(member, ...) visit(#member, self.member, ::limn::FieldMeta{__VA_ARGS__})
+
+/// Multiplicity of a field.
 enum class FieldShape : std::uint8_t {
     One,
-    Array,  ///< `count` of them in place
-    List,   ///< std::vector of them
+    Array,  ///< `count` elements in place
+    List,   ///< std::vector
 };
 
-/// What std::vector<T> is asked to do when T is unknown.
+/// Type-erased operations of std::vector<T>.
 struct ListOps {
     std::size_t (*size)(const void* list) = nullptr;
     void* (*data)(void* list) = nullptr;
@@ -71,26 +82,26 @@ struct FieldInfo {
     FieldMeta meta;
     FieldType type = FieldType::Float;
     FieldShape shape = FieldShape::One;
-    std::uint32_t offset = 0;              ///< from the start of the struct around it [bytes]
+    std::uint32_t offset = 0;              ///< in the enclosing struct [bytes]
     std::uint32_t size = 0;                ///< of one element [bytes]
     std::uint32_t count = 1;               ///< elements of an Array
-    const char* asset = "";                ///< of an Asset: "mesh"
-    ListOps list;                          ///< of a List
-    std::vector<std::string_view> values;  ///< of an Enum: names in order
+    const char* asset = "";                ///< kind of an Asset: "mesh"
+    ListOps list;                          ///< for a List
+    std::vector<std::string_view> values;  ///< enumerator names of an Enum, in order
     std::vector<FieldInfo> fields;         ///< of a Struct
 };
 
-/// Dense, from 0, in no particular order; not the same from program to program.
+/// Dense, from 0, in unspecified order; differs from program to program.
 using ComponentId = std::uint32_t;
 inline constexpr ComponentId kMaxComponents = 4096;
 
-/// Where a component lives.
+/// How a component is stored.
 enum class Storage : std::uint8_t {
-    Table,   ///< in a column of the entity's archetype: quick to iterate
-    Split,   ///< in a column per 4-byte scalar of it: quickest for kernels over single fields
-    Sparse,  ///< in a table of its own: quick to add and remove
-    Toggle,  ///< in a column, with a bit per row that says whether it counts
-    Shared,  ///< once per archetype: entities of equal value are one batch
+    Table,   ///< in a column of the entity's archetype: fast to iterate
+    Split,   ///< in one column per 4-byte scalar: fastest for kernels over single fields
+    Sparse,  ///< in a separate sparse set: fast to add and remove
+    Toggle,  ///< in a column, with an enable bit per row
+    Shared,  ///< once per archetype: entities with equal values form a batch
 };
 
 struct DefaultTraits {
@@ -100,42 +111,44 @@ struct DefaultTraits {
     static constexpr bool in_prefabs = true;  ///< copied into prefabs, if saved
     static constexpr bool trivially_relocatable =
         false;  ///< may be moved by memcpy although not trivially copyable
-    static constexpr bool tracks_rows = false;  ///< remembers which rows are written, for TakeRows
+    static constexpr bool tracks_rows = false;  ///< records which rows are written, for TakeRows
 };
 
-/// To choose otherwise, beside the component:
-///     template <> struct limn::ComponentTraits<WaterState> : DefaultTraits { static constexpr bool
-///     saved = false; };
+/// To override a default, specialize next to the component:
+///     template <>
+///     struct limn::ComponentTraits<WaterState> : DefaultTraits {
+///         static constexpr bool saved = false;
+///     };
 template <typename T>
 struct ComponentTraits : DefaultTraits {};
 
-/// The kind of thing an asset id names, or nullptr: T is no asset id. A component header
-/// specializes it:
+/// The kind of asset that an id type T refers to; nullptr if T is not an asset id. A component
+/// header specializes it:
 ///     template <> inline constexpr const char* asset_kind<MeshId> = "mesh";
 template <typename T>
 inline constexpr const char* asset_kind = nullptr;
 
-/// How equal values are recognized without knowing the type.
+/// How type-erased values are compared.
 enum class ValueBytes : std::uint8_t {
-    All,     ///< every byte counts: no padding
-    Fields,  ///< the fields count
-    Opaque,  ///< unknown: padding, pointers or destructors, and no visit_fields
+    All,     ///< bytewise: no padding
+    Fields,  ///< by fields
+    Opaque,  ///< not at all: padding, pointers or destructors, and no LIMN_FIELDS
 };
 
-/// Batches of `count` neighbors; `destination` and `source` do not overlap.
+/// Operations on arrays of `count` values; `destination` and `source` do not overlap.
 struct ComponentOps {
     void (*construct_default)(void* destination, std::size_t count) =
-        nullptr;  ///< null: has no default
+        nullptr;  ///< null: not default-constructible
     void (*construct_copy)(void* destination, const void* source, std::size_t count) =
         nullptr;  ///< null: move-only
     void (*construct_move)(void* destination, void* source, std::size_t count) =
         nullptr;  ///< sources stay alive
     void (*relocate)(void* destination, void* source, std::size_t count) =
-        nullptr;  ///< moves, ends the sources
+        nullptr;  ///< moves and destroys the sources
     void (*destroy)(void* first, std::size_t count) = nullptr;
 };
 
-/// One type of component or resource. The address is stable and lives as long as the program.
+/// One type of component or resource. Lives at a stable address until the program ends.
 struct ComponentInfo {
     ComponentId id = 0;
     std::string name;         ///< "point_light"
@@ -150,8 +163,8 @@ struct ComponentInfo {
     bool hashed = true;
     bool in_prefabs = true;
     bool tracks_rows = false;
-    bool is_registered = false;  ///< found by name
-    bool is_resource = false;    ///< registered as resource
+    bool is_registered = false;  ///< can be found by name
+    bool is_resource = false;    ///< registered as a resource
     ValueBytes value_bytes = ValueBytes::Opaque;
     bool has_entities = false;  ///< some field, at any depth, is an Entity
     ComponentOps ops;
@@ -160,8 +173,7 @@ struct ComponentInfo {
         nullptr;  ///< a default-constructed instance; null for types without fields
 };
 
-/// Whether the entity's value lies in a place of its own, so that it can be written through a
-/// pointer.
+/// Whether each entity has its own contiguous value that can be written through a pointer.
 [[nodiscard]] inline bool has_address(const ComponentInfo& info) {
     return info.storage != Storage::Split && info.storage != Storage::Shared;
 }
@@ -169,14 +181,14 @@ struct ComponentInfo {
 /// The type with this id, which must exist.
 [[nodiscard]] const ComponentInfo& component_info(ComponentId id);
 
-/// How many ids are taken.
+/// Number of assigned ids.
 [[nodiscard]] std::uint32_t component_count();
 
 /// Registered components, by name; nullptr if there is none.
 [[nodiscard]] const ComponentInfo* find_component(std::string_view name);
 [[nodiscard]] const ComponentInfo* find_resource(std::string_view name);
 
-/// All that are registered, in the order of their names.
+/// All registered types, sorted by name.
 [[nodiscard]] std::vector<const ComponentInfo*> all_components();
 [[nodiscard]] std::vector<const ComponentInfo*> all_resources();
 
@@ -197,9 +209,9 @@ namespace detail {
 
 /// Takes the next id. `info.id` is overwritten.
 ComponentId add_component_info(ComponentInfo info);
-/// Two types of one name stop the program.
+/// Stops the program if another type has the same name.
 void name_component(ComponentId id, bool is_resource);
-/// Completes offsets, names of enumerators and `has_entities`.
+/// Fills in offsets, names of enumerators and `has_entities`.
 void finish_fields(ComponentInfo& info);
 [[nodiscard]] std::vector<std::string_view> split_words(const char* words);
 
@@ -231,7 +243,7 @@ inline constexpr bool is_std_array<std::array<T, N>> = true;
 template <typename T>
 void describe_fields(T& instance, std::vector<FieldInfo>& fields);
 
-/// Type and size of F, which is no array or list.
+/// Sets type and size for F, which is not an array or list.
 template <typename F>
 void describe_type(FieldInfo& field) {
     field.size = sizeof(F);
@@ -249,7 +261,7 @@ void describe_type(FieldInfo& field) {
         field.type = FieldType::Asset;
         field.asset = asset_kind<F>;
     } else {
-        static_assert(HasFields<F>, "a field of this type needs visit_fields");
+        static_assert(HasFields<F>, "a field of this type needs LIMN_FIELDS");
         field.type = FieldType::Struct;
         F instance{};
         describe_fields(instance, field.fields);
@@ -260,7 +272,7 @@ template <typename T>
 void describe_list(FieldInfo& field) {
     using Element = typename T::value_type;
     static_assert(
-        !std::is_same_v<Element, bool>, "std::vector<bool> has no bools in it; use std::uint8_t");
+        !std::is_same_v<Element, bool>, "std::vector<bool> does not store bools; use std::uint8_t");
     describe_type<Element>(field);
     field.shape = FieldShape::List;
     field.list.size = [](const void* list) { return static_cast<const T*>(list)->size(); };
@@ -303,7 +315,7 @@ void describe_fields(T& instance, std::vector<FieldInfo>& fields) {
 }
 
 #if defined(__clang__)
-/// The compiler refuses to read padding in a constant expression.
+/// Not a constant expression if T has padding, which the compiler refuses to read.
 template <typename T>
 consteval bool reads_all_bytes() {
     unsigned sum = 0;
@@ -377,9 +389,9 @@ ComponentOps component_ops() {
     return ops;
 }
 
-/// Size of a shared component at most. [bytes]
+/// Maximum size of a shared component. [bytes]
 inline constexpr std::size_t kMaxSharedBytes = 256;
-/// Scalars that a split component has at most.
+/// Maximum number of scalars of a split component.
 inline constexpr std::size_t kMaxLanes = 64;
 
 template <typename T>
@@ -392,8 +404,8 @@ struct SplitFieldVisitor {
     void operator()(const char*, F&, const FieldMeta& = {}) const {
         static_assert(
             alignof(F) == 4,
-            "Storage::Split: every field is made of 4-byte scalars (float, int, Vec3, Quat ...); "
-            "no bool, no double");
+            "Storage::Split: every field must consist of 4-byte scalars (float, int, Vec3, Quat "
+            "...); no bool, no double");
     }
 };
 
@@ -414,12 +426,11 @@ void check_storage() {
             !std::is_empty_v<
                 T> && std::is_trivially_copyable_v<T> && alignof(T) <= alignof(std::max_align_t)
                 && sizeof(T) <= kMaxSharedBytes,
-            "Storage::Shared: the component must be trivially copyable, not empty, and of 256 "
-            "bytes "
-            "at most; big data is better named by an id");
+            "Storage::Shared: the component must be trivially copyable, not empty, and at most 256 "
+            "bytes; refer to larger data by an id");
         LIMN_CHECK_NOTE(
             has_no_padding<T>(),
-            "Storage::Shared: values are told apart by their bytes, so there must be no padding");
+            "Storage::Shared: values are compared bytewise, so there must be no padding");
     }
 }
 
@@ -453,8 +464,10 @@ ComponentId make_component_id() {
     info.value_bytes = value_bytes_of<T>();
     info.ops = component_ops<T>();
     if constexpr (HasFields<T>) {
-        static_assert(std::is_default_constructible_v<T>, "fields come with defaults");
-        T* defaults = new T{};  // as long as the program
+        static_assert(
+            std::is_default_constructible_v<T>,
+            "a component with LIMN_FIELDS must be default-constructible");
+        T* defaults = new T{};  // lives as long as the program
         info.defaults = defaults;
         describe_fields(*defaults, info.fields);
         finish_fields(info);
@@ -464,7 +477,7 @@ ComponentId make_component_id() {
 
 }  // namespace detail
 
-/// The id of T, ready before main.
+/// The id of T, assigned before main.
 template <typename T>
 inline const ComponentId component_id = detail::make_component_id<T>();
 
@@ -473,16 +486,16 @@ template <typename T>
     return component_info(component_id<std::remove_cvref_t<T>>);
 }
 
-/// Makes T known by its name: in level files, snapshots, the inspector. Again is no mistake; two
-/// types of one name are.
+/// Makes T known by name: in level files, snapshots, the inspector. May be called again; stops if
+/// two types have the same name.
 template <typename T>
 const ComponentInfo& register_component() {
     detail::name_component(component_id<T>, false);
     return component_info<T>();
 }
 
-/// The same for a one-of-a-kind: a registered resource is part of snapshots and hashes unless its
-/// ComponentTraits say otherwise.
+/// The same for a resource: it is part of snapshots and hashes unless its ComponentTraits disable
+/// that.
 template <typename T>
 const ComponentInfo& register_resource() {
     detail::name_component(component_id<T>, true);

@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-/// Whether some of the rows is disabled; quick for chunks that have no disabled rows.
+/// Whether any of the rows is disabled; fast for chunks without disabled rows.
 bool any_disabled(const ToggleBits& toggle, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t chunk = first / kChunkRows; chunk < chunks_of(first + count); ++chunk) {
         if (toggle.chunks[chunk].disabled_count > 0) {
@@ -19,7 +19,7 @@ bool any_disabled(const ToggleBits& toggle, std::uint32_t first, std::uint32_t c
     return false;
 }
 
-/// Makes the bits from `to` on those from `from` on of `source`, which may be `target`.
+/// Copies the bits from `from` on of `source` to `to` on of `target`, which may be the same.
 void copy_bits(
     const ToggleBits& source, std::uint32_t from, ToggleBits& target, std::uint32_t to,
     std::uint32_t count) {
@@ -74,7 +74,7 @@ void RowBits::add_chunk(std::uint32_t version) {
     }
 }
 
-void RowBits::rows_came(std::uint32_t first, std::uint32_t count) {
+void RowBits::rows_added(std::uint32_t first, std::uint32_t count) {
     for (TrackedRows& track : tracks_) {
         track.mark(first, count);
     }
@@ -84,10 +84,10 @@ void RowBits::rows_moved(std::uint32_t from, std::uint32_t to, std::uint32_t cou
     for (ToggleBits& toggle : toggles_) {
         copy_bits(toggle, from, toggle, to, count);
     }
-    rows_came(to, count);
+    rows_added(to, count);
 }
 
-void RowBits::rows_went(std::uint32_t first, std::uint32_t count) {
+void RowBits::rows_removed(std::uint32_t first, std::uint32_t count) {
     for (ToggleBits& toggle : toggles_) {
         if (any_disabled(toggle, first, count)) {
             for (std::uint32_t row = first; row < first + count; ++row) {
@@ -106,7 +106,7 @@ void RowBits::receive(
     }
 }
 
-void RowBits::forget_versions_before(std::uint32_t oldest) {
+void RowBits::clamp_versions(std::uint32_t oldest) {
     for (ToggleBits& toggle : toggles_) {
         toggle.newest = newer_of(toggle.newest, oldest);
         for (ToggleChunk& chunk : toggle.chunks) {

@@ -8,35 +8,34 @@
 
 namespace limn {
 
-// What an archetype knows of its rows beside their values, a bit a row, for the few components that
-// ask for it:
+// One bit per row of an archetype, for the components that need it:
 //
-//     Storage::Toggle   which rows are disabled, and how many of each chunk. A tag, which has no
-//                       column, keeps the versions of its bits here too.
-//     tracks_rows       which rows were written since somebody last took them (TakeRows).
+//     Storage::Toggle   which rows are disabled, and how many in each chunk. For a tag, which has
+//                       no column, also the versions of its bits.
+//     tracks_rows       which rows were written since they were last fetched (TakeRows).
 //
-// Bits of rows beyond the last are clear for toggles and arbitrary for tracks, so that adding rows
-// costs nothing but the marks. The archetype calls rows_came, row_moved and so on beside what it
-// does to its columns, and only if it has such components at all.
+// Bits beyond the last row are clear for toggles and unspecified for tracks, so that adding rows
+// only sets marks. The archetype calls rows_added, rows_moved and so on along with the changes of
+// its columns, and only if it has such components.
 
 /// The enable bits of one chunk.
 struct ToggleChunk {
     RowMask disabled;
     std::uint32_t disabled_count;
-    std::uint32_t version;  ///< of a tag: when a bit last changed
+    std::uint32_t version;  ///< for a tag: when a bit last changed
 };
 
 /// The enable bits of one component.
 struct ToggleBits {
     ComponentId id = 0;
     int column = 0;            ///< of the archetype; negative for a tag
-    std::uint32_t newest = 0;  ///< of a tag: no version of a chunk is newer
+    std::uint32_t newest = 0;  ///< for a tag: upper bound of the chunks' versions
     std::vector<ToggleChunk> chunks;
 
     [[nodiscard]] bool is_enabled(std::uint32_t row) const {
         return !chunks[row / RowMask::kRows].disabled.test(row % RowMask::kRows);
     }
-    /// Returns whether it was otherwise.
+    /// Returns whether the bit changed.
     bool set_enabled(std::uint32_t row, bool enabled) {
         ToggleChunk& chunk = chunks[row / RowMask::kRows];
         std::uint64_t& word = chunk.disabled.words[row % RowMask::kRows / RowMask::kWordRows];
@@ -51,17 +50,17 @@ struct ToggleBits {
     [[nodiscard]] std::uint32_t disabled_count() const;
 };
 
-/// The rows of one column that were written since they were last taken.
+/// The rows of one column that were written since they were last fetched.
 struct TrackedRows {
     ComponentId id = 0;
     int column = 0;
-    std::vector<RowMask> written;  ///< a chunk
+    std::vector<RowMask> written;  ///< per chunk
 
     void mark(std::uint32_t row) { written[row / RowMask::kRows].set(row % RowMask::kRows); }
-    /// For tasks that may mark rows of one chunk at the same time.
+    /// Atomic, for tasks that mark rows of the same chunk concurrently.
     void mark_shared(std::uint32_t row);
     void mark(std::uint32_t first, std::uint32_t count);
-    /// The marked rows of the chunk below `rows`; none is marked afterwards.
+    /// Returns the marked rows of the chunk that are below `rows`, and clears all marks.
     [[nodiscard]] RowMask take(std::uint32_t chunk, std::uint32_t rows);
 };
 
@@ -74,7 +73,7 @@ class RowBits {
     /// Ascending by component.
     [[nodiscard]] const std::vector<ToggleBits>& toggles() const { return toggles_; }
     [[nodiscard]] const std::vector<TrackedRows>& tracks() const { return tracks_; }
-    /// nullptr: the archetype does not have the component, or it is of another kind.
+    /// nullptr if the archetype does not have the component or it cannot be toggled.
     [[nodiscard]] ToggleBits* toggle(ComponentId id) {
         for (ToggleBits& toggle : toggles_) {
             if (toggle.id == id) {
@@ -94,7 +93,7 @@ class RowBits {
         }
         return nullptr;
     }
-    /// Of the component in the column.
+    /// The tracked rows of the component in the column.
     [[nodiscard]] TrackedRows* track_of_column(int column) {
         for (TrackedRows& track : tracks_) {
             if (track.column == column) {
@@ -104,19 +103,19 @@ class RowBits {
         return nullptr;
     }
 
-    // ---- what happens to rows
+    // ---- row changes
 
     void add_chunk(std::uint32_t version);
-    /// `count` rows from `first` on, enabled.
-    void rows_came(std::uint32_t first, std::uint32_t count);
-    /// `count` rows from `from` on took the place of those from `to` on, which are gone. The two
-    /// may overlap if to < from.
+    /// `count` rows from `first` on were added, enabled.
+    void rows_added(std::uint32_t first, std::uint32_t count);
+    /// `count` rows from `from` on replaced those from `to` on. The two ranges may overlap if
+    /// to < from.
     void rows_moved(std::uint32_t from, std::uint32_t to, std::uint32_t count);
-    /// `count` rows from `first` on, the last of the archetype.
-    void rows_went(std::uint32_t first, std::uint32_t count);
-    /// Rows that came from another archetype keep the bits of the components that both have.
+    /// `count` rows from `first` on, the last of the archetype, were removed.
+    void rows_removed(std::uint32_t first, std::uint32_t count);
+    /// Copies the bits of common components for rows that came from another archetype.
     void receive(const RowBits& source, std::uint32_t from, std::uint32_t to, std::uint32_t count);
-    void forget_versions_before(std::uint32_t oldest);
+    void clamp_versions(std::uint32_t oldest);
 
     [[nodiscard]] std::size_t bytes() const;
 

@@ -6,8 +6,8 @@
 
 namespace limn {
 
-/// A set of rows of one chunk, a bit each, counted from the chunk's first row. Plain memory:
-/// `RowMask mask;` is not initialized, `RowMask mask{};` is empty.
+/// A bit set of the rows of one chunk, indexed from the chunk's first row. Trivial type:
+/// `RowMask mask;` is uninitialized, `RowMask mask{};` is empty.
 struct RowMask {
     static constexpr std::uint32_t kRows = 1024;
     static constexpr std::uint32_t kWordRows = 64;
@@ -54,7 +54,7 @@ struct RowMask {
         }
         return found != 0;
     }
-    /// Whether all of the 1024 rows are in it.
+    /// Whether all 1024 rows are set.
     [[nodiscard]] constexpr bool all() const {
         std::uint64_t common = ~std::uint64_t{0};
         for (const std::uint64_t word : words) {
@@ -63,7 +63,7 @@ struct RowMask {
         return common == ~std::uint64_t{0};
     }
 
-    /// function(row), ascending. Sixty-four neighbors are a plain loop.
+    /// Calls function(row) for every set row, ascending. Full 64-row words are a plain loop.
     template <typename F>
     constexpr void for_each(F&& function) const {
         for (std::uint32_t w = 0; w < words.size(); ++w) {
@@ -80,7 +80,7 @@ struct RowMask {
             }
         }
     }
-    /// function(begin, end) for every run of neighbors, ascending, as long as they get.
+    /// Calls function(begin, end) for every maximal run of set rows, ascending.
     template <typename F>
     constexpr void ranges(F&& function) const {
         std::uint32_t begin = next(0, 0);
@@ -103,7 +103,7 @@ struct RowMask {
         }
         return *this;
     }
-    /// Takes the rows of `other` out.
+    /// Removes the rows of `other`.
     constexpr RowMask& operator-=(const RowMask& other) {
         for (std::size_t w = 0; w < words.size(); ++w) {
             words[w] &= ~other.words[w];
@@ -116,7 +116,7 @@ struct RowMask {
     [[nodiscard]] static constexpr std::uint64_t bit(std::uint32_t row) {
         return std::uint64_t{1} << row % kWordRows;
     }
-    /// The first row from `from` on that is in the set, or with `inverse` all ones, that is not.
+    /// The first row from `from` on that is set or, if `inverse` is all ones, that is not.
     [[nodiscard]] constexpr std::uint32_t next(std::uint32_t from, std::uint64_t inverse) const {
         while (from < kRows) {
             const std::uint64_t bits = (words[from / kWordRows] ^ inverse) >> from % kWordRows;

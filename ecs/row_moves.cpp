@@ -7,9 +7,9 @@
 
 namespace limn {
 
-// Rows that come, go and move in numbers. Columns are walked one after the other, so that each is
-// read and written as a stream; what is the same for all columns is done in blocks of ranges that
-// stay in the first level of the cache.
+// Bulk additions, removals and moves of rows. Columns are processed one after the other, so that
+// each is read and written as a stream; work common to all columns is done in blocks of ranges that
+// stay in the L1 cache.
 
 namespace {
 
@@ -23,7 +23,7 @@ std::uint32_t rows_of(std::span<const RowRange> ranges) {
     return rows;
 }
 
-/// Copies rows of kSize bytes; most ranges may be one row, for which a call would be too much.
+/// Copies rows of kSize bytes; inlines single rows, which may be most ranges.
 template <std::size_t kSize>
 std::byte* copy_rows_of(std::byte* to, const std::byte* from, std::span<const RowRange> ranges) {
     for (const RowRange& range : ranges) {
@@ -38,7 +38,7 @@ std::byte* copy_rows_of(std::byte* to, const std::byte* from, std::span<const Ro
     return to;
 }
 
-/// Returns where the copies end.
+/// Returns the end of the copies.
 std::byte* copy_rows(
     std::byte* to, const std::byte* from, std::size_t size, std::span<const RowRange> ranges) {
     switch (size) {
@@ -171,13 +171,13 @@ Archetype::append_from(Archetype& from, std::span<const RowRange> ranges, std::u
 void Archetype::receive_bits(
     const Archetype& from, std::uint32_t row, std::span<const RowRange> ranges) {
     for (const RowRange& range : ranges) {
-        bits_.rows_came(row, range.count);
+        bits_.rows_added(row, range.count);
         bits_.receive(from.bits_, range.first, row, range.count);
         row += range.count;
     }
 }
 
-bool Archetype::take_over(Archetype& from, std::uint32_t version) {
+bool Archetype::adopt_rows(Archetype& from, std::uint32_t version) {
     if (size_ > 0 || !from.is_promoted() || from.size_ < kChunkRows) {
         return false;
     }
@@ -207,7 +207,7 @@ bool Archetype::take_over(Archetype& from, std::uint32_t version) {
     touch_structure(all, version);
     from.touch_structure(all, version);
     receive_bits(from, 0, {&all, 1});
-    from.bits_.rows_went(0, all.count);
+    from.bits_.rows_removed(0, all.count);
     return true;
 }
 
@@ -267,7 +267,7 @@ void Archetype::close_gaps(
         for (const RowMove& move : moves) {
             bits_.rows_moved(move.from, move.to, move.count);
         }
-        bits_.rows_went(size_, end - size_);
+        bits_.rows_removed(size_, end - size_);
     }
     move_rows(reinterpret_cast<std::byte*>(entities_), sizeof(Entity), moves);
     for (Column& column : columns_) {

@@ -10,10 +10,10 @@ namespace limn {
 
 namespace {
 
-/// What threads must be expected to save before a stage is handed to them [s].
-constexpr double kWorthThreads = 20e-6;
-/// Weight of the newest run in the expectation.
-constexpr double kNewest = 0.25;
+/// Minimum expected gain for running a stage on several threads [s].
+constexpr double kMinParallelGain = 20e-6;
+/// Weight of the newest run in the running average.
+constexpr double kNewestWeight = 0.25;
 
 using Clock = std::chrono::steady_clock;
 
@@ -30,7 +30,7 @@ std::string names_of(const std::vector<ComponentId>& ids) {
     return names;
 }
 
-/// Seconds as milliseconds, in a column of its own.
+/// Seconds as milliseconds, right-aligned.
 std::string ms_text(double time) {
     return align_right(fixed_text(time * 1e3, 3), 9);
 }
@@ -49,7 +49,7 @@ std::string access_text(const SystemAccess& access) {
     add_part(line, "changes", names_of(access.resource_writes));
     line += access.reads_all ? "  reads everything" : "";
     line += access.commands ? "  commands" : "";
-    line += access.exclusive ? "  alone" : "";
+    line += access.exclusive ? "  exclusive" : "";
     return line;
 }
 
@@ -112,8 +112,7 @@ void Schedule::build() const {
 }
 
 void Schedule::build_stage(Stage& stage) const {
-    // after[i][j]: i comes after j, perhaps by way of others. An arrow is left out where such a way
-    // exists.
+    // after[i][j]: i depends on j, possibly transitively. Edges implied by a path are omitted.
     std::vector<std::vector<bool>> after(stage.count, std::vector<bool>(stage.count, false));
     for (std::size_t i = 0; i < stage.count; ++i) {
         std::vector<std::size_t>& waits_for = stage.waits_for.emplace_back();
@@ -141,8 +140,7 @@ bool Schedule::is_worth_threads(const Stage& stage) const {
     if (thread_count() == 1) {
         return false;
     }
-    // Systems that wait for each other save nothing; the longest way through the stage takes its
-    // time anyway.
+    // The gain is bounded by the critical path: the longest chain of dependent systems.
     std::vector<double> ready(stage.count);
     double total = 0;
     double longest = 0;
@@ -154,7 +152,7 @@ bool Schedule::is_worth_threads(const Stage& stage) const {
         total += expected_[stage.first + i];
         longest = std::max(longest, ready[i]);
     }
-    return total - longest > kWorthThreads;
+    return total - longest > kMinParallelGain;
 }
 
 // ---- running
@@ -187,13 +185,13 @@ void Schedule::run_stage(World& world, const Stage& stage) {
             run_timed(world, stage.first + task, version + static_cast<std::uint32_t>(task));
         });
     } else {
-        run_in_row(world, stage, version);
+        run_sequential(world, stage, version);
     }
 }
 
-/// What the systems of the stage have in common is done once: the lock, and every reading of the
-/// clock, which ends one system and starts the next. They are most of what an idle system costs.
-void Schedule::run_in_row(World& world, const Stage& stage, std::uint32_t version) {
+/// Locks once for the whole stage, and reads the clock once per system: the end of one is the start
+/// of the next. Otherwise these would be most of the cost of an idle system.
+void Schedule::run_sequential(World& world, const Stage& stage, std::uint32_t version) {
     const IterationGuard guard(world.core(), IterationLock::Shared);
     Clock::time_point start = Clock::now();
     for (std::size_t i = 0; i < stage.count; ++i) {
@@ -215,7 +213,7 @@ void Schedule::note_time(std::size_t system, double duration) {
     ++timing.runs;
     timing.last = duration;
     timing.mean += (duration - timing.mean) / static_cast<double>(timing.runs);
-    expected_[system] += (duration - expected_[system]) * (timing.runs == 1 ? 1.0 : kNewest);
+    expected_[system] += (duration - expected_[system]) * (timing.runs == 1 ? 1.0 : kNewestWeight);
 }
 
 void Schedule::apply(World& world, const Stage& stage) {
@@ -274,10 +272,10 @@ std::string Schedule::to_text() const {
         }
         if (!stage.recorders.empty() && sync_timings_[stage.sync].runs > 0) {
             const SyncTiming& sync = sync_timings_[stage.sync];
-            text += "  " + align_left("commands applied", width)
+            text += "  " + align_left("sync", width)
                     + format_text(
-                        "  {} ms  mean {} ms  {} of them\n", ms_text(sync.last), ms_text(sync.mean),
-                        sync.commands);
+                        "  {} ms  mean {} ms  {} commands\n", ms_text(sync.last),
+                        ms_text(sync.mean), sync.commands);
         }
     }
     return text;

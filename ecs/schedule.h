@@ -20,28 +20,27 @@ namespace limn {
 //     schedule.add<update_transforms>();  // last: rendering reads the matrices
 //     schedule.run(world);
 //
-// The list is the order: a system sees what all systems before it wrote and nothing of those behind
-// it. Systems that touch different things (their parameters say what) run at the same time all the
-// same, which nobody can tell from the result: it has the same bits for any number of threads.
-// Commands are applied, in the order of the list, at sync points: before and after every exclusive
-// system (World&), where sync() says so, and at the end.
+// The list defines the order: a system sees everything that earlier systems wrote and nothing from
+// later ones. Systems with disjoint accesses (declared by their parameters) still run in parallel;
+// the result is bit-identical for any number of threads. Commands are applied, in list order, at
+// sync points: before and after every exclusive system (World&), at sync(), and at the end.
 //
-// Between sync points lies a stage. Its systems are handed to other threads only if that has saved
-// time before: a hundred small systems are quicker in a row than handed around.
+// The systems between two sync points form a stage. A stage runs on several threads only if its
+// measured times predict a gain: a hundred small systems are faster sequentially.
 
-/// How long a system took, without the commands it recorded.
+/// Run time of a system, excluding the commands it recorded.
 struct SystemTiming {
     std::string name;
     double last = 0.0;  ///< of the last run [s]
-    double mean = 0.0;  ///< over all runs since the schedule was made or reset_timings() [s]
+    double mean = 0.0;  ///< over all runs since creation or reset_timings() [s]
     std::uint64_t runs = 0;
     std::uint64_t commands = 0;       ///< recorded in all runs
     std::uint64_t last_commands = 0;  ///< recorded in the last run that recorded any
 };
 
-/// How long applying the commands of a stage took. Runs without commands do not count.
+/// Time to apply the commands of a stage. Runs without commands do not count.
 struct SyncTiming {
-    std::size_t system = 0;  ///< the last of the stage
+    std::size_t system = 0;  ///< index of the stage's last system
     double last = 0.0;       ///< [s]
     double mean = 0.0;       ///< [s]
     std::uint64_t runs = 0;
@@ -50,7 +49,7 @@ struct SyncTiming {
 
 class Schedule {
   public:
-    /// Appends a system, named like the function.
+    /// Appends a system named after the function.
     template <auto function>
     Schedule& add() {
         return add(make_system<function>());
@@ -61,27 +60,26 @@ class Schedule {
         return add(make_system(std::move(name), std::move(function)));
     }
     Schedule& add(System system);
-    /// Systems from here on see what the commands before did.
+    /// Adds a sync point: later systems see the effects of earlier commands.
     Schedule& sync();
 
     /// Runs all systems once.
     void run(World& world);
 
     [[nodiscard]] std::size_t size() const { return systems_.size(); }
-    /// In the order of the list.
+    /// In list order.
     [[nodiscard]] std::span<const SystemTiming> timings() const { return timings_; }
-    /// Of every stage with systems that take Commands, in order. Empty before the first run.
+    /// For every stage with systems that take Commands, in order. Empty before the first run.
     [[nodiscard]] std::span<const SyncTiming> sync_timings() const { return sync_timings_; }
     [[nodiscard]] std::span<const System> systems() const { return systems_; }
     void reset_timings();
-    /// Whether stages with something to gain are run by several threads even if measurements speak
-    /// against it: for tests. At start, no.
+    /// For tests: runs every stage that can be parallel on several threads, whatever the
+    /// measurements. Off by default.
     void set_always_parallel(bool always) { always_parallel_ = always; }
 
-    /// A line a system: stage, name, what it reads and writes, which systems it waits for, how long
-    /// it took.
+    /// One line per system: stage, name, reads and writes, dependencies, run time.
     [[nodiscard]] std::string to_text() const;
-    /// The same for Graphviz: boxes are stages, arrows mean "waits for".
+    /// The dependency graph for Graphviz: boxes are stages, arrows are dependencies.
     [[nodiscard]] std::string to_dot() const;
 
   private:
@@ -90,20 +88,20 @@ class Schedule {
         std::size_t first = 0;
         std::size_t count = 0;
         bool is_exclusive = false;
-        bool is_chain = true;  ///< no two systems can run at the same time
+        bool is_chain = true;  ///< no two systems can run in parallel
         TaskGraph graph;
-        std::vector<std::vector<std::size_t>>
-            waits_for;  ///< systems of the stage, from 0; without what follows
+        /// Direct dependencies of each system, as indices in the stage; transitive ones omitted.
+        std::vector<std::vector<std::size_t>> waits_for;
         std::vector<CommandBuffer*> commands;
-        std::vector<std::size_t> recorders;  ///< the systems whose commands they are
-        std::size_t sync = 0;                ///< in sync_timings_
+        std::vector<std::size_t> recorders;  ///< systems that take Commands
+        std::size_t sync = 0;                ///< index in sync_timings_
     };
 
     void build() const;
     void build_stage(Stage& stage) const;
     [[nodiscard]] bool is_worth_threads(const Stage& stage) const;
     void run_stage(World& world, const Stage& stage);
-    void run_in_row(World& world, const Stage& stage, std::uint32_t version);
+    void run_sequential(World& world, const Stage& stage, std::uint32_t version);
     void run_timed(World& world, std::size_t system, std::uint32_t version);
     void note_time(std::size_t system, double duration);
     void apply(World& world, const Stage& stage);
@@ -111,8 +109,8 @@ class Schedule {
     std::vector<System> systems_;
     std::vector<SystemTiming> timings_;
     mutable std::vector<SyncTiming> sync_timings_;
-    std::vector<double> expected_;          ///< running average of each system [s]
-    std::vector<std::size_t> sync_points_;  ///< before the system of this number
+    std::vector<double> expected_;          ///< running average of each system's time [s]
+    std::vector<std::size_t> sync_points_;  ///< each before the system with this index
     mutable std::vector<Stage> stages_;
     mutable bool is_built_ = false;
     bool always_parallel_ = false;

@@ -10,33 +10,33 @@
 
 namespace limn {
 
-// The values that shared components have, each kept once and known by a number. Two values are the
-// same if their bytes are; so -0 and 0 are two, and a NaN is the same as itself. An archetype has
-// one value of each of its shared components, and its numbers are part of what tells it from other
-// archetypes. Numbers are given in the order of first use and never taken back.
+// Deduplicated values of shared components, each identified by a key. Values are compared bytewise:
+// -0 and 0 differ, and a NaN equals itself. An archetype has one value of each of its shared
+// components, and their keys are part of the archetype's identity. Keys are assigned in the order
+// of first use and never reused.
 
 /// A shared component of an archetype and its value.
 struct SharedValue {
     ComponentId component;
-    std::uint32_t key;  ///< number of the value
-    const void* value;  ///< stays where it is as long as the world does
+    std::uint32_t key;  ///< identifies the value
+    const void* value;  ///< valid as long as the world
 };
 
-/// Keeps the list ascending by component.
+/// Inserts into a list sorted by component.
 void insert_shared(std::vector<SharedValue>& list, const SharedValue& value);
 
 class SharedValues {
   public:
     static constexpr std::uint32_t kUnknown = 0xffffffffu;
 
-    /// The number of the value, a new one if nothing has had it yet.
+    /// The key of the value, inserted if new.
     [[nodiscard]] std::uint32_t add(const ComponentInfo& info, const void* value);
-    /// kUnknown: nothing ever had the value.
+    /// kUnknown if the value was never added.
     [[nodiscard]] std::uint32_t find(const ComponentInfo& info, const void* value) const;
     [[nodiscard]] SharedValue value(std::uint32_t key) const {
         return {entries_[key].component, key, entries_[key].bytes.get()};
     }
-    /// The archetypes that have the value, in the order of their creation.
+    /// The archetypes with this value, in creation order.
     [[nodiscard]] std::span<const std::uint32_t> archetypes(std::uint32_t key) const {
         return entries_[key].archetypes;
     }
@@ -59,7 +59,7 @@ class SharedValues {
     void insert(std::uint32_t key);
 
     std::vector<Entry> entries_;
-    std::vector<std::uint32_t> table_;  ///< keys by hash, open addressing, a power of two long
+    std::vector<std::uint32_t> table_;  ///< keys by hash, open addressing, power-of-two size
 };
 
 }  // namespace limn

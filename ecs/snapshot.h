@@ -13,8 +13,8 @@ namespace limn {
 class World;
 struct SnapshotIndex;
 
-// The whole world as bytes, for save games, rollback and replay files; the difference between two
-// such moments; and the world as one number, to find out whether two runs are the same.
+// Serializes the whole world, for save games, rollback and replay files; computes deltas between
+// two snapshots; and hashes the world, to check whether two runs are identical.
 //
 //     SnapshotMark mark;
 //     std::vector<std::byte> saved = save_snapshot(world, &mark).value();
@@ -22,55 +22,55 @@ struct SnapshotIndex;
 //     const std::vector<std::byte> delta = save_delta(world, mark, &mark).value();  // small
 //     saved = apply_delta(saved, delta).value();  // what save_snapshot would have written
 //
-// Saved are all entities, with the handles they have and will be given; their components, in order;
-// and the registered resources. ComponentTraits<T>::saved = false leaves a type out: what systems
-// make anew (WaterState) or what lives elsewhere (objects on the GPU). Entities that differ only in
-// such components are put side by side. Types are known by name and by the names and types of their
-// fields, so a file outlives a change of ids, but not a change of a component.
+// A snapshot has all entities, with current handles and the state of handle allocation; their
+// components, in order; and the registered resources. ComponentTraits<T>::saved = false excludes a
+// type: data that systems recreate (WaterState) or that lives elsewhere (GPU objects). Entities
+// that differ only in such components are grouped together. Types are identified by name and by the
+// names and types of their fields, so a file survives a change of ids, but not of a component.
 //
-// A column whose bytes are its value is copied as a whole, both ways. The file is cut into pieces
-// of 1024 rows of a column with a checksum each; a delta holds the pieces that are new and says
-// where the others stood. ecs/snapshot_format.h has the layout.
+// A column without padding is copied as a whole, both ways. The file is divided into pieces of 1024
+// rows of a column, each with a checksum; a delta contains the changed pieces and the offsets of
+// the others. ecs/snapshot_format.h has the layout.
 
-/// A moment of a world: what save_delta compares with. Made by save_snapshot, save_delta and
-/// restore_snapshot; cheap to copy. Does not outlive the world.
+/// A point in time of a world, as the base of save_delta. Made by save_snapshot, save_delta and
+/// restore_snapshot; cheap to copy. Must not outlive the world.
 struct SnapshotMark {
-    std::shared_ptr<const SnapshotIndex> index;  ///< null: no moment
+    std::shared_ptr<const SnapshotIndex> index;  ///< null: empty mark
 };
 
-/// Fails, naming the component, when one that should be saved is not registered or has no known
-/// bytes. `mark` becomes this moment.
+/// Fails, naming the component, if one that should be saved is not registered or cannot be
+/// serialized. Sets `mark` to this snapshot.
 [[nodiscard]] Result<std::vector<std::byte>>
 save_snapshot(const World& world, SnapshotMark* mark = nullptr);
 
-/// Makes the entities and the saved resources of `world` those of the snapshot; other resources and
-/// all observers stay. Everything that was there is removed first (on_remove), then what is new is
-/// added (on_add). A snapshot that is cut off, altered, or of another version or other components
-/// changes nothing: all is checked before. Never takes much more memory than the world it
-/// describes. `mark` becomes the moment of the snapshot, which observers may already have left.
+/// Replaces the entities and the saved resources of `world` by those of the snapshot; other
+/// resources and all observers stay. First everything is removed (on_remove), then the snapshot's
+/// entities are added (on_add). A snapshot that is truncated, corrupt, or of a different version or
+/// different components is rejected before anything changes. Memory use is bounded by about the
+/// size of the world it describes. Sets `mark` to the snapshot, before on_add observers change the
+/// world.
 [[nodiscard]] Status
 restore_snapshot(World& world, std::span<const std::byte> bytes, SnapshotMark* mark = nullptr);
 
-/// What changed since the moment `base` of this world, in chunks of 1024 rows; time and size are
-/// those of what changed, but for some 16 bytes of work a chunk there is, and for the slots of all
-/// entities if any came, went or moved. Changes are found by their versions, as Changed<T> finds
-/// them: a reference taken before `base` and written after it escapes. Everything counts as changed
-/// when the world was restored after `base`, or after 2^28 runs of systems. Fails as save_snapshot
-/// does.
+/// What changed in this world since `base`, in chunks of 1024 rows. Time and size are proportional
+/// to the changes, plus some 16 bytes of work per chunk and the slots of all entities if any was
+/// added, removed or moved. Changes are detected by version, like Changed<T>: a write through a
+/// reference obtained before `base` is missed. Everything counts as changed if the world was
+/// restored after `base`, or after 2^28 runs of systems. Fails like save_snapshot.
 [[nodiscard]] Result<std::vector<std::byte>>
 save_delta(const World& world, const SnapshotMark& base, SnapshotMark* mark = nullptr);
 
 /// The snapshot that save_snapshot would have written when save_delta was called, byte for byte.
-/// Knows no components. Fails when `delta` is altered or belongs to another snapshot than `base`.
-/// Never takes more memory than base and delta together.
+/// Needs no component types. Fails if `delta` is corrupt or belongs to a different snapshot than
+/// `base`. Never allocates more memory than base and delta together.
 [[nodiscard]] Result<std::vector<std::byte>>
 apply_delta(std::span<const std::byte> base, std::span<const std::byte> delta);
 
-/// 64 bits of everything that snapshots save and of components that are not saved but hashed
+/// 64-bit hash of everything that snapshots save and of components that are not saved but hashed
 /// (ComponentTraits<T>::hashed). Two worlds with the same rows in the same order have the same
-/// hash, in whatever order archetypes came into being, for any number of threads and in every
-/// program. Of a type without known bytes (no visit_fields, but padding or a destructor) only
-/// counts who has it.
+/// hash, whatever the creation order of archetypes, the number of threads and the program. For
+/// types that cannot be serialized (no LIMN_FIELDS, but padding or a destructor) only their
+/// presence counts.
 [[nodiscard]] std::uint64_t state_hash(const World& world);
 
 }  // namespace limn

@@ -8,16 +8,16 @@
 
 namespace limn {
 
-// A delta says how to put the later snapshot together from parts of the earlier one and from bytes
-// of its own:
+// A delta describes how to assemble the later snapshot from parts of the earlier one and from its
+// own bytes:
 //
 //   header   "LIMNDELT", u32 version, u32 zero, u64 XXH64 of the rest
-//   rest     u64 size and u64 checksum (of its directory) of the earlier snapshot, the same of the
-//            later one, u64 steps; of each step: u64 where to copy from, or kOwnBytes, and u64
-//            size; then its own bytes
+//   rest     u64 size and u64 checksum (of its directory) of the earlier snapshot, the same for the
+//            later one, u64 steps; per step: u64 offset to copy from, or kOwnBytes, and u64 size;
+//            then the delta's own bytes
 //
-// A part of the earlier snapshot is used once at most, so the later one cannot be larger than both
-// together.
+// Every byte of the earlier snapshot is used at most once, so the later one cannot be larger than
+// both together.
 
 namespace {
 
@@ -33,7 +33,7 @@ struct DeltaStep {
     std::uint64_t size;
 };
 
-/// Steps and own bytes; neighbors become one step.
+/// Collects steps and own bytes; merges adjacent steps.
 class DeltaWriter {
   public:
     void copy(std::uint64_t from, std::uint64_t size) {
@@ -71,7 +71,7 @@ class DeltaWriter {
     ByteWriter own_;
 };
 
-/// The data of the later snapshot; fills pieces and offsets of its index.
+/// Writes the data of the later snapshot; fills pieces and offsets of its index.
 void write_data(
     const SnapshotPlan& plan, const SnapshotIndex& base, SnapshotIndex& index, DeltaWriter& out) {
     ByteWriter scratch;
@@ -89,7 +89,7 @@ void write_data(
                 scratch.clear();
                 plan.write_piece(section, i, scratch);
                 piece = {scratch.size(), hash_bytes(scratch.data(), scratch.size())};
-                is_same = has_earlier && piece == base.pieces[earlier];  // written, not changed
+                is_same = has_earlier && piece == base.pieces[earlier];  // same value written
             }
             if (is_same) {
                 out.copy(base.data_offset(earlier), piece.size);
@@ -148,7 +148,7 @@ delta_bytes(const SnapshotHeader& base, const SnapshotHeader& later, const Delta
     out.bytes(kMagic, sizeof kMagic);
     out.value(kDeltaVersion);
     out.value(std::uint32_t{0});
-    out.value(std::uint64_t{0});  // checksum, known at the end
+    out.value(std::uint64_t{0});  // checksum, patched at the end
     out.value(base.total_size());
     out.value(base.checksum);
     out.value(later.total_size());
@@ -172,12 +172,12 @@ struct Delta {
     std::span<const std::byte> own;
 };
 
-/// All but the steps is checked.
+/// Checks everything except the steps.
 Result<Delta> open_delta(std::span<const std::byte> bytes) {
     ByteReader in(bytes);
     const std::span<const std::byte> magic = in.bytes(sizeof kMagic);
     if (in.failed() || std::memcmp(magic.data(), kMagic, sizeof kMagic) != 0) {
-        return fail("no delta: it does not begin with LIMNDELT");
+        return fail("not a delta: it does not begin with LIMNDELT");
     }
     const auto version = in.value<std::uint32_t>();
     const auto zero = in.value<std::uint32_t>();
@@ -186,7 +186,7 @@ Result<Delta> open_delta(std::span<const std::byte> bytes) {
         return fail("found version {}, expected {}", version, kDeltaVersion);
     }
     if (in.failed() || zero != 0 || hash_bytes(bytes.subspan(kDeltaHeaderSize)) != checksum) {
-        return fail("altered: the checksum is wrong");
+        return fail("corrupt: the checksum does not match");
     }
     Delta delta;
     delta.base_size = in.value<std::uint64_t>();
@@ -202,7 +202,7 @@ Result<Delta> open_delta(std::span<const std::byte> bytes) {
     return delta;
 }
 
-/// Whether the steps make up the later snapshot and use every byte once at most.
+/// Whether the steps add up to the later snapshot and use every byte at most once.
 bool steps_fit(const Delta& delta) {
     std::uint64_t copied = 0;
     std::uint64_t owned = 0;
@@ -211,8 +211,8 @@ bool steps_fit(const Delta& delta) {
         const auto from = steps.value<std::uint64_t>();
         const auto size = steps.value<std::uint64_t>();
         std::uint64_t& sum = from == kOwnBytes ? owned : copied;
-        const std::uint64_t most = from == kOwnBytes ? delta.own.size() : delta.base_size;
-        if (size > most - sum
+        const std::uint64_t limit = from == kOwnBytes ? delta.own.size() : delta.base_size;
+        if (size > limit - sum
             || (from != kOwnBytes && (from > delta.base_size || size > delta.base_size - from))) {
             return false;
         }
@@ -224,7 +224,7 @@ bool steps_fit(const Delta& delta) {
 Result<std::vector<std::byte>> apply(const Delta& delta, std::span<const std::byte> base) {
     std::vector<std::byte> bytes;
     bytes.reserve(delta.size);
-    expect_to_fill(bytes.data(), delta.size);
+    advise_huge_pages(bytes.data(), delta.size);
     ByteReader steps = delta.steps;
     std::size_t own = 0;
     while (steps.left() > 0) {
@@ -242,7 +242,7 @@ Result<std::vector<std::byte>> apply(const Delta& delta, std::span<const std::by
         return status.error();
     }
     if (parts->header.checksum != delta.checksum) {
-        return fail("it makes up another snapshot than it says");
+        return fail("the result does not match the delta's checksum");
     }
     return bytes;
 }
@@ -252,7 +252,7 @@ Result<std::vector<std::byte>> apply(const Delta& delta, std::span<const std::by
 Result<std::vector<std::byte>>
 save_delta(const World& world, const SnapshotMark& base, SnapshotMark* mark) {
     LIMN_CHECK_NOTE(base.index != nullptr, "a delta needs the mark of an earlier snapshot");
-    LIMN_CHECK_NOTE(base.index->world == &world, "the mark belongs to another world");
+    LIMN_CHECK_NOTE(base.index->world == &world, "the mark belongs to a different world");
     Result<SnapshotPlan> plan = SnapshotPlan::make(world);
     if (!plan) {
         return plan.error();
@@ -294,10 +294,10 @@ apply_delta(std::span<const std::byte> base, std::span<const std::byte> delta) {
         return fail("delta: the earlier snapshot: {}", parts.error().message);
     }
     if (base.size() != opened->base_size || parts->header.checksum != opened->base_checksum) {
-        return fail("delta: belongs to another snapshot");
+        return fail("delta: belongs to a different snapshot");
     }
     if (!steps_fit(*opened)) {
-        return fail("delta: its steps do not make up {} bytes", opened->size);
+        return fail("delta: its steps do not add up to {} bytes", opened->size);
     }
     Result<std::vector<std::byte>> bytes = apply(*opened, base);
     if (!bytes) {

@@ -30,7 +30,7 @@ Result<SnapshotParts> open_snapshot(std::span<const std::byte> bytes) {
     ByteReader in(bytes);
     const std::span<const std::byte> magic = in.bytes(sizeof kMagic);
     if (in.failed() || std::memcmp(magic.data(), kMagic, sizeof kMagic) != 0) {
-        return fail("no snapshot: it does not begin with LIMNSNAP");
+        return fail("not a snapshot: it does not begin with LIMNSNAP");
     }
     if (const auto version = in.value<std::uint32_t>();
         !in.failed() && version != kSnapshotVersion) {
@@ -43,19 +43,19 @@ Result<SnapshotParts> open_snapshot(std::span<const std::byte> bytes) {
     header.piece_count = in.value<std::uint64_t>();
     header.data_size = in.value<std::uint64_t>();
     header.checksum = in.value<std::uint64_t>();
-    // Each alone before their sum, which could overflow.
+    // Check each term first, because the sum could overflow.
     const std::uint64_t left = in.left();
     if (in.failed() || zero != 0 || header.head_size > left || header.data_size > left
         || header.piece_count > left / sizeof(SnapshotPiece)
         || header.total_size() != bytes.size()) {
         return fail(
-            "found {} bytes, expected {} and what the header says", bytes.size(),
+            "found {} bytes, expected {} plus the sizes in the header", bytes.size(),
             kSnapshotHeaderSize);
     }
     const std::span<const std::byte> directory =
         bytes.subspan(kSnapshotHeaderSize, header.directory_size());
     if (hash_bytes(directory) != header.checksum) {
-        return fail("altered: the checksum of the head is wrong");
+        return fail("corrupt: the checksum of the head does not match");
     }
     parts.head = in.bytes(header.head_size);
     parts.pieces.resize(header.piece_count);
@@ -64,18 +64,18 @@ Result<SnapshotParts> open_snapshot(std::span<const std::byte> bytes) {
     std::uint64_t end = 0;
     for (const SnapshotPiece& piece : parts.pieces) {
         if (piece.size > header.data_size - end) {
-            return fail("found more than the {} bytes of data in its pieces", header.data_size);
+            return fail("the pieces are larger than the {} bytes of data", header.data_size);
         }
         end += piece.size;
     }
     if (end != header.data_size) {
-        return fail("found {} bytes of data, expected the {} of its pieces", header.data_size, end);
+        return fail("found {} bytes of data, expected the {} of the pieces", header.data_size, end);
     }
     return parts;
 }
 
 Status check_pieces(const SnapshotParts& parts) {
-    // Where each task begins, so that tasks need not wait for each other.
+    // Precompute where each task begins, so that tasks are independent.
     std::vector<std::uint64_t> starts;
     std::uint64_t end = 0;
     for (std::size_t i = 0; i < parts.pieces.size(); ++i) {
@@ -84,19 +84,19 @@ Status check_pieces(const SnapshotParts& parts) {
         }
         end += parts.pieces[i].size;
     }
-    std::atomic<bool> altered = false;
+    std::atomic<bool> is_corrupt = false;
     parallel_for(parts.pieces.size(), kPiecesPerTask, [&](std::size_t first, std::size_t last) {
         std::uint64_t at = starts[first / kPiecesPerTask];
         for (std::size_t i = first; i < last; ++i) {
             const SnapshotPiece& piece = parts.pieces[i];
             if (hash_bytes(parts.data.subspan(at, piece.size)) != piece.hash) {
-                altered.store(true, std::memory_order_relaxed);
+                is_corrupt.store(true, std::memory_order_relaxed);
             }
             at += piece.size;
         }
     });
-    if (altered.load()) {
-        return fail("altered: the checksum of the data is wrong");
+    if (is_corrupt.load()) {
+        return fail("corrupt: the checksum of the data does not match");
     }
     return Done{};
 }

@@ -10,29 +10,28 @@
 
 namespace limn {
 
-// How the bytes of a snapshot are laid out; all little-endian.
+// Binary layout of a snapshot; everything is little-endian.
 //
 //   header  "LIMNSNAP", u32 version, u32 zero, u64 size of the head, u64 pieces, u64 size of the
 //           data, u64 XXH64 of head and table
-//   head    names      u32 count; each: text, u64 layout of its fields, u32 SavedStorage
-//           resources  u32 count; each: text, u64 layout
+//   head    names      u32 count; each: text, u64 hash of its field layout, u32 SavedStorage
+//           resources  u32 count; each: text, u64 hash of its field layout
 //           slots      u32 count, u32 free, u32 first free
-//           groups     u32 count; each: u32 components, their numbers (u32), the values of those
-//           that
-//                      are shared, u32 rows
-//           sets       u32 count; each: u32 number of the component, u32 values
-//   table   of each piece: u64 size, u64 XXH64
-//   data    the pieces, one behind the other
+//           groups     u32 count; each: u32 component count, component indices into names (u32),
+//                      values of the shared components, u32 rows
+//           sets       u32 count; each: u32 index of the component in names, u32 values
+//   table   per piece: u64 size, u64 XXH64
+//   data    the pieces, concatenated
 //
-// A group is what archetypes are when components that are not saved are left out. The head tells
-// which sections the data has, in this order: each resource; the generations of all slots; their
-// links (of a free slot, the next free one); of each group the entities, then of each component its
-// values, unless it is a tag, and if it is toggled a bit a row, set where it is disabled (no bytes:
-// none is); of each set entities and values. A resource is one piece; of the others each 1024
-// elements are one.
+// A group is a set of archetypes that are equal when components that are not saved are ignored. The
+// head determines the sections of the data, in this order: each resource; the generations of all
+// slots; their links (for a free slot, the next free one); per group the entities, then per
+// component its values, unless it is a tag, and, if toggled, one bit per row, set if disabled (no
+// bytes if none is); per set entities and values. A resource is one piece; other sections have one
+// piece per 1024 elements.
 //
-// Who only wants to know whether a snapshot is whole, as apply_delta does, needs no more than this
-// file; snapshot_plan.h is about the head.
+// This file is all that is needed to verify the integrity of a snapshot, as apply_delta does;
+// snapshot_plan.h interprets the head.
 
 inline constexpr std::uint32_t kSnapshotVersion = 2;
 inline constexpr std::size_t kSnapshotHeaderSize = 48;
@@ -56,12 +55,11 @@ static_assert(sizeof(SnapshotPiece) == 16);
     return left < kPieceRows ? left : kPieceRows;
 }
 
-/// Of a bit a row, in whole words [bytes].
+/// Size of one bit per row, in whole 64-bit words [bytes].
 [[nodiscard]] constexpr std::size_t disabled_size(std::uint32_t rows) {
     return (std::size_t{rows} + 63) / 64 * sizeof(std::uint64_t);
 }
 
-/// The header alone.
 struct SnapshotHeader {
     std::uint64_t head_size = 0;
     std::uint64_t piece_count = 0;
@@ -76,7 +74,7 @@ struct SnapshotHeader {
     }
 };
 
-/// The header as it stands in front of a snapshot.
+/// Appends the header in file format.
 void write_header(const SnapshotHeader& header, ByteWriter& out);
 
 struct SnapshotParts {
@@ -86,11 +84,11 @@ struct SnapshotParts {
     std::span<const std::byte> data;
 };
 
-/// Fails if the header does not fit the bytes, head and table are altered, or the pieces do not
-/// make up the data. Does not look at the data itself.
+/// Fails if the header does not match the size, head and table are corrupt, or the sizes of the
+/// pieces do not add up. Does not check the data itself.
 [[nodiscard]] Result<SnapshotParts> open_snapshot(std::span<const std::byte> bytes);
 
-/// Fails if a piece of the data is altered.
+/// Fails if a piece of the data is corrupt.
 [[nodiscard]] Status check_pieces(const SnapshotParts& parts);
 
 }  // namespace limn

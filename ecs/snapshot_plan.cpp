@@ -19,15 +19,15 @@ Status check_savable(const ComponentInfo& info) {
             "saved",
             info.name);
     }
-    if (!has_bytes(info)) {
+    if (!is_serializable(info)) {
         return fail(
-            "component {}: no known bytes to save; give it visit_fields, or mark it as not saved",
+            "component {}: cannot be serialized; give it LIMN_FIELDS, or mark it as not saved",
             info.name);
     }
     return Done{};
 }
 
-std::size_t least_size(const SnapshotSection& section) {
+std::size_t min_element_size(const SnapshotSection& section) {
     switch (section.kind) {
     case SectionKind::Generations:
     case SectionKind::Links:
@@ -42,7 +42,7 @@ std::size_t least_size(const SnapshotSection& section) {
     case SectionKind::SetValues:
         break;
     }
-    return least_bytes(*section.info);
+    return min_serialized_size(*section.info);
 }
 
 }  // namespace
@@ -55,15 +55,15 @@ SavedStorage saved_storage(const ComponentInfo& info) {
 }
 
 std::uint64_t snapshot_epoch(const World& world) {
-    return std::uint64_t{world.core().epoch} << 32 | world.core().times_forgotten;
+    return std::uint64_t{world.core().epoch} << 32 | world.core().version_clamp_count;
 }
 
 bool is_saved_resource(const ComponentInfo& info) {
-    return info.is_resource && info.saved && has_bytes(info);
+    return info.is_resource && info.saved && is_serializable(info);
 }
 
-// ---- what there is
-// -------------------------------------------------------------------------------
+// ---- contents
+// ------------------------------------------------------------------------------------
 
 Result<SnapshotPlan> SnapshotPlan::make(const World& world) {
     SnapshotPlan plan(world);
@@ -178,16 +178,16 @@ std::size_t SnapshotPlan::piece_count() const {
     return count;
 }
 
-std::size_t SnapshotPlan::least_data_size() const {
+std::size_t SnapshotPlan::min_data_size() const {
     std::size_t size = 0;
     for (const SnapshotSection& section : sections_) {
-        size += section.rows * least_size(section);
+        size += section.rows * min_element_size(section);
     }
     return size;
 }
 
-// ---- its bytes
-// -----------------------------------------------------------------------------------
+// ---- serialization
+// -------------------------------------------------------------------------------
 
 void SnapshotPlan::read_slots(const SnapshotIndex* base) {
     if (base != nullptr && base->epoch == snapshot_epoch(*world_)
@@ -275,8 +275,8 @@ void SnapshotPlan::write_piece(
 
 namespace {
 
-/// Calls call(archetype, row, count, row in the piece) for the archetypes that rows first .. end -
-/// 1 of the group are in.
+/// Calls call(archetype, row, count, row in the piece) for the archetypes of the group's rows
+/// first .. end - 1.
 template <typename Call>
 void for_each_part(
     const SnapshotGroup& group, std::uint32_t first, std::uint32_t end, const Call& call) {
@@ -322,8 +322,8 @@ void SnapshotPlan::write_disabled(
     }
 }
 
-// ---- what was there before
-// -----------------------------------------------------------------------
+// ---- comparison with an earlier snapshot
+// ---------------------------------------------------------
 
 SnapshotIndex SnapshotPlan::make_index(std::uint32_t version) const {
     SnapshotIndex index;
@@ -348,7 +348,7 @@ SnapshotIndex SnapshotPlan::make_index(std::uint32_t version) const {
     return index;
 }
 
-/// In one epoch archetypes and sets only come, so groups and sets keep their places.
+/// Within an epoch archetypes and sets are only added, so groups and sets keep their indices.
 std::size_t SnapshotPlan::earlier_section(std::size_t section, const SnapshotIndex& base) const {
     const SnapshotSection& wanted = sections_[section];
     switch (wanted.kind) {
@@ -412,8 +412,8 @@ bool SnapshotPlan::is_untouched(
     return false;
 }
 
-/// A piece of a group is the same if its rows are those of the same archetypes as before, none of
-/// which touched them.
+/// A piece of a group is unchanged if its rows are the same rows of the same archetypes as before
+/// and have no newer version.
 bool SnapshotPlan::is_same_rows(
     const SnapshotSection& section, std::uint32_t piece, const SnapshotIndex& base) const {
     const std::uint32_t begin = piece * kPieceRows;

@@ -11,8 +11,8 @@
 
 namespace limn {
 
-// What of a world a snapshot holds, section by section in the order of the file, and where each
-// piece of it comes from: the part that saving and deltas have in common.
+// The contents of a snapshot, section by section in file order, and the source of each piece in the
+// world: common to snapshots and deltas.
 
 enum class SectionKind : std::uint8_t {
     Resource,
@@ -20,65 +20,65 @@ enum class SectionKind : std::uint8_t {
     Links,
     Entities,  ///< of a group
     Values,    ///< of a component of a group
-    Disabled,  ///< which rows are, of a toggled component of a group
+    Disabled,  ///< disabled rows of a toggled component of a group
     SetEntities,
     SetValues,
 };
 
-/// How the rows of a component are in a file: what a program must have in common with it.
+/// How a component is stored in a file, which must match the program.
 enum class SavedStorage : std::uint32_t {
-    Rows,     ///< of a group, in whatever columns
-    Toggled,  ///< of a group, with Disabled
+    Rows,     ///< in a group, whatever the layout of columns
+    Toggled,  ///< in a group, with Disabled
     Set,
-    Shared,  ///< of a group, once, in the head
+    Shared,  ///< once per group, in the head
 };
 
 [[nodiscard]] SavedStorage saved_storage(const ComponentInfo& info);
 
-/// Bytes of one kind, in pieces of kPieceRows elements.
+/// Data of one kind, in pieces of kPieceRows elements.
 struct SnapshotSection {
     SectionKind kind;
-    std::uint32_t owner = 0;              ///< group or set; id of a resource
-    const ComponentInfo* info = nullptr;  ///< of values
-    std::uint32_t rows = 0;               ///< elements
+    std::uint32_t owner = 0;              ///< index of the group or set, or id of the resource
+    const ComponentInfo* info = nullptr;  ///< type of the values
+    std::uint32_t rows = 0;               ///< number of elements
 };
 
-/// Rows of one archetype in a group.
+/// The rows of one archetype in a group.
 struct GroupPart {
     const Archetype* archetype;
     std::uint32_t first_row;  ///< in the group
 };
 
-/// Archetypes that are one when what is not saved is left out.
+/// Archetypes with equal saved components.
 struct SnapshotGroup {
     std::vector<ComponentId> components;  ///< saved ones, ascending
-    std::vector<SharedValue> shared;      ///< of those that are shared
+    std::vector<SharedValue> shared;      ///< values of shared components
     std::vector<GroupPart> parts;
     std::uint32_t rows = 0;
-    std::size_t first_section = 0;  ///< its entities
+    std::size_t first_section = 0;  ///< index of its Entities section
 };
 
-/// Behind a SnapshotMark: the directory of a snapshot, and what its rows were.
+/// Contents of a SnapshotMark: the directory of a snapshot, and where its rows came from.
 struct SnapshotIndex {
     struct Section {
         std::uint32_t rows = 0;
         std::size_t first_piece = 0;
     };
     const World* world = nullptr;
-    std::uint32_t version = 0;  ///< what changed later has a newer one
-    std::uint64_t epoch = 0;    ///< of archetypes and versions; those of another mean nothing
+    std::uint32_t version = 0;  ///< later changes have a newer one
+    std::uint64_t epoch = 0;    ///< archetypes and versions are only comparable within one epoch
     SnapshotHeader header;
     std::vector<std::byte> head;
     std::vector<SnapshotPiece> pieces;
     std::vector<std::uint64_t> offsets;  ///< of the pieces in the data [bytes]
     std::vector<Section> sections;
-    std::vector<std::uint32_t> first_rows;  ///< of each archetype in its group
+    std::vector<std::uint32_t> first_rows;  ///< in its group, per archetype
     std::vector<ComponentId> resources;     ///< of the first sections
-    std::vector<std::size_t> groups;        ///< first section of each
-    std::vector<std::size_t> sets;
+    std::vector<std::size_t> groups;        ///< first section of each group
+    std::vector<std::size_t> sets;          ///< first section of each set
     std::uint32_t first_free = kNoLink;
 
-    /// Where a piece's line in the table is, from the front of the file [bytes].
+    /// File offset of a piece's table entry [bytes].
     [[nodiscard]] std::uint64_t table_offset(std::size_t piece) const {
         return kSnapshotHeaderSize + header.head_size + piece * sizeof(SnapshotPiece);
     }
@@ -89,31 +89,31 @@ struct SnapshotIndex {
 
 class SnapshotPlan {
   public:
-    /// Fails, naming the component, when one cannot be saved.
+    /// Fails, naming the component, if one cannot be saved.
     [[nodiscard]] static Result<SnapshotPlan> make(const World& world);
 
     [[nodiscard]] std::span<const SnapshotSection> sections() const { return sections_; }
     [[nodiscard]] std::size_t piece_count() const;
-    /// Of all pieces, where values have the least size they can have [bytes].
-    [[nodiscard]] std::size_t least_data_size() const;
+    /// Lower bound of the size of all pieces [bytes].
+    [[nodiscard]] std::size_t min_data_size() const;
 
     void write_head(ByteWriter& out) const;
     void write_piece(const SnapshotSection& section, std::uint32_t piece, ByteWriter& out) const;
 
-    /// The piece of `base` that this one is a later state of: its number; kNoPiece if there was
-    /// none.
+    /// Index of the piece of `base` that this one is a later state of; kNoPiece if there is none.
     static constexpr std::size_t kNoPiece = ~std::size_t{0};
     [[nodiscard]] std::size_t
     earlier_piece(std::size_t section, std::uint32_t piece, const SnapshotIndex& base) const;
-    /// Whether the piece that has an earlier one surely is the same: nothing of it was touched.
+    /// Whether the piece, which must have an earlier one, is known to be equal to it because
+    /// nothing in it was written.
     [[nodiscard]] bool
     is_untouched(std::size_t section, std::uint32_t piece, const SnapshotIndex& base) const;
 
-    /// All but the header, the pieces and their offsets.
+    /// Everything except the header, the pieces and their offsets.
     [[nodiscard]] SnapshotIndex make_index(std::uint32_t version) const;
 
-    /// Must be called before head and slots are written; `base`: if no entity came or went since,
-    /// its slots are the same and not looked at.
+    /// Must be called before head and slots are written. Skips reading the slots if no entity was
+    /// created or destroyed since `base`.
     void read_slots(const SnapshotIndex* base);
 
   private:
@@ -127,7 +127,7 @@ class SnapshotPlan {
     [[nodiscard]] std::size_t earlier_section(std::size_t section, const SnapshotIndex& base) const;
     [[nodiscard]] bool is_same_rows(
         const SnapshotSection& section, std::uint32_t piece, const SnapshotIndex& base) const;
-    /// Rows first .. end - 1 of the group, which may be those of several archetypes.
+    /// Rows first .. end - 1 of the group, which may belong to several archetypes.
     void write_rows(
         const SnapshotSection& section, std::uint32_t first, std::uint32_t end,
         ByteWriter& out) const;
@@ -136,8 +136,8 @@ class SnapshotPlan {
         ByteWriter& out) const;
 
     const World* world_;
-    std::vector<ComponentId> names_;      ///< in the order of their first use
-    std::vector<std::uint32_t> numbers_;  ///< in names_, by component; kUnnamed: not there
+    std::vector<ComponentId> names_;      ///< in the order of first use
+    std::vector<std::uint32_t> numbers_;  ///< index in names_ by component; kUnnamed: none
     std::vector<ComponentId> resources_;
     std::vector<SnapshotGroup> groups_;
     std::vector<const SparseSet*> sets_;
@@ -149,7 +149,7 @@ class SnapshotPlan {
     bool has_slots_ = false;
 };
 
-/// Changes when versions and numbers of archetypes of before mean nothing any more.
+/// Changes whenever earlier versions and archetype indices become invalid.
 [[nodiscard]] std::uint64_t snapshot_epoch(const World& world);
 
 /// Whether snapshots hold this resource.

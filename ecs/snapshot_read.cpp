@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPiecesPerTask = 4;
 
-/// What a section holds; where its pieces are.
+/// Contents of a section and location of its pieces.
 struct ReadSection {
     SectionKind kind;
     const ComponentInfo* info = nullptr;
@@ -39,8 +39,8 @@ struct ReadSet {
     std::size_t first_section;
 };
 
-/// Reads a snapshot in two steps: check() finds everything that could be wrong with it, restore()
-/// makes a world of it and cannot fail.
+/// Reads a snapshot in two steps: check() validates it completely, restore() then fills the world
+/// and cannot fail.
 class SnapshotReader {
   public:
     explicit SnapshotReader(const SnapshotParts& parts) : parts_(parts), in_(parts.head) {}
@@ -75,7 +75,7 @@ class SnapshotReader {
 
   private:
     [[nodiscard]] Error cut_off(std::string_view where) const {
-        return fail("{}: found the end or an impossible value at byte {}", where, in_.position());
+        return fail("{}: found the end or an invalid value at byte {}", where, in_.position());
     }
 
     // ---- the head
@@ -87,16 +87,16 @@ class SnapshotReader {
         if (info == nullptr) {
             return fail("{} {}: unknown to this program", kind, name);
         }
-        if (!info->saved || !has_bytes(*info) || info->ops.construct_default == nullptr) {
-            return fail("{} {}: not of a kind that is saved", kind, name);
+        if (!info->saved || !is_serializable(*info) || info->ops.construct_default == nullptr) {
+            return fail("{} {}: this program does not save this type", kind, name);
         }
         if (layout_hash(*info) != layout) {
-            return fail("{} {}: was saved with other fields", kind, name);
+            return fail("{} {}: was saved with different fields", kind, name);
         }
         return Done{};
     }
 
-    /// The types that follow, each once.
+    /// Reads a list of distinct types.
     Status read_types(
         std::string_view kind, const ComponentInfo* (*find)(std::string_view),
         std::vector<const ComponentInfo*>& types) {
@@ -114,10 +114,10 @@ class SnapshotReader {
                 return status;
             }
             if (has_storage && storage != static_cast<std::uint32_t>(saved_storage(*info))) {
-                return fail("{} {}: was saved from another kind of storage", kind, name);
+                return fail("{} {}: was saved with a different storage", kind, name);
             }
             if (std::find(types.begin(), types.end(), info) != types.end()) {
-                return fail("{} {}: named twice", kind, name);
+                return fail("{} {}: listed twice", kind, name);
             }
             types.push_back(info);
         }
@@ -163,7 +163,7 @@ class SnapshotReader {
         return true;
     }
 
-    /// What tells groups apart: the components, and the bytes of those that are shared.
+    /// Key of a group: its components and the bytes of shared values.
     static std::vector<ComponentId> identity_of(const ReadGroup& group) {
         std::vector<ComponentId> identity = group.components;
         for (const AnyComponent& value : group.shared) {
@@ -198,7 +198,7 @@ class SnapshotReader {
             if (std::adjacent_find(group.components.begin(), group.components.end())
                     != group.components.end()
                 || !seen.try_emplace(identity_of(group), true).second) {
-                return fail("group {}: a component or the whole of it is there twice", i);
+                return fail("group {}: the group or one of its components appears twice", i);
             }
             group.first_section = sections_.size();
             sections_.push_back({SectionKind::Entities, nullptr, group.rows});
@@ -228,7 +228,7 @@ class SnapshotReader {
             if (std::any_of(sets_.begin(), sets_.end(), [info](const ReadSet& set) {
                     return set.info == info;
                 })) {
-                return fail("sparse set {}: component {} is there twice", i, info->name);
+                return fail("sparse set {}: component {} appears twice", i, info->name);
             }
             sets_.push_back({info, sections_.size()});
             sections_.push_back({SectionKind::SetEntities, nullptr, rows});
@@ -242,8 +242,7 @@ class SnapshotReader {
         return Done{};
     }
 
-    /// Every section gets its pieces; after this, what has elements of a fixed size has all its
-    /// bytes.
+    /// Assigns pieces to sections; checks the size of sections with fixed-size elements.
     Status place_sections() {
         std::size_t piece = 0;
         std::uint64_t offset = 0;
@@ -269,7 +268,7 @@ class SnapshotReader {
         return Done{};
     }
 
-    /// 0: they differ.
+    /// Size of an element [bytes]; 0 if it varies.
     static std::size_t element_size(SectionKind kind) {
         switch (kind) {
         case SectionKind::Generations:
@@ -324,7 +323,7 @@ class SnapshotReader {
         for (std::uint32_t i = 0; i < free_count_; ++i) {
             if (slot >= uses_.size() || uses_[slot] == SlotUse::Free) {
                 return fail(
-                    "slots: found free slot {} twice or beyond the {} there are", slot,
+                    "slots: free slot {} appears twice or is not below the slot count {}", slot,
                     uses_.size());
             }
             uses_[slot] = SlotUse::Free;
@@ -332,7 +331,7 @@ class SnapshotReader {
             slot = links[slot];
         }
         if (slot != kNoLink) {
-            return fail("slots: found one more free slot than the {} there are", free_count_);
+            return fail("slots: the free list is longer than {}", free_count_);
         }
         for (std::size_t i = 0; i < links.size(); ++i) {
             if (links[i] != kNoLink && uses_[i] != SlotUse::Free) {
@@ -352,7 +351,7 @@ class SnapshotReader {
             for (const Entity entity : entities_of(groups_[i].first_section)) {
                 if (!is_handle(entity) || uses_[entity.index] != SlotUse::Unknown) {
                     return fail(
-                        "group {}: entity {} v{} is not alive or twice there", i, entity.index,
+                        "group {}: entity {} v{} is not alive or appears twice", i, entity.index,
                         entity.generation);
                 }
                 uses_[entity.index] = SlotUse::Placed;
@@ -367,7 +366,7 @@ class SnapshotReader {
             for (const Entity entity : entities) {
                 if (!is_handle(entity) || uses_[entity.index] != SlotUse::Placed) {
                     return fail(
-                        "component {}: entity {} v{} is not alive or twice there", set.info->name,
+                        "component {}: entity {} v{} is not alive or appears twice", set.info->name,
                         entity.index, entity.generation);
                 }
                 uses_[entity.index] = SlotUse::InSet;
@@ -379,25 +378,25 @@ class SnapshotReader {
         return Done{};
     }
 
-    /// Reads every value into one that nobody keeps.
+    /// Validates every value by reading it into scratch memory.
     Status check_values() {
         for (const ReadSection& section : sections_) {
             if (section.info == nullptr) {
                 continue;
             }
-            std::atomic<bool> is_wrong = false;
+            std::atomic<bool> is_invalid = false;
             for_each_piece(
                 section, [&](std::span<const std::byte> bytes, std::uint32_t, std::uint32_t count) {
-                    const bool is_right = section.kind == SectionKind::Disabled
+                    const bool is_valid = section.kind == SectionKind::Disabled
                                               ? are_disabled_rows(bytes, count)
                                               : are_values(*section.info, bytes, count);
-                    if (!is_right) {
-                        is_wrong.store(true, std::memory_order_relaxed);
+                    if (!is_valid) {
+                        is_invalid.store(true, std::memory_order_relaxed);
                     }
                 });
-            if (is_wrong.load()) {
+            if (is_invalid.load()) {
                 return fail(
-                    "{} {}: found what is none of its values",
+                    "{} {}: found an invalid value",
                     section.kind == SectionKind::Resource ? "resource" : "component",
                     section.info->name);
             }
@@ -405,7 +404,7 @@ class SnapshotReader {
         return Done{};
     }
 
-    /// Calls call(bytes, first row, rows) for all pieces, on several threads.
+    /// Calls call(bytes, first row, row count) for all pieces, on several threads.
     template <typename Call>
     void for_each_piece(const ReadSection& section, const Call& call) const {
         const std::uint32_t count = pieces_of(section.rows);
@@ -426,7 +425,7 @@ class SnapshotReader {
         });
     }
 
-    /// Whether they are bits of `count` rows, or none.
+    /// Whether the bytes are a mask of `count` rows with some bit set, or empty.
     static bool are_disabled_rows(std::span<const std::byte> bytes, std::uint32_t count) {
         RowMask beyond = mask_of(bytes);
         beyond -= RowMask::first(count);
@@ -442,7 +441,7 @@ class SnapshotReader {
 
     static bool
     are_values(const ComponentInfo& info, std::span<const std::byte> bytes, std::uint32_t count) {
-        if (takes_any_bytes(info)) {
+        if (accepts_any_bytes(info)) {
             return bytes.size() == std::size_t{count} * info.size;
         }
         ByteReader in(bytes);
@@ -498,7 +497,7 @@ class SnapshotReader {
     }
 
     void restore_resources(World& world) const {
-        // Saved kinds that the snapshot does not have were not there when it was made.
+        // Saved resource types missing in the snapshot did not exist when it was made.
         const std::vector<ComponentId> present(world.resources().begin(), world.resources().end());
         for (const ComponentId id : present) {
             const ComponentInfo& info = component_info(id);
@@ -529,8 +528,8 @@ class SnapshotReader {
     std::vector<SlotUse> uses_;
 };
 
-/// The mark of a world that was just restored. A snapshot that nobody saved may be whole and yet
-/// not what the world would be saved as; it gets a mark with which nothing is as before.
+/// The mark of a world that was just restored. A valid snapshot may still differ from what saving
+/// the world would write, if it was not made by save_snapshot; its mark then matches nothing.
 SnapshotMark mark_of(const World& world, const SnapshotParts& parts) {
     SnapshotPlan plan = SnapshotPlan::make(world).value();
     plan.read_slots(nullptr);

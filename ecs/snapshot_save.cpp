@@ -17,11 +17,11 @@ Result<std::vector<std::byte>> save_snapshot(const World& world, SnapshotMark* m
     ByteWriter head;
     plan.write_head(head);
     header.head_size = head.size();
-    header.data_size = plan.least_data_size();  // for the time being
+    header.data_size = plan.min_data_size();  // estimate, corrected below
     ByteWriter out;
     out.reserve(header.total_size());
-    expect_to_fill(out.data(), header.total_size());
-    write_header(header, out);  // to be replaced, as is the table
+    advise_huge_pages(out.data(), header.total_size());
+    write_header(header, out);  // overwritten below, like the table
     out.bytes(head.data(), head.size());
     std::vector<SnapshotPiece> pieces(header.piece_count);
     out.bytes(pieces.data(), pieces.size() * sizeof(SnapshotPiece));
@@ -33,7 +33,7 @@ Result<std::vector<std::byte>> save_snapshot(const World& world, SnapshotMark* m
         for (std::uint32_t i = 0; i < pieces_of(section.rows); ++i, ++piece) {
             const std::size_t start = out.size();
             plan.write_piece(section, i, out);
-            // Hashed while the cache still has it.
+            // Hash while the piece is still in the cache.
             const std::size_t size = out.size() - start;
             pieces[piece] = {size, hash_bytes(out.data() + start, size)};
             offsets[piece] = start - data;

@@ -17,7 +17,7 @@ SparseSet::~SparseSet() {
 
 std::uint32_t SparseSet::append(Entity entity, std::uint32_t version) {
     if (entities_.data() == nullptr) {
-        // Apart from each other, and from the columns of archetypes.
+        // Skewed differently from each other and from the columns of archetypes.
         const std::size_t position = 100 + 2 * std::size_t{column_.info->id};
         const std::size_t align = std::max<std::size_t>(kColumnAlign, column_.info->align);
         entities_ = VirtualRange(std::size_t{kMaxRows} * sizeof(Entity), skew_of(position));
@@ -84,7 +84,7 @@ void SparseSet::shrink() {
     }
 }
 
-void SparseSet::forget_versions_before(std::uint32_t oldest) {
+void SparseSet::clamp_versions(std::uint32_t oldest) {
     for (std::uint32_t& version : column_.versions) {
         version = newer_of(version, oldest);
     }

@@ -12,9 +12,9 @@
 
 namespace limn {
 
-// One sparse component: its values side by side, in the order they were added but for removals,
-// which move the last into the hole; and for each entity index, where its value is. Adding and
-// removing touches nothing else of the entity. Versions as in an archetype, for chunks of values.
+// Storage of one sparse component: a dense array of values in insertion order, except that a
+// removal moves the last value into the hole; and a map from entity index to position. Adding and
+// removing touches nothing else of the entity. Has versions per chunk of values, like an archetype.
 
 class SparseSet {
   public:
@@ -40,15 +40,15 @@ class SparseSet {
         return position != kAbsent && entities()[position] == entity ? position : kAbsent;
     }
     [[nodiscard]] bool has(Entity entity) const { return find(entity) != kAbsent; }
-    /// Tags have no values: the pointer must not be used.
+    /// Must not be dereferenced for tags.
     [[nodiscard]] std::byte* value(std::uint32_t position) const { return column_.at(position); }
 
-    /// The position of a new value, which is raw memory. The entity must have none yet.
+    /// Adds a value, as raw memory; returns its position. The entity must have none yet.
     std::uint32_t append(Entity entity, std::uint32_t version);
     /// Destroys the value at `position`.
     void remove(std::uint32_t position, std::uint32_t version);
     void clear(std::uint32_t version);
-    /// Gives back the memory that the values do not need.
+    /// Releases unused memory.
     void shrink();
 
     [[nodiscard]] std::uint32_t version(std::uint32_t position) const {
@@ -59,7 +59,7 @@ class SparseSet {
         store_version(column_.versions[position / kChunkRows], version);
         store_version(column_.newest, version);
     }
-    void forget_versions_before(std::uint32_t oldest);
+    void clamp_versions(std::uint32_t oldest);
     [[nodiscard]] std::size_t committed() const;
 
     bool observes_add = false;

@@ -11,9 +11,9 @@
 
 namespace limn {
 
-// A chunk of a split component: one array per 4-byte scalar instead of one array of structs, which
-// is what vector units want. A kernel takes the lanes it needs, by number or by member, and loops
-// over plain spans; [i] and set() gather and scatter a whole value, for code that is not hot.
+// A chunk of a split component: structure of arrays, one array per 4-byte scalar, suited to SIMD. A
+// kernel picks the lanes it needs, by index or by member, and loops over plain spans; [i] and set()
+// gather and scatter a whole value, for code that is not hot.
 //
 //     query.chunks([](ChunkView chunk, SplitSpan<const Sphere> spheres, SplitSpan<Spin> spins) {
 //         const std::span<const float> radius = spheres.field<&Sphere::radius>();
@@ -30,7 +30,7 @@ namespace detail {
 template <typename T>
 inline constexpr std::size_t lane_count = sizeof(T) / kLaneBytes;
 
-/// The scalar that a member is made of: itself, or what a vector or an array of scalars holds.
+/// The scalar type of a member: itself, or the element of a vector or an array of scalars.
 template <typename F>
 struct LaneTypeOf {
     using Type = float;
@@ -56,7 +56,7 @@ struct MemberTraits<F C::*> {
     using Type = F;
 };
 
-/// The first lane of a member.
+/// Index of a member's first lane.
 template <typename T, auto member>
 std::size_t lane_of() {
     alignas(T) static constexpr std::byte storage[sizeof(T)] = {};
@@ -65,7 +65,7 @@ std::size_t lane_of() {
            / kLaneBytes;
 }
 
-/// Where the lanes of a T begin.
+/// Base pointers of the lanes of a T.
 template <typename T>
 class Lanes {
     using Value = std::remove_const_t<T>;
@@ -97,8 +97,8 @@ class Lanes {
     LaneScalar* bases_[lane_count<Value>] = {};
 };
 
-/// A row of a split component as each() hands it out: a copy, written back at the end of the call
-/// if T is not const.
+/// A row of a split component as each() passes it: a copy, written back at the end of the call if T
+/// is not const.
 template <typename T>
 class SplitRow {
   public:
@@ -119,7 +119,7 @@ class SplitRow {
     std::uint32_t row_;
 };
 
-/// The same where there may be none.
+/// The same for an Optional component.
 template <typename T>
 class SplitOptionalRow {
   public:
@@ -152,7 +152,7 @@ inline constexpr bool is_split_row<SplitRow<T>> = true;
 template <typename T>
 inline constexpr bool is_split_row<SplitOptionalRow<T>> = true;
 
-/// What a function of each() gets for what a term's access found; lives until the end of the call.
+/// Converts a term's access result to the argument of each()'s function; valid during the call.
 template <typename Found>
 constexpr decltype(auto) row_argument(Found&& found) {
     if constexpr (is_split_row<std::remove_cvref_t<Found>>) {
@@ -164,31 +164,31 @@ constexpr decltype(auto) row_argument(Found&& found) {
 
 }  // namespace detail
 
-/// The rows of a chunk; T is const if they are only read. Empty where an Optional is not there.
+/// The rows of a chunk; T is const if they are only read. Empty for a missing Optional.
 template <typename T>
 class SplitSpan {
   public:
     using Value = std::remove_const_t<T>;
-    /// Of a whole T.
+    /// Number of lanes of a T.
     static constexpr std::size_t kLanes = detail::lane_count<Value>;
 
     SplitSpan() = default;
-    /// Rows from `row` on of a component whose first lane is `first`.
+    /// `size` rows from `row` on of a component whose first lane is `first`.
     SplitSpan(const Column* first, std::uint32_t row, std::uint32_t size)
         : lanes_(first, row), size_(size) {}
 
     [[nodiscard]] std::uint32_t size() const { return size_; }
     [[nodiscard]] bool empty() const { return size_ == 0; }
 
-    /// Scalar number `lane` of all rows, in the order of the struct: lane<std::int32_t>(3) if that
-    /// one is no float.
+    /// Scalar number `lane` of all rows, in struct order; for types other than float:
+    /// lane<std::int32_t>(3).
     template <typename Scalar = float>
     [[nodiscard]] auto lane(std::size_t lane) const {
         static_assert(sizeof(Scalar) == kLaneBytes, "lane: a lane holds 4-byte scalars");
         return lane_span<Scalar>(lane);
     }
-    /// A member of all rows: a span if it is a scalar, an array of spans if it is a vector or an
-    /// array of scalars. Of other structs, which must consist of floats, an array too.
+    /// A member of all rows: a span if it is a scalar, an array of spans if it is a vector, an
+    /// array of scalars or another struct, which must consist of floats.
     template <auto member>
     [[nodiscard]] auto field() const {
         using Traits = detail::MemberTraits<decltype(member)>;

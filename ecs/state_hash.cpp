@@ -10,18 +10,18 @@ namespace limn {
 
 namespace {
 
-/// A piece of a column to hash; pieces are hashed in any order and put together in theirs.
+/// A piece of a column; pieces are hashed in parallel and combined in order.
 struct HashPiece {
     const ComponentInfo* info;  ///< nullptr: entities
     const std::byte* first;
     std::uint32_t count;
-    const Column* lanes = nullptr;  ///< of a split component, whose rows begin at `row`
+    const Column* lanes = nullptr;  ///< of a split component, starting at `row`
     std::uint32_t row = 0;
 };
 
 class StateHasher {
   public:
-    /// Values of one component, or entities, in pieces of a chunk.
+    /// Adds the values of one component, or entities, in pieces of one chunk.
     void add_column(const ComponentInfo* info, const std::byte* first, std::uint32_t count) {
         const std::size_t size = info != nullptr ? info->size : sizeof(Entity);
         for (std::uint32_t row = 0; row < count; row += kChunkRows) {
@@ -29,7 +29,7 @@ class StateHasher {
         }
         parts_.push_back({pieces_.size(), info != nullptr ? hash_text(info->name) : 0, false});
     }
-    /// The same of an archetype.
+    /// Adds a column of an archetype.
     void add_rows(const Column& column, std::uint32_t count) {
         if (column.info->storage != Storage::Split) {
             add_column(column.info, column.data, count);
@@ -41,11 +41,11 @@ class StateHasher {
         }
         parts_.push_back({pieces_.size(), hash_text(column.info->name), false});
     }
-    /// A component that is there, without a value.
+    /// Adds the presence of a component, without a value.
     void add_presence(const ComponentInfo& info) {
         parts_.push_back({pieces_.size(), hash_text(info.name), false});
     }
-    /// Which rows of a toggled component are disabled; nothing if none is.
+    /// Adds which rows of a toggled component are disabled; nothing if none is.
     void add_disabled(const ComponentInfo& info, const ToggleBits& toggle, std::uint32_t chunks) {
         if (toggle.disabled_count() == 0) {
             return;
@@ -74,8 +74,8 @@ class StateHasher {
                         : hash_bytes(piece.first, piece.count * sizeof(Entity), piece.count);
             }
         });
-        // Columns of a group, and groups, are added: their order, which follows from ids and
-        // history, must not count.
+        // Sum over the columns of a group, and over groups, because their order depends on ids and
+        // history and must not matter.
         std::uint64_t total = 0;
         std::uint64_t group = 0;
         std::size_t piece = 0;
@@ -122,7 +122,7 @@ std::uint64_t state_hash(const World& world) {
             if (column == kSharedColumn) {
                 const void* const value = archetype->shared_value(id)->value;
                 hasher.add_column(&info, static_cast<const std::byte*>(value), 1);
-            } else if (column >= 0 && has_bytes(info)) {
+            } else if (column >= 0 && is_serializable(info)) {
                 hasher.add_rows(archetype->column(column), archetype->size());
             } else {
                 hasher.add_presence(info);
@@ -141,7 +141,7 @@ std::uint64_t state_hash(const World& world) {
         if (set->size() == 0 || !info.hashed) {
             continue;
         }
-        if (!info.is_tag && has_bytes(info)) {
+        if (!info.is_tag && is_serializable(info)) {
             hasher.add_column(&info, set->value(0), set->size());
         } else {
             hasher.add_presence(info);
@@ -152,7 +152,7 @@ std::uint64_t state_hash(const World& world) {
     }
     for (const ComponentId id : world.resources()) {
         const ComponentInfo& info = component_info(id);
-        if (info.is_resource && info.hashed && has_bytes(info) && !info.is_tag) {
+        if (info.is_resource && info.hashed && is_serializable(info) && !info.is_tag) {
             hasher.add_column(&info, static_cast<const std::byte*>(world.find_resource(id)), 1);
             hasher.end_group();
         }

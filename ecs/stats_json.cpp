@@ -10,7 +10,7 @@ namespace limn {
 
 namespace {
 
-/// Text in quotes; RFC 8259 asks to escape quotes, backslashes and what is below a space.
+/// Quoted text; RFC 8259 requires escaping quotes, backslashes and control characters.
 std::string quoted(std::string_view text) {
     constexpr std::string_view kHex = "0123456789abcdef";
     std::string json = "\"";
@@ -30,7 +30,7 @@ std::string quoted(std::string_view text) {
     return json + '"';
 }
 
-/// Members one behind the other: {"name": value, ...}.
+/// Builds an object member by member: {"name": value, ...}.
 class JsonObject {
   public:
     JsonObject& add(std::string_view name, std::string_view text) {

@@ -43,7 +43,7 @@ std::string archetype_lines(const ArchetypeStats& archetype) {
         align_right(archetype.rows_moved_in, 7), align_right(archetype.rows_moved_out, 7),
         join_text(labels_of(archetype), " "));
     for (const auto& [component, rows] : archetype.disabled) {
-        text += format_text("{} of them with {} disabled\n", align_right(rows, 9), component);
+        text += format_text("{} rows with {} disabled\n", align_right(rows, 9), component);
     }
     return text;
 }
@@ -64,8 +64,7 @@ std::string to_text(const WorldStats& stats) {
     if (const FlushStats& flush = stats.flush; flush.flushes > 0 || flush.commands > 0) {
         text += format_text(
             "{} flushes of {} commands: {} entities created, {} destroyed; {} rows moved in "
-            "ranges, "
-            "{} singly, {} with their columns\n",
+            "ranges, {} one by one, {} by exchanging columns\n",
             flush.flushes, flush.commands, flush.entities_created, flush.entities_destroyed,
             flush.rows_moved_in_ranges, flush.rows_moved_singly, flush.rows_handed_over);
     }

@@ -37,8 +37,14 @@ WorldCore& detail::core_of(World& world) {
     return world.core();
 }
 
-ResourceSlot& detail::resource_slot_of(World& world, ComponentId id) {
-    return world.require_resource_slot(id);
+ResourceSlot* detail::find_resource_slot(World& world, ComponentId id) {
+    return world.resource_slot(id);
+}
+
+ResourceSlot& detail::require_resource_slot(World& world, ComponentId id) {
+    ResourceSlot* const slot = world.resource_slot(id);
+    LIMN_CHECK_NOTE(slot != nullptr, component_info(id).name.c_str());
+    return *slot;
 }
 
 void SystemAccess::normalize() {
@@ -74,7 +80,7 @@ void System::run(World& world, std::uint32_t version) {
 }
 
 void System::run_locked(World& world, std::uint32_t version) {
-    // In a task of its own: its commands are numbered from the start, wherever it was stolen to.
+    // A fresh scope: command order starts at 0, whichever thread stole the task.
     const TaskScopeGuard scope({});
     const bool has_run = last_epoch_ == world.core().epoch;
     body_->run(world, version, has_run ? last_version_ : version - kNeverRan);

@@ -15,16 +15,15 @@ namespace limn {
 
 // A system is a function over parts of the world:
 //
-//     void update_water(Query<const Water, WaterState> surfaces, Res<const FrameTime> time,
-//     Commands commands);
+//     void update_water(Query<const Water, WaterState> surfaces, Res<const FrameTime> time);
 //
-// What it may touch is its parameter types (ecs/system_param.h). A System is such a function with
-// what it keeps from run to run: the list of archetypes of each query, recorded commands, and when
-// it last ran, which is what Changed refers to.
+// Its parameter types declare what it may access (ecs/system_param.h). A System is such a function
+// with its persistent state: the archetype list of each query, recorded commands, and when it last
+// ran, which Changed compares with.
 
 class System {
   public:
-    /// What is behind it; in MakeSystem.
+    /// Type-erased implementation, see SystemBody.
     class Body {
       public:
         virtual ~Body() = default;
@@ -40,19 +39,19 @@ class System {
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const SystemAccess& access() const { return access_; }
 
-    /// Looks at new archetypes. Before each run, while the structure does not change. Systems may
-    /// be prepared at the same time as others are.
+    /// Updates queries with new archetypes. Call before each run, while the structure does not
+    /// change. Several systems may be prepared concurrently.
     void prepare(World& world) { body_->prepare(world); }
-    /// Calls the function; commands are only recorded. `version` is from World::begin_run, called
-    /// in the order of the systems. Systems whose access does not conflict may run at the same
-    /// time. An exclusive one must run alone.
+    /// Calls the function; commands are only recorded. `version` is from World::begin_run and
+    /// ascends in system order. Systems whose accesses do not conflict may run concurrently. An
+    /// exclusive one must run alone.
     void run(World& world, std::uint32_t version);
-    /// The same by a caller who has locked the structure, or, of an exclusive system, has made sure
-    /// that nobody did.
+    /// The same for a caller who has locked the structure or, for an exclusive system, has checked
+    /// that it is unlocked.
     void run_locked(World& world, std::uint32_t version);
     /// For apply_commands after the run; nullptr if the system takes no Commands.
     [[nodiscard]] CommandBuffer* commands() { return body_->commands(); }
-    /// Those of its parameters, in their order.
+    /// The queries among its parameters, in order.
     [[nodiscard]] std::vector<const QueryState*> queries() const {
         std::vector<const QueryState*> queries;
         body_->list_queries(queries);
@@ -64,8 +63,7 @@ class System {
     SystemAccess access_;
     std::unique_ptr<Body> body_;
     std::uint32_t last_version_ = 0;
-    std::uint32_t last_epoch_ =
-        0;  ///< of the world (WorldCore::epoch) that it last ran on; 0: none
+    std::uint32_t last_epoch_ = 0;  ///< WorldCore::epoch of its last run; 0: none
 };
 
 namespace detail {
@@ -93,7 +91,7 @@ concept SystemFunction = std::is_pointer_v<F> || requires {
     &F::operator();
 };
 
-/// Says in one line what is wrong with a parameter.
+/// One-line errors for invalid parameters.
 template <typename P>
 struct ParameterCheck {
     using Value = std::remove_cvref_t<P>;
@@ -106,14 +104,15 @@ struct ParameterCheck {
         "a system takes Query, Res, Commands and the like by value, without &");
     static_assert(
         kIsGood || kIsWorld || kIsReference,
-        "a parameter of a system is Query<..>, Res<T>, Res<const T>, Commands, World& or const "
+        "a parameter of a system is Query<..>, Res<T>, OptionalRes<T>, Commands, World& or const "
         "World&; components come through a Query");
 };
 
 template <typename... Ps>
 SystemAccess access_of_parameters(TypeList<Ps...>) {
     static_assert(
-        (int{0} + ... + int{std::is_same_v<Ps, Commands>}) <= 1, "a system has one Commands");
+        (int{0} + ... + int{std::is_same_v<Ps, Commands>}) <= 1,
+        "a system takes Commands only once");
     SystemAccess access;
     if constexpr ((ParameterCheck<Ps>::kIsGood && ...)) {
         (SystemParam<Ps>::declare(access), ...);
@@ -161,13 +160,13 @@ class SystemBody<F, TypeList<Ps...>> final : public System::Body {
     std::tuple<SystemParam<Ps>...> states_;
 };
 
-/// What a run-once cache recognizes a type by.
+/// Its address identifies a type in SystemCache.
 template <typename F>
 inline constexpr char type_key = 0;
 
 }  // namespace detail
 
-/// The system of a function or function object.
+/// Makes a system from a function or function object.
 template <typename F>
 [[nodiscard]] System make_system(std::string name, F function) {
     static_assert(
@@ -178,13 +177,13 @@ template <typename F>
         std::make_unique<detail::SystemBody<F, Parameters>>(std::move(function)));
 }
 
-/// The same with the name of the function: make_system<update_water>().
+/// The same, named after the function: make_system<update_water>().
 template <auto function>
 [[nodiscard]] System make_system() {
     return make_system(std::string(short_name(value_name<function>())), function);
 }
 
-/// What the system may touch.
+/// What the system may access.
 template <auto function>
 [[nodiscard]] SystemAccess access_of() {
     return detail::access_of_parameters(
@@ -194,11 +193,11 @@ template <auto function>
 /// Prepares, runs and applies the commands of one system.
 void run_system(World& world, System& system);
 
-/// The systems that World::run has met; they remember when they last ran.
+/// The systems that World::run has run so far; they remember when they last ran.
 struct SystemCache {
-    /// nullptr: not yet.
+    /// nullptr if it has not run yet.
     static System* find(World& world, const void* type, const void* function);
-    /// In the order in which they first ran.
+    /// In the order of their first run.
     static std::vector<const System*> all(const World& world);
     static System& insert(World& world, const void* type, const void* function, System system);
 };

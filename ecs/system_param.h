@@ -10,8 +10,8 @@
 
 namespace limn {
 
-// What a parameter of a system gives access to, and how it is made from the world. A SystemParam
-// lives as long as its System; prepare() and get() are called once a run.
+// What a system parameter gives access to, and how it is obtained from the world. A SystemParam
+// lives as long as its System; prepare() and get() are called once per run.
 
 struct SystemAccess {
     std::vector<ComponentId> reads;   ///< components, ascending, none of them in `writes`
@@ -19,12 +19,12 @@ struct SystemAccess {
     std::vector<ComponentId> resource_reads;
     std::vector<ComponentId> resource_writes;
     bool commands = false;   ///< records structural changes
-    bool reads_all = false;  ///< const World&: anything
-    bool exclusive = false;  ///< World&: everything, structure too
+    bool reads_all = false;  ///< const World&: may read anything
+    bool exclusive = false;  ///< World&: may change anything, including the structure
 
-    /// Sorts, and takes out of the reads what is also written.
+    /// Sorts, and removes from the reads what is also written.
     void normalize();
-    /// Whether two systems must not run at the same time.
+    /// Whether two systems must not run concurrently.
     [[nodiscard]] bool conflicts_with(const SystemAccess& other) const;
 };
 
@@ -41,7 +41,14 @@ concept SystemParameter = requires(SystemAccess& access) {
 };
 
 [[nodiscard]] WorldCore& core_of(World& world);
-[[nodiscard]] ResourceSlot& resource_slot_of(World& world, ComponentId id);
+[[nodiscard]] ResourceSlot* find_resource_slot(World& world, ComponentId id);
+[[nodiscard]] ResourceSlot& require_resource_slot(World& world, ComponentId id);
+
+template <typename T>
+void declare_resource(SystemAccess& access) {
+    const ComponentId id = component_id<std::remove_const_t<T>>;
+    (std::is_const_v<T> ? access.resource_reads : access.resource_writes).push_back(id);
+}
 
 }  // namespace detail
 
@@ -80,14 +87,22 @@ struct SystemParam<Query<Terms...>> {
 
 template <typename T>
 struct SystemParam<Res<T>> {
-    static void declare(SystemAccess& access) {
-        const ComponentId id = component_id<std::remove_const_t<T>>;
-        (std::is_const_v<T> ? access.resource_reads : access.resource_writes).push_back(id);
-    }
+    static void declare(SystemAccess& access) { detail::declare_resource<T>(access); }
     void prepare(World&) {}
     Res<T> get(World& world, std::uint32_t version, std::uint32_t since) {
         return Res<T>(
-            detail::resource_slot_of(world, component_id<std::remove_const_t<T>>), version, since);
+            detail::require_resource_slot(world, component_id<std::remove_const_t<T>>), version,
+            since);
+    }
+};
+
+template <typename T>
+struct SystemParam<OptionalRes<T>> {
+    static void declare(SystemAccess& access) { detail::declare_resource<T>(access); }
+    void prepare(World&) {}
+    OptionalRes<T> get(World& world, std::uint32_t version, std::uint32_t) {
+        return OptionalRes<T>(
+            detail::find_resource_slot(world, component_id<std::remove_const_t<T>>), version);
     }
 };
 

@@ -4,9 +4,9 @@
 
 namespace limn {
 
-// Where in a system the current thread is, so that commands recorded by many threads can be put
-// into the order that one thread would have recorded them in. par_chunks opens a new sequence
-// before and after its work, and says in each task which chunk it is about.
+// The current thread's position within a system, so that commands recorded by many threads can be
+// sorted into the order in which one thread would have recorded them. par_chunks starts a new
+// sequence before and after its work, and sets the chunk in each task.
 
 struct TaskScope {
     std::uint32_t sequence = 0;  ///< counts the parallel loops of the running system
@@ -15,7 +15,7 @@ struct TaskScope {
 
 inline constinit thread_local TaskScope current_task;
 
-/// Replaces current_task for the lifetime.
+/// Replaces current_task during its lifetime.
 class TaskScopeGuard {
   public:
     explicit TaskScopeGuard(TaskScope scope) : outer_(current_task) { current_task = scope; }

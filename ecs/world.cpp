@@ -17,7 +17,7 @@ std::uint32_t bundle_count = 0;
 std::uint32_t query_count = 0;
 }  // namespace
 
-// Called before main only, by one thread.
+// Only called before main, by one thread.
 std::uint32_t next_bundle_index() {
     return bundle_count++;
 }
@@ -33,7 +33,7 @@ std::uint32_t next_epoch() {
 }
 
 World::World() : internals_(std::make_unique<Internals>()) {
-    static_cast<void>(archetype_of({}));  // the one without components is always number 0
+    static_cast<void>(archetype_of({}));  // index 0 is always the empty archetype
 }
 
 World::~World() {
@@ -97,7 +97,7 @@ void World::shrink() {
         set->shrink();
     }
     core_.blocks.shrink();
-    internals_->flush = nullptr;  // its lists; the next sync point begins new ones
+    internals_->flush = nullptr;  // frees its lists; the next sync point creates new ones
 }
 
 void World::drop_all_rows() {
@@ -119,7 +119,7 @@ Archetype&
 World::archetype_of(std::span<const ComponentId> components, std::span<const SharedValue> shared) {
     std::vector<ComponentId> key(components.begin(), components.end());
     if (!shared.empty()) {
-        key.push_back(kMaxComponents);  // no component: the numbers of the values follow
+        key.push_back(kMaxComponents);  // separator: the keys of shared values follow
         for (const SharedValue& value : shared) {
             key.push_back(value.key);
         }
@@ -266,8 +266,8 @@ SparseSet& World::use_sparse_set(ComponentId id) {
     return made;
 }
 
-// ---- components without types
-// --------------------------------------------------------------------
+// ---- type-erased components
+// ----------------------------------------------------------------------
 
 std::vector<ComponentId> World::components_of(Entity entity) const {
     const EntityPlace place = require(entity);
@@ -307,7 +307,7 @@ const void* World::find(Entity entity, ComponentId id) const {
     const Archetype& rows = archetype(place.archetype);
     const int column = rows.column_of(id);
     if (column == kTagColumn) {
-        return &rows;  // some address: tags have no value
+        return &rows;  // any non-null address: tags have no value
     }
     if (column == kSharedColumn) {
         return rows.shared_value(id)->value;
@@ -325,7 +325,7 @@ void* World::find(Entity entity, ComponentId id) {
     }
     LIMN_CHECK_NOTE(
         has_address(component_info(id)),
-        "the value of a shared component is that of others too; use read and write");
+        "the value of a shared component belongs to several entities; use read and write");
     if (SparseSet* set = core_.sparse_set(id); set != nullptr) {
         set->touch(set->find(entity), core_.now());
     } else {
@@ -552,16 +552,16 @@ QueryState& World::shared_query_state(std::uint32_t index, MakeTerms terms) cons
 
 std::uint32_t World::begin_run(std::uint32_t systems) {
     constexpr std::uint32_t kInterval = 1u << 28;  // kMaxVersionAge + kInterval < 2^31
-    if (core_.now() - versions_forgotten_at_ > kInterval
+    if (core_.now() - versions_clamped_at_ > kInterval
         && core_.iterations.load(std::memory_order_relaxed) == 0) {
-        versions_forgotten_at_ = core_.now();
-        ++core_.times_forgotten;
+        versions_clamped_at_ = core_.now();
+        ++core_.version_clamp_count;
         const std::uint32_t oldest = core_.now() - kMaxVersionAge;
         for (const auto& archetype : core_.archetypes) {
-            archetype->forget_versions_before(oldest);
+            archetype->clamp_versions(oldest);
         }
         for (SparseSet* set : core_.sparse_list) {
-            set->forget_versions_before(oldest);
+            set->clamp_versions(oldest);
         }
         for (const auto& slot : resources_) {
             if (slot != nullptr) {
@@ -615,12 +615,6 @@ void* World::find_resource(ComponentId id) {
 const void* World::find_resource(ComponentId id) const {
     const ResourceSlot* slot = resource_slot(id);
     return slot != nullptr ? slot->value : nullptr;
-}
-
-ResourceSlot& World::require_resource_slot(ComponentId id) {
-    ResourceSlot* slot = resource_slot(id);
-    LIMN_CHECK_NOTE(slot != nullptr, component_info(id).name.c_str());
-    return *slot;
 }
 
 std::uint32_t World::resource_version(ComponentId id) const {

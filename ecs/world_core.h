@@ -13,12 +13,12 @@
 
 namespace limn {
 
-// What a query sees of a world: slots, archetypes, sparse sets, the clock of change versions, and
-// the lock that makes a structural change during an iteration a mistake with a message.
+// The part of a world that queries use: slots, archetypes, sparse sets, the change version counter,
+// and the lock that detects structural changes during an iteration.
 
-/// Versions older than this are forgotten (made equal to it) before differences could overflow.
+/// Older versions are clamped to this age before differences could overflow.
 inline constexpr std::uint32_t kMaxVersionAge = 3u << 29;
-/// `since` of a system that never ran, relative to the version it runs at: all is new to it.
+/// For a system that never ran, `since` is its version minus this: everything counts as changed.
 inline constexpr std::uint32_t kNeverRan = 0x7fffffffu;
 
 static_assert(kMaxRows <= kMaxRowsOfSlot);
@@ -29,16 +29,16 @@ static_assert(kMaxRows <= kMaxRowsOfSlot);
 struct WorldCore {
     EntityTable entities;
     BlockPool blocks;
-    std::vector<std::unique_ptr<Archetype>> archetypes;  ///< in the order of their creation
+    std::vector<std::unique_ptr<Archetype>> archetypes;  ///< in creation order
     std::vector<std::unique_ptr<SparseSet>> sparse;      ///< by ComponentId; null: never used
     SharedValues shared;
-    std::vector<SparseSet*> sparse_list;  ///< those in use, in the order of their first use
-    mutable std::atomic<std::uint32_t> version = 1;  ///< of what is changed now
+    std::vector<SparseSet*> sparse_list;             ///< those in use, in the order of first use
+    mutable std::atomic<std::uint32_t> version = 1;  ///< assigned to current changes
     mutable std::atomic<int> iterations = 0;         ///< > 0: the structure is locked
-    /// Of `archetypes` from when they last began anew; no other world has had the same, so that a
-    /// system can tell worlds apart.
+    /// Changes whenever `archetypes` is reset; unique among all worlds, so that a system can
+    /// distinguish worlds.
     std::uint32_t epoch = next_epoch();
-    std::uint32_t times_forgotten = 0;  ///< counts how often old versions were
+    std::uint32_t version_clamp_count = 0;  ///< how often old versions were clamped
 
     [[nodiscard]] std::uint32_t now() const { return version.load(std::memory_order_relaxed); }
     [[nodiscard]] SparseSet* sparse_set(ComponentId id) const {
@@ -53,9 +53,9 @@ struct WorldCore {
 
 /// Who locks the structure while a query iterates.
 enum class IterationLock : std::uint8_t {
-    System,  ///< whoever runs the system has done it
-    Plain,   ///< the query; nobody else uses the world
-    Shared,  ///< the query; others may read the world at the same time
+    System,  ///< the caller that runs the system
+    Plain,   ///< the query; no other thread uses the world
+    Shared,  ///< the query; other threads may read the world concurrently
 };
 
 class IterationGuard {
@@ -68,7 +68,7 @@ class IterationGuard {
   private:
     void add(int count) {
         if (lock_ == IterationLock::Plain) {
-            // A plain addition: half the cost of a small query would be the locked one.
+            // Not an atomic increment, which would be half the cost of a small query.
             core_.iterations.store(
                 core_.iterations.load(std::memory_order_relaxed) + count,
                 std::memory_order_relaxed);

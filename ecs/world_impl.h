@@ -11,7 +11,7 @@ namespace detail {
 std::uint32_t next_bundle_index();
 std::uint32_t next_query_index();
 
-/// Numbers for combinations of types, ready before main.
+/// Indices of type combinations, assigned before main.
 template <typename... Ts>
 inline const std::uint32_t bundle_index = next_bundle_index();
 template <typename... Terms>
@@ -24,7 +24,7 @@ inline const std::uint32_t query_index = next_query_index();
 
 template <typename... Ts>
 World::Bundle& World::bundle_of() {
-    static_assert(detail::all_different<Ts...>, "an entity has each component once");
+    static_assert(detail::all_different<Ts...>, "an entity has each component only once");
     static_assert(
         (detail::Component<Ts> && ...), "components are values, not pointers, arrays or entities");
     const std::uint32_t index = detail::bundle_index<Ts...>;
@@ -64,7 +64,7 @@ Entity World::create(Ts&&... components) {
                 ::new (static_cast<void*>(set.value(place))) Value(std::forward<T>(component));
             }
         } else if constexpr (detail::is_shared<Value>) {
-            // The archetype has it.
+            // Stored in the archetype.
         } else if constexpr (detail::is_split<Value>) {
             detail::Lanes<Value>(&bundle.archetype->column(bundle.columns[position]), 0)
                 .store(row, component);
@@ -108,7 +108,7 @@ void World::create_many(std::span<Entity> entities, const Ts&... components) {
                 }
             }
         } else if constexpr (detail::is_shared<T>) {
-            // The archetype has it.
+            // Stored in the archetype.
         } else if constexpr (detail::is_split<T>) {
             fill_values(
                 &bundle.archetype->column(bundle.columns[position]), first, entities.size(),
@@ -182,7 +182,7 @@ detail::Added<T> World::add(Entity entity, T component) {
             notify(ObserverEvent::Add, {&component_id<T>, 1}, {&entity, 1});
             value = find<T>(entity);
             LIMN_CHECK_NOTE(
-                value != nullptr, "an observer took the component that was being added");
+                value != nullptr, "an observer removed the component that was being added");
         }
         if constexpr (std::is_empty_v<T>) {
             return detail::tag_value<T>;
@@ -200,7 +200,7 @@ inline T* World::find(Entity entity) {
         "get, find: a split component has no address; use value<T>(entity) and set(entity, value)");
     static_assert(
         !detail::is_shared<T> || std::is_const_v<T>,
-        "get, find: a shared component is read as const T; set(entity, value) gives it another");
+        "get, find: a shared component is read as const T; set(entity, value) replaces it");
     const EntityPlace place = core_.entities.find(entity);
     return place ? find_at<T>(entity, place) : nullptr;
 }
@@ -287,7 +287,7 @@ void World::set(Entity entity, T component) {
     }
 }
 
-/// Not a call: that would be a third of its time.
+/// Always inlined: the call would be a third of its time.
 template <typename T>
 [[gnu::always_inline]] inline bool World::set_enabled(Entity entity, bool enabled) {
     static_assert(detail::is_toggle<T>, "T cannot be disabled: its storage is not Storage::Toggle");
@@ -323,7 +323,7 @@ Query<Terms...> World::query() {
 template <typename... Terms>
 Query<Terms...> World::query() const {
     static_assert(
-        Query<Terms...>::kReadOnly, "a const World gives only const components: query<const A>()");
+        Query<Terms...>::kReadOnly, "a const World has only const components: query<const A>()");
     QueryState& state =
         shared_query_state(detail::query_index<Terms...>, detail::query_terms<Terms...>);
     return Query<Terms...>(const_cast<WorldCore&>(core_), state, IterationLock::Shared);

@@ -13,7 +13,7 @@
 
 namespace limn {
 
-/// What the world keeps out of its header.
+/// Private data of World that needs more headers.
 struct World::Internals {
     struct KnownSystem {
         const void* type;
@@ -22,12 +22,12 @@ struct World::Internals {
     };
 
     std::map<std::vector<ComponentId>, std::uint32_t> archetype_by_components;
-    std::vector<std::unique_ptr<Observer>> observers;  ///< in the order they were registered
+    std::vector<std::unique_ptr<Observer>> observers;  ///< in registration order
     std::vector<KnownSystem> systems;
-    std::mutex query_mutex;               ///< of World::queries_ while the world is const
-    std::unique_ptr<CommandFlush> flush;  ///< null while in use, and before the first
+    std::mutex query_mutex;               ///< protects World::queries_ while the world is const
+    std::unique_ptr<CommandFlush> flush;  ///< null while in use, and before first use
     FlushStats flush_stats;
-    /// While a snapshot is restored: large archetypes of before, for their memory.
+    /// Old large archetypes whose memory is reused while a snapshot is restored.
     std::vector<std::unique_ptr<Archetype>> spare_archetypes;
 };
 

@@ -17,7 +17,7 @@ std::uint32_t row_bytes(const Archetype& archetype) {
     return bytes;
 }
 
-/// A term as it is written in the source, with the component's name.
+/// A term as written in the source, with the component's name.
 std::string term_text(const QueryTerm& term) {
     const std::string& name = component_info(term.id).name;
     switch (term.kind) {
@@ -43,7 +43,7 @@ std::string term_text(const QueryTerm& term) {
     return name;
 }
 
-/// Changed terms of one group are one Changed of several components, and so are AnyOf terms.
+/// Joins the terms; Changed (or AnyOf) terms of one group become one term of several components.
 std::string terms_text(std::span<const QueryTerm> terms) {
     std::string text;
     for (std::size_t i = 0; i < terms.size(); ++i) {
@@ -60,7 +60,7 @@ std::string terms_text(std::span<const QueryTerm> terms) {
     return text;
 }
 
-/// How the archetype keeps the component: "" in a column, otherwise the kind of storage or, of a
+/// How the archetype stores the component: "" in a column, otherwise the kind of storage or, for a
 /// shared one, the value.
 std::string kind_text(const Archetype& archetype, ComponentId id) {
     const ComponentInfo& info = component_info(id);

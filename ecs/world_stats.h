@@ -14,19 +14,17 @@ class QueryState;
 class Schedule;
 class World;
 
-// Figures about a world and the systems that run over it, for the inspector
-// and tests; as text for people and as JSON for programs. What they cost while nobody looks is one
-// addition a call of a query, a move of a row and a command.
+// Statistics of a world and its systems, for the inspector and tests; as text for people and as
+// JSON for programs. While unused they cost one addition per call of a query, row move and command.
 
-/// Memory that a world holds [bytes]. What components own themselves (strings, vectors) is not in
-/// it.
+/// Memory of a world [bytes], without memory owned by components (strings, vectors).
 struct WorldMemory {
     std::size_t slots = 0;       ///< handles
     std::size_t archetypes = 0;  ///< columns and entities of promoted archetypes
-    std::size_t blocks = 0;      ///< the pool of the small ones, free blocks too
+    std::size_t blocks = 0;      ///< block pool of small archetypes, including free blocks
     std::size_t sparse = 0;
-    std::size_t versions = 0;  ///< of chunks, and bits of rows
-    std::size_t used = 0;      ///< the part of archetypes and blocks that rows fill
+    std::size_t versions = 0;  ///< chunk versions and row bits
+    std::size_t used = 0;      ///< part of archetypes and blocks that is filled by rows
     [[nodiscard]] std::size_t total() const {
         return slots + archetypes + blocks + sparse + versions;
     }
@@ -34,18 +32,18 @@ struct WorldMemory {
 
 struct ArchetypeStats {
     std::vector<std::string> components;
-    std::vector<std::string> kinds;  ///< of the components: "" of a table, "split", "id=3" ...
+    std::vector<std::string> kinds;  ///< per component: "" for a table, "split", "id=3" ...
     std::uint32_t rows = 0;
-    std::uint32_t capacity = 0;  ///< rows without asking for memory
+    std::uint32_t capacity = 0;  ///< rows that fit without allocating
     std::uint32_t chunks = 0;
-    std::uint32_t row_bytes = 0;       ///< with the handle [bytes]
+    std::uint32_t row_bytes = 0;       ///< including the handle [bytes]
     std::size_t committed = 0;         ///< [bytes]
-    bool promoted = false;             ///< columns in address ranges of their own
-    std::uint64_t rows_moved_in = 0;   ///< from other archetypes, since the beginning
-    std::uint64_t rows_moved_out = 0;  ///< to other archetypes
-    /// Of the components that have disabled rows: which, and how many.
+    bool promoted = false;             ///< each column has its own address range
+    std::uint64_t rows_moved_in = 0;   ///< from other archetypes, in total
+    std::uint64_t rows_moved_out = 0;  ///< to other archetypes, in total
+    /// Components with disabled rows, and the number of these rows.
     std::vector<std::pair<std::string, std::uint32_t>> disabled;
-    /// Share of the committed memory that rows fill, 0 .. 1.
+    /// Fraction of the committed memory that is filled by rows, 0 .. 1.
     [[nodiscard]] double fill() const {
         return committed > 0
                    ? static_cast<double>(rows) * row_bytes / static_cast<double>(committed)
@@ -59,13 +57,13 @@ struct SparseStats {
     std::size_t committed = 0;  ///< [bytes]
 };
 
-/// What a query visits. Sparse, toggled and Changed terms leave some of the rows out.
+/// What a query visits. Sparse, toggled and Changed terms skip some of the rows.
 struct QueryStats {
     std::string terms;  ///< "const transform, spin, Without<frozen>"
     std::size_t archetypes = 0;
     std::size_t chunks = 0;
     std::size_t rows = 0;
-    std::uint64_t calls = 0;  ///< iterations since the beginning
+    std::uint64_t calls = 0;  ///< iterations in total
 };
 
 struct WorldStats {
@@ -73,7 +71,7 @@ struct WorldStats {
     std::size_t free_slots = 0;
     std::vector<ArchetypeStats> archetypes;  ///< in the order of queries
     std::vector<SparseStats> sparse_sets;
-    std::vector<QueryStats> queries;  ///< of world.query() and of systems that world.run() ran
+    std::vector<QueryStats> queries;  ///< of world.query() and of systems run by world.run()
     FlushStats flush;
     WorldMemory memory;
 };
@@ -81,17 +79,17 @@ struct WorldStats {
 /// A system of a schedule.
 struct SystemStats {
     std::string name;
-    double last = 0.0;  ///< without the commands it recorded [s]
+    double last = 0.0;  ///< excluding the commands it recorded [s]
     double mean = 0.0;  ///< [s]
     std::uint64_t runs = 0;
     std::uint64_t commands = 0;       ///< recorded in all runs
-    std::uint64_t last_commands = 0;  ///< in the last run with any
-    std::vector<QueryStats> queries;  ///< those of its parameters
+    std::uint64_t last_commands = 0;  ///< recorded in the last run that recorded any
+    std::vector<QueryStats> queries;  ///< its query parameters
 };
 
-/// A point where the commands of the systems before it are applied.
+/// A sync point, where commands of the preceding systems are applied.
 struct SyncStats {
-    std::string after;  ///< the system before it
+    std::string after;  ///< the preceding system
     double last = 0.0;  ///< of the last run with commands [s]
     double mean = 0.0;  ///< [s]
     std::uint64_t runs = 0;
@@ -99,7 +97,7 @@ struct SyncStats {
 };
 
 struct ScheduleStats {
-    std::vector<SystemStats> systems;  ///< in their order
+    std::vector<SystemStats> systems;  ///< in list order
     std::vector<SyncStats> syncs;
 };
 
@@ -108,9 +106,9 @@ struct ScheduleStats {
 [[nodiscard]] ScheduleStats schedule_stats(const Schedule& schedule);
 [[nodiscard]] QueryStats query_stats(const QueryState& query);
 
-/// A line each: archetypes, sparse sets, queries that were called, what sync points did, memory.
+/// One line each for archetypes, sparse sets, queries with calls, sync points and memory.
 [[nodiscard]] std::string to_text(const WorldStats& stats);
-/// A line a system, with one for each of its queries below it, and a line a sync point.
+/// One line per system, followed by one per query of it, and one line per sync point.
 [[nodiscard]] std::string to_text(const ScheduleStats& stats);
 
 /// One object; times in seconds, memory in bytes.

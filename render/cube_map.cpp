@@ -19,7 +19,7 @@ constexpr FaceAxes kFaces[kCubeFaces] = {
     {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
     {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
 
-/// Solid angle of the rectangle from the middle of a face to (x, y), both -1 .. 1.
+/// Solid angle of the rectangle from the center of a face to (x, y), both -1 .. 1.
 double corner_solid_angle(double x, double y) {
     return std::atan2(x * y, std::sqrt(x * x + y * y + 1));
 }
@@ -57,7 +57,7 @@ double cube_texel_solid_angle(int size, int x, int y) {
 
 Affine cube_face_pose(int face, const Vec3& center) {
     LIMN_CHECK(face >= 0 && face < kCubeFaces);
-    // A picture's rows run upward in OpenGL and t with them: what a face calls down is up here.
+    // Framebuffer rows run upward in OpenGL, and t with them: a face's down is up here.
     const FaceAxes& axes = kFaces[face];
     Affine pose;
     for (int i = 0; i < 3; ++i) {

@@ -85,11 +85,11 @@ void cull_boxes_by_distance(
     for (int i = 0; i < count; ++i) {
         const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
         const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-        visible[static_cast<std::size_t>(i)] &= ball_touches(middle, radius, {c - h, c + h});
+        visible[static_cast<std::size_t>(i)] &= sphere_touches(middle, radius, {c - h, c + h});
     }
 }
 
-void cull_boxes_further(
+void cull_visible_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible) {
     std::uint8_t inside[kCullBlock];
     cull_boxes(frustum, boxes, count, inside);

@@ -10,13 +10,12 @@
 
 namespace limn {
 
-// Which boxes the camera may see: every mesh instance's box, taken to the world, against the five
-// planes of the view pyramid (there is no far plane). Conservative: a box is dropped only if it
-// lies wholly outside one plane, so that none that is seen is ever lost; boxes near the pyramid's
-// edges may survive unseen.
+// Frustum culling: the world-space box of every mesh instance against the five planes of the view
+// frustum (there is no far plane). Conservative: a box is culled only if it lies wholly outside one
+// plane, so no visible box is ever lost; boxes near the frustum's edges may survive unseen.
 //
-// The kernel works on structure-of-arrays blocks with Highway; the scalar version is what it is
-// tested with.
+// The kernel works on structure-of-arrays blocks with Highway; tests compare it with the scalar
+// version.
 
 inline constexpr int kFrustumPlanes = 5;
 
@@ -25,14 +24,14 @@ struct Frustum {
     Vec4 planes[kFrustumPlanes];
 };
 
-/// Everything is inside.
+/// Contains everything.
 inline constexpr Frustum kEverywhere = {
     {{0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 1}}};
 
-/// Of a reversed, infinite projection.
+/// From a matrix with a reversed-depth, infinite projection.
 [[nodiscard]] Frustum make_frustum(const Mat4& clip_from_world);
 
-/// World boxes of up to one logical chunk, as center and half extent.
+/// World-space boxes of up to one logical chunk, as center and half extent.
 inline constexpr int kCullBlock = 1024;
 struct BoxBlock {
     alignas(64) float center_x[kCullBlock];
@@ -55,26 +54,26 @@ struct BoxBlock {
     return {c - half, c + half};
 }
 
-/// visible[i] = 1 if box i of the first `count` may be seen, else 0.
+/// visible[i] = 1 if box i of the first `count` may be visible, else 0.
 void cull_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 
-/// Whether the ball touches the box (shadow.caster-cull); an endless one touches all.
-[[nodiscard]] inline bool ball_touches(const Vec3& middle, float radius, const Bounds& box) {
+/// Whether the sphere touches the box (shadow.caster-cull); one of infinite radius touches all.
+[[nodiscard]] inline bool sphere_touches(const Vec3& middle, float radius, const Bounds& box) {
     const Vec3 outside = glm::max(glm::abs(middle - center(box)) - half_extent(box), Vec3(0));
     return glm::dot(outside, outside) <= radius * radius;
 }
 
-/// visible[i] = 0 where the ball does not touch box i.
+/// Clears visible[i] where the sphere does not touch box i.
 void cull_boxes_by_distance(
     const Vec3& middle, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible);
 
-/// visible[i] = 0 where box i lies outside `frustum`, too.
-void cull_boxes_further(
+/// Clears visible[i] where box i lies outside this further frustum.
+void cull_visible_boxes(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 
-/// cull_boxes, one box after the other.
+/// Scalar reference for cull_boxes.
 void cull_boxes_scalar(
     const Frustum& frustum, const BoxBlock& boxes, int count, std::span<std::uint8_t> visible);
 

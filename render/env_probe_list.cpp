@@ -15,8 +15,8 @@
 namespace limn {
 namespace {
 
-constexpr int kSmallestFace = 16;  ///< [px]
-constexpr int kLargestFace = 1024;
+constexpr int kMinFace = 16;  ///< [px]
+constexpr int kMaxFace = 1024;
 
 /// Unit axis `i` of a pose.
 Vec3 axis_of(const Affine& pose, int i) {
@@ -25,15 +25,15 @@ Vec3 axis_of(const Affine& pose, int i) {
     return normalize_or({pose.row[0][i], pose.row[1][i], pose.row[2][i]}, fallback);
 }
 
-/// Where the probe counts, as rows that take it to the unit ball or cube.
-void fill_place(const EnvProbe& probe, const Affine& pose, ProbeSlot& slot) {
+/// The probe's region, as rows that map it to the unit sphere or cube.
+void fill_region(const EnvProbe& probe, const Affine& pose, ProbeSlot& slot) {
     const Vec3 origin = {pose.row[0].w, pose.row[1].w, pose.row[2].w};
     const bool room = probe.box.x > 0 && probe.box.y > 0 && probe.box.z > 0;
     const Vec3 half = room ? probe.box : Vec3(std::max(probe.radius, 1e-3f));
     const Vec3 offset = room ? probe.box_center : Vec3(0);
     for (int i = 0; i < 3; ++i) {
         const Vec3 axis = axis_of(pose, i);
-        slot.record.place_from_world[i] = Vec4(axis, -glm::dot(axis, origin) - offset[i]) / half[i];
+        slot.record.probe_from_world[i] = Vec4(axis, -glm::dot(axis, origin) - offset[i]) / half[i];
     }
     slot.record.shape = {room ? 1.0f : 0.0f, 1.0f / std::max(probe.fade, 1e-3f), 0, 0};
     slot.size = std::cbrt(half.x * half.y * half.z);
@@ -54,7 +54,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
     std::vector<Found> added;
     const auto take = [&](ProbeSlot& slot, const Found& found) {
         const auto asked =
-            static_cast<unsigned>(std::clamp(found.probe->resolution, kSmallestFace, kLargestFace));
+            static_cast<unsigned>(std::clamp(found.probe->resolution, kMinFace, kMaxFace));
         const int resolution = static_cast<int>(std::bit_floor(asked));
         if (slot.entity != found.entity || slot.resolution != resolution) {
             gpu::Texture cube = std::move(slot.cube);
@@ -65,7 +65,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
                 .cube = std::move(cube)};
         }
         slot.seen = true;
-        // Six make the cube whole, however many were missed.
+        // Six faces complete the cube, however many updates were missed.
         slot.due = found.due;
         const std::uint64_t first = found.due - std::min<std::uint64_t>(found.due, kCubeFaces);
         slot.drawn = slot.fresh == 0 ? first : std::max(slot.drawn, first);
@@ -73,7 +73,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
         if (slot.drawn < slot.due) {
             slot.seen_from = {found.pose.row[0].w, found.pose.row[1].w, found.pose.row[2].w};
         }
-        fill_place(*found.probe, found.pose, slot);
+        fill_region(*found.probe, found.pose, slot);
     };
     world
         .query<
@@ -84,7 +84,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
             const Affine pose = before == nullptr || alpha == 1.0f
                                     ? now.world
                                     : mix_affine(before->world, now.world, alpha);
-            // Worlds that were never stepped have no states: everybody looks once.
+            // Worlds that were never stepped have no states: every probe is captured once.
             const std::uint64_t due =
                 std::max<std::uint64_t>(state != nullptr ? state->faces : 0, kCubeFaces);
             const Found found = {entity, &probe, pose, due};
@@ -108,11 +108,11 @@ void EnvProbeList::collect(const World& world, float alpha) {
             }
         }
     }
-    if (served < added.size() && !told_) {
+    if (served < added.size() && !reported_) {
         log_warn(
-            "env_probe: {} probes found, expected at most {}; the rest shows nothing",
+            "env_probe: {} probes found, expected at most {}; the rest are ignored",
             layout::kMaxProbes + added.size() - served, layout::kMaxProbes);
-        told_ = true;
+        reported_ = true;
     }
 }
 

@@ -12,51 +12,51 @@ namespace limn {
 
 class World;
 
-// The probes of a scene (EnvProbe): which there are, what each has seen so far, and what the shader
-// must know of them (lib/surroundings.glsl). Each keeps a layer of the reflection maps for as long
-// as it lives; the first layout::kMaxProbes of the world have one, the rest counts for nothing and
-// is reported once.
+// The environment probes of a scene (EnvProbe): which exist, what each has captured so far, and the
+// records that lib/surroundings.glsl reads. Each keeps a layer of the reflection maps for as long
+// as it lives; only the first layout::kMaxProbes of the world get one, the rest are ignored and
+// reported once.
 
 /// A probe that has a layer.
 struct ProbeSlot {
     Entity entity;               ///< null: the slot is free
-    bool seen = false;           ///< in this frame
-    std::uint64_t due = 0;       ///< faces that should have been drawn so far; i is face i mod 6
-    std::uint64_t drawn = 0;     ///< faces that were
-    int fresh = 0;               ///< of these, since it had to begin anew
-    bool ready = false;          ///< its layer shows all six
-    Vec3 seen_from = {0, 0, 0};  ///< where the faces were drawn from
+    bool seen = false;           ///< exists in this frame
+    std::uint64_t due = 0;       ///< faces due so far, counted on; number i is face i mod 6
+    std::uint64_t drawn = 0;     ///< faces drawn so far
+    int fresh = 0;               ///< of these, since the last reset
+    bool ready = false;          ///< its layer holds all six faces
+    Vec3 seen_from = {0, 0, 0};  ///< capture position of the faces
     float near = 0.05f;
     int resolution = 128;
-    float size = 0;              ///< mean half side of where it counts: the smaller comes first
+    float size = 0;              ///< mean half side of its region; smaller ones have priority
     layout::ProbeRecord record;  ///< without seen_from
-    gpu::Texture cube;           ///< RGBA16F or RGBA32F with all mip levels
+    gpu::Texture cube;           ///< RGBA16F or RGBA32F with a full mip chain
 };
 
 class EnvProbeList {
   public:
-    /// Which probes there are at the moment `alpha` (RenderView), and which faces are due.
+    /// Finds the probes at time `alpha` (RenderView), and which faces are due.
     void collect(const World& world, float alpha);
 
-    /// Everything must be drawn again, whatever the probes' policies say.
+    /// Marks every face for redrawing, whatever the probes' update policies say.
     void forget();
 
     [[nodiscard]] std::array<ProbeSlot, layout::kMaxProbes>& slots() { return slots_; }
 
-    /// Those that are ready, the smallest first.
+    /// The probes that are ready, smallest first.
     [[nodiscard]] layout::ProbeBlock make_block() const;
 
   private:
     std::array<ProbeSlot, layout::kMaxProbes> slots_;
-    bool told_ = false;  ///< that there are too many
+    bool reported_ = false;  ///< that there are too many probes
 };
 
-/// Layer of the reflection maps of slot number `slot`; 0 is the sky's.
+/// Reflection map layer of slot number `slot`; layer 0 is the sky's.
 [[nodiscard]] constexpr int probe_layer(std::size_t slot) {
     return static_cast<int>(slot) + 1;
 }
 
-/// From the probe toward one face of its cube map, without its own entity.
+/// View from the probe through one face of its cube map; hides the probe's own entity.
 [[nodiscard]] RenderView make_probe_view(const ProbeSlot& slot, int face, float alpha);
 
 }  // namespace limn

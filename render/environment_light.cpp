@@ -11,7 +11,7 @@
 namespace limn {
 namespace {
 
-/// Soft boxes of the studio, around an object at the origin that is looked at from +z. By eye.
+/// Soft boxes of the studio, around an object at the origin viewed from +z. By eye.
 struct LampSpec {
     Vec3 center;
     Vec2 half_size;  ///< tangents
@@ -82,7 +82,7 @@ std::array<float, 9> harmonics(const Vec3& n) {
             n.x * n.z,
             n.x * n.x - n.y * n.y};
 }
-/// Squares of the constants, times what convolution with the clamped cosine does to each band / pi.
+/// Squared SH constants times the clamped-cosine convolution factor of each band / pi.
 constexpr std::array<float, 9> kHarmonicFactors = {
     1.0f / (4 * kPi),
     (2.0f / 3.0f) * 3.0f / (4 * kPi),
@@ -103,8 +103,8 @@ float radical_inverse(std::uint32_t bits) {
     return value;
 }
 
-/// The normal of a microfacet that is seen from `v`, drawn by two uniform numbers (Heitz, "Sampling
-/// the GGX Distribution of Visible Normals", 2018).
+/// A microfacet normal visible from `v`, sampled with two uniform numbers (Heitz, "Sampling the GGX
+/// Distribution of Visible Normals", 2018).
 Vec3 visible_normal(const Vec3& v, float alpha, float u1, float u2) {
     const Vec3 stretched = glm::normalize(Vec3(alpha * v.x, alpha * v.y, v.z));
     const float across2 = square(stretched.x) + square(stretched.y);
@@ -119,7 +119,7 @@ Vec3 visible_normal(const Vec3& v, float alpha, float u1, float u2) {
     return glm::normalize(Vec3(alpha * n.x, alpha * n.y, std::max(n.z, 1e-6f)));
 }
 
-/// GGX with height-correlated Smith masking, integrated over the microfacets that are seen.
+/// GGX with height-correlated Smith masking, integrated over the visible microfacets.
 Vec2 integrate_specular(float n_v, float roughness, int samples) {
     const float alpha = square(roughness);
     const float alpha2 = square(alpha);
@@ -181,7 +181,7 @@ Vec3 sky_radiance(const layout::EnvironmentBlock& block, const Vec3& direction) 
 }
 
 layout::Irradiance project_irradiance(const layout::EnvironmentBlock& block) {
-    // Equal areas: rings of equal height, equally divided.
+    // Equal areas: rings of equal height, divided evenly.
     constexpr int kRings = 96;
     constexpr int kSectors = 192;
     std::array<glm::dvec3, 9> sums{};
@@ -220,8 +220,7 @@ std::vector<Vec2> make_specular_albedo(int size) {
     std::vector<Vec2> table(static_cast<std::size_t>(size) * size);
     parallel_for(size, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
-            // Smooth enough mirrors all behave alike: nothing is gained, and precision lost, below
-            // this.
+            // Below this roughness the result no longer changes, and precision is lost.
             const float roughness =
                 std::max(static_cast<float>(y) / static_cast<float>(size - 1), 0.03f);
             for (int x = 0; x < size; ++x) {

@@ -5,13 +5,13 @@
 namespace limn {
 
 /// The textures that hold a frame's surfaces (lib/gbuffer.glsl). Pixels without a surface keep
-/// depth 0; their attributes are undefined.
+/// depth 0; their other attributes are undefined.
 struct Gbuffer {
-    TextureId surface;  ///< RGBA32UI
-    TextureId depth;    ///< D32F, reversed: 1 at the near plane, 0 where nothing is; with 8 bits of
-                        ///< stencil, all 0, where needs_stencil()
-    TextureId velocity;  ///< RG16F or RG32F, uv now - uv before, of the sky, too; not valid()
-                         ///< unless asked for
+    TextureId surface;   ///< RGBA32UI
+    TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 for background; plus 8 bits of
+                         ///< stencil, all 0, if needs_stencil()
+    TextureId velocity;  ///< RG16F or RG32F: current uv - previous uv, also for the sky; not
+                         ///< valid() unless requested
 };
 
 }  // namespace limn

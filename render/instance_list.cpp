@@ -20,8 +20,8 @@ namespace {
 constexpr std::uint16_t kHidden = 0xffff;
 static_assert(kChunkRows <= kCullBlock);
 
-// A key: blended last, then inflated, deformed, batch, mirrored, mesh or deformed instance. Sorting
-// keys sorts draws.
+// Sort key, from the high bits: blended, inflated, deformed, batch, mirrored, mesh or deformed
+// instance.
 constexpr std::uint64_t make_key(
     bool blend, bool inflated, bool deformed, std::uint32_t batch, bool mirrored,
     std::uint32_t what) {
@@ -44,12 +44,12 @@ constexpr std::uint32_t batch_of(std::uint64_t key) {
 constexpr bool is_mirrored(std::uint64_t key) {
     return (key >> 32 & 1) != 0;
 }
-/// Index of the deformed instance, of other keys of the mesh.
+/// Index of the deformed instance or, for other keys, of the mesh.
 constexpr std::uint32_t index_of(std::uint64_t key) {
     return static_cast<std::uint32_t>(key);
 }
 
-/// Whether `entity` is `whole` or below it. Null has no parts.
+/// Whether `entity` is `whole` or one of its descendants; false if `whole` is null.
 bool is_part_of(const World* world, Entity entity, Entity whole) {
     if (whole.is_null()) {
         return false;
@@ -77,14 +77,14 @@ void set_box(BoxBlock& block, std::uint32_t i, const Bounds& box) {
 
 }  // namespace
 
-/// The distinct keys of a chunk: a small hash table beside the list.
+/// The distinct keys of a chunk: a list with a small hash table.
 class InstanceCollector::KeyTable {
   public:
     explicit KeyTable(std::vector<KeyCount>& keys) : keys_(keys) {
         keys_.clear();
         slots_.fill(kHidden);
     }
-    /// Counts one more of `key`, `distance` away; returns its place in the list.
+    /// Counts an instance of `key` at `distance`; returns the index of the key.
     std::uint16_t count(std::uint64_t key, float distance) {
         if (keys_.empty() || keys_[last_].key != key) {
             last_ = find(key);
@@ -108,7 +108,7 @@ class InstanceCollector::KeyTable {
     }
 
     std::vector<KeyCount>& keys_;
-    std::array<std::uint16_t, 2048> slots_;  // twice the rows of a chunk: always room
+    std::array<std::uint16_t, 2048> slots_;  // twice the rows of a chunk: never full
     std::uint16_t last_ = 0;
 };
 
@@ -120,17 +120,17 @@ void InstanceCollector::collect(
         const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
         Optional<const Inflate>, Optional<const Deformed>>();
     const auto& camera = view.world_from_camera.row;
-    const Selection seen = {
+    const Selection selection = {
         .frustum = make_frustum(view.clip_from_world),
         .eye = {camera[0].w, camera[1].w, camera[2].w},
         .forward = {-camera[0].z, -camera[1].z, -camera[2].z},
         .alpha = view.alpha,
-        .alpha_before = view.alpha_before,
+        .previous_alpha = view.previous_alpha,
         .velocity = velocity,
         .world = &world,
         .hidden = view.hidden,
         .boxes = boxes};
-    collect_from(query, seen, {meshes, materials, shapes}, ring, list);
+    collect_from(query, selection, {meshes, materials, shapes}, ring, list);
 }
 
 void InstanceCollector::collect_casters(
@@ -174,7 +174,7 @@ void InstanceCollector::collect_from(
         fill_boxes(rows, selection.alpha, meshes, boxes, mirrored);
         cull_boxes(selection.frustum, boxes, count, visible);
         if (selection.casters) {
-            cull_boxes_further(selection.shading, boxes, count, visible);
+            cull_visible_boxes(selection.shading, boxes, count, visible);
             cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
         }
         KeyTable table(work.keys);
@@ -190,7 +190,8 @@ void InstanceCollector::collect_from(
             if (selection.casters && blend) {
                 continue;
             }
-            // To the far side of its box: floors and walls, which surround all, come last.
+            // Distance to the far side of the box, so that large surroundings (floor, walls) come
+            // last.
             const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
             const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
             const float far_side = glm::dot(selection.forward, c - selection.eye)
@@ -217,7 +218,7 @@ void InstanceCollector::collect_from(
     blended_.resize(visible_count_ - opaque_count_);
 
     auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
-    auto* moments_before = reinterpret_cast<Affine*>(list.before.data);
+    auto* previous_transforms = reinterpret_cast<Affine*>(list.before.data);
     query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
                          std::span<const WorldTransform> now,
                          std::span<const PreviousWorldTransform> before,
@@ -245,7 +246,7 @@ void InstanceCollector::collect_from(
                     transform_bounds(a, rows.bounds(i, meshes)));
             }
             if (velocity) {
-                moments_before[place] = rows.at(i, selection.alpha_before);
+                previous_transforms[place] = rows.at(i, selection.previous_alpha);
             }
             if (is_blended(kind.key)) {
                 const Vec3 middle = transform_point(a, center(rows.bounds(i, meshes)));
@@ -263,8 +264,8 @@ void InstanceCollector::collect_from(
     }
 }
 
-/// Groups in the order they are drawn: near ones first, so that they hide the rest before it is
-/// shaded, but what is drawn with the same program and textures stays together; blended ones last.
+/// Sorts groups into draw order: front to back, so that early depth testing rejects hidden
+/// fragments, but with equal programs and textures together; blended groups last.
 void InstanceCollector::group_keys() {
     entries_.clear();
     for (std::uint32_t c = 0; c < chunks_.size(); ++c) {

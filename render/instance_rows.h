@@ -13,23 +13,23 @@
 
 namespace limn {
 
-// The world's mesh instances, a chunk at a time: what culls and draws them reads them here.
+// Access to the world's mesh instances, one chunk at a time, shared by culling and drawing.
 
-/// What a chunk of a query shows of its rows.
+/// The columns of a chunk that a query returned.
 struct InstanceRows {
     std::span<const MeshInstance> surfaces;
     std::span<const WorldTransform> now;
-    std::span<const PreviousWorldTransform> before;  ///< empty: never moved
-    std::span<const Inflate> inflate;                ///< empty: as they are
-    std::span<const Deformed> deformed;              ///< empty: as at rest
+    std::span<const PreviousWorldTransform> before;  ///< empty: static
+    std::span<const Inflate> inflate;                ///< empty: not inflated
+    std::span<const Deformed> deformed;              ///< empty: in rest pose
     std::span<const Entity> entities;
     const DeformedList& shapes;
 
-    /// Index into `shapes`, or its kNone.
+    /// Index into `shapes`, or DeformedList::kNone.
     [[nodiscard]] std::uint32_t shape(std::size_t i) const {
         return deformed.empty() ? DeformedList::kNone : shapes.find(entities[i]);
     }
-    /// Box of the surface in its own space. The mesh must be there.
+    /// Local-space box of the surface. The mesh must exist.
     [[nodiscard]] Bounds bounds(std::size_t i, const std::vector<MeshRange>& meshes) const {
         const std::uint32_t its = shape(i);
         const Bounds& box =
@@ -42,8 +42,8 @@ struct InstanceRows {
     }
 };
 
-/// World boxes of the rows; what has no triangles or is not finite gets a box that is nowhere.
-/// `mirrored` gets the sign of each determinant.
+/// World-space boxes of the rows; rows without triangles or with non-finite transforms get a box
+/// that no frustum contains. `mirrored` receives the sign of each determinant.
 void fill_boxes(
     const InstanceRows& rows, float alpha, const std::vector<MeshRange>& meshes, BoxBlock& boxes,
     std::uint8_t* mirrored);

@@ -9,11 +9,11 @@
 namespace limn {
 namespace {
 
-/// Spheres are widened by this share: the GPU's log2 and ours differ in the last bits.
+/// Relative enlargement of spheres: the GPU's log2 and ours differ in the last bits.
 constexpr float kSlack = 1e-3f;
 constexpr float kSlackPixels = 0.25f;
-constexpr float kFarthest = 1e12f;  ///< [m]; the last slice goes on for ever
-constexpr int kMostTiles = 256;     ///< across or up: boxes keep 8 bits for each end
+constexpr float kMaxDistance = 1e12f;  ///< [m]; the last slice is unbounded
+constexpr int kMaxTiles = 256;         ///< per axis: boxes store 8 bits for each end
 
 /// In view space: x right, y up, z along the axis.
 Vec3 to_view(const Affine& world_from_camera, const Vec3& v) {
@@ -28,17 +28,17 @@ Vec3 camera_position(const RenderView& view) {
     return {r[0].w, r[1].w, r[2].w};
 }
 
-bool is_endless(const LightReach& light) {
-    return !(light.radius < kFarthest);
+bool is_unbounded(const LightReach& light) {
+    return !(light.radius < kMaxDistance);
 }
 
-/// Least and largest x / z of a circle about (x, z), seen from the origin.
+/// Minimum and maximum x / z of a circle about (x, z), seen from the origin.
 Vec2 slopes_of_circle(float x, float z, float radius) {
     const float tangent2 = x * x + z * z - radius * radius;
     if (tangent2 <= 0) {
         return {-INFINITY, INFINITY};
     }
-    // The two tangents; one that points away from the view's side bounds nothing.
+    // The two tangents; one that points backward bounds nothing.
     const float tangent = std::sqrt(tangent2);
     const float down = z * tangent + x * radius;
     const float up = z * tangent - x * radius;
@@ -47,7 +47,7 @@ Vec2 slopes_of_circle(float x, float z, float radius) {
         up > 0 ? (x * tangent + z * radius) / up : INFINITY};
 }
 
-/// Tiles, of `tiles`, between two slopes; begin > end: none.
+/// Range of tiles between two slopes, both ends included; begin > end: none.
 struct TileRange {
     int begin;
     int end;
@@ -85,7 +85,7 @@ layout::uvec2 pack(const CellBox& box) {
 
 ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightReach> reach) {
     ClusterShape shape;
-    while (std::max(view.width, view.height) > shape.tile * kMostTiles) {
+    while (std::max(view.width, view.height) > shape.tile * kMaxTiles) {
         shape.tile *= 2;
     }
     shape.columns = (view.width + shape.tile - 1) / shape.tile;
@@ -96,8 +96,8 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
         const float end = to_view(view.world_from_camera, light.center - eye).z + light.radius;
         farthest = std::isfinite(end) ? std::max(farthest, end) : farthest;
     }
-    farthest = std::min(farthest, 0.5f * kFarthest);
-    // A hundredth of the whole depth is near enough for the first slice.
+    farthest = std::min(farthest, 0.5f * kMaxDistance);
+    // The first slice ends at a hundredth of the whole depth or more.
     const float nearest = std::max(view.near, farthest * 0.01f);
     shape.depth_scale = static_cast<float>(shape.slices - 1) / std::log2(farthest / nearest);
     shape.depth_bias = 1.0f - shape.depth_scale * std::log2(nearest);
@@ -107,7 +107,7 @@ ClusterShape make_cluster_shape(const RenderView& view, std::span<const LightRea
 bool find_cells(
     const RenderView& view, const ClusterShape& shape, const LightReach& light, CellBox& box) {
     box = {{0, shape.columns - 1}, {0, shape.rows - 1}, {0, shape.slices - 1}};
-    if (is_endless(light)) {
+    if (is_unbounded(light)) {
         return true;
     }
     const ReachSphere around = reach_sphere(light);
@@ -150,7 +150,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
             continue;
         }
         const ReachSphere around = reach_sphere(light);
-        const float radius2 = is_endless(light) ? -1.0f : square(around.radius * (1 + kSlack));
+        const float radius2 = is_unbounded(light) ? -1.0f : square(around.radius * (1 + kSlack));
         const auto index = static_cast<float>(i + static_cast<std::size_t>(lights.directional));
         clusters.lights.push_back(
             {Vec4(to_view(view.world_from_camera, around.center - eye), radius2),

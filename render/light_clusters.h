@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/buffer_texture.h"
 #include "render/light_list.h"
 #include "render/render_view.h"
 #include "render/shaders/cluster_gpu.h"
@@ -10,24 +11,24 @@
 
 namespace limn {
 
-// Which lights reach which part of the view: the pyramid is cut into tiles on the screen and slices
-// in depth, and every cell gets the list of the lights whose sphere (and cone) touches it. A pixel
-// then looks at its cell's list alone. Conservative: a light that reaches a point is in the list of
-// the point's cell, whatever the rounding; lists may hold lights that do not reach. Lists are in
-// the order of the lights, so that sums do not depend on how the lists were made.
+// Clustered light culling: the view frustum is cut into screen tiles and depth slices, and every
+// cell gets the list of the lights whose sphere (and cone) touches it. A pixel then reads only its
+// cell's list. Conservative: a light that reaches a point is in the list of the point's cell,
+// whatever the rounding; lists may hold lights that do not reach. Lists keep the order of the
+// lights, so sums do not depend on how the lists were made.
 //
-// The CPU does what is linear in the lights: it takes each to view space and finds the box of
-// cells that its sphere may touch. The boxes' volumes bound the length of all lists together, so
-// that the GPU, which only ever takes cells out of a box (passes/cluster_pass.h), never runs out
-// of memory. 4,096 lights take 0.3 ms.
+// The CPU does the work that is linear in the lights: it transforms each to view space and finds
+// the box of cells that its sphere may touch. The boxes' volumes bound the total length of all
+// lists, so the GPU, which only ever removes cells from a box (passes/cluster_pass.h), never runs
+// out of memory. 4,096 lights take 0.3 ms.
 //
 // After Olsson et al., "Clustered Deferred and Forward Shading", 2012.
 
-/// How the pyramid is cut.
+/// How the frustum is cut into cells.
 struct ClusterShape {
     int tile = 32;    ///< side of a tile [px]
-    int columns = 1;  ///< tiles across, at most 256
-    int rows = 1;     ///< tiles up, at most 256
+    int columns = 1;  ///< tile columns, at most 256
+    int rows = 1;     ///< tile rows, at most 256
     int slices = 32;  ///< in depth; slice = depth_scale log2(distance) + depth_bias, clamped
     float depth_scale = 1;
     float depth_bias = 0;
@@ -47,31 +48,32 @@ struct CellBox {
     }
 };
 
-/// The point and spot lights of a LightList that the view may show, in its order.
+/// The point and spot lights of a LightList that may reach into the view, in its order.
 struct ClusterLights {
     ClusterShape shape;
     std::vector<layout::ClusterLight> lights;
-    std::vector<layout::uvec2> boxes;  ///< of each, as layout::cell_box_* have it
-    std::size_t capacity = 0;          ///< bound of all lists' lengths together
-    int dropped = 0;                   ///< lights that went over kMaxListEntries
+    std::vector<layout::uvec2> boxes;  ///< of each light, packed as layout::cell_box_* expect
+    std::size_t capacity = 0;          ///< upper bound of the total length of all lists
+    int dropped = 0;                   ///< lights left out by kMaxListEntries
+    BufferTexture light_records = BufferTexture("cluster lights", GL_RGBA32F);
+    BufferTexture box_records = BufferTexture("cluster boxes", GL_RG32UI);
 };
 
-/// Longest that all lists together may become: 64 MiB of indices. Lights that would go beyond are
-/// left out of them.
+/// Maximum total length of all lists: 64 MiB of indices. Lights that would exceed it are left out.
 inline constexpr std::size_t kMaxListEntries = std::size_t{1} << 24;
 
-/// Slices that divide the distances from the near plane to the end of the farthest light.
+/// Shape whose slices span the distances from the near plane to the end of the farthest light.
 [[nodiscard]] ClusterShape
 make_cluster_shape(const RenderView& view, std::span<const LightReach> reach);
 
-/// Fills `clusters` with those of `lights` that reach into the view.
+/// Fills `clusters` with the `lights` that reach into the view.
 void place_lights(const RenderView& view, const LightList& lights, ClusterLights& clusters);
 
-/// The cells that a light may touch; none if it is wholly behind the camera or beside the picture.
+/// The cells that a light may touch; false if it is wholly behind the camera or off screen.
 [[nodiscard]] bool find_cells(
     const RenderView& view, const ClusterShape& shape, const LightReach& light, CellBox& box);
 
-/// The cell of a pixel at `distance` along the view axis [m], as lib/lighting.glsl has it.
+/// The cell of a pixel at `distance` along the view axis [m]; the same as in lib/lighting.glsl.
 [[nodiscard]] int cell_of(const ClusterShape& shape, float pixel_x, float pixel_y, float distance);
 
 }  // namespace limn

@@ -17,15 +17,15 @@ namespace {
 
 /// With Falloff::None the multiplier makes the window a step at the radius.
 constexpr float kStep = 1e30f;
-/// Least difference of the two cones' cosines (or angles): equal cones make a hard edge
+/// Minimum difference of the two cones' cosines (or angles): equal cones make a hard edge
 /// (light.spot-falloff).
-constexpr float kLeastConeWidth = 1e-4f;
+constexpr float kMinConeWidth = 1e-4f;
 
 Vec3 position_of(const Affine& a) {
     return {a.row[0].w, a.row[1].w, a.row[2].w};
 }
 
-/// Local -z, where spot and directional lights shine.
+/// Local -z, the direction of spot and directional lights.
 Vec3 axis_of(const Affine& a) {
     return normalize_or({-a.row[0].z, -a.row[1].z, -a.row[2].z}, {0, 0, -1});
 }
@@ -64,16 +64,16 @@ float reach_radius(const layout::LightRecord& record) {
     return record.position.w > 0 ? 1 / std::sqrt(record.position.w) : INFINITY;
 }
 
-/// What goes with a light, whatever its type.
+/// The components that accompany a light of any type.
 struct LightEntity {
     Entity entity;
     const Affine& pose;
-    float factor;  ///< of its intensity
+    float factor;  ///< on its intensity
     const Shadow* shadow;
     const Projector* projector;
 };
 
-/// Calls use(light, what goes with it) for every enabled light of a type.
+/// Calls use(light, LightEntity) for every enabled light of a type.
 template <typename Light, typename Use>
 void each_light(const World& world, double time, float alpha, Use&& use) {
     world
@@ -93,7 +93,7 @@ void each_light(const World& world, double time, float alpha, Use&& use) {
         });
 }
 
-/// Notes that the record added last casts shadows or throws an image, if it does.
+/// Registers the shadow and the cookie of the record added last, if it has them.
 void add_extras(
     LightList& list, const LightEntity& light, LightKind kind, float radius = INFINITY,
     float outer_angle = 0) {
@@ -135,7 +135,7 @@ layout::LightRecord make_record(const PointLight& light, const Vec3& position, f
     layout::LightRecord record{};
     record.position = Vec4(position, 0);
     record.color = Vec4(light.color * (light.intensity * factor), 0);
-    record.axis = {0, 0, 0, 1};  // offset 1: shines all around
+    record.axis = {0, 0, 0, 1};  // offset 1: omnidirectional
     set_attenuation(record, light.attenuation, light.radius);
     return record;
 }
@@ -150,10 +150,10 @@ make_record(const SpotLight& light, const Vec3& position, const Vec3& axis, floa
     const float inner = std::clamp(light.inner_angle, 0.0f, outer);
     record.polynomial.w = static_cast<float>(light.profile);
     if (light.profile == SpotProfile::LinearAngle) {
-        const float scale = 1 / std::max(outer - inner, kLeastConeWidth);
+        const float scale = 1 / std::max(outer - inner, kMinConeWidth);
         record.axis = Vec4(axis * scale, outer * scale);
     } else {
-        const float scale = 1 / std::max(std::cos(inner) - std::cos(outer), kLeastConeWidth);
+        const float scale = 1 / std::max(std::cos(inner) - std::cos(outer), kMinConeWidth);
         record.axis = Vec4(axis * scale, -std::cos(outer) * scale);
     }
     return record;
@@ -197,7 +197,7 @@ void collect_lights(const World& world, float alpha, LightList& list) {
         });
     list.directional = static_cast<int>(list.records.size());
 
-    // Lights with a shadow or an image come last: only who lights with them looks these up.
+    // Lights with a shadow or a cookie come last, so that shaders test only those for them.
     for (const bool last : {false, true}) {
         list.first_shadowed = static_cast<int>(list.records.size());
         each_light<PointLight>(

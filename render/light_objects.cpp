@@ -7,7 +7,7 @@
 namespace limn {
 namespace {
 
-/// Appends `place` to the light's commands of this kind of draw.
+/// Appends instance `place` of the draw `kind` to the light's commands.
 void add_object(
     const DrawCommand& kind, std::uint32_t place, std::uint32_t light, std::uint32_t run,
     LightDraws& result) {
@@ -87,7 +87,7 @@ void list_draws_of_lights(const LightObjects& found, const InstanceList& list, L
     result.runs.clear();
     result.commands.clear();
     for (std::size_t i = 0; i < found.lights.size(); ++i) {
-        // Objects and commands both run from near to far: one walk over both.
+        // Objects and commands are both in instance order: one pass over both.
         std::uint32_t next = found.begin[i];
         const std::uint32_t end = found.begin[i + 1];
         for (std::uint32_t r = 0; r < list.opaque.size() && next < end; ++r) {

@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-/// Stored models of lib/gbuffer.glsl.
+/// kModel* of lib/gbuffer.glsl.
 std::uint8_t stored_model(ShadingModel model) {
     return static_cast<std::uint8_t>(static_cast<int>(model) + 1);
 }
@@ -25,7 +25,7 @@ bool same_uv(const TextureSlot& a, const TextureSlot& b) {
            && a.rotation == b.rotation;
 }
 
-/// Whether one fetch serves occlusion, roughness and metalness, as most exporters have it.
+/// Whether one fetch gives occlusion, roughness and metalness, as most exporters pack them.
 bool shares_occlusion(const Material& m) {
     const TextureSlot& a = m.occlusion_texture;
     const TextureSlot& b = m.metal_rough_texture;
@@ -48,8 +48,8 @@ std::uint32_t uv_feature(const Material& m) {
     return !shared ? kUvMaps : first == nullptr || same_uv(*first, plain) ? 0u : kUvMap;
 }
 
-/// What slot `i` of a record holds: when all textures share their uv map, that of any which is
-/// there.
+/// The slot whose uv map goes to slot `i` of the record: if all textures share one uv map, the
+/// first used slot.
 const TextureSlot& uv_slot(const Material& m, int i) {
     if (uv_feature(m) == kUvMap) {
         for (int k = 0; k < kMaterialTextures; ++k) {
@@ -70,7 +70,7 @@ layout::MaterialRecord make_record(const Material& m) {
     record.skin = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f);
     for (int i = 0; i < kMaterialTextures; ++i) {
         const TextureSlot& slot = uv_slot(m, i);
-        // Counter-clockwise as the viewer of the Khronos Group has it; v runs down the image.
+        // Counter-clockwise, as in the Khronos glTF viewer; v runs down the image.
         const float c = std::cos(slot.rotation);
         const float s = std::sin(slot.rotation);
         record.uv_map[2 * i] = {
@@ -163,8 +163,9 @@ void MaterialPool::upload_image(const ImageData& image) {
     if (image.width <= 0 || image.height <= 0 || image.width > limit || image.height > limit
         || image.pixels.size() < needed) {
         log_error(
-            "image {}: {}x{} with {} bytes, expected 1 .. {} pixels a side and all of them; it is "
-            "magenta",
+            "image {}: found {}x{} pixels in {} bytes, expected 1 .. {} pixels per side and "
+            "complete "
+            "data; shown magenta",
             image.name, image.width, image.height, image.pixels.size(), limit);
         images_.emplace_back();
         return;
@@ -172,7 +173,7 @@ void MaterialPool::upload_image(const ImageData& image) {
     gpu::Texture texture(
         image.name,
         {.format = format.format, .width = image.width, .height = image.height, .levels = 0});
-    // The first row of the image is row 0 of the texture, where v = 0: as glTF has it.
+    // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
     texture.upload<std::uint8_t>(std::span(image.pixels).first(needed), GL_RGBA, format.type);
     texture.generate_mipmaps();
     gpu::GlObject<gpu::ObjectKind::Texture> encoded;

@@ -5,6 +5,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/texture.h"
 #include "render/shaders/material_gpu.h"
+#include "render/surface_features.h"
 
 #include <array>
 #include <span>
@@ -16,42 +17,21 @@ namespace gpu {
 class Device;
 }
 
-// Images as textures with all their mip levels, and materials as one array of records. Materials
-// that need the same program, the same fixed state and the same textures share a batch: instances
-// of a batch are drawn together, whatever their mesh and material. An image that is missing, broken
-// or too large is magenta.
+// Images as textures with full mip chains, and materials as one array of records. Materials with
+// the same program, fixed state and textures share a batch: instances of a batch are drawn
+// together, whatever their mesh and material. An image that is missing, broken or too large is
+// magenta.
 //
-// A software OpenGL pays for what a GPU gives away: there sRGB is decoded after filtering (a third
-// of the cost), only the base color is filtered between mip levels, and nothing anisotropically
-// (five times the cost).
+// Cheaper settings on a software OpenGL, which pays for what is free on a GPU: sRGB is decoded
+// after filtering (a third of the cost), only the base color is filtered trilinearly, and nothing
+// anisotropically (five times the cost).
 
 inline constexpr int kMaterialTextures =
     5;  ///< base color, metal-rough, normal, occlusion, emission
 
-/// What the program of a surface must do: one bit a definition of lib/material.glsl, mesh.vert and
-/// gbuffer.frag.
-enum SurfaceFeature : std::uint32_t {
-    kBaseColorMap = 1u << 0,  // the five maps in the order of the texture units
-    kMetalRoughMap = 1u << 1,
-    kNormalMap = 1u << 2,
-    kOcclusionMap = 1u << 3,
-    kEmissionMap = 1u << 4,
-    kOcclusionShared = 1u << 13,  // the occlusion is the red of the metal-rough texture
-    kUvMap = 1u << 5,
-    kUvMaps = 1u << 6,
-    kAlphaMask = 1u << 7,
-    kDoubleSided = 1u << 8,
-    kSrgbBaseColor = 1u << 9,
-    kSrgbEmission = 1u << 10,
-    kVertexColor = 1u << 11,  // added by the mesh
-    kVelocity = 1u << 12,     // added by the frame
-    kInflate = 1u << 14,      // added by the instance
-    kDeformed = 1u << 15,     // added by the instance: its vertices are its own (skinning/)
-};
-
-/// Materials that are drawn alike.
+/// Materials that share a draw state.
 struct SurfaceBatch {
-    std::uint32_t features = 0;  ///< of SurfaceFeature
+    std::uint32_t features = 0;  ///< SurfaceFeature bits
     bool blend = false;
     std::uint32_t textures = 0;  ///< index for MaterialPool::bind_textures
 };
@@ -60,11 +40,11 @@ class MaterialPool {
   public:
     MaterialPool(gpu::Device& device, float anisotropy);
 
-    /// Takes in what is new in `assets`: images after those it has, and all materials if there are
-    /// new ones or their version changed. `fresh`: other assets than last time.
+    /// Uploads what is new in `assets`: images beyond those it has, and all materials if any were
+    /// added or their version changed. `fresh`: these are other assets than last time.
     void update(const Assets& assets, bool fresh);
 
-    /// Record index of a material; of none and of unknown ones, too.
+    /// Record index of a material; 0 for none, 1 for an unknown one.
     [[nodiscard]] std::uint32_t record_of(MaterialId id) const {
         return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
     }
@@ -73,13 +53,13 @@ class MaterialPool {
     [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
-    /// Whether a material is Blinn or Phong.
+    /// Whether any material is Blinn or Phong.
     [[nodiscard]] bool has_classic() const { return has_classic_; }
 
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
     [[nodiscard]] std::size_t image_count() const { return images_.size(); }
-    /// Null: no such image, or a broken one.
+    /// Null if there is no such image, or it is broken.
     [[nodiscard]] const gpu::Texture* find_image(ImageId id) const {
         return id.index < images_.size() && images_[id.index].texture ? &images_[id.index].texture
                                                                       : nullptr;
@@ -112,7 +92,7 @@ class MaterialPool {
     std::vector<std::uint32_t> sampler_keys_;
     std::vector<TextureSet> sets_;
     std::vector<SurfaceBatch> batches_;
-    std::vector<std::uint32_t> batch_of_;  ///< by record; 0 the default material, 1 the missing one
+    std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
     std::vector<std::uint8_t> models_;     ///< by record
     std::vector<layout::MaterialRecord> records_;
     gpu::Buffer record_buffer_;

@@ -13,8 +13,8 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kFirstVertices = 1 << 16;
-constexpr std::size_t kFirstIndices = 1 << 18;
+constexpr std::size_t kInitialVertices = 1 << 16;
+constexpr std::size_t kInitialIndices = 1 << 18;
 
 constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 0, .stream = kPositionStream, .components = 3},
@@ -48,18 +48,18 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
      .type = GL_UNSIGNED_INT,
      .offset = offsetof(layout::InstanceRecord, material),
      .integer = true},
-    {.location = 9, .stream = kBeforeStream, .components = 4, .offset = 0},
-    {.location = 10, .stream = kBeforeStream, .components = 4, .offset = 16},
-    {.location = 11, .stream = kBeforeStream, .components = 4, .offset = 32},
-    {.location = 12, .stream = kVertexBeforeStream, .components = 3},
+    {.location = 9, .stream = kPreviousTransformStream, .components = 4, .offset = 0},
+    {.location = 10, .stream = kPreviousTransformStream, .components = 4, .offset = 16},
+    {.location = 11, .stream = kPreviousTransformStream, .components = 4, .offset = 32},
+    {.location = 12, .stream = kPreviousPositionStream, .components = 3},
 };
 
 std::int16_t to_snorm(float x) {
     return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f));
 }
 std::uint16_t to_half(float x) {
-    constexpr float kMost = 65504;
-    return glm::packHalf1x16(std::isnan(x) ? 0.0f : std::clamp(x, -kMost, kMost));
+    constexpr float kMaxHalf = 65504;
+    return glm::packHalf1x16(std::isnan(x) ? 0.0f : std::clamp(x, -kMaxHalf, kMaxHalf));
 }
 
 PackedVertex pack_vertex(const MeshData& mesh, std::size_t i) {
@@ -86,7 +86,7 @@ bool drawable(const MeshData& mesh) {
     }
     if (std::any_of(mesh.indices.begin(), mesh.indices.end(), past)) {
         log_error(
-            "mesh {}: an index is past the {} vertices; it is not drawn", mesh.name,
+            "mesh {}: an index exceeds the {} vertices; it is not drawn", mesh.name,
             mesh.positions.size());
         return false;
     }
@@ -100,7 +100,7 @@ std::span<const gpu::VertexAttribute> mesh_attributes() {
 }
 
 MeshPool::MeshPool() : vertices_("meshes", kMeshAttributes) {
-    reserve(kFirstVertices, kFirstIndices);
+    reserve(kInitialVertices, kInitialIndices);
 }
 
 void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
@@ -114,8 +114,8 @@ void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
         vertex_capacity_ = capacity;
         vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
         vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
-        // Nobody reads it here, but something must be bound.
-        vertices_.set_vertices(kVertexBeforeStream, positions_, 0, sizeof(Vec3));
+        // Not read for undeformed meshes, but something must be bound.
+        vertices_.set_vertices(kPreviousPositionStream, positions_, 0, sizeof(Vec3));
     }
     if (indices > index_capacity_) {
         const std::size_t capacity = std::max(indices, 2 * index_capacity_);

@@ -9,24 +9,24 @@
 
 namespace limn {
 
-// All meshes in one pair of vertex buffers and one index buffer, so that a multi-draw goes through
-// any of them without a change of state. Meshes are appended; when the buffers are full, twice as
-// large ones take over and the GPU copies.
+// All meshes in one pair of vertex buffers and one index buffer, so that a multi-draw covers any of
+// them without a state change. Meshes are appended; full buffers are replaced by ones twice as
+// large, copied on the GPU.
 //
-// Positions lie apart from the rest: passes that need depth alone read a quarter as much.
+// Positions have a buffer of their own: depth-only passes read a quarter as much.
 
-/// Where a mesh lies.
+/// The range of a mesh in the buffers.
 struct MeshRange {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;  ///< 0: nothing to draw
     std::int32_t base_vertex = 0;
     Bounds bounds;
-    bool colored = false;   ///< has a color a vertex
-    bool tangents = false;  ///< has a tangent a vertex: can have a normal map
+    bool colored = false;   ///< has vertex colors
+    bool tangents = false;  ///< has vertex tangents, as normal maps need
 };
 
-/// A vertex beside its position; normals and tangents as 16-bit integers, -32767 .. 32767 for -1
-/// .. 1, colors as half floats.
+/// Vertex attributes other than position; normals and tangents as 16-bit snorm, -32767 .. 32767 for
+/// -1 .. 1, colors as half floats.
 struct PackedVertex {
     std::int16_t normal[4];
     std::int16_t tangent[4];  ///< w: sign of the bitangent
@@ -40,14 +40,14 @@ class MeshPool {
   public:
     MeshPool();
 
-    /// Takes in the meshes after those it has; a mesh with an index past its vertices, or without
-    /// triangles, is logged and draws nothing.
+    /// Uploads the meshes beyond those it has; a mesh with an out-of-range index or without
+    /// triangles is logged and draws nothing.
     void append(std::span<const MeshData> meshes);
-    /// Forgets all meshes; the buffers stay.
+    /// Removes all meshes; the buffers stay allocated.
     void clear();
 
     [[nodiscard]] const std::vector<MeshRange>& meshes() const { return meshes_; }
-    /// The attributes 0 .. 4 of mesh.vert; instance streams are set by who draws.
+    /// Attributes 0 .. 4 of mesh.vert; the caller binds the instance streams.
     [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
     [[nodiscard]] const gpu::Buffer& positions() const { return positions_; }
     [[nodiscard]] const gpu::Buffer& attributes() const { return attributes_; }  ///< PackedVertex
@@ -67,14 +67,14 @@ class MeshPool {
     std::size_t index_capacity_ = 0;
 };
 
-/// What mesh.vert may read.
+/// Vertex layout of mesh.vert.
 [[nodiscard]] std::span<const gpu::VertexAttribute> mesh_attributes();
 
-/// Streams of mesh.vert.
+/// Vertex buffer bindings of mesh.vert.
 inline constexpr unsigned kPositionStream = 0;
 inline constexpr unsigned kAttributeStream = 1;
 inline constexpr unsigned kInstanceStream = 2;
-inline constexpr unsigned kBeforeStream = 3;
-inline constexpr unsigned kVertexBeforeStream = 4;  ///< of deformed meshes alone
+inline constexpr unsigned kPreviousTransformStream = 3;
+inline constexpr unsigned kPreviousPositionStream = 4;  ///< deformed meshes only
 
 }  // namespace limn

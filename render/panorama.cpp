@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-/// At a pole every one is right.
+/// Arbitrary at the poles.
 float longitude(const Vec3& direction) {
     if (direction.x == 0 && direction.z == 0) {
         return 0.5f;
@@ -32,7 +32,7 @@ Vec2 cylindrical_uv(const Vec3& direction, float half_angle) {
 
 Vec2 angular_uv(const Vec3& direction) {
     const float across = std::sqrt(square(direction.x) + square(direction.z));
-    // Straight up is 0 / 0, straight down any point of the rim.
+    // Straight up is 0 / 0; straight down is any point of the rim.
     const float away = std::atan2(across, direction.y) / (2 * kPi * std::max(across, 1e-20f));
     return Vec2(0.5f) + away * Vec2(direction.x, direction.z);
 }

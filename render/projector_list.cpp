@@ -33,7 +33,7 @@ Vec3 pixel_of(const ImageData& image, int x, int y) {
     return color;
 }
 
-/// The image at the size of a layer: the mean of the pixels under each texel.
+/// Resamples the image to the size of a layer: the mean of the pixels under each texel.
 std::vector<Vec4> resample(const ImageData& image) {
     constexpr int kSize = kProjectorImageSize;
     std::vector<Vec4> texels;
@@ -59,7 +59,7 @@ std::vector<Vec4> resample(const ImageData& image) {
     return texels;
 }
 
-bool is_whole(const ImageData& image) {
+bool is_complete(const ImageData& image) {
     const std::size_t bytes = image.format == PixelFormat::Rgba8     ? 4
                               : image.format == PixelFormat::Rgba16F ? 8
                                                                      : 16;
@@ -118,13 +118,14 @@ int ProjectorPool::layer_of(const Assets& assets, ImageId image) {
     if (found != layers_.end()) {
         return static_cast<int>(found - layers_.begin());
     }
-    if (image.index >= assets.images.size() || !is_whole(assets.images[image.index])) {
+    if (image.index >= assets.images.size() || !is_complete(assets.images[image.index])) {
         return -1;
     }
     if (layers_.size() == kMaxProjectorImages) {
         if (!reported_) {
             log_warn(
-                "projectors: more than {} images; the others are not shown", kMaxProjectorImages);
+                "projectors: more than {} images; the others are not projected",
+                kMaxProjectorImages);
             reported_ = true;
         }
         return -1;

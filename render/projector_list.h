@@ -11,24 +11,25 @@ namespace limn {
 
 struct Assets;
 
-// Lights that throw images: one record each, and their images as layers of one texture, so that a
-// loop over lights can meet any number of them. An image is resampled to a layer when it is first
-// thrown; beyond kMaxProjectorImages the light throws none and is told of once.
+// Projected textures (cookies): one record per light with a Projector, and the images as layers of
+// one texture array, so that a loop over lights handles any number of them. An image is resampled
+// into a layer on first use; beyond kMaxProjectorImages a light has no cookie, which is reported
+// once.
 
 inline constexpr int kMaxProjectorImages = 8;
 inline constexpr int kProjectorImageSize = 512;  ///< side of a layer [texels]
 
-/// The frame shown at `time` [s].
+/// The animation frame at `time` [s].
 [[nodiscard]] int projector_frame(const Projector& projector, double time);
 
-/// Of a light at `pose`; `layer` of the images.
+/// For a light at `pose`; `layer` of images().
 [[nodiscard]] layout::ProjectorRecord make_projector_record(
     const Projector& projector, LightKind kind, const Affine& pose, double time, int layer);
 
 class ProjectorPool {
   public:
-    /// Fills records() and sets LightRecord::shadow.w of the lights that throw images. Other assets
-    /// than last time are noticed.
+    /// Fills records() and sets LightRecord::shadow.w of the lights with a cookie. Detects that
+    /// `assets` have been replaced.
     void update(const Assets& assets, LightList& lights);
 
     [[nodiscard]] const std::vector<layout::ProjectorRecord>& records() const { return records_; }
@@ -40,7 +41,7 @@ class ProjectorPool {
     std::vector<layout::ProjectorRecord> records_;
     std::vector<ImageId> layers_;
     gpu::Texture images_;
-    std::uint64_t assets_ = 0;  // identity of those that were uploaded
+    std::uint64_t assets_ = 0;  // identity of the uploaded assets
     bool reported_ = false;
 };
 

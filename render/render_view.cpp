@@ -13,14 +13,14 @@
 namespace limn {
 namespace {
 
-constexpr float kLeastCosine = 0.5f;    // of 60 degrees
-constexpr float kFarthestMove = 10.0f;  // [m]
+constexpr float kMinCosine = 0.5f;  // of 60 degrees
+constexpr float kMaxMove = 10.0f;   // [m]
 
 Vec3 column(const Affine& a, int c) {
     return {a.row[0][c], a.row[1][c], a.row[2][c]};
 }
 
-/// Rotation and position alone, whatever the scale or shear.
+/// Rotation and position only, without scale and shear.
 Affine without_scale(const Affine& a) {
     const Vec3 back = normalize_or({a.row[0].z, a.row[1].z, a.row[2].z}, {0, 0, 1});
     const Vec3 up = {a.row[0].y, a.row[1].y, a.row[2].y};
@@ -50,8 +50,8 @@ Affine mix_affine(const Affine& previous, const Affine& current, float alpha) {
 bool is_cut(const Affine& before, const Affine& now) {
     const Vec3 was = normalize_or(column(before, 2), {0, 0, 1});
     const Vec3 is = normalize_or(column(now, 2), {0, 0, 1});
-    return glm::dot(was, is) < kLeastCosine
-           || glm::distance(column(before, 3), column(now, 3)) > kFarthestMove;
+    return glm::dot(was, is) < kMinCosine
+           || glm::distance(column(before, 3), column(now, 3)) > kMaxMove;
 }
 
 RenderView make_render_view(
@@ -69,7 +69,7 @@ RenderView make_render_view(
     view.near = camera.near;
     view.tangent = {tangent * aspect, tangent};
     view.alpha = request.alpha;
-    view.alpha_before = request.alpha_before;
+    view.previous_alpha = request.previous_alpha;
 
     Mat4 clip_from_view(0.0f);
     clip_from_view[0][0] = 1.0f / view.tangent.x;
@@ -77,26 +77,26 @@ RenderView make_render_view(
     clip_from_view[2][3] = -1.0f;
     clip_from_view[3][2] = camera.near;
 
-    // Exactly the pose itself when nothing is to be mixed: goldens do not depend on rounding.
+    // Without interpolation use the pose itself, so that goldens do not depend on rounding.
     view.world_from_camera = without_scale(
         request.alpha == 1.0f ? world_from_camera
                               : mix_affine(previous, world_from_camera, request.alpha));
     const Affine before =
-        without_scale(mix_affine(previous, world_from_camera, request.alpha_before));
-    view.steady_from_world = clip_from_view * view_from_world(view.world_from_camera);
-    view.previous_from_world = clip_from_view * view_from_world(before);
+        without_scale(mix_affine(previous, world_from_camera, request.previous_alpha));
+    view.unjittered_from_world = clip_from_view * view_from_world(view.world_from_camera);
+    view.previous_clip_from_world = clip_from_view * view_from_world(before);
 
     return with_jitter(view, request.jitter);
 }
 
 RenderView with_jitter(const RenderView& view, const Vec2& jitter) {
-    // Clip space moves by a share of w, whatever the distance.
+    // An offset proportional to w shifts the image equally at all distances.
     Mat4 shift(1.0f);
     shift[3][0] = 2.0f * jitter.x / static_cast<float>(view.width);
     shift[3][1] = 2.0f * jitter.y / static_cast<float>(view.height);
     RenderView jittered = view;
     jittered.jitter = jitter;
-    jittered.clip_from_world = shift * view.steady_from_world;
+    jittered.clip_from_world = shift * view.unjittered_from_world;
     return jittered;
 }
 
@@ -107,11 +107,11 @@ RenderView with_lens_sample(const RenderView& view, const Vec2& point) {
     for (Vec4& row : sampled.world_from_camera.row) {
         row.w += offset.x * row.x + offset.y * row.y;
     }
-    // The eye that moves by `offset` sees all move back by it, the more the nearer; the picture
-    // that moves on by as much as the focus did puts that back in its place.
+    // Moving the eye by `offset` shifts the image of nearer points more; shifting the image back by
+    // the shift at the focus distance keeps the focal plane in place.
     const Vec2 moved = offset / view.tangent;
-    sampled.steady_from_world[3] -= Vec4(moved, 0, 0);
-    sampled.previous_from_world[3] -= Vec4(moved, 0, 0);
+    sampled.unjittered_from_world[3] -= Vec4(moved, 0, 0);
+    sampled.previous_clip_from_world[3] -= Vec4(moved, 0, 0);
     const Vec2 half = 0.5f * Vec2(view.width, view.height);
     return with_jitter(sampled, view.jitter + half * moved / view.lens.focus_distance);
 }
@@ -129,9 +129,9 @@ LensView lens_view(const World& world, Entity camera) {
     }
     const Result<LensView> made = make_lens_view(*lens, *its);
     if (!made) {
-        static std::atomic<bool> told = false;
-        if (!told.exchange(true)) {
-            log_warn("{}; the camera is a pinhole", made.error().message);
+        static std::atomic<bool> reported = false;
+        if (!reported.exchange(true)) {
+            log_warn("{}; using a pinhole camera", made.error().message);
         }
         return {};
     }

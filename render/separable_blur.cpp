@@ -1,6 +1,6 @@
 #include "render/separable_blur.h"
 
-#include "render/gpu/shader_library.h"
+#include "render/fullscreen.h"
 
 #include <cmath>
 #include <numeric>
@@ -11,19 +11,14 @@ namespace {
 TextureId blur_axis(
     FrameGraph& graph, const SeparableBlur& blur, std::string_view name, TextureId source,
     const BlurKernel& kernel, const IVec2& axis) {
-    TextureSpec spec = graph.spec(source);
-    spec.name = name;
-    const TextureId target = graph.create(spec);
-    graph.add_pass(
-        name, {source}, {discarded(target)},
-        [program = blur.program, source, kernel, axis](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("axis", axis);
-            program->set("before", Vec3(kernel[0], kernel[1], kernel[2]));
-            program->set("middle", kernel[3]);
-            program->set("behind", Vec3(kernel[4], kernel[5], kernel[6]));
-            context.bind_texture(0, source);
-            context.device().draw_fullscreen();
+    const TextureId target = create_like(graph, name, source);
+    add_fullscreen_pass(
+        graph, name, {sampled(source, 0)}, {discarded(target)}, blur.program,
+        [kernel, axis](PassContext&, const gpu::Program& program) {
+            program.set("axis", axis);
+            program.set("negative_weights", Vec3(kernel[0], kernel[1], kernel[2]));
+            program.set("middle", kernel[3]);
+            program.set("positive_weights", Vec3(kernel[4], kernel[5], kernel[6]));
         });
     return target;
 }
@@ -31,12 +26,7 @@ TextureId blur_axis(
 }  // namespace
 
 Result<SeparableBlur> create_separable_blur(gpu::Device& device) {
-    const Result<const gpu::Program*> program =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "separable_blur.frag"});
-    if (!program) {
-        return program.error();
-    }
-    return SeparableBlur{*program};
+    return SeparableBlur{LIMN_TRY(load_fullscreen(device, "separable_blur.frag"))};
 }
 
 TextureId blur_separable(
@@ -44,7 +34,7 @@ TextureId blur_separable(
     const BlurKernel& kernel, BlurOrder order) {
     LIMN_CHECK(std::abs(std::accumulate(kernel.begin(), kernel.end(), -1.0)) < 1e-4);
 
-    const bool across_first = order == BlurOrder::AcrossFirst;
+    const bool across_first = order == BlurOrder::HorizontalFirst;
     const IVec2 first = across_first ? IVec2(1, 0) : IVec2(0, 1);
     source = blur_axis(graph, blur, name, source, kernel, first);
     return blur_axis(graph, blur, name, source, kernel, 1 - first);

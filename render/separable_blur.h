@@ -12,13 +12,12 @@ namespace gpu {
 class Program;
 }
 
-// A blur of 7 x 7 pixels in two passes of 7 (post.separable-blur): 14 readings a pixel instead of
-// 49. It is the whole one only for weights that are a product of those of rows and columns. Edges
-// are repeated.
+// A 7 x 7 blur in two passes of 7 taps (post.separable-blur): 14 reads per pixel instead of 49.
+// Exact only for separable kernels. Edges are clamped.
 //
 // Shaders  separable_blur.frag
 
-/// Weights of the pixels -3 .. 3; they must sum to 1, or the picture's light changes.
+/// Weights of the pixels -3 .. 3; they must sum to 1, or the image's brightness changes.
 using BlurKernel = std::array<float, 7>;
 
 /// {1, 6, 15, 20, 15, 6, 1} / 64: nearly a Gaussian of standard deviation 1.22 pixels.
@@ -31,11 +30,11 @@ struct SeparableBlur {
 
 [[nodiscard]] Result<SeparableBlur> create_separable_blur(gpu::Device& device);
 
-/// Which axis is first makes no difference away from the border.
-enum class BlurOrder : std::uint8_t { AcrossFirst, UpFirst };
+/// The order makes no difference away from the border.
+enum class BlurOrder : std::uint8_t { HorizontalFirst, VerticalFirst };
 
 [[nodiscard]] TextureId blur_separable(
     FrameGraph& graph, const SeparableBlur& blur, std::string_view name, TextureId source,
-    const BlurKernel& kernel = kBinomialKernel, BlurOrder order = BlurOrder::AcrossFirst);
+    const BlurKernel& kernel = kBinomialKernel, BlurOrder order = BlurOrder::HorizontalFirst);
 
 }  // namespace limn

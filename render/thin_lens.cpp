@@ -47,7 +47,7 @@ Result<LensView> make_lens_view(const Lens& lens, const Camera& camera) {
     }
     if (!(lens.focus_distance > 0)) {
         return fail(
-            "lens: focus_distance is {} m, expected a place in front of the camera",
+            "lens: focus_distance is {} m, expected more than 0 (in front of the camera)",
             lens.focus_distance);
     }
     if (!(lens.sensor_height > 0 && std::isfinite(lens.sensor_height))) {
@@ -61,7 +61,7 @@ Result<LensView> make_lens_view(const Lens& lens, const Camera& camera) {
     view.focus_distance = lens.focus_distance;
     view.blades = lens.blades >= 3 ? lens.blades : 0;
     view.blade_rotation = std::isfinite(lens.blade_rotation) ? lens.blade_rotation : 0.0f;
-    view.largest_blur = lens.largest_blur > 0 ? std::min(lens.largest_blur, 0.25f) : 0.0f;
+    view.max_blur = lens.max_blur > 0 ? std::min(lens.max_blur, 0.25f) : 0.0f;
     view.method = lens.method;
     return view;
 }

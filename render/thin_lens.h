@@ -8,46 +8,47 @@ namespace limn {
 
 struct Camera;
 
-// The optics of a camera with a thin lens (post.circle-of-confusion): of focal length F, aperture
-// diameter A = F / n and focused at z_f, it images a point at distance z as a disc of diameter
+// The optics of a camera with a thin lens (post.circle-of-confusion). With focal length F, aperture
+// diameter A = F / n and focus distance z_f, a point at distance z is imaged as a disc of diameter
 //
 //     d = F^2 / (n (z_f - F)) |z - z_f| / z = A v_f |1/z_f - 1/z|,    1/v_f = 1/F - 1/z_f
 //
-// on a film v_f behind it: linear in 1/z, hence in reversed depth. A source of the formula takes it
-// for linear in |z - z_f|, which holds near the focus alone.
+// on a film v_f behind the lens: linear in 1/z, hence in reversed depth. One source of the formula
+// has it linear in |z - z_f|, which holds only near the focus.
 //
-// A camera has a field of view and the film a height, so that v_f is what is given, and F follows
-// from it and z_f. It gets shorter as the focus comes nearer, as in lenses that do not breathe, and
-// is always less than z_f: every focus in front of the camera is a real one.
+// A camera gives the field of view and the film height, hence v_f; F follows from it and z_f. F
+// gets shorter as the focus comes nearer, as in lenses without focus breathing, and is always less
+// than z_f: every focus in front of the camera is valid.
 
 /// F [m] of the lens that fills `sensor_height` with `fov_y`, focused at `focus_distance`.
 [[nodiscard]] double focal_length(double fov_y, double sensor_height, double focus_distance);
 
-/// Diameter [m] of the image of a point at `distance` on the film, infinitely far ones included.
-/// `focus_distance` > `focal_length`.
+/// Diameter [m] of the circle of confusion on the film of a point at `distance`, which may be
+/// infinite. `focus_distance` > `focal_length`.
 [[nodiscard]] double
 circle_of_confusion(double focal_length, double f_number, double focus_distance, double distance);
 
-/// What rendering needs of a Lens.
+/// A Lens as the renderer uses it.
 struct LensView {
-    float aperture_radius = 0.0f;  ///< [m], of the circle through its corners; 0: a pinhole
+    float aperture_radius = 0.0f;  ///< [m], circumscribed circle of the polygon; 0: a pinhole
     float focus_distance = 1.0f;   ///< [m], > 0
-    int blades = 0;                ///< less than 3: round
+    int blades = 0;                ///< fewer than 3: round
     float blade_rotation = 0.0f;   ///< [rad]
-    float largest_blur = 0.1f;     ///< diameter of the widest disc drawn, of the picture's height
+    float max_blur = 0.1f;     ///< maximum disc diameter, fraction of the image height
     FocusMethod method = FocusMethod::Gather;
 };
 
-/// Fails with one line if the lens is none: an aperture or a film of size 0 or less, a focus that
-/// is not in front of the camera. An infinite f-number is a pinhole, an infinite focus is a focus.
+/// Fails with a one-line message if the lens is invalid: an aperture or film of size 0 or less, or
+/// a focus not in front of the camera. An infinite f-number is a pinhole; an infinite focus
+/// distance is valid.
 [[nodiscard]] Result<LensView> make_lens_view(const Lens& lens, const Camera& camera);
 
-/// Diameter [px] of the image of a point at `distance`, negative in front of the focus:
-/// circle_scale (1 / focus_distance - 1 / distance).
+/// The scale in: circle of confusion [px] = scale (1 / focus_distance - 1 / distance), negative in
+/// front of the focus.
 [[nodiscard]] float circle_scale(const LensView& lens, float tangent_y, int height);  // [px m]
 
-/// From the unit square onto the aperture of radius 1, equal areas onto equal areas: the disc by
-/// Shirley and Chiu's concentric map (1997), a polygon by its triangles.
+/// Area-preserving map from the unit square onto the aperture of radius 1: the disc by Shirley and
+/// Chiu's concentric map (1997), a polygon by its triangles.
 [[nodiscard]] Vec2 point_on_aperture(const LensView& lens, const Vec2& square);
 
 }  // namespace limn

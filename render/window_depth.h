@@ -2,11 +2,11 @@
 
 namespace limn {
 
-// Between distances along the view axis and what depth buffers hold (post.linear-to-window-depth).
-// Ours are reversed and have no far plane: near / e; with finite ones, `far` is where they end.
-// What is at the eye or behind it counts as nearest.
+// Converts between distance along the view axis and depth buffer values
+// (post.linear-to-window-depth). Ours are reversed with an infinite far plane: near / e; the finite
+// ones take `far`. Points at or behind the eye map to the nearest depth.
 
-/// Of a usual depth buffer: 0 at the near plane, 1 at the far one.
+/// Conventional depth: 0 at the near plane, 1 at the far one.
 [[nodiscard]] inline double window_depth(double eye_distance, double near, double far) {
     return eye_distance > 0 ? (far - far * near / eye_distance) / (far - near) : 0;
 }
@@ -14,12 +14,12 @@ namespace limn {
     return far * near / (far - window_depth * (far - near));
 }
 
-/// Of a reversed one: 1 at the near plane, 0 at the far one.
+/// Reversed depth: 1 at the near plane, 0 at the far one.
 [[nodiscard]] inline double reversed_depth(double eye_distance, double near, double far) {
     return eye_distance > 0 ? near * (far - eye_distance) / (eye_distance * (far - near)) : 1;
 }
 
-/// Of ours; infinity has 0.
+/// Reversed depth without a far plane, as we use it; 0 at infinity.
 [[nodiscard]] inline double reversed_depth(double eye_distance, double near) {
     return eye_distance > 0 ? near / eye_distance : 1;
 }

@@ -8,37 +8,38 @@ namespace {
 
 constexpr std::uint64_t kFaces = 6;
 
-bool looks_again(const EnvProbe& probe, const Vec3& position, const EnvProbeState& state) {
-    const bool in_time = state.waited >= static_cast<std::uint32_t>(probe.period);
-    // Exactly the threshold is not more than it, whatever rounding makes of the difference.
-    const bool moved = glm::distance(position, state.seen_from) > probe.threshold * 1.00001f;
+bool is_capture_due(const EnvProbe& probe, const Vec3& position, const EnvProbeState& state) {
+    const bool is_period_over =
+        state.frames_since_capture >= static_cast<std::uint32_t>(probe.period);
+    // Tolerates rounding: a distance equal to the threshold must not count as more.
+    const bool moved = glm::distance(position, state.capture_position) > probe.threshold * 1.00001f;
     switch (probe.update) {
     case ProbeUpdate::Once:
         return false;
     case ProbeUpdate::Period:
-        return in_time;
+        return is_period_over;
     case ProbeUpdate::Movement:
         return moved;
     case ProbeUpdate::Either:
         break;
     }
-    return in_time || moved;
+    return is_period_over || moved;
 }
 
 }  // namespace
 
 void step_env_probe(const EnvProbe& probe, const Vec3& position, EnvProbeState& state) {
     if (state.faces % kFaces != 0) {
-        ++state.faces;  // the next of a round that goes face by face
-        ++state.waited;
+        ++state.faces;  // the next face of a capture in progress
+        ++state.frames_since_capture;
         return;
     }
-    ++state.waited;
+    ++state.frames_since_capture;
     const bool first = state.faces == 0;
-    if (first || looks_again(probe, position, state)) {
+    if (first || is_capture_due(probe, position, state)) {
         state.faces += probe.face_by_face && !first ? 1 : kFaces;
-        state.seen_from = position;
-        state.waited = 0;
+        state.capture_position = position;
+        state.frames_since_capture = 0;
     }
 }
 

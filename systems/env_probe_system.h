@@ -7,17 +7,17 @@
 
 namespace limn {
 
-// Decides when probes look around again (env.update-policy); the renderer draws the faces that are
-// due. A frame is a step of the world. Changes around a probe that stands still are seen only by
-// its period.
+// Schedules captures of environment probes (env.update-policy); the renderer draws the cube map
+// faces that are due. A frame is a step of the world. Changes around a probe at rest are captured
+// only by its period.
 
 /// Gives each EnvProbe its state.
 void add_env_probe_states(Query<const EnvProbe, Without<EnvProbeState>> probes, Commands commands);
 
-/// Runs after update_transforms: a probe looks from where its entity is now.
+/// Runs after update_transforms: captures use the entity's current position.
 void update_env_probes(Query<const EnvProbe, const WorldTransform, EnvProbeState> probes);
 
-/// One frame of one probe, which is at `position`.
+/// One frame of one probe at `position`.
 void step_env_probe(const EnvProbe& probe, const Vec3& position, EnvProbeState& state);
 
 }  // namespace limn

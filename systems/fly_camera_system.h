@@ -9,15 +9,15 @@
 
 namespace limn {
 
-/// Moves every FlyCamera whose Camera is active (or that has none) by the input: the mouse turns
-/// about the parent's +y and tilts about the camera's own x axis, short of straight up and down;
-/// keys move forward and sideways along the view and up along +y, five times as quick with
-/// Input::fast.
+/// Moves every FlyCamera whose Camera is active (or that has none) by Input: the mouse rotates
+/// about the parent's +y and tilts about the camera's local x axis, limited to just short of
+/// vertical; `move` goes forward and sideways in view space and up along +y, five times as fast
+/// with `fast`.
 void update_fly_cameras(
     Query<const FlyCamera, Transform, Optional<const Camera>> cameras, Res<const Input> input,
     Res<const FrameTime> time);
 
-/// One step of one camera. `move` beyond length 1 counts as 1.
-void step_fly_camera(Transform& transform, const FlyCamera& fly, const Input& input, float dt);
+/// One step of one camera. The length of `move` is clamped to 1.
+void step_fly_camera(Transform& transform, const FlyCamera& fly, const MoveInput& input, float dt);
 
 }  // namespace limn

@@ -11,7 +11,7 @@
 // after foreach_target
 #include <hwy/highway.h>
 
-// Fields are read and written as floats at these distances.
+// Fields are read and written as floats with these strides.
 static_assert(sizeof(limn::Transform) == 10 * sizeof(float));
 static_assert(sizeof(limn::WorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::PreviousWorldTransform) == 12 * sizeof(float));
@@ -40,8 +40,7 @@ inline constexpr float kCos2 = 2.443315711809948e-5f;
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-// Each returns how many entities it has done, from the first on; the rest is for the scalar
-// version.
+// Each returns the number of entities processed; the scalar version handles the remainder.
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
 
@@ -65,7 +64,7 @@ using HalfFloats = hn::Half<Floats>;
 using Doubles = hn::Rebind<double, HalfFloats>;
 constexpr Floats d;
 
-/// Sine and cosine of the rest, and how many quarter turns were taken off, modulo 4.
+/// Sine and cosine of the reduced angle, and the number of quarter turns removed, modulo 4.
 struct SinCos {
     V sin;
     V cos;
@@ -86,7 +85,7 @@ HWY_INLINE SinCos sin_cos_of_rest(V x, V quarter) {
     return {sin, cos, quarter};
 }
 
-/// Takes whole quarter turns off frequency * time + phase, in double precision.
+/// Reduces frequency * time + phase by whole quarter turns, in double precision.
 HWY_INLINE void reduce_half(
     hn::Vec<HalfFloats> frequency, double time, hn::Vec<HalfFloats> phase,
     hn::Vec<HalfFloats>& rest, hn::Vec<HalfFloats>& quarter) {
@@ -128,8 +127,8 @@ HWY_INLINE V pick_cosine(const SinCos& parts) {
     return hn::IfThenElse(negative, hn::Neg(value), value);
 }
 
-/// Four neighboring floats of structs of `Stride` floats, from `first` on, one vector a field.
-/// Through the stack in pieces of 16 bytes: quicker than gather instructions.
+/// Loads four consecutive floats of each struct of `Stride` floats, starting at `first`, one vector
+/// per field. Goes through the stack in 16-byte pieces, which is faster than gather instructions.
 template <int Stride>
 HWY_INLINE void load_fields(const float* first, V& a, V& b, V& c, V& e) {
     HWY_ALIGN float staged[4 * hn::MaxLanes(Floats())];
@@ -164,7 +163,7 @@ std::size_t compose_worlds_vector(
         load_fields<10>(in + 3, qx, qy, qz, qw);
         load_fields<10>(in + 6, qw, sx, sy, sz);
 
-        // The operations of glm::mat3_cast, in their order.
+        // The same operations as glm::mat3_cast, in the same order.
         const V xx = hn::Mul(qx, qx);
         const V yy = hn::Mul(qy, qy);
         const V zz = hn::Mul(qz, qz);
@@ -302,7 +301,7 @@ HWY_EXPORT(sway_positions_vector);
 
 namespace {
 
-/// The same as sin_cos_parts, for one angle.
+/// Scalar version of sin_cos_parts.
 struct ScalarSinCos {
     float sin;
     float cos;

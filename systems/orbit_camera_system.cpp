@@ -11,11 +11,10 @@ namespace {
 
 constexpr float kRadiansPerPixel = 0.005f;  // by eye
 constexpr float kZoomPerStep = 0.9f;        // by eye
-constexpr float kMaxElevation =
-    1.55f;  // just short of the pole, where left and right have no meaning
-constexpr float kReferenceRate = 60.0f;  // what OrbitCamera::follow refers to [Hz]
+constexpr float kMaxElevation = 1.55f;      // just short of the pole, where azimuth is undefined
+constexpr float kReferenceRate = 60.0f;     // frame rate to which OrbitCamera::follow refers [Hz]
 
-/// Axis `i` of the target, unit however it is scaled.
+/// Unit vector along axis `i` of the target.
 Vec3 axis_of(const Affine& target, int i) {
     Vec3 fallback(0);
     fallback[i] = 1;
@@ -26,7 +25,7 @@ Vec3 origin_of(const Affine& target) {
     return {target.row[0].w, target.row[1].w, target.row[2].w};
 }
 
-void turn_by_hand(OrbitCamera& orbit, const Input& input) {
+void apply_input(OrbitCamera& orbit, const Input& input) {
     orbit.azimuth -= input.look.x * kRadiansPerPixel;
     orbit.elevation = std::clamp(
         orbit.elevation + input.look.y * kRadiansPerPixel, -kMaxElevation, kMaxElevation);
@@ -59,12 +58,12 @@ Vec3 orbit_position(const Affine& target, float azimuth, float elevation, float 
                     + axis_of(target, 2) * to.ahead);
 }
 
-float lag_share(float follow, float dt) {
+float lag_fraction(float follow, float dt) {
     return 1.0f - std::pow(1.0f - std::clamp(follow, 0.0f, 1.0f), dt * kReferenceRate);
 }
 
 Vec3 lag_position(const Vec3& position, const Vec3& wanted, float follow, float dt) {
-    return wanted - (wanted - position) * (1.0f - lag_share(follow, dt));
+    return wanted - (wanted - position) * (1.0f - lag_fraction(follow, dt));
 }
 
 Vec3 lag_position_legacy(const Vec3& position, const Vec3& wanted, float factor, float dt) {
@@ -90,18 +89,18 @@ void update_orbit_cameras(
         OrbitCamera, Transform, WorldTransform, PreviousWorldTransform, Optional<const Camera>,
         Without<Parent>>
         cameras,
-    Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> jumping,
+    Query<const WorldTransform> bodies, Query<const WorldTransform, With<Teleport>> teleporting,
     Res<const Input> input, Res<const FrameTime> time) {
     cameras.each([&](Entity entity, OrbitCamera& orbit, Transform& transform, WorldTransform& world,
                      PreviousWorldTransform& previous, const Camera* camera) {
         if (camera != nullptr && camera->active) {
-            turn_by_hand(orbit, *input);
+            apply_input(orbit, *input);
         }
         Affine target;
         if (!orbit.target.is_null()) {
             const auto* body = bodies.find<const WorldTransform>(orbit.target);
             if (body == nullptr) {
-                return;  // gone: hold
+                return;  // destroyed: stay
             }
             target = body->world;
         }
@@ -112,7 +111,7 @@ void update_orbit_cameras(
         const Vec3 wanted = orbit_position(target, orbit.azimuth, orbit.elevation, orbit.distance);
 
         const bool jumps =
-            time->frame == 0 || jumping.contains(entity) || jumping.contains(orbit.target);
+            time->frame == 0 || teleporting.contains(entity) || teleporting.contains(orbit.target);
         transform.position =
             jumps ? wanted : lag_position(transform.position, wanted, orbit.follow, time->step);
         const Vec3 back = transform.position - point;

@@ -7,8 +7,8 @@ namespace limn {
 namespace {
 
 void place(const PathFollower& follower, const PathData& path, Transform& transform) {
-    transform = stand_on_path(
-        find_path_frame(path, follower.distance), follower.offset, follower.level, transform.scale);
+    transform = transform_on_path(
+        path_frame_at(path, follower.distance), follower.offset, follower.level, transform.scale);
 }
 
 const PathData* find_path(const Assets& assets, PathId id) {
@@ -28,7 +28,8 @@ void update_path_followers(
         const double length = path->length();
         double distance = follower.distance + static_cast<double>(follower.speed) * step;
         if (path->closed) {
-            distance -= std::floor(distance / length) * length;  // precise however long it runs
+            distance -= std::floor(distance / length)
+                        * length;  // wrapped, so that precision does not degrade over time
         } else {
             distance = std::clamp(distance, 0.0, length);
         }

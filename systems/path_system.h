@@ -9,12 +9,12 @@
 
 namespace limn {
 
-/// Moves every PathFollower on by a step and puts its Transform there. One whose path does not
-/// exist stays where it is; one on an open path stops at its ends.
+/// Advances every PathFollower by a step and writes its Transform. One whose path does not exist
+/// stays where it is; one on an open path stops at its ends.
 void update_path_followers(
     Query<PathFollower, Transform> followers, Res<const Assets> assets, Res<const FrameTime> time);
 
-/// Puts it where it is, without moving it on: for the first picture.
+/// Writes the Transform without advancing: for the first frame.
 void place_path_followers(Query<const PathFollower, Transform> followers, Res<const Assets> assets);
 
 }  // namespace limn

@@ -8,8 +8,8 @@
 
 namespace limn {
 
-/// Ages every ripple by a step. What has ended is taken from its entity; a ring with a period
-/// begins anew instead.
+/// Ages every ripple by a step. Expired components are removed from their entity; a ring with a
+/// period restarts instead.
 void update_ripples(
     Query<RippleRing> rings, Query<ScreenRipple> screens, Res<const FrameTime> time,
     Commands commands);

@@ -10,7 +10,7 @@ namespace limn {
 
 namespace {
 
-/// The field at `to` grows by the one at `by`.
+/// Adds the field at `by` to the one at `to`.
 void add_to_field(const FieldInfo& field, void* to, const void* by) {
     if (field.shape == FieldShape::List) {
         return;
@@ -26,7 +26,7 @@ void add_to_field(const FieldInfo& field, void* to, const void* by) {
         for (int lane = 0; lane < number_count(field.type); ++lane) {
             const double sum = get_number(field, target, lane) + get_number(field, amount, lane);
             const double clamped = std::clamp(sum, field.meta.min, field.meta.max);
-            // Beyond what the type holds, the number stays.
+            // A value that the type cannot represent is not stored.
             (void)set_number(field, target, clamped, lane).ok();
         }
     }
@@ -44,8 +44,7 @@ void apply_edits(const ScriptAction& action, void* target) {
     }
 }
 
-/// Where there is no resource or entity of that kind, there is nothing to do; a component that is
-/// to be set is added.
+/// Does nothing if the resource or entity does not exist. Set adds a missing component.
 void edit_target(World& world, const ScriptAction& action) {
     const ComponentInfo& info = action.value.info();
     if (action.is_resource) {
@@ -60,7 +59,7 @@ void edit_target(World& world, const ScriptAction& action) {
     if (action.action == EventAction::Set) {
         world.add(action.entity, info.id);
     }
-    // By copy: components of some kinds of storage have no address.
+    // On a copy, since some storages have no addressable components.
     AnyComponent component = AnyComponent::read(world, action.entity, info);
     if (!component.is_empty()) {
         apply_edits(action, component.data());

@@ -10,15 +10,15 @@ namespace limn {
 
 class World;
 
-// The parts of a level that run by the clock: its events and the ways of its cameras.
+// The timed parts of a level: its events and camera paths.
 
-/// Does what is due in this step. Exclusive, first in the frame: the systems behind it see the
-/// world as the event left it. Without EventList or FrameTime nothing happens.
+/// Executes the events due in this step. Exclusive, first in the frame: all other systems see their
+/// result. Does nothing without EventList or FrameTime.
 void run_events(World& world);
 
-/// Puts every camera with a CameraPath where it belongs at the end of this step; before
-/// update_transforms. A target is where it was at the end of the last step, and its position counts
-/// as relative to the camera's parent: cameras that follow one should have none.
+/// Moves every camera with a CameraPath to its pose at the end of this step; before
+/// update_transforms. Uses the target's position of the previous step, taken as relative to the
+/// camera's parent: cameras with a target should have no parent.
 void update_camera_paths(
     Query<const CameraPath, Transform> cameras, Query<const WorldTransform> targets,
     Res<const FrameTime> time);

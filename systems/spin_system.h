@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// Turns every Spin by speed * step about its own axis: rotation = rotation * turn. Nothing moves
-/// in a step of length 0.
+/// Rotates every Spin by speed * step about its local axis: rotation = rotation * turn. Does
+/// nothing in a step of length 0.
 void update_spins(Query<const Spin, Transform> spinning, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// Puts every Sway where its closed path is at the end of this step. A function of the time alone:
-/// it does not drift, and the time may jump.
+/// Moves every Sway to its position at the end of this step. A function of time only: it does not
+/// drift, and time may jump.
 void update_sways(Query<const Sway, Transform> swaying, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -10,17 +10,17 @@ namespace limn {
 
 namespace {
 
-/// What a chunk needs.
+/// Work to do for a chunk.
 enum class Work : std::uint8_t {
     None,     ///< at rest
     Settle,   ///< came to rest: previous = world
     Compute,  ///< something moved
 };
 
-/// Per entity slot: what happens to it in this step.
+/// Flags of an entity slot in this step.
 enum : std::uint8_t { kMoved = 1, kJumped = 2 };
 
-/// Flags by Entity::index; absent entities have none.
+/// Flags by Entity::index; 0 if absent.
 class SlotFlags {
   public:
     void set(Entity entity, std::uint8_t flags) {
@@ -37,17 +37,17 @@ class SlotFlags {
     std::vector<std::uint8_t> flags_;
 };
 
-/// Where a node's components are.
+/// Components of a hierarchy node.
 struct NodeBody {
-    const Transform* local = nullptr;  ///< null: does not move in this step
+    const Transform* local = nullptr;  ///< null: unchanged in this step
     Affine* world = nullptr;
     Affine* previous = nullptr;
 };
 
 Work work_of(const ChunkView& chunk) {
     const std::uint32_t world = chunk.version<WorldTransform>();
-    // Computing makes the world newer than all it depends on; anything else at least as new came
-    // later. Rows that come, go or move count as changes of all their columns.
+    // Recomputing makes WorldTransform newer than all of its inputs; an input that is at least as
+    // new changed later. Adding, removing or moving rows changes the version of all columns.
     const bool is_old = !is_newer(world, chunk.version<Transform>())
                         || (chunk.has<Parent>() && !is_newer(world, chunk.version<Parent>()));
     if (is_old) {
@@ -62,7 +62,7 @@ void settle(std::span<const WorldTransform> world, std::span<PreviousWorldTransf
     }
 }
 
-/// Steps the world and the past of one entity.
+/// Updates the current and previous world matrix of one entity.
 void step_body(const NodeBody& body, const Affine& world, bool jumped) {
     const bool fresh = body.previous->row[0] == Vec4(0);
     *body.previous = jumped || fresh ? world : *body.world;
@@ -73,7 +73,7 @@ Affine local_matrix(const Transform& local) {
     return affine_from(local.position, local.rotation, local.scale);
 }
 
-/// The node of a hierarchy by entity slot.
+/// Maps entity slots to hierarchy nodes.
 class NodeNumbers {
   public:
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -87,7 +87,7 @@ class NodeNumbers {
             node_of_slot_[slot] = i;
         }
     }
-    /// kNone: a root, or a child whose parent is gone.
+    /// kNone: a root, or a child whose parent was destroyed.
     [[nodiscard]] std::uint32_t of(Entity entity) const {
         return entity.index < node_of_slot_.size() ? node_of_slot_[entity.index] : kNone;
     }
@@ -96,7 +96,8 @@ class NodeNumbers {
     std::vector<std::uint32_t> node_of_slot_;
 };
 
-/// A child that became a root without its own components changing: its parent was destroyed.
+/// Whether a child became a root because its parent was destroyed, which changes none of its own
+/// components.
 bool has_new_orphan(
     const ChunkView& chunk, const NodeNumbers& numbers, std::span<const Transform> local,
     std::span<const WorldTransform> world) {
@@ -112,8 +113,8 @@ bool has_new_orphan(
     return false;
 }
 
-/// One chunk of children: finds the places of those that move, and steps those whose parent is
-/// gone. Returns whether anything moves.
+/// One chunk of children: collects the components of those that change, and updates those whose
+/// parent was destroyed. Returns whether anything changes.
 bool collect_children(
     std::span<const Entity> entities, const NodeNumbers& numbers, const SlotFlags& flags,
     bool compute, std::span<const Transform> local, std::span<WorldTransform> world,
@@ -155,7 +156,7 @@ void update_transforms(
     const NodeNumbers numbers(nodes);
     SlotFlags flags;
 
-    // What each chunk needs; and, if anything hangs on anything, who moves.
+    // The work for each chunk and, if there is a hierarchy, which entities move.
     std::vector<Work> work(versions.chunk_count(), Work::None);
     bool any = false;
     versions.chunks([&](ChunkView chunk, std::span<const Transform> local,
@@ -185,7 +186,7 @@ void update_transforms(
         flags.set(node.entity, flags.get(node.parent));
     }
 
-    // Roots; and the places of the children that move.
+    // Roots; collects the children that change.
     std::vector<NodeBody> node_bodies(nodes.size());
     bodies.par_chunks([&](ChunkView chunk, std::span<const Transform> local,
                           std::span<WorldTransform> world,
@@ -209,7 +210,7 @@ void update_transforms(
         }
     });
 
-    // Children, from the roots down. Those of one depth do not depend on each other.
+    // Children, level by level. Those of one level are independent.
     for (std::uint32_t depth = 1; depth <= hierarchy->depth_count(); ++depth) {
         const std::span<const HierarchyNode> level = hierarchy->level(depth);
         const std::size_t first = static_cast<std::size_t>(level.data() - nodes.data());
@@ -235,7 +236,7 @@ void update_transforms(
         });
     }
 
-    // Roots that jumped have no past.
+    // Teleported roots have no velocity.
     teleports.each([&](Entity entity, const Transform&) {
         const auto* world = bodies.find<WorldTransform>(entity);
         auto* previous = bodies.find<PreviousWorldTransform>(entity);

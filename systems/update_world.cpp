@@ -3,6 +3,7 @@
 #include "ecs/components/input.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "ecs/components/weather.h"
 #include "systems/animation/clip_player_system.h"
 #include "systems/animation/pose_system.h"
 #include "systems/autofocus_system.h"
@@ -11,7 +12,6 @@
 #include "systems/lens_control_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/path_system.h"
-#include "systems/racer_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
 #include "systems/spin_system.h"
@@ -19,66 +19,84 @@
 #include "systems/transform_system.h"
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
-#include "systems/water/sailing_system.h"
-#include "systems/water/walker_system.h"
 #include "systems/water/water_noise_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_spray_system.h"
-#include "systems/water/water_stone_system.h"
 #include "systems/water/water_touch.h"
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_system.h"
 #include "systems/water/weather_system.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace limn {
 
-Schedule make_world_schedule() {
-    Schedule schedule;
-    schedule.add<run_events>();  // first: everything else sees what the level wants now
-    schedule.add<add_world_transforms>();
-    schedule.add<add_env_probe_states>();
-    schedule.add<add_poses>();
-    schedule.add<add_ripple_states>();
-    schedule.add<add_touch_parts>();
-    schedule.add<add_wave_tables>();
-    schedule.add<add_noise_fields>();
-    schedule.add<add_spray_drops>();
-    schedule.add<add_ocean_states>();
-    schedule.sync();
-    schedule.add<update_weather>();
-    schedule.add<update_spins>();
-    schedule.add<update_sways>();
-    schedule.add<update_ripples>();
-    schedule.add<update_path_followers>();
-    schedule.add<update_racers>();
-    schedule.add<age_wave_packets>();
-    schedule.add<update_noise_surfaces>();
-    schedule.add<emit_wakes>();        // after ages: new rings are as old as they are
-    schedule.add<fill_wave_tables>();  // after ages
-    schedule.add<update_oceans>();
-    schedule.add<update_ocean_foam>();   // after oceans: where they break now
-    schedule.add<update_speed_views>();  // after racers: as fast as they are now
-    schedule.add<update_camera_paths>();
-    schedule.add<update_fly_cameras>();
-    schedule.add<advance_clips>();
-    schedule.add<update_poses>();            // after clips: shows their new moment
-    schedule.add<update_attachments>();      // after poses: hangs on the joints
-    schedule.add<update_spray>();            // after all that moves water
-    schedule.add<throw_stones>();            // after all that moves water: meets it as it is now
-    schedule.add<update_sailboats>();        // after all that moves water
-    schedule.add<update_floating_bodies>();  // after sailboats, which push theirs
-    schedule.add<turn_booms>();
-    schedule.add<update_walkers>();     // after all that moves water: wades in it as it is now
-    schedule.add<update_transforms>();  // after all that move things: rendering reads the matrices
-    schedule.add<update_water_ripples>();  // after transforms: bodies push where they are now
-    schedule.add<update_env_probes>();     // after transforms: looks around from where it is now
-    schedule.add<update_orbit_cameras>();  // after transforms: needs where its target is now
-    schedule.add<update_autofocus>();      // after all cameras stand where they are seen from
-    schedule.add<turn_lenses>();           // last: has the whole world
-    return schedule;
+using enum Phase;
+using enum When;
+
+void add_object_systems(SystemList& systems) {
+    systems.add<run_events>(Events);
+    systems.add<add_world_transforms>(Create);
+    systems.add<add_env_probe_states>(Create, Both);
+    systems.add<update_spins>(Move);
+    systems.add<update_sways>(Move, Both);
+    systems.add<update_ripples>(Move);
+    systems.add<place_path_followers>(Move, AtStart);
+    systems.add<update_path_followers>(Move);
+    systems.add<add_world_transforms>(Place, AtStart);  // so late: until then nothing has a place
+    systems.add<update_transforms>(Place, Both);
+    systems.add<update_env_probes>(Follow, Both);  // captures from the current position
+}
+
+void add_animation_systems(SystemList& systems) {
+    systems.add<add_poses>(Create, Both);
+    systems.add<advance_clips>(Animate);
+    systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
+    systems.add<update_attachments>(Animate, Both);
+}
+
+void add_water_systems(SystemList& systems) {
+    systems.add<add_ripple_states>(Create, Both);
+    systems.add<add_touch_parts>(Create, Both);
+    systems.add<add_wave_tables>(Create, Both);
+    systems.add<add_noise_fields>(Create, Both);
+    systems.add<add_spray_drops>(Create);
+    systems.add<add_wake_states>(Create, Both);
+    systems.add<add_floating_states>(Create, Both);
+    systems.add<add_ocean_states>(Create, Both);
+    systems.add<update_weather>(Move, Both);
+    systems.add<age_wave_packets>(Waves);
+    systems.add<update_noise_surfaces>(Waves, Both);
+    systems.add<emit_wakes>(Waves);              // after aging: new rings get their exact age
+    systems.add<fill_wave_tables>(Waves, Both);  // after aging and wakes
+    systems.add<update_oceans>(Waves, Both);
+    systems.add<update_ocean_foam>(Waves);  // after oceans: where waves break now
+    systems.add<update_spray>(Force);
+    systems.add<update_floating_bodies>(Float);
+    systems.add<update_water_ripples>(Follow);  // uses current positions of bodies
+}
+
+void add_camera_systems(SystemList& systems) {
+    systems.add<update_camera_paths>(Move, Both);
+    systems.add<update_fly_cameras>(Move);
+    systems.add<update_orbit_cameras>(View, Both);
+    systems.add<update_autofocus>(View, Both);  // after everything that moves cameras
+    systems.add<adjust_lenses>(View);
 }
 
 namespace {
+
+SystemList list_systems(AddSystems more) {
+    SystemList systems;
+    for (const AddSystems add :
+         {add_object_systems, add_animation_systems, add_water_systems, add_camera_systems, more}) {
+        if (add != nullptr) {
+            add(systems);
+        }
+    }
+    return systems;
+}
 
 template <typename T>
 T& resource_or_default(World& world) {
@@ -86,42 +104,58 @@ T& resource_or_default(World& world) {
     return found != nullptr ? *found : world.insert_resource(T{});
 }
 
-}  // namespace
-
-void start_world(World& world) {
-    resource_or_default<FrameTime>(world);
+FrameTime& insert_resources(World& world) {
     resource_or_default<RandomSeed>(world);
     resource_or_default<Input>(world);
     resource_or_default<Assets>(world);
-    world.run(update_weather);
-    world.run(update_sways);
-    world.run(place_path_followers);
-    world.run(place_racers);
-    world.run(update_camera_paths);
-    world.run(add_poses);
-    world.run(update_poses);
-    world.run(update_attachments);
-    world.run(add_ocean_states);
-    world.run(update_oceans);
-    world.run(add_world_transforms);
-    world.run(update_transforms);
-    world.run(add_env_probe_states);
-    world.run(add_ripple_states);
-    world.run(add_touch_parts);
-    world.run(add_wave_tables);
-    world.run(fill_wave_tables);
-    world.run(add_noise_fields);
-    world.run(update_noise_surfaces);
-    world.run(update_env_probes);
-    world.run(update_orbit_cameras);
-    world.run(update_autofocus);
+    resource_or_default<WeatherState>(world);
+    return resource_or_default<FrameTime>(world);
+}
+
+}  // namespace
+
+std::vector<SystemList::Entry> SystemList::in_order(When when) const {
+    std::vector<Entry> chosen;
+    std::copy_if(
+        entries_.begin(), entries_.end(), std::back_inserter(chosen),
+        [when](const Entry& entry) { return entry.when == when || entry.when == Both; });
+    std::stable_sort(chosen.begin(), chosen.end(), [](const Entry& a, const Entry& b) {
+        return a.phase < b.phase;
+    });
+    return chosen;
+}
+
+Schedule SystemList::make_schedule() const {
+    Schedule schedule;
+    Phase phase = Events;
+    for (const Entry& entry : in_order(EachStep)) {
+        if (phase < entry.phase && (phase == Create || phase == Force)) {
+            schedule.sync();
+        }
+        phase = entry.phase;
+        schedule.add(entry.make());
+    }
+    return schedule;
+}
+
+void SystemList::run_start(World& world) const {
+    for (const Entry& entry : in_order(AtStart)) {
+        System system = entry.make();
+        run_system(world, system);
+    }
+}
+
+Schedule make_world_schedule(AddSystems more) {
+    return list_systems(more).make_schedule();
+}
+
+void start_world(World& world, AddSystems more) {
+    insert_resources(world);
+    list_systems(more).run_start(world);
 }
 
 void step_world(World& world, Schedule& schedule) {
-    resource_or_default<RandomSeed>(world);
-    resource_or_default<Input>(world);
-    resource_or_default<Assets>(world);
-    FrameTime& time = resource_or_default<FrameTime>(world);
+    FrameTime& time = insert_resources(world);
     if (time.time > 0) {
         ++time.frame;
     }

@@ -20,9 +20,10 @@
 #include <memory>
 #include <string>
 
-// Caustics against size: a pool of 12 m by 9 m under eleven waves, its map of 64 .. 1024 texels a
-// side, of the light below and of the light that it mirrors; against the number of pools, maps of
-// 64; and against cascades of endless water. The time is that of the passes alone, of one frame.
+// Caustics against map size: a pool of 12 m by 9 m under eleven waves, with maps of 64 .. 1024
+// texels per side, of transmitted and of reflected light; against the number of pools, with maps of
+// 64; and against the cascades of unbounded water. Times are of the caustics passes of one frame
+// only.
 
 namespace {
 
@@ -54,7 +55,7 @@ Gpu& shared_gpu() {
     return gpu;
 }
 
-/// The sun over water, and nothing else.
+/// A sun over water.
 struct Scene {
     World world;
     Vec3 eye = {0, -0.5f, 0};  ///< looks down
@@ -77,7 +78,7 @@ struct Scene {
         world.create(
             water, WorldTransform{affine_from(place, {1, 0, 0, 0}, Vec3(1))}, caustics, table);
     }
-    /// Of the passes of caustics [s].
+    /// Renders a frame and returns the time of the caustics passes [s].
     double draw() {
         const Affine pose = affine_from(eye, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), Vec3(1));
         const RenderView view = make_render_view({}, pose, pose, {.width = 64, .height = 36});
@@ -95,7 +96,7 @@ struct Scene {
 
 void measure(benchmark::State& state, Scene& scene) {
     for (int i = 0; i < 6; ++i) {
-        (void)scene.draw();  // times arrive some frames late
+        (void)scene.draw();  // GPU timings arrive a few frames late
     }
     for (auto _ : state) {
         state.SetIterationTime(scene.draw());
@@ -125,7 +126,7 @@ void cascades(benchmark::State& state) {
 }
 void pools(benchmark::State& state) {
     Scene scene;
-    scene.eye = {14, 45, 14};  // sees all of them
+    scene.eye = {14, 45, 14};  // all pools in view
     for (int i = 0; i < state.range(0); ++i) {
         const Vec3 place(static_cast<float>(3 * (i % 10)), 0, static_cast<float>(3 * (i / 10)));
         scene.fill({2, 2}, place, {.resolution = 64});

@@ -10,8 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-// A world as a whole and single entities of it: random access, what it takes in memory, what has
-// changed, and its copies.
+// Random access to entities, memory use, change detection, and copies of a world.
 
 namespace limn::bench {
 
@@ -54,12 +53,13 @@ inline void random_get(Bench& bench, std::size_t count, double limit) {
         bench.repeats, [&] { return bench.time_reference(); }, [&] { return timed(get_raw); },
         [&] { return timed(get_ecs); }, [&] { return timed(gather); });
     bench.check(raw_sum == ecs_sum && raw_sum == gathered_sum, "random get");
-    const auto row = [&](int gate, const char* name, const Timing& time, double most) {
+    const auto row = [&](int gate, const char* name, const Timing& time, double gate_limit) {
         bench.add(
-            {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, most, ""});
+            {gate, name, count, "ns", time, times[1], times[0], Figure::OfReference, gate_limit,
+             ""});
     };
     row(16, "random get", times[2], limit);
-    // In the cache there is nothing to fetch ahead.
+    // In the cache, prefetching gains nothing.
     const bool is_large = count > kCached;
     row(is_large ? 16 : 0, "random get, by gather", times[3], is_large ? limit : 0);
 }
@@ -85,13 +85,13 @@ inline void changed(Bench& bench) {
     World world;
     const std::vector<Entity> entities = fill<Position, Velocity>(world, kMany);
     const RawArrays<Position> arrays(kMany);
-    const std::uint32_t moment = world.version();
-    std::size_t seen = 0;
+    const std::uint32_t version = world.version();
+    std::size_t visited = 0;
     const auto query = world.query<const Position, Changed<Position>>();
-    const auto look = [&] {
+    const auto query_changes = [&] {
         return time_of_rounds(1000, [&] {
-            query.since(moment).each([&](const Position&) { ++seen; });
-            keep(seen);
+            query.since(version).each([&](const Position&) { ++visited; });
+            keep(visited);
         });
     };
     const auto read_raw = [&] {
@@ -103,11 +103,11 @@ inline void changed(Bench& bench) {
             keep(sum);
         });
     };
-    const auto times = take_turns(bench.repeats, read_raw, look);
-    bench.check(seen == 0, "nothing changed");
+    const auto times = take_turns(bench.repeats, read_raw, query_changes);
+    bench.check(visited == 0, "nothing changed");
     world.get<Position>(entities[5000]).x = 1;
-    query.since(moment).each([&](const Position&) { ++seen; });
-    bench.check(seen == 1024, "one chunk changed");
+    query.since(version).each([&](const Position&) { ++visited; });
+    bench.check(visited == 1024, "one chunk changed");
     bench.add(
         {23,
          "changed since, nothing changed",
@@ -122,9 +122,8 @@ inline void changed(Bench& bench) {
 }
 
 // ---- copies of a world
-// --------------------------------------------------------------------------
 
-/// The bytes of a snapshot, copied to new memory, as a snapshot is.
+/// Copies the bytes of a snapshot to new memory, as saving does.
 inline double time_raw_copy(std::span<const std::byte> bytes) {
     return time_of([&] {
         const std::vector<std::byte> copy(bytes.begin(), bytes.end());
@@ -167,7 +166,7 @@ inline void hash_time(Bench& bench) {
         });
     bench.add(
         {0,
-         "state hash; beside hashing the raw arrays",
+         "state hash; vs hashing the raw arrays",
          kMany,
          "ns",
          times[0],

@@ -23,22 +23,21 @@
 #include <thread>
 #include <utility>
 
-// How fast the ECS is, beside raw arrays in the same process.
+// Benchmarks the ECS against raw arrays in the same process.
 //
 //     ecs_bench [--quick] [--only GROUP] [--json FILE] [--csv FILE] [--svg FILE] [--markdown FILE]
 //               [--other FILE] [--from FILE]
 //
-// The ECS and the raw loop take turns, 15 times (7 where each repeat needs a new world), and the
-// median of each counts; on a machine that does other things too, also the best. Times are per
-// entity, unless the unit says otherwise, and stand beside their ratio to the raw loop and to R:
-// position += velocity * step over a million raw rows, in turns with the rest. Where a gate is
-// known for the figure, the line says whether it is reached. Both sides compute the same; their
-// results are compared to the last bit, so that neither can be optimized away or do less. One
-// thread, unless the workload says otherwise.
+// The ECS and the raw loop alternate, 15 times (7 where each repeat needs a new world); the median
+// of each counts, and on a loaded machine also the best. Times are per entity, unless the unit says
+// otherwise, followed by their ratio to the raw loop and to R: position += velocity * step over a
+// million raw rows, alternating with the rest. If the figure has a gate, the line says whether it
+// is reached. Both sides compute the same; their results are compared bit by bit, so that neither
+// can be optimized away or do less. One thread, unless the workload says otherwise.
 //
-// --only takes the groups of main() that contain the word; --quick repeats less. --from takes the
-// JSON of an earlier run in place of a new one, and --other that of a run with other compiler
-// flags, to show beside it: ecs_bench_o2 is the same program with the flags of this project.
+// --only runs the groups whose name contains the word; --quick repeats less. --from reads the JSON
+// of an earlier run instead of measuring, --other that of a run with other compiler flags, to show
+// next to it: ecs_bench_o2 is the same program with the flags of this project.
 
 namespace {
 
@@ -56,7 +55,7 @@ struct Options {
     std::string markdown;
 };
 
-/// False: not understood.
+/// False: wrong usage.
 bool parse(int argc, char** argv, Options& options) {
     const std::pair<std::string_view, std::string*> words[] = {
         {"--only", &options.only},         {"--from", &options.from}, {"--other", &options.other},

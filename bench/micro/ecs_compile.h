@@ -66,7 +66,7 @@ inline void compile_time(Bench& bench) {
         [&] { return compile("limn_bench_smallest", kSmallestSource); });
     bench.add(
         {22,
-         "compiling the smallest file; beside one of std::vector",
+         "compiling the smallest file; vs std::vector",
          0,
          "s",
          times[1],

@@ -15,16 +15,15 @@
 #include <vector>
 
 // How times grow with the number of entities, from 1e3 to 1e7: the curves of the plot. Then, for
-// everything that is done to all entities, whether twice as many take twice as long: the gate is
-// time(2n) <= 2.3 time(n), the median over several n.
+// every bulk operation, whether twice as many entities take twice as long: the gate is time(2n) <=
+// 2.3 time(n), the median over several n.
 
 namespace limn::bench {
 
-/// Something that is done to all entities of a new world. Both return the time of all together
-/// [ns].
+/// An operation on all entities of a new world. Both functions return its total time [ns].
 struct Operation {
     std::string name;
-    std::size_t bytes = 0;  ///< memory it needs, an entity
+    std::size_t bytes = 0;  ///< memory needed per entity
     std::function<double(std::size_t count)> ecs;
     std::function<double(std::size_t count)> raw;  ///< called after `ecs`
 };
@@ -89,9 +88,8 @@ inline std::vector<Operation> bulk_operations(Bench& bench) {
 }
 
 // ---- curves
-// -------------------------------------------------------------------------------------
 
-/// Sizes, half a decade apart.
+/// Entity counts, half a decade apart.
 inline std::vector<std::size_t> sizes_up_to(std::size_t largest) {
     std::vector<std::size_t> sizes;
     for (double size = 1000; size < 1.1 * static_cast<double>(largest); size *= std::sqrt(10.0)) {
@@ -146,7 +144,6 @@ inline void growth(Bench& bench, std::size_t largest) {
 }
 
 // ---- twice as many
-// ------------------------------------------------------------------------------
 
 /// time(2n) / time(n) for n = 16k .. 512k.
 inline void doubling(Bench& bench) {

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-// Going through components, beside the same kernel over raw arrays.
+// Iteration over components, compared with the same kernel over raw arrays.
 
 namespace limn::bench {
 
-// The loops of both sides are functions of their own, so that what the compiler makes of one does
-// not depend on what stands around it.
+// Both loops are separate, non-inlined functions, so that their code does not depend on the
+// surroundings.
 
 template <typename Kernel, typename Query>
 [[gnu::noinline]] void run_each(const Query& query, const Kernel& kernel) {
@@ -40,7 +40,7 @@ struct IterationTimes {
     Timing chunks;
 };
 
-/// [ns an entity]
+/// [ns per entity]
 template <typename... Terms, typename Kernel>
 IterationTimes
 iterate(Bench& bench, const std::string& name, std::size_t count, const Kernel& kernel) {
@@ -118,7 +118,7 @@ inline void iteration(Bench& bench) {
     row(0, "    chunks, beyond the raw loop", beyond(chunks, raw), 10);
 }
 
-/// The raw loops that an ECS is not: a float an array, and all components of an entity in a struct.
+/// Alternative raw layouts: one array per float, and one struct with all components per entity.
 inline void raw_layouts(Bench& bench) {
     struct Fat {
         Position position;
@@ -184,8 +184,8 @@ struct FragmentTimes {
     std::size_t count = 0;
 };
 
-/// 26 archetypes of 20 rows each and 4 of `large`, one float a row; the raw loop goes over a list
-/// of as many arrays.
+/// 26 archetypes of 20 rows each and 4 of `large`, one float per row; the raw loop iterates over a
+/// list of as many arrays.
 inline FragmentTimes iterate_fragments(Bench& bench, std::size_t large) {
     World world;
     const auto make = [&]<int... numbers>(
@@ -241,7 +241,7 @@ inline void fragmented(Bench& bench) {
          ""});
 }
 
-/// Every entity has lost its velocity and got it back, in random order.
+/// After every entity's velocity was removed and added back, in random order.
 inline void after_churn(Bench& bench) {
     World world;
     const std::vector<Entity> entities = fill<Velocity, Position>(world, kMany);

@@ -17,7 +17,8 @@
 #include <utility>
 #include <vector>
 
-// How ecs_bench measures: in turns, so that what disturbs the machine disturbs all alike.
+// How ecs_bench measures: alternating between the candidates, so that disturbances of the machine
+// affect all alike.
 
 namespace limn::bench {
 
@@ -31,10 +32,10 @@ using Payload = RawArrays<Entity, Position, Velocity, Rotation>;
 /// A run of the program.
 struct Bench {
     int repeats = 15;
-    int slow_repeats = 7;  ///< of what needs a new world each time
+    int slow_repeats = 7;  ///< for workloads that need a new world each time
     Report report;
     bool failed = false;
-    /// What R is measured on: memory as every program has it.
+    /// The arrays that R is measured on, in ordinary memory.
     std::vector<Velocity> reference_velocities = std::vector<Velocity>(kMany);
     std::vector<Position> reference_positions = std::vector<Position>(kMany);
 
@@ -49,7 +50,7 @@ struct Bench {
             failed = true;
         }
     }
-    /// Whether there is memory for a workload; says so if not.
+    /// Whether there is enough memory for a workload; prints a line if not.
     [[nodiscard]] bool fits(std::string_view name, std::size_t count, std::size_t bytes) const {
         const double free = static_cast<double>(sysconf(_SC_AVPHYS_PAGES))
                             * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -57,7 +58,7 @@ struct Bench {
             return true;
         }
         fmt::print(
-            "left out: {} with {} entities, which needs {} MiB of memory\n", name, count,
+            "skipped: {} with {} entities, which needs {} MiB of memory\n", name, count,
             bytes >> 20);
         return false;
     }
@@ -78,13 +79,13 @@ struct Bench {
     }
 };
 
-/// Of times that have been taken.
+/// Median and best of the samples.
 [[nodiscard]] inline Timing timing_of(std::vector<double> times) {
     std::sort(times.begin(), times.end());
     return {times[times.size() / 2], times.front()};
 }
 
-/// Calls the functions in turns; each returns its time.
+/// Calls the functions alternately; each returns its time.
 template <typename... Fs>
 std::array<Timing, sizeof...(Fs)> take_turns(int repeats, Fs&&... functions) {
     std::array<std::vector<double>, sizeof...(Fs)> times;
@@ -97,7 +98,7 @@ std::array<Timing, sizeof...(Fs)> take_turns(int repeats, Fs&&... functions) {
     return timings;
 }
 
-/// As many rounds as a timer can see, of the same function.
+/// Mean time of a call, over enough rounds for the timer's resolution.
 template <typename F>
 [[nodiscard]] double time_of_rounds(std::size_t rounds, F&& once) {
     return time_of([&] {
@@ -124,8 +125,8 @@ inline Timing beyond(const Timing& timing, const Timing& other) {
     return {timing.median - other.median, timing.best - other.best};
 }
 
-/// Sets the number of threads and has them made: that is done when there is work, and they move to
-/// a core of their own after a while.
+/// Sets the number of threads and warms them up: they are created with the first work, and settle
+/// on their own cores after a while.
 inline void start_threads(int threads) {
     set_thread_count(threads);
     parallel_for(64, 1, [](std::size_t, std::size_t) {

@@ -9,12 +9,11 @@
 #include <string>
 #include <string_view>
 
-// The page of a run, as Markdown: the gates with what there is to say about each, then everything
-// that was measured.
+// The Markdown report of a run: the gates with remarks, then everything that was measured.
 
 namespace limn::bench {
 
-/// What is to be said about a gate, beyond the number.
+/// A remark on a gate.
 struct Remark {
     int gate;
     std::string_view peer;  ///< the best other library, on the machine where it was measured
@@ -29,7 +28,7 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     {5, "EnTT raw group 22 ns",
      "With its 64 rows. g++ 12 leaves the loop scalar at -O2, where the raw loop alone takes "
      "longer "
-     "than the gate; what the call adds is in the table below, and small with either flags."},
+     "than the gate; the overhead of the call is in the table below, and small with either flags."},
     {6, "flecs 4.8x",
      "Vectorized, the raw loop spends 1.8 ns on an array of 20 floats; finding the column of an "
      "archetype and noting its version adds 1.1 ns."},
@@ -40,24 +39,24 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
      "memory used before."},
     {10, "flecs 26 / 15 R", ""},
     {11, "EnTT 15 R, flecs 52-67 R",
-     "Two moves of a row, out and into the hole it leaves, bound by instructions and not by "
-     "memory, "
-     "so that a small R makes the gate hard."},
+     "Two moves of a row, out and into the hole it leaves; instruction-bound, not memory-bound, so "
+     "that a small R makes the gate hard."},
     {12, "EnTT 15 R", ""},
     {13, "none", ""},
     {14, "EnTT by hand 24 R, flecs 112 R", ""},
     {15, "EnTT 37 R, flecs 497 R", ""},
     {16, "mustache 3.7 R / EnTT 18 R",
-     "One at a time, a million entities cost two misses each, slot and row; gather() fetches both "
-     "ahead."},
+     "One at a time, each of a million entities costs two cache misses, slot and row; gather() "
+     "prefetches both."},
     {17, "EnTT, flecs 72.5 B", ""},
     {18, "none", ""},
     {19, "none",
-     "Two cores are what there is. For more of them: ranges are cut once and handed out without a "
-     "lock, and what a task adds (below) is less than a hundredth of the work of its chunk."},
+     "The machine has two cores. For scaling beyond: ranges are split once and handed out without "
+     "a lock, and the overhead of a task (below) is less than a hundredth of the work of its "
+     "chunk."},
     {20, "none", ""},
     {21, "none", ""},
-    {22, "flecs 1.1 s", "At -O2 in both columns: it is the time of the compiler."},
+    {22, "flecs 1.1 s", "At -O2 in both columns: it is compile time."},
     {23, "none", ""},
 }};
 
@@ -97,7 +96,7 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     return text;
 }
 
-/// Every row that is no gate, or all of them.
+/// All rows.
 [[nodiscard]] inline std::string full_table(const Report& report, const Report* other) {
     const auto number = [](double value) {
         return value == 0 ? std::string() : short_number(value);
@@ -127,17 +126,18 @@ inline constexpr std::array<Remark, 23> kRemarks = {{
     return text;
 }
 
-/// `plot`: the name of the picture's file beside the page; empty: none.
+/// `plot`: file name of the plot, next to the page; empty: none.
 [[nodiscard]] inline std::string
 to_markdown(const Report& report, const Report* other, const std::string& plot) {
     std::string text = fmt::format(
-        "# The ECS beside raw arrays\n\n"
-        "Written by `ecs_bench`; {}. Times are medians, taken in turns with those of the raw loop "
-        "in the same process. `x raw` is the time over that of the raw loop beside it, which "
-        "computes the same (the results are compared to the last bit). `R` is `position += "
+        "# The ECS compared with raw arrays\n\n"
+        "Written by `ecs_bench`; {}. Times are medians, alternating with those of the raw loop in "
+        "the same process. `x raw` is the time relative to the equivalent raw loop (the results "
+        "are compared bit by bit). `R` is `position += "
         "velocity * step` over a million rows in two `std::vector`s. The gates come from a study "
         "of other libraries on a slower machine of the same kind, where R was 0.925 ns; here "
-        "memory is quicker and R smaller, which makes every gate in R harder by as much.\n\n",
+        "memory is faster and R smaller, which makes every gate in units of R harder "
+        "accordingly.\n\n",
         report.machine);
     if (!plot.empty()) {
         text += fmt::format("![times and gates]({})\n\n", plot);
@@ -154,9 +154,9 @@ to_markdown(const Report& report, const Report* other, const std::string& plot) 
         "--markdown ecs.md\n"
         "```\n\n"
         "`ecs_bench` is compiled with `-O3 -march=native`, the library too, as the other libraries "
-        "were; `ecs_bench_o2` with the flags of this project. In both, loops begin with a line of "
-        "the cache (`-falign-loops=64`): where a loop of a few instructions happens to begin "
-        "changes its time by up to 1.8, with and without an ECS.\n");
+        "were; `ecs_bench_o2` with the flags of this project. In both, loops are aligned to cache "
+        "lines (`-falign-loops=64`): the alignment of a short loop changes its time by a factor of "
+        "up to 1.8, with and without an ECS.\n");
     return text;
 }
 

@@ -12,13 +12,13 @@
 #include <string_view>
 #include <vector>
 
-// The picture of a run, as SVG: time an entity over the number of entities, of iteration and of
-// structural change, each over the wide gray line of the raw loop beside it; below, every gate as a
-// share of what it allows.
+// The SVG plot of a run: time per entity over the number of entities, for iteration and structural
+// change, each over the wide gray line of the equivalent raw loop; below, every gate as a fraction
+// of its limit.
 
 namespace limn::bench {
 
-/// A drawing that grows.
+/// Builder of an SVG document.
 class Svg {
   public:
     void text(
@@ -79,7 +79,7 @@ inline constexpr const char* kFaint = "#777";
 inline constexpr const char* kReached = "#0a8f6a";
 inline constexpr const char* kMissed = "#d1495b";
 
-/// How a curve looks; its name is that of its rows.
+/// Style of a curve; its name is that of its rows.
 struct CurveStyle {
     std::string_view name;
     std::string_view color;
@@ -107,7 +107,7 @@ inline constexpr std::array<CurveStyle, 11> kStructureCurves = {{
     {"snapshot, restore", "#2e8b6f", true},
 }};
 
-/// Both axes logarithmic. Where it is, and what it shows.
+/// Position and range of a plot with logarithmic axes.
 struct Panel {
     double left, top, width, height;
     double first_decade, last_decade;  ///< entities, powers of ten
@@ -150,13 +150,13 @@ inline void draw_axes(Svg& svg, const Panel& panel, std::string_view title) {
     svg.line(panel.left, bottom, right, bottom, "#aaa");
     svg.text(panel.left + panel.width / 2, bottom + 38, "entities", kFaint, "middle");
     svg.text(
-        panel.left - 46, panel.top + panel.height / 2, "time an entity [ns]", kFaint, "middle", 12,
+        panel.left - 46, panel.top + panel.height / 2, "time per entity [ns]", kFaint, "middle", 12,
         fmt::format(
             "transform=\"rotate(-90 {:.1f} {:.1f})\"", panel.left - 46,
             panel.top + panel.height / 2));
 }
 
-/// Names at the ends of the curves, moved apart until none covers another.
+/// Names at the ends of the curves, moved apart so that they do not overlap.
 struct EndLabel {
     double y;  ///< where the curve ends
     std::string name;
@@ -227,9 +227,8 @@ void draw_curves(
 }
 
 // ---- gates
-// --------------------------------------------------------------------------------------
 
-/// The row of the other run that is about the same.
+/// The corresponding row of the other run, or nullptr.
 [[nodiscard]] inline const Row* same_row(const Report* other, const Row& row) {
     if (other != nullptr) {
         for (const Row& candidate : other->rows) {
@@ -254,21 +253,20 @@ void draw_curves(
     return rows;
 }
 
-/// "16k", "1M"; nothing for other counts, which the names tell.
+/// ", 16k", ", 1M"; empty for other counts, which are in the names.
 [[nodiscard]] inline std::string short_count(std::size_t count) {
     return count == 16384 ? ", 16k" : count == 1'000'000 ? ", 1M" : "";
 }
 
 inline double draw_gates(
     Svg& svg, double left, double top, double width, const Report& report, const Report* other) {
-    constexpr double kRow = 25, kLabel = 400, kMost = 2;
+    constexpr double kRow = 25, kLabel = 400, kMaxShare = 2;
     const std::vector<const Row*> rows = gate_rows(report);
     const double start = left + kLabel;
-    const double scale = (width - kLabel - 190) / kMost;
+    const double scale = (width - kLabel - 190) / kMaxShare;
     const double bottom = top + kRow * static_cast<double>(rows.size());
     svg.text(
-        left, top - 34, "Gates: share of what is allowed that is used", kInk, "start", 15,
-        "font-weight=\"600\"");
+        left, top - 34, "Gates: fraction of the limit", kInk, "start", 15, "font-weight=\"600\"");
     for (int i = 0; i <= 8; ++i) {
         const double x = start + scale * 0.25 * i;
         svg.line(x, top, x, bottom, i == 4 ? kInk : "#e6e6e2", i == 4 ? 1.5 : 1);
@@ -283,9 +281,9 @@ inline double draw_gates(
         const auto bar = [&](const Row& shown, double from, double height, double opacity) {
             const double share = share_of_limit(shown, &Timing::median);
             const char* color = share <= 1 ? kReached : kMissed;
-            svg.box(start, y + from, scale * std::min(share, kMost), height, color, opacity);
-            if (share > kMost) {
-                const double x = start + scale * kMost;
+            svg.box(start, y + from, scale * std::min(share, kMaxShare), height, color, opacity);
+            if (share > kMaxShare) {
+                const double x = start + scale * kMaxShare;
                 svg.curve(
                     {{x + 3, y + from}, {x + 8, y + from + height / 2}, {x + 3, y + from + height}},
                     color, 1.5);
@@ -299,11 +297,11 @@ inline double draw_gates(
         svg.text(left + 22, y + 16, std::to_string(row.gate), kFaint, "end");
         svg.text(left + 32, y + 16, row.name + short_count(row.count));
         svg.text(
-            start + scale * kMost + 16, y + 16,
+            start + scale * kMaxShare + 16, y + 16,
             short_number(figure_of(row, &Timing::median)) + figure_unit(row), kInk, "start", 12,
             "font-weight=\"600\"");
         svg.text(
-            start + scale * kMost + 188, y + 16,
+            start + scale * kMaxShare + 188, y + 16,
             fmt::format("{} {:g}", row.figure == Figure::Speedup ? "≥" : "≤", row.limit), kFaint,
             "end", 11);
     }
@@ -316,7 +314,7 @@ inline void draw_legend(Svg& svg, double x, double y, const Report& report, cons
         svg.text(x + 34, y, words, kFaint);
         x += width;
     };
-    entry(190, "the raw loop beside it", [&](double at, double middle) {
+    entry(190, "the equivalent raw loop", [&](double at, double middle) {
         svg.curve({{at, middle}, {at + 26, middle}}, kRawColor, 6);
     });
     entry(270, "the ECS (dashed: bulk or 2 threads)", [&](double at, double middle) {
@@ -339,7 +337,7 @@ inline void draw_legend(Svg& svg, double x, double y, const Report& report, cons
     constexpr double kWidth = 1320;
     Svg svg;
     svg.text(
-        60, 44, "Limn's ECS beside raw arrays in the same process", kInk, "start", 22,
+        60, 44, "Limn's ECS compared with raw arrays in the same process", kInk, "start", 22,
         "font-weight=\"600\"");
     svg.text(
         60, 66, fmt::format("{}; curves: best of the repeats, {}", report.machine, report.flags),

@@ -11,12 +11,12 @@
 #include <string_view>
 #include <vector>
 
-// What ecs_bench found out: a line of its table, CSV, and JSON. It reads that JSON too, so that one
-// run can be shown beside another. ecs_plot.h and ecs_page.h make a picture and a page of it.
+// The results of ecs_bench as a table, CSV and JSON. Reads the JSON back, to compare two runs.
+// ecs_plot.h and ecs_page.h produce a plot and a page.
 
 namespace limn::bench {
 
-/// Of the repeats of one thing [ns an item].
+/// Over the repeats of one measurement [ns per item].
 struct Timing {
     double median = 0;
     double best = 0;
@@ -24,10 +24,10 @@ struct Timing {
 
 /// What a gate bounds.
 enum class Figure {
-    OfRaw,        ///< time over that of the raw loop beside it
+    OfRaw,        ///< time relative to the equivalent raw loop
     OfReference,  ///< time over R: position += velocity * step on 1M raw rows
-    Plain,        ///< the time itself, or whatever number stands in its place
-    Speedup,      ///< time of the raw loop over the time
+    Plain,        ///< the time itself, or another number in its place
+    Speedup,      ///< raw loop's time over the time
 };
 inline constexpr std::array<std::string_view, 4> kFigureNames = {"raw", "R", "plain", "speedup"};
 
@@ -37,11 +37,11 @@ struct Row {
     std::size_t count = 0;  ///< entities
     std::string unit;       ///< of the times
     Timing ecs;             ///< what is measured
-    Timing raw;             ///< the same without ECS; 0: there is no such thing
-    Timing reference;       ///< R, measured in turns with the others
+    Timing raw;             ///< the same without ECS; 0: no equivalent
+    Timing reference;       ///< R, measured alternately with the others
     Figure figure = Figure::OfRaw;
-    double limit = 0;   ///< at most; of a speedup, at least. 0: no gate
-    std::string curve;  ///< of the plot; empty: not in it
+    double limit = 0;   ///< upper bound; lower bound of a speedup; 0: no gate
+    std::string curve;  ///< in the plot; empty: none
 };
 
 /// A run of the program.
@@ -69,13 +69,13 @@ struct Report {
     return row.ecs.*which;
 }
 
-/// How much of what the gate allows is used: 1 is just reached, less is better.
+/// The figure as a fraction of the gate's limit: 1 just meets it, less is better.
 [[nodiscard]] inline double share_of_limit(const Row& row, double Timing::*which) {
     const double figure = figure_of(row, which);
     return row.figure == Figure::Speedup ? over(row.limit, figure) : over(figure, row.limit);
 }
 
-/// A machine that does other things too only ever adds time, so the best run counts as well.
+/// Other load on the machine only adds time, so the best run counts as well.
 [[nodiscard]] inline const char* verdict(const Row& row) {
     if (row.limit == 0) {
         return "";
@@ -86,12 +86,12 @@ struct Report {
     return share_of_limit(row, &Timing::best) <= 1 ? "best run only" : "NOT reached";
 }
 
-/// Three digits, and never an exponent.
+/// Three significant digits, without an exponent.
 [[nodiscard]] inline std::string short_number(double value) {
     return value >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
-/// What the figure of a gate is counted in.
+/// Unit of a gate's figure.
 [[nodiscard]] inline std::string figure_unit(const Row& row) {
     return row.figure == Figure::OfReference ? " R"
            : row.figure == Figure::Plain     ? " " + row.unit
@@ -141,7 +141,7 @@ struct Report {
     return text;
 }
 
-/// A line a row. Names hold nothing that JSON would escape.
+/// One line per row. Names contain no characters that JSON escapes.
 [[nodiscard]] inline std::string to_json(const Report& report) {
     std::string text = fmt::format(
         "{{\n\"flags\": \"{}\",\n\"machine\": \"{}\",\n\"rows\": [\n", report.flags,
@@ -160,9 +160,8 @@ struct Report {
 }
 
 // ---- reading it again
-// ---------------------------------------------------------------------------
 
-/// The value behind "key": in a line that to_json wrote; empty if there is none.
+/// The value of "key" in a line written by to_json; empty if missing.
 [[nodiscard]] inline std::string_view value_in(std::string_view line, std::string_view key) {
     const std::string quoted = fmt::format("\"{}\": ", key);
     const std::size_t found = line.find(quoted);
@@ -200,7 +199,7 @@ struct Report {
     return row;
 }
 
-/// What to_json made; nothing, with a line on stderr, if the file is not that.
+/// Reads what to_json wrote; on failure prints a line on stderr and returns nothing.
 [[nodiscard]] inline std::optional<Report> read_report(const std::string& path) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     Report report;
@@ -219,13 +218,13 @@ struct Report {
         std::fclose(file);
     }
     if (report.rows.empty()) {
-        fmt::print(stderr, "{}: not the JSON of a run\n", path);
+        fmt::print(stderr, "{}: found no rows, expected the JSON of an ecs_bench run\n", path);
         return std::nullopt;
     }
     return report;
 }
 
-/// Says why not on stderr.
+/// On failure prints a line on stderr.
 [[nodiscard]] inline bool write_file(const std::string& path, const std::string& text) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
     const bool written =

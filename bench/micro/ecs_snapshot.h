@@ -7,12 +7,12 @@
 #include <cstring>
 #include <vector>
 
-// Snapshots beside the copy of as many bytes: what any way to save a world has to do at least.
+// Snapshots compared with copying as many bytes, the lower bound of any way to save a world.
 
 namespace limn::bench {
 
-/// Saving makes new memory, restoring writes to the memory of the world before; so do the copies.
-/// Beyond copying, both hash every byte (some 9 ns an entity on one thread).
+/// Saving allocates new memory, restoring writes to memory in use; the copies do the same. Beyond
+/// copying, both hash every byte (some 9 ns per entity on one thread).
 inline void snapshot(Bench& bench) {
     World world;
     const std::vector<Entity> entities =

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-// Components that are split into a column per scalar, so that kernels fill the vector units: beside
-// the same in a column of structs, and beside raw arrays of scalars.
+// Split components (structure of arrays: a column per scalar, for SIMD kernels), compared with a
+// column of structs and with raw arrays of scalars.
 
 namespace limn::bench {
 
@@ -26,7 +26,7 @@ struct SplitRotation {
 struct SplitTurn {
     float x = 0, y = 0, z = 0;
 };
-struct Seen {
+struct Visible {
     std::uint32_t yes = 0;
 };
 
@@ -42,8 +42,8 @@ inline void start(SplitRotation& r, std::size_t row) {
 inline void start(SplitTurn& t, std::size_t row) {
     t = {noise(row, 7), noise(row, 8), noise(row, 9)};
 }
-inline void start(Seen& seen, std::size_t) {
-    seen = {};
+inline void start(Visible& visible, std::size_t) {
+    visible = {};
 }
 
 }  // namespace limn::bench
@@ -63,45 +63,46 @@ struct limn::ComponentTraits<limn::bench::SplitTurn> : limn::DefaultTraits {
 
 namespace limn::bench {
 
-/// The planes of a view, pointing inwards: normal and distance.
+/// Frustum planes, pointing inward: normal and distance.
 inline constexpr float kPlanes[6][4] = {{0.9f, 0.1f, 0.2f, 0.4f}, {-0.9f, 0.1f, 0.2f, 0.4f},
                                         {0.1f, 0.9f, 0.2f, 0.4f}, {0.1f, -0.9f, 0.2f, 0.4f},
                                         {0.0f, 0.1f, 0.9f, 0.3f}, {0.0f, 0.1f, -0.9f, 0.3f}};
 
-inline std::uint32_t is_seen(float x, float y, float z, float radius) {
-    float least = INFINITY;
+inline std::uint32_t is_visible(float x, float y, float z, float radius) {
+    float smallest = INFINITY;
     for (const auto& plane : kPlanes) {
         const float distance = plane[0] * x + plane[1] * y + plane[2] * z + plane[3];
-        least = distance < least ? distance : least;
+        smallest = distance < smallest ? distance : smallest;
     }
-    return least + radius >= 0 ? 1 : 0;
+    return smallest + radius >= 0 ? 1 : 0;
 }
 
-[[gnu::noinline]] inline void cull_table(const Query<const Sphere, Seen>& query) {
-    query.chunks([](ChunkView chunk, std::span<const Sphere> spheres, std::span<Seen> seen) {
+[[gnu::noinline]] inline void cull_table(const Query<const Sphere, Visible>& query) {
+    query.chunks([](ChunkView chunk, std::span<const Sphere> spheres, std::span<Visible> visible) {
         const std::uint32_t size = chunk.size();
         for (std::uint32_t i = 0; i < size; ++i) {
             const Sphere& s = spheres[i];
-            seen[i].yes = is_seen(s.x, s.y, s.z, s.radius);
+            visible[i].yes = is_visible(s.x, s.y, s.z, s.radius);
         }
     });
 }
 
-/// Over plain arrays, which is what both a chunk and the raw loop hand it.
+/// Works on plain arrays, from a chunk or from the raw loop.
 inline void cull_lanes(
     std::size_t size, const float* x, const float* y, const float* z, const float* radius,
-    Seen* seen) {
+    Visible* visible) {
     for (std::size_t i = 0; i < size; ++i) {
-        seen[i].yes = is_seen(x[i], y[i], z[i], radius[i]);
+        visible[i].yes = is_visible(x[i], y[i], z[i], radius[i]);
     }
 }
 
-[[gnu::noinline]] inline void cull_split(const Query<const SplitSphere, Seen>& query) {
-    query.chunks([](ChunkView chunk, SplitSpan<const SplitSphere> spheres, std::span<Seen> seen) {
-        cull_lanes(
-            chunk.size(), spheres.lane(0).data(), spheres.lane(1).data(), spheres.lane(2).data(),
-            spheres.lane(3).data(), seen.data());
-    });
+[[gnu::noinline]] inline void cull_split(const Query<const SplitSphere, Visible>& query) {
+    query.chunks(
+        [](ChunkView chunk, SplitSpan<const SplitSphere> spheres, std::span<Visible> visible) {
+            cull_lanes(
+                chunk.size(), spheres.lane(0).data(), spheres.lane(1).data(),
+                spheres.lane(2).data(), spheres.lane(3).data(), visible.data());
+        });
 }
 
 /// q += (dt / 2) q (t, 0), then q /= |q|.
@@ -128,8 +129,8 @@ inline void turn_one(float& x, float& y, float& z, float& w, float tx, float ty,
     });
 }
 
-/// Restricted: seven arrays are too many for the compiler to compare at run time; not inlined,
-/// since g++ 12 forgets the restriction there and leaves the loop scalar.
+/// __restrict: seven arrays are too many for the compiler's run-time alias checks. Not inlined,
+/// since g++ 12 then loses __restrict and leaves the loop scalar.
 [[gnu::noinline]] inline void turn_lanes(
     std::size_t size, float* __restrict x, float* __restrict y, float* __restrict z,
     float* __restrict w, const float* __restrict tx, const float* __restrict ty,
@@ -155,7 +156,7 @@ struct KindTimes {
     Timing raw;
 };
 
-/// How a component that is split does beside raw arrays, and beside the same in a table.
+/// Adds the rows of a split component and of the same in a table, relative to raw arrays.
 inline void split_rows(Bench& bench, const char* name, std::size_t count, const KindTimes& times) {
     bench.add(
         {0,
@@ -184,10 +185,10 @@ inline void split_rows(Bench& bench, const char* name, std::size_t count, const 
 inline void split(Bench& bench) {
     for (const std::size_t count : {kCached, kMany}) {
         World world;
-        const std::vector<Entity> table = fill<Sphere, Seen, Turn, Rotation>(world, count);
+        const std::vector<Entity> table = fill<Sphere, Visible, Turn, Rotation>(world, count);
         World split_world;
         const std::vector<Entity> lanes =
-            split_world.create_many(count, SplitSphere{}, Seen{}, SplitTurn{}, SplitRotation{});
+            split_world.create_many(count, SplitSphere{}, Visible{}, SplitTurn{}, SplitRotation{});
         for (std::size_t i = 0; i < count; ++i) {
             SplitSphere sphere;
             SplitTurn turn;
@@ -199,7 +200,7 @@ inline void split(Bench& bench) {
             split_world.set(lanes[i], turn);
             split_world.set(lanes[i], rotation);
         }
-        const RawArrays<Seen> raw_seen(count);
+        const RawArrays<Visible> raw_visible(count);
         std::vector<RawColumn<float>> raw;
         for (std::size_t lane = 0; lane < 11; ++lane) {
             raw.emplace_back(count, lane);
@@ -213,9 +214,9 @@ inline void split(Bench& bench) {
             raw[4].data()[i] = noise(i, 6);
             raw[7].data()[i] = 1;
         }
-        const auto cull_query = world.query<const Sphere, Seen>();
+        const auto cull_query = world.query<const Sphere, Visible>();
         const auto turn_query = world.query<const Turn, Rotation>();
-        const auto split_cull_query = split_world.query<const SplitSphere, Seen>();
+        const auto split_cull_query = split_world.query<const SplitSphere, Visible>();
         const auto split_turn_query = split_world.query<const SplitTurn, SplitRotation>();
         const auto timed = [&](auto&& once) {
             return per(time_of_rounds(rounds_for(count), once), count);
@@ -227,7 +228,7 @@ inline void split(Bench& bench) {
                 return timed([&] {
                     cull_lanes(
                         count, raw[0].data(), raw[1].data(), raw[2].data(), raw[3].data(),
-                        raw_seen.column<Seen>());
+                        raw_visible.column<Visible>());
                 });
             },
             [&] { return timed([&] { turn_table(turn_query); }); },
@@ -245,11 +246,11 @@ inline void split(Bench& bench) {
         for (std::size_t i = 0; i < count; ++i) {
             const Rotation rotation = world.get<const Rotation>(table[i]);
             const SplitRotation turned = split_world.value<SplitRotation>(lanes[i]);
-            const bool seen = raw_seen.column<Seen>()[i].yes == 1;
+            const bool visible = raw_visible.column<Visible>()[i].yes == 1;
             different += rotation.x != turned.x || rotation.w != turned.w
                          || turned.x != raw[4].data()[i] || turned.w != raw[7].data()[i]
-                         || (world.get<const Seen>(table[i]).yes == 1) != seen
-                         || (split_world.get<const Seen>(lanes[i]).yes == 1) != seen;
+                         || (world.get<const Visible>(table[i]).yes == 1) != visible
+                         || (split_world.get<const Visible>(lanes[i]).yes == 1) != visible;
         }
         bench.check(different == 0, "split");
     }

@@ -12,16 +12,15 @@
 #include <utility>
 #include <vector>
 
-// Entities that come, go and change their components. Every repeat has a world of its own, in the
-// order of creation; where rows move to, memory has been used before. The functions named time_
-// return the time of all `count` entities together [ns].
+// Creating and destroying entities, adding and removing components. Every repeat has its own world,
+// in order of creation; the destination of moved rows is memory already touched. The functions
+// named time_ return the time of all `count` entities together [ns].
 
 namespace limn::bench {
 
 // ---- without ECS
-// --------------------------------------------------------------------------------
 
-/// What any ECS has to do to create: fresh memory, a handle and three components a row.
+/// Lower bound of creating: fresh memory, a handle and three components per row.
 inline double time_raw_fill(std::size_t count) {
     std::unique_ptr<Payload> arrays;
     return time_of([&] {
@@ -35,7 +34,7 @@ inline double time_raw_fill(std::size_t count) {
     });
 }
 
-/// What moving rows to another archetype has to do: copy the handle and the components.
+/// Lower bound of moving rows to another archetype: copying the handle and the components.
 class RawMove {
   public:
     explicit RawMove(std::size_t count) : from_(count), to_(count), extra_(count) { time(); }
@@ -57,7 +56,7 @@ class RawMove {
     RawArrays<Extra> extra_;
 };
 
-/// What destroying has to do: put the number of every slot on a list, and nothing else.
+/// Lower bound of destroying: putting the index of every slot on a free list.
 inline double time_raw_free(std::size_t count) {
     std::vector<std::uint32_t> slots(count);
     std::vector<std::uint32_t> free(count);
@@ -71,7 +70,6 @@ inline double time_raw_free(std::size_t count) {
 }
 
 // ---- create
-// -------------------------------------------------------------------------------------
 
 inline void create_one_by_one(World& world, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -122,7 +120,6 @@ inline void create(Bench& bench) {
 }
 
 // ---- destroy
-// ------------------------------------------------------------------------------------
 
 enum class Order { Creation, Random };
 
@@ -146,7 +143,7 @@ inline double time_destroy(Bench& bench, std::size_t count, Order order) {
     return time;
 }
 
-/// Destroys everything by one call.
+/// Destroys everything in one call.
 template <typename Destroy>
 double time_destroy_all(Bench& bench, std::size_t count, const Destroy& destroy_all) {
     World world;
@@ -190,15 +187,15 @@ inline void destroy(Bench& bench) {
 }
 
 // ---- add and remove
-// -----------------------------------------------------------------------------
 
-/// For entities that have none: changes nothing, but the world's lists for sync points become as
-/// long as they get.
+/// For entities without Extra: changes nothing, but grows the world's sync point buffers to their
+/// final size.
 inline void remove_from_all(Query<const Position> all, Commands commands) {
     all.each([&](Entity entity, const Position&) { commands.remove<Extra>(entity); });
 }
 
-/// A world whose entities have 3 components, and memory for all of them with Extra, touched.
+/// A world whose entities have 3 components, with memory for all of them plus Extra already
+/// touched.
 struct AddWorld {
     World world;
     std::vector<Entity> entities;
@@ -212,7 +209,7 @@ struct AddWorld {
             others.pop_back();
         }
     }
-    /// Memory for the set of sparse values, too.
+    /// Touches the memory of the sparse set, too.
     void use_sparse_set() {
         for (const Entity entity : entities) {
             world.add(entity, SparseExtra{});
@@ -287,7 +284,7 @@ inline double time_add_to_quarter(Bench& bench, std::size_t count) {
 
 enum class Target { Empty, Occupied };
 
-/// To all by one call. Where nobody else is, whole columns can change hands; where somebody is,
+/// To all in one call. If the target archetype is empty, whole columns are handed over; otherwise
 /// they are copied.
 inline AddTimes time_add_and_remove_all(Bench& bench, std::size_t count, Target target) {
     AddWorld made(count);
@@ -355,12 +352,11 @@ inline void add_and_remove(Bench& bench) {
     row(0, "add, table, to a random quarter, one by one", kMany / 4, times[6], 0);
     row(0, "add, all of a query", kMany, times[7], 0);
     row(0, "remove, all of a query", kMany, times[8], 0);
-    row(0, "add, all of a query, to rows that are there", kMany, times[9], 0);
-    row(0, "remove, all of a query, to rows that are there", kMany, times[10], 0);
+    row(0, "add, all of a query, to an archetype in use", kMany, times[9], 0);
+    row(0, "remove, all of a query, to an archetype in use", kMany, times[10], 0);
 }
 
 // ---- deferred
-// -----------------------------------------------------------------------------------
 
 inline void add_to_all(Query<const Position, Without<Extra>> all, Commands commands) {
     all.each(
@@ -399,10 +395,10 @@ inline DeferredTime run_deferred(World& world, System& system) {
     return time;
 }
 
-/// Systems that record, and keep their buffers from run to run, as those of a schedule do.
+/// Systems that record commands and keep their buffers between runs, as a schedule's do.
 class Deferred {
   public:
-    /// Extra for everybody.
+    /// Adds Extra to all entities.
     DeferredTime time_all(Bench& bench, std::size_t count) {
         AddWorld made(count);
         made.world.run(remove_from_all);
@@ -410,7 +406,7 @@ class Deferred {
         bench.check(made.all_have<Extra>(), "deferred add");
         return time;
     }
-    /// For a random quarter.
+    /// Adds Extra to a random quarter.
     DeferredTime time_quarter(Bench& bench, std::size_t count) {
         AddWorld made(count);
         Chosen list;

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-// Systems and threads: what a schedule costs that does nothing, what a second thread brings, and
-// whether the number of threads can be seen in the result.
+// Systems and threads: the overhead of an idle schedule, the speedup of a second thread, and
+// whether results depend on the number of threads.
 
 namespace limn::bench {
 
@@ -47,7 +47,7 @@ inline void empty_schedule(Bench& bench) {
     bench.check(schedule.timings()[99].runs > 0, "empty schedule");
     bench.add(
         {20,
-         "schedule of 100 idle systems; beside 100 calls",
+         "schedule of 100 idle systems; vs 100 calls",
          0,
          "ns/run",
          times[0],
@@ -59,7 +59,6 @@ inline void empty_schedule(Bench& bench) {
 }
 
 // ---- threads
-// ------------------------------------------------------------------------------------
 
 /// A kernel over a world and over raw arrays, on 1 thread and on several.
 struct ThreadTimes {
@@ -69,7 +68,7 @@ struct ThreadTimes {
     Timing raw_threads;
 };
 
-/// The raw loop takes as many rows at a time as the query does.
+/// The raw loop uses the same number of rows per task as the query.
 template <typename... Terms, typename Kernel>
 ThreadTimes
 run_on_threads(Bench& bench, std::size_t count, int threads, int repeats, const Kernel& kernel) {
@@ -129,11 +128,11 @@ inline void on_threads(Bench& bench) {
     row(0, "    over 1 thread", kMany, bandwidth.ecs_threads, bandwidth.ecs, 0);
     row(0, "    the raw loop, over 1 thread", kMany, bandwidth.raw_threads, bandwidth.raw, 0);
 
-    // What a task costs, and a query that is handed to other threads: chunks without work.
+    // Overhead of a task and of a parallel query: chunks without work.
     World world;
     fill<Scale>(world, kMany);
     const auto query = world.query<const Scale>();
-    const auto hand_out = [&] {
+    const auto run_idle_tasks = [&] {
         return time_of([&] {
             query.par_chunks([](ChunkView chunk, std::span<const Scale>) { keep(chunk); });
         });
@@ -141,7 +140,7 @@ inline void on_threads(Bench& bench) {
     const int before = thread_count();
     start_threads(2);
     const auto tasks = take_turns(4 * bench.repeats, [&] {
-        return per(hand_out(), chunks_of(static_cast<std::uint32_t>(kMany)));
+        return per(run_idle_tasks(), chunks_of(static_cast<std::uint32_t>(kMany)));
     });
     set_thread_count(before);
     bench.add(

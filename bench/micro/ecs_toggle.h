@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-// Components that are switched on and off where they are: by handle, and what iteration pays for
-// looking at the bits. Adding and removing the same component is in ecs_structure.h.
+// Toggle components, enabled and disabled in place: by handle, and the cost of testing the bits
+// during iteration. Adding and removing the same component is in ecs_structure.h.
 
 namespace limn::bench {
 
@@ -39,7 +39,7 @@ inline void toggle_by_handle(Bench& bench) {
         mixed.push_back(entities[i]);
     }
     std::vector<std::uint8_t> flags(kMany, 1);
-    // Off and on again: two changes an entity.
+    // Off and on again: two changes per entity.
     const auto all = [&](const std::vector<Entity>& order, const auto& off, const auto& on) {
         return per(
             time_of([&] {
@@ -74,8 +74,8 @@ inline void toggle_by_handle(Bench& bench) {
     row(0, "toggle, one by one, random order", times[4], times[3], 0);
 }
 
-/// Two columns where `share` of the rows, chosen at random, are enabled, beside arrays with a byte
-/// a row that is asked.
+/// Two columns where `share` of the rows, chosen at random, are enabled, compared with arrays and a
+/// flag byte per row.
 inline void iterate_enabled(Bench& bench, const char* name, double share) {
     World world;
     const std::vector<Entity> entities = world.create_many(kMany, Position{}, Velocity{}, Awake{});

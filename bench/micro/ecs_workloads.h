@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-// What ecs_bench works on: the components of the published comparisons of ECS libraries, the
-// kernels that run over them, and the raw arrays that everything is compared with.
+// The workloads of ecs_bench: the components of published ECS comparisons, the kernels that run
+// over them, and the raw arrays as a baseline.
 
 namespace limn::bench {
 
@@ -45,7 +45,7 @@ struct Extra {
 struct SparseExtra {
     float value[4] = {1, 2, 3, 4};
 };
-/// Only there to cut the entities into archetypes.
+/// Splits the entities into archetypes.
 template <int number>
 struct Fragment {
     float value = 0;
@@ -54,8 +54,7 @@ static_assert(sizeof(Position) == 12 && sizeof(Velocity) == 12 && sizeof(Rotatio
 static_assert(sizeof(Turn) == 12 && sizeof(Tint) == 16 && sizeof(Life) == 8 && sizeof(Scale) == 4);
 static_assert(sizeof(Extra) == 16 && sizeof(SparseExtra) == 16);
 
-// ---- start values: no row is like another, so that a mixed-up one is found out
-// -----------------------------
+// ---- start values: different for each row, so that mixed-up rows are detected
 
 /// In -0.5 .. 0.5.
 [[nodiscard]] inline float noise(std::size_t row, std::uint32_t lane) {
@@ -86,7 +85,6 @@ inline void start(Scale& s, std::size_t row) {
 }
 
 // ---- kernels
-// ------------------------------------------------------------------------------------
 
 inline constexpr float kStep = 1.0f / 1024.0f;
 
@@ -128,7 +126,7 @@ struct Animate {
     }
 };
 
-/// Some 100 dependent operations a row: arithmetic, hardly any memory. Stays in 0 .. 1.
+/// Some 100 dependent operations per row: compute-bound. Stays in 0 .. 1.
 struct Compute {
     void operator()(Scale& s) const {
         float x = s.factor + 0.5f;
@@ -140,10 +138,9 @@ struct Compute {
 };
 
 // ---- raw arrays
-// ---------------------------------------------------------------------------------
 
-/// An array in the kind of memory that columns of an archetype have (alignment, huge pages, skew):
-/// what is compared is the way to the data, not luck with the allocator.
+/// An array in the same kind of memory as an archetype's columns (alignment, huge pages, skew), so
+/// that the comparison does not depend on the allocator.
 template <typename T>
 class RawColumn {
   public:
@@ -201,9 +198,8 @@ class RawArrays {
 };
 
 // ---- checks
-// -------------------------------------------------------------------------------------
 
-/// The words of a value, summed; sums over rows do not depend on their order.
+/// Checksum of a value's words.
 template <typename T>
 [[nodiscard]] std::uint64_t words_of(const T& value) {
     static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
@@ -216,7 +212,7 @@ template <typename T>
     return sum;
 }
 
-/// Adds up whole rows, so that components of different rows cannot be exchanged unseen.
+/// Order-independent sum of row checksums; detects components swapped between rows.
 struct RowSum {
     std::uint64_t* sum;
     template <typename... Ts>
@@ -228,9 +224,8 @@ struct RowSum {
 };
 
 // ---- time
-// ---------------------------------------------------------------------------------------
 
-/// To the compiler, the value is read and all memory may have changed.
+/// Optimization barrier: the value counts as read and all memory as modified.
 template <typename T>
 void keep(const T& value) {
     asm volatile("" : : "r"(&value) : "memory");

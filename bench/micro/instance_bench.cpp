@@ -1,5 +1,5 @@
-// Culling and filling the instance buffer: the renderer's share of the CPU's work a frame. 100,000
-// boxes of one mesh that all moved; `seen` is the share of them in the picture.
+// Culling and filling the instance buffer, the renderer's CPU work per frame: 100,000 moving boxes
+// of one mesh; `visible` is the number in view.
 
 #include "ecs/base/jobs.h"
 #include "ecs/components/transform.h"
@@ -52,7 +52,7 @@ struct Crowd {
 void collect_100k(benchmark::State& state) {
     static Crowd crowd;
     set_thread_count(static_cast<int>(state.range(0)));
-    // From far away all are seen, from the middle a tenth.
+    // From far away all are in view, from the middle a tenth.
     const float distance = state.range(1) == 100 ? 400.0f : 55.0f;
     const Affine eye = look_at({0, 0, distance}, {0, 0, 0});
     const RenderView view = make_render_view({}, eye, eye);
@@ -65,11 +65,11 @@ void collect_100k(benchmark::State& state) {
             crowd.world, view, *crowd.meshes, *crowd.materials, shapes, false, *crowd.ring, list);
         crowd.ring->end_frame();
     }
-    state.counters["seen"] = list.visible;
+    state.counters["visible"] = list.visible;
     state.SetItemsProcessed(state.iterations() * kBoxes);
 }
 BENCHMARK(collect_100k)
-    ->ArgNames({"threads", "seen_percent"})
+    ->ArgNames({"threads", "visible_percent"})
     ->ArgsProduct({{1, 2}, {10, 100}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);

@@ -7,8 +7,8 @@
 
 #include <memory>
 
-// The ocean's transforms on the GPU against their size: all fields of three cascades at a new
-// moment, until the GPU is done. For the CPU's see water_bench.
+// The ocean's FFTs on the GPU against their size: all fields of three cascades for a new time,
+// including the wait for the GPU. For the CPU version see water_bench.
 
 namespace {
 
@@ -56,7 +56,7 @@ void synthesize(benchmark::State& state) {
         graph.execute();
         glFinish();
     };
-    step();  // drivers compile when a program is first used
+    step();  // drivers compile a program at its first use
     for (auto _ : state) {
         step();
     }

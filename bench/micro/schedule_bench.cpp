@@ -24,7 +24,7 @@ void idle(Query<Number<number>> numbers) {
     benchmark::DoNotOptimize(numbers);
 }
 
-/// A frame in which nothing is to be done: what 100 systems cost by being there.
+/// An idle frame: the overhead of 100 systems.
 void BM_IdleSchedule(benchmark::State& state) {
     World world;
     Schedule schedule;
@@ -43,7 +43,7 @@ void fill(World& world, std::size_t count) {
     world.create_many(count, Transform{}, WorldTransform{}, PreviousWorldTransform{}, Spin{});
 }
 
-/// 152 bytes of components and 8 of the handle, an entity.
+/// Per entity 152 bytes of components and 8 of the handle.
 void BM_StateHash(benchmark::State& state) {
     World world;
     fill(world, static_cast<std::size_t>(state.range(0)));
@@ -73,7 +73,7 @@ void BM_RestoreSnapshot(benchmark::State& state) {
 }
 BENCHMARK(BM_RestoreSnapshot)->Unit(benchmark::kMillisecond);
 
-/// 10,000 trees of ten entities; a look when nothing changed, and a rebuild.
+/// 10,000 trees of ten entities: access without changes (0), and a rebuild (1).
 void BM_Hierarchy(benchmark::State& state) {
     World world;
     Entity first;

@@ -13,10 +13,10 @@
 #include <cstring>
 #include <vector>
 
-// Skinning 1,000,000 vertices of four influences on the CPU, with vectors and plain, beside a raw
+// Skinning 1,000,000 vertices of four influences on the CPU, SIMD and scalar, compared with a raw
 // copy of the bytes that it reads and writes; and the poses of 1,000 characters of 24 joints. Most
-// neighbors follow the same joints, as in a mesh whose vertices are grouped; `_mixed`: none do;
-// `_cached`: the same vertices as at first, so few that they stay in the caches.
+// neighboring vertices share their joints, as in a mesh with grouped vertices; `_mixed`: none do;
+// `_cached`: like the first, but with few enough vertices to stay in the cache.
 
 namespace {
 
@@ -43,7 +43,7 @@ struct Crowd {
         for (Affine& m : palette) {
             m = affine_from(random.direction(), rotation_about(random.direction(), 0.5f), Vec3(1));
         }
-        find_dual_palette(palette, duals);
+        compute_dual_palette(palette, duals);
         skin.first.push_back(0);
         for (std::size_t v = 0; v < kVertices; ++v) {
             positions[v] = random.direction();
@@ -58,7 +58,7 @@ struct Crowd {
         }
     }
     [[nodiscard]] RestVertices rest() const { return {positions, normals, tangents}; }
-    MovedVertices moved() { return {moved_positions, moved_normals, moved_tangents}; }
+    SkinnedVertices moved() { return {moved_positions, moved_normals, moved_tangents}; }
     /// Read and written [bytes]; the palette stays in the cache.
     [[nodiscard]] std::size_t bytes() const {
         return kVertices * (2 * (sizeof(Vec3) + sizeof(Vec3) + sizeof(Vec4)) + sizeof(float))
@@ -75,8 +75,8 @@ void per_vertex(benchmark::State& state, std::size_t bytes) {
         static_cast<double>(bytes) * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// As many bytes as skinning reads and writes, half of them each. In pieces: a large copy would
-/// write past the caches, which nobody does whose work is read again at once.
+/// Copies half as many bytes as skinning reads and writes in total. In pieces: a large memcpy would
+/// use non-temporal stores, which is wrong for data that is read again at once.
 void raw_copy(benchmark::State& state) {
     constexpr std::size_t kPiece = 16384;
     const std::size_t pieces = Crowd().bytes() / 2 / kPiece;
@@ -91,7 +91,7 @@ void raw_copy(benchmark::State& state) {
     per_vertex(state, 2 * pieces * kPiece);
 }
 
-/// All vertices, kPiece of them again and again.
+/// Skins kVertices vertices in total, repeating the first kPiece.
 template <auto kernel, bool kDual, bool kMixed, std::size_t kPiece>
 void skin_vertices(benchmark::State& state) {
     Crowd crowd(kMixed);
@@ -108,7 +108,7 @@ void skin_vertices(benchmark::State& state) {
     per_vertex(state, crowd.bytes());
 }
 
-/// A clip of 60 keys in which all joints turn and the root moves.
+/// A skeleton with a clip of 60 keys that rotates and moves every joint.
 Assets make_assets() {
     Assets assets;
     SkeletonData& skeleton = assets.skeletons.emplace_back();

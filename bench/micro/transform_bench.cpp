@@ -11,9 +11,8 @@
 #include <cstring>
 #include <vector>
 
-// 100,000 boxes that turn and sway: each kernel with vectors and plain, a raw copy of what the
-// transform kernel moves (the bound of the memory), and the whole step through the ECS on 1 and 2
-// threads.
+// 100,000 boxes that spin and sway: each kernel SIMD and scalar, a raw copy of the bytes that the
+// transform kernel moves (the memory bound), and the whole step through the ECS on 1 and 2 threads.
 
 namespace {
 
@@ -46,8 +45,8 @@ void per_box(benchmark::State& state) {
     state.counters["threads"] = static_cast<double>(thread_count());
 }
 
-/// previous = world, world = something of the same size: the bytes of compose_worlds without its
-/// arithmetic.
+/// previous = world, world = an array of the same size: the memory traffic of compose_worlds
+/// without its arithmetic.
 void raw_copy(benchmark::State& state) {
     Boxes boxes;
     std::vector<WorldTransform> source = boxes.world;
@@ -127,8 +126,8 @@ void step_at_rest(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(raw_copy)->Unit(benchmark::kMicrosecond);
-BENCHMARK(compose)->Arg(1)->Arg(0)->ArgName("vectors")->Unit(benchmark::kMicrosecond);
-BENCHMARK(spin)->Arg(1)->Arg(0)->ArgName("vectors")->Unit(benchmark::kMicrosecond);
-BENCHMARK(sway)->Arg(1)->Arg(0)->ArgName("vectors")->Unit(benchmark::kMicrosecond);
+BENCHMARK(compose)->Arg(1)->Arg(0)->ArgName("simd")->Unit(benchmark::kMicrosecond);
+BENCHMARK(spin)->Arg(1)->Arg(0)->ArgName("simd")->Unit(benchmark::kMicrosecond);
+BENCHMARK(sway)->Arg(1)->Arg(0)->ArgName("simd")->Unit(benchmark::kMicrosecond);
 BENCHMARK(step)->Arg(1)->Arg(2)->ArgName("threads")->UseRealTime()->Unit(benchmark::kMicrosecond);
 BENCHMARK(step_at_rest)->UseRealTime()->Unit(benchmark::kMicrosecond);

@@ -12,9 +12,8 @@
 #include <cstring>
 #include <vector>
 
-// The ocean against its size: one complex transform beside KissFFT's, its kernels with vectors and
-// with one lane, a copy of as many bytes as a step writes, and whole steps of one and three
-// cascades.
+// The ocean against its resolution: one complex FFT compared with KissFFT's, its kernels SIMD and
+// scalar, a copy of as many bytes as a step writes, and whole steps of one and three cascades.
 
 namespace {
 
@@ -69,7 +68,7 @@ void kissfft_2d(benchmark::State& state) {
     per_point(state, spectrum.size());
 }
 
-/// A block of columns, which fits a cache.
+/// A block of columns that fits in the cache.
 template <auto kernel>
 void fft_columns(benchmark::State& state) {
     const std::size_t size = size_of(state);
@@ -147,7 +146,7 @@ void step(benchmark::State& state) {
     per_point(state, size_of(state) * size_of(state) * water.cascades.size());
 }
 
-void draw_spectra(benchmark::State& state) {
+void generate_spectra(benchmark::State& state) {
     set_thread_count(2);
     const Ocean ocean = {.resolution = static_cast<int>(state.range(0))};
     for (auto _ : state) {
@@ -178,4 +177,4 @@ BENCHMARK(step)
     ->ArgsProduct({{64, 128, 256, 512, 1024}, {1, 3}, {1, 2}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(draw_spectra)->Arg(64)->Arg(256)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(generate_spectra)->Arg(64)->Arg(256)->UseRealTime()->Unit(benchmark::kMillisecond);

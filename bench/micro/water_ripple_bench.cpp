@@ -11,10 +11,10 @@
 #include <cstring>
 #include <vector>
 
-// Ripples against the size of their grid: a sub-step of the wave equation with vectors and with one
-// lane, a copy of as many bytes as it moves (reads two fields, writes one), and a whole step on one
-// and two threads. The same between 64 columns of ten cells, and what it takes when one of them
-// moves. Then one to a hundred pools of different sizes in a world.
+// Ripples against the size of their grid: a sub-step of the wave equation, SIMD and scalar, a copy
+// of as many bytes as it moves (reads two fields, writes one), and a whole step on one and two
+// threads. The same around 64 columns of ten cells, and the cost of moving one of them. Then one to
+// a hundred pools of different sizes in a world.
 
 namespace {
 
@@ -46,15 +46,15 @@ void substep(benchmark::State& state) {
             const float* const h = pool.height.data();
             step_row(
                 {h + pool.at(0, z - 1), h + pool.at(0, z), h + pool.at(0, z + 1)},
-                {pool.before.data() + pool.at(0, z), width}, keep.data(), 1.0f, 0.3f);
+                {pool.previous.data() + pool.at(0, z), width}, keep.data(), 1.0f, 0.3f);
         }
-        std::swap(pool.height, pool.before);
+        std::swap(pool.height, pool.previous);
         benchmark::ClobberMemory();
     }
     per_cell(state);
 }
 
-/// 12 bytes a cell go through memory, as in a sub-step: here 6 are read and 6 written.
+/// 12 bytes of memory traffic per cell, as in a sub-step: here 6 are read and 6 written.
 void raw_copy(benchmark::State& state) {
     const auto cells = static_cast<std::size_t>(state.range(0) * state.range(0));
     std::vector<float> from(cells * 3 / 2, 1.0f);
@@ -113,7 +113,7 @@ void move_column(benchmark::State& state) {
     per_cell(state);
 }
 
-/// Pools of 32 to 128 cells a side in a world, with rain and a stone in each.
+/// Pools of 32 to 128 cells per side in a world, with rain.
 void many_pools(benchmark::State& state) {
     set_thread_count(1);
     World world;

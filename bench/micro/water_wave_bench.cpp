@@ -5,8 +5,8 @@
 
 #include <vector>
 
-// Waves of closed form at the points of a square grid: 32 lines, a quarter of them leaning, with
-// vectors, with one lane, and point by point with slopes and velocity as the query has them.
+// Closed-form waves at the points of a square grid: 32 line waves, a quarter of them leaning, SIMD,
+// scalar, and point by point with slopes and velocity as in the query.
 
 namespace {
 

@@ -15,8 +15,8 @@ using glm::dvec3;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// 0 .. 1, of a counter (Steele, Lea and Flood 2014).
-double chance(std::uint64_t counter) {
+/// Random number 0 .. 1 from a counter (Steele, Lea and Flood 2014).
+double random_unit(std::uint64_t counter) {
     std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -24,20 +24,20 @@ double chance(std::uint64_t counter) {
     return static_cast<double>(z >> 11) * 0x1p-53;
 }
 
-/// Share that goes through, by the angles on both sides.
-double through(double in, double out) {
+/// Fresnel transmittance, from the angles on both sides [rad].
+double transmittance(double in, double out) {
     const double s = std::sin(in - out) / std::sin(in + out);
     const double p = std::tan(in - out) / std::tan(in + out);
     return 1 - 0.5 * (s * s + p * p);
 }
 
-struct Bent {
+struct RefractedRay {
     dvec3 direction{0};
-    double through = 0;
+    double transmittance = 0;
 };
 
-/// By the angle in the plane of normal and ray.
-Bent bend(const dvec3& normal, const dvec3& to_sun, double index) {
+/// Snell's law, in the plane of normal and ray.
+RefractedRay refract_sunlight(const dvec3& normal, const dvec3& to_sun, double index) {
     const double cosine = std::clamp(glm::dot(normal, to_sun), -1.0, 1.0);
     if (cosine <= 0) {
         return {};
@@ -48,10 +48,12 @@ Bent bend(const dvec3& normal, const dvec3& to_sun, double index) {
     const double length = glm::length(across);
     const dvec3 aside = length > 1e-12 ? across / length : dvec3(0);
     const double head_on = 4 * index / ((index + 1) * (index + 1));
-    return {std::sin(out) * aside - std::cos(out) * normal, in < 1e-6 ? head_on : through(in, out)};
+    return {
+        std::sin(out) * aside - std::cos(out) * normal,
+        in < 1e-6 ? head_on : transmittance(in, out)};
 }
 
-double way_to_box(const dvec3& from, const dvec3& ray, const CausticBox& box) {
+double distance_to_box(const dvec3& from, const dvec3& ray, const CausticBox& box) {
     double near = 0;
     double far = kFar;
     for (int i = 0; i < 3; ++i) {
@@ -63,7 +65,7 @@ double way_to_box(const dvec3& from, const dvec3& ray, const CausticBox& box) {
     return near <= far ? near : kFar;
 }
 
-double way_to_walls(const dvec3& from, const dvec3& ray, const dvec2& half) {
+double distance_to_walls(const dvec3& from, const dvec3& ray, const dvec2& half) {
     const double x = ((ray.x > 0 ? half.x : -half.x) - from.x) / ray.x;
     const double z = ((ray.z > 0 ? half.y : -half.y) - from.z) / ray.z;
     return std::min(ray.x != 0 ? std::max(x, 0.0) : kFar, ray.z != 0 ? std::max(z, 0.0) : kFar);
@@ -79,7 +81,7 @@ CausticLight trace_photons(
     light.floor.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
     const long rows = std::max(1L, std::lround(std::sqrt(static_cast<double>(photons))));
     const dvec2 step = 2.0 * pool.half / static_cast<double>(rows);
-    const double flat = bend({0, 1, 0}, to_sun, pool.index).through * to_sun.y;
+    const double flat = refract_sunlight({0, 1, 0}, to_sun, pool.index).transmittance * to_sun.y;
     const dvec2 cell = 2.0 * pool.half / static_cast<double>(side);
     const double per_cell = 1 / (cell.x * cell.y);
 
@@ -89,20 +91,21 @@ CausticLight trace_photons(
             const dvec2 rest = -pool.half
                                + step
                                      * dvec2(
-                                         static_cast<double>(i) + chance(counter),
-                                         static_cast<double>(j) + chance(counter + 1));
+                                         static_cast<double>(i) + random_unit(counter),
+                                         static_cast<double>(j) + random_unit(counter + 1));
             const CausticSurface at = surface(rest);
-            const Bent ray = bend(glm::normalize(at.area), to_sun, pool.index);
-            const double amount = ray.through * glm::dot(at.area, to_sun) / flat * step.x * step.y;
-            if (ray.through <= 0) {
+            const RefractedRay ray = refract_sunlight(glm::normalize(at.area), to_sun, pool.index);
+            const double amount =
+                ray.transmittance * glm::dot(at.area, to_sun) / flat * step.x * step.y;
+            if (ray.transmittance <= 0) {
                 continue;
             }
             light.entered += amount;
             const double down = (-pool.depth - at.position.y) / ray.direction.y;
-            const double wall = way_to_walls(at.position, ray.direction, pool.half);
+            const double wall = distance_to_walls(at.position, ray.direction, pool.half);
             double box = kFar;
             for (const CausticBox& one : pool.boxes) {
-                box = std::min(box, way_to_box(at.position, ray.direction, one));
+                box = std::min(box, distance_to_box(at.position, ray.direction, one));
             }
             if (box <= std::min(down, wall)) {
                 light.on_boxes += amount;
@@ -131,31 +134,32 @@ CausticLight trace_mirrored_photons(
     light.floor.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
     const long rows = std::max(1L, std::lround(std::sqrt(static_cast<double>(photons))));
     const dvec2 step = 2.0 * pool.half / static_cast<double>(rows);
-    const double flat = (1 - bend({0, 1, 0}, to_sun, pool.index).through) * to_sun.y;
+    const double flat =
+        (1 - refract_sunlight({0, 1, 0}, to_sun, pool.index).transmittance) * to_sun.y;
     const dvec2 cell = 2.0 * pool.half / static_cast<double>(side);
     for (long n = 0; n < rows * rows; ++n) {
         const auto counter = static_cast<std::uint64_t>(2 * n);
         const dvec2 part(
-            static_cast<double>(n % rows) + chance(counter),
-            static_cast<double>(n / rows) + chance(counter + 1));
+            static_cast<double>(n % rows) + random_unit(counter),
+            static_cast<double>(n / rows) + random_unit(counter + 1));
         const CausticSurface at = surface(-pool.half + step * part);
         const dvec3 normal = glm::normalize(at.area);
         const double cosine = glm::dot(normal, to_sun);
         if (cosine <= 0) {
             continue;
         }
-        // Half a turn about the normal.
+        // Reflection.
         const dvec3 ray = 2 * cosine * normal - to_sun;
         if (ray.y <= 0) {
             continue;
         }
-        const double amount = (1 - bend(normal, to_sun, pool.index).through)
+        const double amount = (1 - refract_sunlight(normal, to_sun, pool.index).transmittance)
                               * glm::dot(at.area, to_sun) / flat * step.x * step.y;
         light.entered += amount;
         const double up = (height - at.position.y) / ray.y;
         double box = kFar;
         for (const CausticBox& one : pool.boxes) {
-            box = std::min(box, way_to_box(at.position, ray, one));
+            box = std::min(box, distance_to_box(at.position, ray, one));
         }
         if (box <= up) {
             light.on_boxes += amount;

@@ -8,15 +8,15 @@
 
 namespace limn::oracle {
 
-// Light under waves, photon by photon in double precision: each enters at a place of the surface at
-// rest, is bent by Snell's law at the surface as it is there, weakened by Fresnel's equations, and
-// goes straight on to the first thing it meets; or is mirrored there and goes up. What the caustic
-// maps are held against.
+// Light under waves by photon tracing in double precision, the reference of the caustic maps: each
+// photon enters at a point of the surface at rest, is refracted at the displaced surface there by
+// Snell's law, weighted by the Fresnel equations, and travels to the first hit; or it is reflected
+// upward.
 
-/// The surface above a place at rest.
+/// The displaced surface at a point at rest.
 struct CausticSurface {
     glm::dvec3 position{0};
-    glm::dvec3 area{0, 1, 0};  ///< of a square meter at rest [m^2], up
+    glm::dvec3 area{0, 1, 0};  ///< area vector of a square meter at rest, upward [m^2]
 };
 using CausticSurfaceAt = std::function<CausticSurface(const glm::dvec2& rest)>;
 
@@ -30,13 +30,13 @@ struct CausticPool {
     glm::dvec2 half{1};
     double depth = 1;
     double index = 1.333;
-    std::vector<CausticBox> boxes;  ///< stand in it
+    std::vector<CausticBox> boxes;  ///< obstacles in it
 };
 
 struct CausticLight {
-    int side = 0;               ///< cells of the floor along x and z
-    std::vector<double> floor;  ///< light on each, over that of flat water without anything in it
-    double entered = 0;         ///< all light, over that of flat water on a square meter [m^2]
+    int side = 0;               ///< number of floor cells along x and z
+    std::vector<double> floor;  ///< irradiance of each cell, relative to flat, empty water
+    double entered = 0;         ///< flux, relative to flat water's per square meter [m^2]
     double on_floor = 0;
     double on_walls = 0;
     double on_boxes = 0;
@@ -49,14 +49,14 @@ struct CausticLight {
     }
 };
 
-/// `photons` of them, evenly spread with a little chance; `to_sun` is unit.
+/// Traces `photons` photons, stratified and jittered over the surface; `to_sun` is unit.
 [[nodiscard]] CausticLight trace_photons(
     const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun, int side,
     long photons);
 
-/// The same of light that the surface mirrors, on a ceiling at `height` above rest: `floor` is the
-/// part of it of half extents `half` about `middle`, `on_floor` all of it. Light that is thrown
-/// down again has not entered.
+/// The same for light that the surface reflects onto a ceiling at `height` above rest: `floor` is
+/// the part of the ceiling with half extents `half` about `middle`, `on_floor` is all of it.
+/// Photons reflected downward do not count as entered.
 [[nodiscard]] CausticLight trace_mirrored_photons(
     const CausticPool& pool, const CausticSurfaceAt& surface, const glm::dvec3& to_sun,
     double height, const glm::dvec2& middle, int side, long photons);

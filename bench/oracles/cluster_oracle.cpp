@@ -13,7 +13,7 @@ struct Interval {
     double high;
 };
 
-/// Of slope times distance, for a slope and a distance within these.
+/// Bounds of slope times distance.
 Interval product(const Interval& slope, const Interval& distance) {
     return {
         std::min(slope.low * distance.low, slope.low * distance.high),
@@ -24,7 +24,7 @@ double gap(double x, const Interval& interval) {
     return std::max({interval.low - x, x - interval.high, 0.0});
 }
 
-/// Of x / z between the edges of a tile; NDC runs from -1 to 1 over the picture.
+/// Bounds of x / z over a tile; NDC runs from -1 to 1 over the image.
 Interval
 slopes_of_tile(int tile, const ClusterShape& shape, int pixels, double jitter, double tangent) {
     const auto slope = [&](int edge) {

@@ -9,16 +9,17 @@
 
 namespace limn::oracle {
 
-// The light clusters without cleverness and in double precision: every light against every point
-// or every cell. What the lists that compute shaders make are held against.
+// The light clusters by brute force in double precision: every light against every point or every
+// cell. The reference of the lists built by compute shaders.
 
 using DVec3 = glm::dvec3;
 
 /// Whether the light reaches the point: nearer than its radius, within its cone.
 [[nodiscard]] bool reaches(const LightReach& light, const DVec3& point);
 
-/// For every cell the lights whose sphere meets the box around the cell in view space, `slack` of
-/// the radius wider; numbered from 0, in order. Lists of point lights may hold no others.
+/// For every cell, the indices of the lights whose sphere, `slack` (relative to the radius) larger,
+/// overlaps the cell's bounding box in view space, ascending. Lists of point lights must not
+/// contain any others.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> brute_force_lists(
     const RenderView& view, const ClusterShape& shape, std::span<const LightReach> lights,
     double slack);

@@ -10,8 +10,8 @@
 
 namespace limn::oracle {
 
-/// The lists of the light clusters as the GPU made them; cells as cell_of() numbers them.
-struct ReadClusters {
+/// The GPU's light cluster lists; cells are indexed by cell_of().
+struct ClusterReadbackLists {
     ClusterShape shape;
     std::vector<layout::uvec2> cells;  ///< begin and length
     std::vector<layout::uint> indices;
@@ -20,14 +20,14 @@ struct ReadClusters {
     [[nodiscard]] std::span<const layout::uint> of(int cell) const {
         return std::span(indices).subspan(cells[cell].x, cells[cell].y);
     }
-    [[nodiscard]] std::size_t total() const;  ///< length of all lists
+    [[nodiscard]] std::size_t total() const;  ///< total length of all lists
 };
 
-/// Runs the cluster passes alone and reads back what they made, to be held against the oracle.
+/// Runs only the cluster passes and reads back their lists, for comparison with the oracle.
 class ClusterReadback {
   public:
     [[nodiscard]] static Result<ClusterReadback> create(gpu::Device& device);
-    [[nodiscard]] ReadClusters run(const RenderView& view, const LightList& lights);
+    [[nodiscard]] ClusterReadbackLists run(const RenderView& view, const LightList& lights);
 
   private:
     struct Machine;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-/// Two directions that make a right-handed frame with `n`.
+/// Tangent and bitangent: a right-handed frame with `n`.
 struct Frame {
     glm::dvec3 t;
     glm::dvec3 b;

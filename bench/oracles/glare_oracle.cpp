@@ -38,9 +38,9 @@ double luminance(const dvec3& light) {
     return glm::dot(light, dvec3(0.27, 0.67, 0.06));
 }
 
-/// Adds `light` at `place` [px from the left and the top], shared by the four pixels about it;
-/// outside it is lost.
-void splat(LightPicture& picture, const dvec2& place, const dvec3& light) {
+/// Adds `light` at `place` [px from the top left], distributed bilinearly; outside the image it is
+/// lost.
+void splat(LightImage& picture, const dvec2& place, const dvec3& light) {
     const dvec2 corner = glm::floor(place - 0.5);
     const dvec2 share = place - 0.5 - corner;
     for (int j = 0; j < 2; ++j) {
@@ -95,7 +95,7 @@ double line_density(double distance, double length) {
     return density;
 }
 
-LightPicture add_stars(const LightPicture& picture, const Star& star, double width) {
+LightImage add_stars(const LightImage& picture, const Star& star, double width) {
     constexpr double kStep = 0.25;  // along a line [px]
     std::vector<double> densities;
     double whole = 0;
@@ -103,7 +103,7 @@ LightPicture add_stars(const LightPicture& picture, const Star& star, double wid
         densities.push_back(line_density(s, star.length));
         whole += 2 * densities.back();
     }
-    LightPicture stars = make_dark(picture.width, picture.height);
+    LightImage stars = make_black_image(picture.width, picture.height);
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
             const double light = luminance(picture.at(x, y));
@@ -126,7 +126,7 @@ LightPicture add_stars(const LightPicture& picture, const Star& star, double wid
     }
     const std::vector<Scattering> wide = {{1.0, width}};
     stars = scatter(stars, 1, wide);
-    LightPicture sum = picture;
+    LightImage sum = picture;
     for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
         sum.pixels[i] += dvec3(610.0, 550.0, 465.0) / 550.0 * stars.pixels[i];
     }

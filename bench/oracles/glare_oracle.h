@@ -6,30 +6,32 @@
 
 namespace limn::oracle {
 
-// The star about a point of light, in double precision: where diffraction at an aperture of
-// straight blades has its streaks, how a streak is to fade, and a picture with the stars of all
+// The glare star about a point light, in double precision: the angles of the diffraction streaks of
+// an aperture with straight blades, the fall-off of a streak, and an image with the stars of all
 // its pixels.
 
-/// Angles [rad], 0 .. 2 pi, at which a regular polygon of `blades` sides sends most light, one of
-/// them about perpendicular to a side at `rotation`: the largest values of its squared Fourier
-/// transform, meaned over an octave of spatial frequencies, as white light of a spread source.
+/// Angles [rad], 0 .. 2 pi, of the strongest diffraction by a regular polygon of `blades` sides,
+/// one of them about perpendicular to a side at `rotation`: the maxima of its squared Fourier
+/// transform, averaged over an octave of spatial frequencies, as for white light of an extended
+/// source.
 [[nodiscard]] std::vector<double> diffraction_angles(int blades, double rotation);
 
 struct Star {
-    double strength = 0;   ///< light of the star, of its source's
-    double threshold = 0;  ///< luminance that makes none
+    double strength = 0;   ///< energy of the star, relative to its source
+    double threshold = 0;  ///< luminance below which there is no star
     int lines = 0;         ///< through each pixel, at equal angles
-    double rotation = 0;   ///< of the first line, from the right to the top [rad]
-    double length = 0;     ///< of a line to either side [px]
+    double rotation = 0;   ///< angle of the first line, counter-clockwise from the right [rad]
+    double length = 0;     ///< of a line, to either side [px]
 };
 
-/// Light of a line per pixel of its way, `distance` [px] from its middle: a sum of tents of which
-/// each is half as long as the one before and holds twice its light, down to 2 .. 4 px. Between its
-/// shortest and longest tent it falls with the square of the distance. Both sides sum to 1.
+/// Light of a line per pixel of its length, at `distance` [px] from its center: a sum of tents,
+/// each half as long as the previous one with twice its light, down to 2 .. 4 px. Between the
+/// shortest and the longest tent it falls with the square of the distance. Both sides sum to 1.
 [[nodiscard]] double line_density(double distance, double length);
 
-/// `picture` with a star about each pixel in which red goes farther than blue, as wavelengths of
-/// 610, 550 and 465 nm. A line is as wide as a Gaussian of deviation `width` [px].
-[[nodiscard]] LightPicture add_stars(const LightPicture& picture, const Star& star, double width);
+/// `picture` with a star about each pixel; red reaches farther than blue, in the ratio of the
+/// wavelengths 610, 550 and 465 nm. A line's cross-section is a Gaussian of standard deviation
+/// `width` [px].
+[[nodiscard]] LightImage add_stars(const LightImage& picture, const Star& star, double width);
 
 }  // namespace limn::oracle

@@ -8,7 +8,7 @@ namespace limn::oracle {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kReach = 6;  // of a Gaussian, in standard deviations: 2e-9 are beyond
+constexpr double kReach = 6;  // cut-off of a Gaussian, in standard deviations: 2e-9 of it is beyond
 
 int mirrored(int at, int size) {
     const int period = 2 * size;
@@ -16,7 +16,7 @@ int mirrored(int at, int size) {
     return at < size ? at : period - 1 - at;
 }
 
-/// Area of a Gaussian over each pixel about the one it sits in, which sums to 1.
+/// Integral of a Gaussian over each pixel about its center pixel; sums to 1.
 std::vector<double> gaussian(double sigma) {
     const int reach = static_cast<int>(std::ceil(kReach * sigma));
     std::vector<double> weights;
@@ -33,7 +33,7 @@ std::vector<double> gaussian(double sigma) {
     return weights;
 }
 
-/// What reaches further than the picture is folded back first: then each pixel costs its row.
+/// Kernels wider than the image are folded back first, so that a pixel costs one row.
 std::vector<double> folded(const std::vector<double>& weights, int size, int at) {
     std::vector<double> row(static_cast<std::size_t>(size), 0.0);
     const int reach = static_cast<int>(weights.size() / 2);
@@ -43,11 +43,11 @@ std::vector<double> folded(const std::vector<double>& weights, int size, int at)
     return row;
 }
 
-LightPicture blur(const LightPicture& picture, double sigma) {
+LightImage blur(const LightImage& picture, double sigma) {
     const std::vector<double> weights = gaussian(sigma);
     const int width = picture.width;
     const int height = picture.height;
-    LightPicture across = make_dark(width, height);
+    LightImage across = make_black_image(width, height);
     for (int x = 0; x < width; ++x) {
         const std::vector<double> row = folded(weights, width, x);
         for (int y = 0; y < height; ++y) {
@@ -58,7 +58,7 @@ LightPicture blur(const LightPicture& picture, double sigma) {
             across.pixels[y * width + x] = sum;
         }
     }
-    LightPicture both = make_dark(width, height);
+    LightImage both = make_black_image(width, height);
     for (int y = 0; y < height; ++y) {
         const std::vector<double> column = folded(weights, height, y);
         for (int i = 0; i < height; ++i) {
@@ -70,7 +70,7 @@ LightPicture blur(const LightPicture& picture, double sigma) {
     return both;
 }
 
-/// Through four values at -1, 0, 1, 2 (Catmull-Rom).
+/// Catmull-Rom interpolation of the values at -1, 0, 1, 2.
 double cubic(const std::array<double, 4>& v, double t) {
     return v[1]
            + 0.5 * t
@@ -80,7 +80,7 @@ double cubic(const std::array<double, 4>& v, double t) {
                              + t * (3 * (v[1] - v[2]) + v[3] - v[0])));
 }
 
-double green_at(const LightPicture& picture, const glm::dvec2& place) {
+double green_at(const LightImage& picture, const glm::dvec2& place) {
     const double x = place.x - 0.5;
     const double y = place.y - 0.5;
     const int left = static_cast<int>(std::floor(x));
@@ -101,20 +101,20 @@ double green_at(const LightPicture& picture, const glm::dvec2& place) {
 
 }  // namespace
 
-LightPicture make_dark(int width, int height) {
+LightImage make_black_image(int width, int height) {
     return {
         width, height,
         std::vector<glm::dvec3>(static_cast<std::size_t>(width) * height, glm::dvec3(0))};
 }
 
-LightPicture
-scatter(const LightPicture& picture, double strength, std::span<const Scattering> parts) {
-    LightPicture sum = picture;
+LightImage
+scatter(const LightImage& picture, double strength, std::span<const Scattering> parts) {
+    LightImage sum = picture;
     for (glm::dvec3& pixel : sum.pixels) {
         pixel *= 1 - strength;
     }
     for (const Scattering& part : parts) {
-        const LightPicture blurred = blur(picture, part.sigma);
+        const LightImage blurred = blur(picture, part.sigma);
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
             sum.pixels[i] += strength * part.weight * blurred.pixels[i];
         }
@@ -131,8 +131,8 @@ std::vector<Scattering> scattering_of_levels(std::span<const float> weights) {
     return parts;
 }
 
-LightPicture blur_7x7(const LightPicture& picture, const std::array<double, 7>& weights) {
-    LightPicture blurred = make_dark(picture.width, picture.height);
+LightImage blur_7x7(const LightImage& picture, const std::array<double, 7>& weights) {
+    LightImage blurred = make_black_image(picture.width, picture.height);
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
             for (int j = -3; j <= 3; ++j) {
@@ -149,7 +149,7 @@ LightPicture blur_7x7(const LightPicture& picture, const std::array<double, 7>& 
     return blurred;
 }
 
-glm::dvec3 sum_of(const LightPicture& picture) {
+glm::dvec3 sum_of(const LightImage& picture) {
     glm::dvec3 sum(0);
     for (const glm::dvec3& pixel : picture.pixels) {
         sum += pixel;
@@ -157,7 +157,7 @@ glm::dvec3 sum_of(const LightPicture& picture) {
     return sum;
 }
 
-double rotational_spread(const LightPicture& picture, const glm::dvec2& center, double radius) {
+double rotational_spread(const LightImage& picture, const glm::dvec2& center, double radius) {
     constexpr int kAngles = 256;
     double sum = 0;
     double squares = 0;

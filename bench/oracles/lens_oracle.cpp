@@ -11,12 +11,12 @@ struct Ray {
     double slope;
 };
 
-/// Where a ray is after `way` along the axis.
+/// A ray after `way` along the axis.
 Ray travel(const Ray& ray, double way) {
     return {ray.height + ray.slope * way, ray.slope};
 }
 
-/// A thin lens turns rays by their height.
+/// Refraction: a thin lens changes a ray's slope in proportion to its height.
 Ray refract(const Ray& ray, double focal_length) {
     return {ray.height, ray.slope - ray.height / focal_length};
 }
@@ -24,7 +24,7 @@ Ray refract(const Ray& ray, double focal_length) {
 }  // namespace
 
 double image_diameter(const ThinLens& lens, double distance) {
-    // The film stands where the rays from the point in focus meet.
+    // The film is where the rays from the point in focus converge.
     const double rim = lens.aperture / 2;
     const Ray sharp = refract({rim, rim / lens.focus}, lens.focal_length);
     const double film = -sharp.height / sharp.slope;

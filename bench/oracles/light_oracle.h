@@ -8,12 +8,12 @@
 
 namespace limn::oracle {
 
-// Lights and the classic reflection models in double precision, one formula a function, with no
-// thought of speed: what the shaders and the light extraction are held against. Sources are the
-// spec entries named.
+// Lights and the classic reflection models in double precision, one formula per function, not
+// optimized: the reference of the shaders and of the light extraction. Sources are the spec entries
+// named.
 //
-// In Limn a light's color Ii is what a white Lambert surface facing it sends back: irradiance / pi.
-// With an irradiance of pi the formulas read as printed in the entries.
+// In Limn a light's color Ii is the radiance of a white Lambertian surface facing it: irradiance /
+// pi. With an irradiance of pi the formulas match the entries as printed.
 
 using DVec3 = glm::dvec3;
 
@@ -41,7 +41,7 @@ struct ClassicMaterial {
     double shininess = 50;
 };
 
-/// What arrives at a point from one light.
+/// Light arriving at a point from one source.
 struct Arriving {
     DVec3 to_light;  ///< unit
     DVec3 color;     ///< Ii = irradiance on a facing plane / pi
@@ -57,12 +57,12 @@ struct Arriving {
     const ClassicMaterial& material, const DVec3& ambient_light, std::span<const Arriving> lights,
     const DVec3& normal, const DVec3& to_camera);
 
-/// char.skin-shade: blinn() and sum Ii kd s skin, s = (1 - n.v)^2, or 1 - (n.v)^2 where it is wide.
+/// char.skin-shade: blinn() and sum Ii kd s skin, s = (1 - n.v)^2, or 1 - (n.v)^2 if `wide`.
 [[nodiscard]] DVec3 skin(
     const ClassicMaterial& material, const DVec3& skin_color, bool wide,
     std::span<const Arriving> lights, const DVec3& normal, const DVec3& to_camera);
 
-/// light.interface: what each type sends to `position`. `axis`: unit, where the light shines.
+/// light.interface: light of each type arriving at `position`. `axis`: unit, the light's direction.
 [[nodiscard]] Arriving arrive(
     const PointLight& light, const DVec3& light_position, const DVec3& position,
     const DVec3& normal);

@@ -7,11 +7,11 @@
 
 namespace limn::oracle {
 
-double exposure_moment(int index, int count, double shutter) {
+double exposure_sample_time(int index, int count, double shutter) {
     return ((index + 0.5) / count - 0.5) * shutter / 360.0;
 }
 
-void MeanPicture::add(const gpu::FloatImage& picture) {
+void MeanImage::add(const gpu::FloatImage& picture) {
     if (count_ == 0) {
         shape_ = picture;
         sum_.assign(picture.pixels.size(), 0.0);
@@ -23,7 +23,7 @@ void MeanPicture::add(const gpu::FloatImage& picture) {
     ++count_;
 }
 
-gpu::FloatImage MeanPicture::mean() const {
+gpu::FloatImage MeanImage::mean() const {
     gpu::FloatImage picture = shape_;
     for (std::size_t i = 0; i < sum_.size(); ++i) {
         picture.pixels[i] = static_cast<float>(sum_[i] / count_);
@@ -54,7 +54,7 @@ double bar_coverage(double x, double begin, double end, double way) {
     if (way <= 0.0) {
         return x >= begin && x < end ? 1.0 : 0.0;
     }
-    // It is there while begin + s <= x < end + s, for s in -way / 2 .. way / 2.
+    // It covers x while begin + s <= x < end + s, for s in -way / 2 .. way / 2.
     const double low = std::max(x - end, -0.5 * way);
     const double high = std::min(x - begin, 0.5 * way);
     return std::max(high - low, 0.0) / way;

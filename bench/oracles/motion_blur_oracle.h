@@ -7,15 +7,15 @@
 
 namespace limn::oracle {
 
-// What a shutter that is open for a while sees: the mean of pictures of moments within the
-// exposure, each drawn sharp, and closed forms of it where the motion is even. In double precision.
+// Motion blur in double precision: the mean of sharp images at times within the exposure, and
+// closed forms for uniform motion.
 
-/// Moment of picture `index` of `count` in an exposure that lasts shutter / 360 and is centered on
-/// 0; 1 is the time between two pictures.
-[[nodiscard]] double exposure_moment(int index, int count, double shutter);
+/// Time of sample `index` of `count` in an exposure of length shutter / 360, centered on 0;
+/// `shutter` in degrees, 1 is the time between frames.
+[[nodiscard]] double exposure_sample_time(int index, int count, double shutter);
 
-/// The mean of pictures of equal size.
-class MeanPicture {
+/// The mean of images of equal size.
+class MeanImage {
   public:
     void add(const gpu::FloatImage& picture);
     [[nodiscard]] gpu::FloatImage mean() const;
@@ -26,17 +26,17 @@ class MeanPicture {
     int count_ = 0;
 };
 
-/// A row of pixels, constant within each and going on at its ends as it is there, while it moves
-/// evenly by `way` pixels in all: convolution with a box of that length, read in the middle of each
-/// pixel.
+/// A row of pixels, constant within each and clamped at its ends, that moves uniformly by `way`
+/// pixels in total: convolution with a box of that length, sampled at the pixel centers.
 [[nodiscard]] std::vector<double> box_filter(std::span<const double> row, double way);
 
-/// Share of the exposure for which a bar from `begin` to `end` stands at `x` while it moves evenly,
-/// by `way` in all and half of it before the moment for which its place is given.
+/// Fraction of the exposure for which a bar from `begin` to `end` covers `x` while it moves
+/// uniformly by `way` in total; its position is given for the middle of the exposure.
 [[nodiscard]] double bar_coverage(double x, double begin, double end, double way);
 
-/// post.motion-blur-stretch of a bar that was from `begin` to `end` and went `way`: what `samples`
-/// of either picture say of the point `x`. `printed`: with the signs of the listing.
+/// post.motion-blur-stretch of a bar previously from `begin` to `end` that moved by `way`: its
+/// coverage of `x` with `samples` of each image. `printed`: with the signs as printed in the
+/// listing.
 [[nodiscard]] double
 stretch_coverage(double x, double begin, double end, double way, int samples, bool printed = false);
 

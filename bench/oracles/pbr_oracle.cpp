@@ -72,7 +72,7 @@ glm::dvec3 reflect_pbr(
     if (n_l <= 0) {
         return glm::dvec3(0);
     }
-    // Metalness is the share of the surface that is metal; the rest is dielectric (glTF 2.0).
+    // Metalness linearly blends the dielectric and the metal (glTF 2.0).
     const glm::dvec3 h = glm::normalize(to_light + to_camera);
     const double p = schlick(glm::dot(to_camera, h));
     const double spread =
@@ -94,7 +94,7 @@ glm::dvec3 furnace(const PbrMaterial& material, double n_v, int steps) {
     const glm::dvec3 normal(0, 0, 1);
     const glm::dvec3 to_camera(std::sqrt(1 - n_v * n_v), 0, n_v);
     glm::dvec3 sum(0);
-    // Midpoints of equal steps in the elevation angle: the lobe is narrow in angle, not in its
+    // Midpoint rule in the elevation angle, in which the lobe is resolved better than in its
     // cosine.
     const double step = 0.5 * kPiD / steps;
     for (int i = 0; i < steps; ++i) {

@@ -12,12 +12,27 @@ namespace {
 
 constexpr double kTurn = 6.283185307179586;
 
-/// From the eye to what is seen at `distance` along the view axis.
+/// Vector from the eye to the visible point at `distance` along the view axis.
 double along_ray(const RippleCamera& camera, const glm::dvec3& ray, double distance) {
     return distance / glm::dot(ray, camera.forward);
 }
 
 }  // namespace
+
+RippleCamera ripple_camera(const RenderView& view) {
+    const auto column = [&](int c) {
+        const auto& row = view.world_from_camera.row;
+        return glm::dvec3(row[0][c], row[1][c], row[2][c]);
+    };
+    return {
+        .eye = column(3),
+        .right = column(0),
+        .up = column(1),
+        .forward = -column(2),
+        .tangent = glm::dvec2(view.tangent),
+        .size = glm::dvec2(view.width, view.height),
+        .near = view.near};
+}
 
 glm::dvec3 ray_through(const RippleCamera& camera, const glm::dvec2& pixel) {
     const glm::dvec2 slope = (2.0 * pixel / camera.size - 1.0) * camera.tangent;
@@ -54,7 +69,8 @@ glm::dvec2 haze_shift(
     const auto local_at = [&](double t) {
         return glm::dvec3(air.local_from_world * glm::dvec4(camera.eye + t * ray, 1));
     };
-    // Where it is inside, by the definition: the outermost of many places along the ray, refined.
+    // The entry and exit, by the definition: the outermost inside points of many along the ray,
+    // refined.
     const auto inside = [&](double t) {
         const glm::dvec3 p = local_at(t);
         return air.ball ? glm::dot(p, p) < 1
@@ -63,7 +79,7 @@ glm::dvec2 haze_shift(
     const double closest = along_ray(camera, ray, camera.near);
     const glm::dvec3 from = local_at(0);
     const glm::dvec3 step = local_at(1) - from;
-    const double reach = 2 * std::sqrt(3.0) / glm::length(step);  // half of the longest way
+    const double reach = 2 * std::sqrt(3.0) / glm::length(step);  // half of the longest chord
     const double nearest = -glm::dot(from, step) / glm::dot(step, step);
     double enter = -1;
     double leave = -1;

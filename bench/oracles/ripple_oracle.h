@@ -1,5 +1,7 @@
 #pragma once
 
+#include "render/render_view.h"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -8,8 +10,8 @@
 
 namespace limn::oracle {
 
-// Where ripples look instead of a pixel, in double precision and by geometry: what the field of the
-// renderer is held against.
+// The shift of each pixel's lookup by ripples, analytically in double precision: the reference of
+// the renderer's shift field.
 
 /// A camera by its axes, which are unit and perpendicular.
 struct RippleCamera {
@@ -22,14 +24,16 @@ struct RippleCamera {
     double near = 0.05;     ///< [m]
 };
 
-/// Unit, from the eye through a place in the picture [px from the left and from below].
+[[nodiscard]] RippleCamera ripple_camera(const RenderView& view);
+
+/// Unit direction from the eye through a point of the image [px from the bottom left].
 [[nodiscard]] glm::dvec3 ray_through(const RippleCamera& camera, const glm::dvec2& pixel);
-/// The other way round; for directions that point forward.
+/// The inverse, for directions that point forward.
 [[nodiscard]] glm::dvec2 pixel_of(const RippleCamera& camera, const glm::dvec3& direction);
 
-/// A shell of radius r and half-thickness l about `center`: a ray that misses the center by b turns
-/// away from it by a sin(2 pi s) (1 - s^2)^2, s = (b - r) / l; times 1 - d / z where what is seen
-/// is at distance z along the view axis and the center at d.
+/// A shell of radius r and half-thickness l about `center`: a ray that passes the center at
+/// distance b is deflected away from it by a sin(2 pi s) (1 - s^2)^2, s = (b - r) / l; times 1 - d
+/// / z, where the visible surface is at distance z along the view axis and the center at d.
 struct RingWave {
     glm::dvec3 center{0};
     double radius = 0;
@@ -39,20 +43,20 @@ struct RingWave {
 [[nodiscard]] glm::dvec2 ring_shift(
     const RippleCamera& camera, const RingWave& wave, const glm::dvec2& pixel, double distance);
 
-/// Hot air in the box (or ball) of half-extent 1 of a space.
+/// Hot air in the box (or ball) of half-extent 1 in local space.
 struct HotAir {
     glm::dmat4 local_from_world{1};
     bool ball = false;
-    double shift = 0;   ///< largest [px]
+    double shift = 0;   ///< largest shift [px]
     double scale = 1;   ///< [m]
-    double raised = 0;  ///< [eddies]
+    double raised = 0;  ///< by rising so far [eddies]
     std::uint32_t seed = 0;
 };
 [[nodiscard]] glm::dvec2
 haze_shift(const RippleCamera& camera, const HotAir& air, const glm::dvec2& pixel, double distance);
 
-/// post.scene-ripple: w of a distance d from the center, as shares of the picture; and where uv
-/// looks instead, less uv.
+/// post.scene-ripple: the wave w at a distance from the center, in fractions of the image; and the
+/// shift of the lookup at uv.
 [[nodiscard]] double screen_wave(double distance, double radius, double amplitude);
 [[nodiscard]] glm::dvec2
 screen_shift(const glm::dvec2& uv, const glm::dvec2& center, double radius, double amplitude);

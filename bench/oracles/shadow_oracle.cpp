@@ -27,7 +27,7 @@ DVec3 to_world(const Affine& a, const Vec3& p) {
     return moved;
 }
 
-/// Where the line enters the box before it leaves it, within begin .. end.
+/// Distance at which the ray enters the box, within begin .. end.
 bool crosses(
     const DVec3& min, const DVec3& max, const DVec3& from, const DVec3& inverse, double begin,
     double end) {
@@ -126,7 +126,7 @@ bool ShadowScene::has_hole(const Triangle& triangle, double u, double v) const {
     }
     const Mask& mask = masks_[static_cast<std::size_t>(triangle.mask)];
     const glm::dvec2 uv = triangle.uv[0] * (1 - u - v) + triangle.uv[1] * u + triangle.uv[2] * v;
-    // Bilinear between texel middles, repeated.
+    // Bilinear between texel centers, repeating.
     const double x = uv.x * mask.width - 0.5;
     const double y = uv.y * mask.height - 0.5;
     const auto texel = [&](double column, double row) {
@@ -144,7 +144,7 @@ bool ShadowScene::has_hole(const Triangle& triangle, double u, double v) const {
 }
 
 /// Moeller and Trumbore 1997, both sides.
-bool ShadowScene::meets(const DVec3& from, const DVec3& along, double begin, double end) const {
+bool ShadowScene::hits(const DVec3& from, const DVec3& along, double begin, double end) const {
     if (nodes_.empty()) {
         return false;
     }
@@ -185,15 +185,15 @@ bool ShadowScene::meets(const DVec3& from, const DVec3& along, double begin, dou
 
 bool ShadowScene::blocked(const DVec3& from, const DVec3& to, double skin) const {
     const double length = glm::distance(from, to);
-    return length > 2 * skin && meets(from, (to - from) / length, skin, length - skin);
+    return length > 2 * skin && hits(from, (to - from) / length, skin, length - skin);
 }
 
 bool ShadowScene::blocked_toward(const DVec3& from, const DVec3& to_light) const {
-    return meets(from, to_light, 1e-4, 1e9);
+    return hits(from, to_light, 1e-4, 1e9);
 }
 
-double
-ShadowScene::seen_share(const DVec3& from, const DVec3& middle, double diameter, int side) const {
+double ShadowScene::visible_fraction(
+    const DVec3& from, const DVec3& middle, double diameter, int side) const {
     const DVec3 axis = glm::normalize(from - middle);
     const DVec3 other = std::abs(axis.y) < 0.9 ? DVec3(0, 1, 0) : DVec3(1, 0, 0);
     const DVec3 right = glm::normalize(glm::cross(other, axis));

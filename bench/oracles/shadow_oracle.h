@@ -12,28 +12,28 @@ class World;
 
 namespace limn::oracle {
 
-// Shadows by casting rays, in double precision: what shadow maps and volumes are held against.
-// Every triangle of the world's casters is in a tree of boxes; a ray is blocked if it meets one of
-// them, whichever side it shows, and not where an alpha-tested surface has a hole.
+// Shadows by ray casting in double precision, the reference of shadow maps and volumes. A bounding
+// volume hierarchy holds every triangle of the world's casters; a ray is blocked by either side of
+// a triangle, except in the holes of an alpha-tested surface.
 
 using DVec3 = glm::dvec3;
 
-/// What can block light. A picture of the moment it was made at.
+/// The occluders of a world, a snapshot of the time of construction.
 class ShadowScene {
   public:
     /// Opaque and alpha-tested mesh instances of `world` without NoShadow, at their WorldTransform.
     explicit ShadowScene(const World& world);
 
-    /// Whether something lies between the two points. What is nearer than `skin` [m] to either end
-    /// does not count: the surface that the ray leaves.
+    /// Whether anything lies between the two points. Hits closer than `skin` [m] to either end are
+    /// ignored, such as the surface that the ray leaves.
     [[nodiscard]] bool blocked(const DVec3& from, const DVec3& to, double skin = 1e-4) const;
-    /// The same for a light without a place, in the direction `to_light` (unit).
+    /// The same for a directional light, in the direction `to_light` (unit).
     [[nodiscard]] bool blocked_toward(const DVec3& from, const DVec3& to_light) const;
 
-    /// Share of a disc of `diameter` about `middle`, facing `from`, that is seen (shadow.penumbra):
+    /// Visible fraction of a disc of `diameter` about `middle`, facing `from` (shadow.penumbra):
     /// the mean of side^2 rays.
     [[nodiscard]] double
-    seen_share(const DVec3& from, const DVec3& middle, double diameter, int side = 16) const;
+    visible_fraction(const DVec3& from, const DVec3& middle, double diameter, int side = 16) const;
 
     [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
 
@@ -55,12 +55,12 @@ class ShadowScene {
     struct Node {
         DVec3 min;
         DVec3 max;
-        std::uint32_t first = 0;  ///< triangle of a leaf; else index of the second child
-        std::uint32_t count = 0;  ///< of triangles; 0: the first child is the next node
+        std::uint32_t first = 0;  ///< first triangle of a leaf; else second child
+        std::uint32_t count = 0;  ///< triangles of a leaf; 0: inner node, first child is next
     };
 
     void build(std::uint32_t begin, std::uint32_t end);
-    [[nodiscard]] bool meets(const DVec3& from, const DVec3& along, double begin, double end) const;
+    [[nodiscard]] bool hits(const DVec3& from, const DVec3& along, double begin, double end) const;
     [[nodiscard]] bool has_hole(const Triangle& triangle, double u, double v) const;
 
     std::vector<Triangle> triangles_;
@@ -68,8 +68,8 @@ class ShadowScene {
     std::vector<Node> nodes_;
 };
 
-/// shadow.penumbra: width of the penumbra of an edge `blocker` away from a source of `width`, on a
-/// receiver `receiver` away.
+/// shadow.penumbra: width of the penumbra of an edge at distance `blocker` from a source of
+/// `width`, on a receiver at distance `receiver` from the source.
 [[nodiscard]] double penumbra_width(double width, double blocker, double receiver);
 
 }  // namespace limn::oracle

@@ -11,15 +11,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Where the line from + t (to - from) meets the triangle's plane within the triangle, and whether
-/// it comes from the front; {0, false, false} if it does not.
+/// Intersection of the line from + t (to - from) with the triangle: t, and whether it hits the
+/// front; {0, false, false} without an intersection.
 struct Crossing {
     double t = 0;
     bool meets = false;
     bool front = false;
 };
 
-/// By the signs of three determinants: the line passes the triangle's edges on one side.
+/// By the signs of three determinants: the line must pass all edges on the same side.
 Crossing cross_triangle(const DTriangle& triangle, const DVec3& from, const DVec3& to) {
     const DVec3 d = to - from;
     const DVec3 a = triangle[0] - from;
@@ -42,7 +42,7 @@ DVec3 extrude(const DVec3& p, const DVec3& light, double distance) {
     return p + glm::normalize(p - light) * distance;
 }
 
-int count_before(std::span<const DTriangle> volume, const DVec3& eye, const DVec3& point) {
+int z_pass_count(std::span<const DTriangle> volume, const DVec3& eye, const DVec3& point) {
     int count = 0;
     for (const DTriangle& triangle : volume) {
         const Crossing crossing = cross_triangle(triangle, eye, point);
@@ -53,7 +53,7 @@ int count_before(std::span<const DTriangle> volume, const DVec3& eye, const DVec
     return count;
 }
 
-int count_behind(std::span<const DTriangle> volume, const DVec3& eye, const DVec3& point) {
+int z_fail_count(std::span<const DTriangle> volume, const DVec3& eye, const DVec3& point) {
     int count = 0;
     for (const DTriangle& triangle : volume) {
         const Crossing crossing = cross_triangle(triangle, eye, point);
@@ -122,7 +122,7 @@ int open_directed_edges(std::span<const DTriangle> volume) {
     return open;
 }
 
-int count_spread(std::span<const DTriangle> volume) {
+int count_nondegenerate(std::span<const DTriangle> volume) {
     int count = 0;
     for (const DTriangle& t : volume) {
         count += glm::length(glm::cross(t[1] - t[0], t[2] - t[0])) > 1e-12 ? 1 : 0;

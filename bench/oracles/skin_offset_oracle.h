@@ -12,11 +12,11 @@
 
 namespace limn::oracle {
 
-// Skinning in double precision the other way round (char.skin-vertex-offset): every vertex is
-// stored in the space of each of its joints, and the offsets are moved by the joints themselves.
-// There is no palette.
+// Skinning in double precision by vertex offsets (char.skin-vertex-offset): every vertex is stored
+// in the space of each of its joints, and the joints transform the offsets directly, without a
+// matrix palette.
 
-/// In double precision.
+/// Converts to double precision.
 [[nodiscard]] inline glm::dmat4 double_matrix(const Affine& a) {
     glm::dmat4 m(1.0);
     for (int row = 0; row < 3; ++row) {
@@ -27,7 +27,7 @@ namespace limn::oracle {
     return m;
 }
 
-/// Where the mean of the joints' images takes vertex `v`.
+/// Skinned position of vertex `v`: the weighted mean of its offsets transformed by the joints.
 [[nodiscard]] inline glm::dvec3 skin_by_offsets(
     const MeshData& mesh, const SkinData& skin, std::span<const Affine> joints, std::size_t v) {
     glm::dvec3 sum(0);
@@ -41,8 +41,8 @@ namespace limn::oracle {
     return sum;
 }
 
-/// Where the mean of two screw motions takes `p`, by its definition: rotate by the mean of the
-/// quaternions, which are on one side of the sphere, and add the mean way.
+/// Transforms `p` by the blend of two screw motions, by definition: rotate by the mean of the
+/// quaternions (in the same hemisphere) and add the blended translation.
 [[nodiscard]] inline glm::dvec3
 move_by_screws(const glm::dmat4& a, const glm::dmat4& b, double weight_b, const glm::dvec3& p) {
     const glm::dquat qa = glm::quat_cast(glm::dmat3(a));

@@ -32,7 +32,7 @@ glm::dmat4 mean_matrix(std::span<const glm::dmat4> matrices, const std::vector<I
     return sum;
 }
 
-/// The columns made perpendicular, the first one kept.
+/// Gram-Schmidt orthonormalization that keeps the first column's direction.
 glm::dmat3 without_scale(const glm::dmat3& m) {
     const glm::dvec3 x = glm::normalize(m[0]);
     const glm::dvec3 y = glm::normalize(m[1] - glm::dot(m[1], x) * x);

@@ -11,22 +11,22 @@
 
 namespace limn::oracle {
 
-// Skinning in double precision, one vertex after the other, as the textbook has it: offsets of
-// morph targets, then the mean of the joints' 4x4 matrices with its inverse transpose for normals
-// (char.skin-bone-offset), or the mean of their unit dual quaternions, turned into a matrix
-// (Kavan 2008).
+// Textbook skinning in double precision, vertex by vertex: offsets of morph targets, then the mean
+// of the joints' 4x4 matrices with its inverse transpose for normals (char.skin-bone-offset), or
+// the mean of their unit dual quaternions, turned into a matrix (Kavan 2008).
 
 struct SkinnedVertex {
     glm::dvec3 position;
-    glm::dvec3 normal;   ///< unit; not a number where the mean of the matrices has no inverse
+    glm::dvec3 normal;   ///< unit; NaN if the mean matrix is singular
     glm::dvec3 tangent;  ///< unit
 };
 
-/// Mesh from mesh at rest, a joint of the skin each. `joints`: character_from_joint.
+/// Matrices from the mesh at rest to the posed mesh, one per joint of the skin. `joints`:
+/// character_from_joint.
 [[nodiscard]] std::vector<glm::dmat4>
 skin_matrices(const SkinData& skin, std::span<const Affine> joints);
 
-/// `matrices` is empty where no joints move the mesh; missing weights are 0.
+/// `matrices` is empty for a mesh without joints; missing weights are 0.
 [[nodiscard]] std::vector<SkinnedVertex> skin_vertices(
     const MeshData& mesh, std::span<const glm::dmat4> matrices,
     std::span<const float> morph_weights, Skinning skinning);

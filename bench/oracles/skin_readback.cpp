@@ -62,15 +62,15 @@ void SkinReadback::forget() {
     machine_->meshes.clear();
 }
 
-std::vector<ReadSkin> SkinReadback::run(
-    const World& world, std::span<const Entity> drawn, float alpha, float alpha_before, bool before,
+std::vector<SkinReadbackVertices> SkinReadback::run(
+    const World& world, std::span<const Entity> drawn, float alpha, float previous_alpha, bool before,
     int views) {
     Machine& m = *machine_;
     const auto& assets = world.resource<Assets>();
     m.meshes.append(std::span(assets.meshes).subspan(m.meshes.meshes().size()));
     m.ring.begin_frame();
     m.graph.begin_frame();
-    m.shapes.update(world, m.meshes, alpha, alpha_before);
+    m.shapes.update(world, m.meshes, alpha, previous_alpha);
     for (int view = 0; view < views; ++view) {
         for (const Entity entity : drawn) {
             const std::uint32_t index = m.shapes.find(entity);
@@ -85,9 +85,9 @@ std::vector<ReadSkin> SkinReadback::run(
     m.ring.end_frame();
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 
-    std::vector<ReadSkin> skins;
+    std::vector<SkinReadbackVertices> skins;
     for (const Entity entity : drawn) {
-        ReadSkin& skin = skins.emplace_back();
+        SkinReadbackVertices& skin = skins.emplace_back();
         const std::uint32_t index = m.shapes.find(entity);
         if (index == DeformedList::kNone) {
             continue;

@@ -17,30 +17,30 @@ class World;
 
 namespace limn::oracle {
 
-/// An instance's vertices as the GPU made them; empty if it is drawn at rest.
-struct ReadSkin {
+/// An instance's vertices as deformed by the GPU; empty if it is drawn at rest.
+struct SkinReadbackVertices {
     std::vector<Vec3> positions;
     std::vector<Vec3> before;  ///< empty unless asked for
     std::vector<Vec3> normals;
     std::vector<Vec4> tangents;
 };
 
-/// Runs the deform pass alone, frame after frame, and reads back what it made.
+/// Runs only the deform pass, frame by frame, and reads back its results.
 class SkinReadback {
   public:
-    /// `storage_bytes`: of a storage block at most; 0: what the device can.
+    /// `storage_bytes`: limit of a storage block; 0: the device's.
     [[nodiscard]] static Result<SkinReadback>
     create(gpu::Device& device, std::size_t storage_bytes = 0);
 
-    /// One frame in which `drawn` are drawn, `views` times each.
-    std::vector<ReadSkin>
-    run(const World& world, std::span<const Entity> drawn, float alpha = 1, float alpha_before = 0,
+    /// Runs one frame in which the entities `drawn` are drawn, `views` times each.
+    std::vector<SkinReadbackVertices>
+    run(const World& world, std::span<const Entity> drawn, float alpha = 1, float previous_alpha = 0,
         bool before = true, int views = 1);
 
-    /// Another world follows.
+    /// Call before the next run of a different world.
     void forget();
 
-    /// What the list knows after the last frame.
+    /// The list's state after the last frame.
     [[nodiscard]] const DeformedList& shapes() const;
 
   private:

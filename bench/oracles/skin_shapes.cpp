@@ -38,13 +38,14 @@ MeshData make_tube(int rings, int sectors, float height) {
     return mesh;
 }
 
-void add_weights(MeshData& mesh, int joints, int most, Random& random) {
+void add_weights(MeshData& mesh, int joints, int max_influences, Random& random) {
     mesh.skin = {};
     mesh.skin.first.push_back(0);
     for (const Vec3& p : mesh.positions) {
         const float share = (p.y - mesh.bounds.min.y) / (mesh.bounds.max.y - mesh.bounds.min.y);
         const int middle = static_cast<int>(share * static_cast<float>(joints - 1) + 0.5f);
-        const int count = 1 + static_cast<int>(random.below(static_cast<std::uint32_t>(most)));
+        const int count =
+            1 + static_cast<int>(random.below(static_cast<std::uint32_t>(max_influences)));
         std::vector<float> weights;
         float sum = 0;
         for (int i = 0; i < count; ++i) {
@@ -85,12 +86,11 @@ SkinData make_chain(int joints, float spacing) {
 }
 
 std::vector<Affine>
-random_joints(int joints, float spacing, float most_angle, bool scaled, Random& random) {
+random_joints(int joints, float spacing, float max_angle, bool scaled, Random& random) {
     std::vector<Affine> pose;
     Affine below;
     for (int j = 0; j < joints; ++j) {
-        const Quat turn =
-            rotation_about(random.direction(), random.uniform(-most_angle, most_angle));
+        const Quat turn = rotation_about(random.direction(), random.uniform(-max_angle, max_angle));
         const Vec3 way = Vec3(0, j == 0 ? 0 : spacing, 0) + 0.02f * random.direction();
         const Affine joint = below * affine_from(way, turn, Vec3(1));
         const Vec3 scale = {

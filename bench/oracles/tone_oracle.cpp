@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLargestHalf = 65504;
 
-/// The luminances > 0 that are left when `share` of them is gone at either end, in order.
+/// The sorted luminances > 0 without the fraction `share` at either end.
 std::vector<double> lit(std::span<const double> luminances, double share) {
     std::vector<double> sorted;
     for (const double l : luminances) {
@@ -46,8 +46,8 @@ double dynamic_range(std::span<const double> luminances, double share) {
     return sorted.empty() ? 1 : sorted.back() / sorted.front();
 }
 
-PictureStatistics measure_picture(std::span<const glm::dvec3> pixels, double clipped_share) {
-    PictureStatistics result;
+ImageStatistics measure_image(std::span<const glm::dvec3> pixels, double clipped_share) {
+    ImageStatistics result;
     std::vector<double> luminances;
     for (const glm::dvec3& pixel : pixels) {
         if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) {
@@ -68,8 +68,8 @@ PictureStatistics measure_picture(std::span<const glm::dvec3> pixels, double cli
     if (!all.empty()) {
         result.least = all.front();
         result.largest = all.back();
-        result.clipped_least = inner.front();
-        result.clipped_largest = inner.back();
+        result.clipped_min_luminance = inner.front();
+        result.clipped_max_luminance = inner.back();
     }
     return result;
 }

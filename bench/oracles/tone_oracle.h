@@ -8,8 +8,8 @@
 
 namespace limn::oracle {
 
-// From radiance to display in double precision, one formula a function, with no thought of speed:
-// what the statistics, tone map and viewer are held against. Sources are the spec entries named.
+// From radiance to display in double precision, one formula per function, not optimized: the
+// reference of the statistics, tone mapper and viewer. Sources are the spec entries named.
 
 /// hdr.luminance: 0.27 R + 0.67 G + 0.06 B.
 [[nodiscard]] double luminance(const glm::dvec3& color);
@@ -17,24 +17,24 @@ namespace limn::oracle {
 /// hdr.log-average: exp of the mean of ln(delta + L). 0 pixels give delta.
 [[nodiscard]] double log_average(std::span<const double> luminances, double delta = 1e-4);
 
-/// hdr.dynamic-range: largest over least luminance > 0, leaving out `share` of those at either end;
-/// 1 without any light.
+/// hdr.dynamic-range: largest over smallest luminance > 0, without the fraction `share` at either
+/// end; 1 for a black image.
 [[nodiscard]] double dynamic_range(std::span<const double> luminances, double share = 0);
 
-/// Of a picture. Pixels with NaN or infinity in them are only counted; others are clamped to
-/// 0 .. 65504.
-struct PictureStatistics {
+/// Statistics of an image. Pixels with NaN or infinity are only counted; others are clamped to 0 ..
+/// 65504.
+struct ImageStatistics {
     std::size_t finite = 0;
     std::size_t broken = 0;
     glm::dvec3 mean = glm::dvec3(0);
     double log_average = 0;
-    double least = 0;  ///< luminance of a pixel that has any; 0 if none has
+    double least = 0;  ///< smallest luminance > 0; 0 for a black image
     double largest = 0;
-    double clipped_least = 0;  ///< the same without the outermost
-    double clipped_largest = 0;
+    double clipped_min_luminance = 0;  ///< the same without the clipped fraction
+    double clipped_max_luminance = 0;
 };
-[[nodiscard]] PictureStatistics
-measure_picture(std::span<const glm::dvec3> pixels, double clipped_share = 0.001);
+[[nodiscard]] ImageStatistics
+measure_image(std::span<const glm::dvec3> pixels, double clipped_share = 0.001);
 
 /// hdr.compress: L / (1 + L); with a white point, L (1 + L / white^2) / (1 + L).
 [[nodiscard]] double compress(double scaled);
@@ -55,14 +55,14 @@ measure_picture(std::span<const glm::dvec3> pixels, double clipped_share = 0.001
 /// hdr.tonemap-shader: 0.3333 (ln(k e max(c - defog, 0) + 1) / k)^exponent, not clamped.
 struct KneeSettings {
     double exposure = 1;
-    double contrast = 0;       ///< k; 0 leaves out the logarithm
+    double contrast = 0;       ///< k; 0 omits the logarithm
     double exponent = 0.4545;  ///< 1 / gamma
     double scale = 0.3333;
 };
 [[nodiscard]] double knee_map(double c, double defog, const KneeSettings& settings);
 
-/// hdr.dodge-burn, of scaled luminances, rows one after the other. Beyond its edges the picture
-/// goes on as it is there. Gaussians are sampled at the pixels and made to sum to 1.
+/// hdr.dodge-burn of scaled luminances in row order, edges clamped. Gaussians are sampled at the
+/// pixels and normalized.
 struct DodgeBurnSettings {
     double key = 0.18;   ///< alpha
     double phi = 8;      ///< sharpness
@@ -71,8 +71,8 @@ struct DodgeBurnSettings {
 };
 struct DodgeBurn {
     std::vector<double> display;   ///< Ld
-    std::vector<double> surround;  ///< V1 of the scale chosen
-    std::vector<int> scale;        ///< index of it
+    std::vector<double> surround;  ///< V1 of the selected scale
+    std::vector<int> scale;        ///< index of the selected scale
 };
 [[nodiscard]] DodgeBurn dodge_burn(
     std::span<const double> scaled, int width, int height, const DodgeBurnSettings& settings = {});

@@ -52,7 +52,7 @@ std::vector<glm::dvec3> corners_at(const World& world, Entity entity, double alp
 }
 
 VelocityOracle::VelocityOracle(const CameraMotion& motion)
-    : motion_(motion), now_(eye_at(motion.alpha)), before_(eye_at(motion.alpha_before)) {}
+    : motion_(motion), eye_(eye_at(motion.alpha)), previous_eye_(eye_at(motion.previous_alpha)) {}
 
 VelocityOracle::Eye VelocityOracle::eye_at(double alpha) const {
     const auto column = [&](int c) {
@@ -89,22 +89,22 @@ void VelocityOracle::add(const World& world) {
     const auto& meshes = world.resource<Assets>().meshes;
     world.query<const MeshInstance>().each([&](Entity entity, const MeshInstance& instance) {
         const std::vector<glm::dvec3> now = corners_at(world, entity, motion_.alpha);
-        const std::vector<glm::dvec3> before = corners_at(world, entity, motion_.alpha_before);
+        const std::vector<glm::dvec3> before = corners_at(world, entity, motion_.previous_alpha);
         for (const std::uint32_t i : meshes[instance.mesh.index].indices) {
-            corners_now_.push_back(now[i]);
-            corners_before_.push_back(before[i]);
+            corners_.push_back(now[i]);
+            previous_corners_.push_back(before[i]);
         }
     });
 }
 
 std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {
-    const glm::dvec3 way = ray(now_, x, y);
+    const glm::dvec3 way = ray(eye_, x, y);
     double nearest = std::numeric_limits<double>::infinity();
     std::optional<PixelMotion> found;
-    for (std::size_t i = 0; i < corners_now_.size(); i += 3) {
-        const glm::dvec3 a = corners_now_[i] - now_.place;
-        const glm::dvec3 e1 = corners_now_[i + 1] - corners_now_[i];
-        const glm::dvec3 e2 = corners_now_[i + 2] - corners_now_[i];
+    for (std::size_t i = 0; i < corners_.size(); i += 3) {
+        const glm::dvec3 a = corners_[i] - eye_.place;
+        const glm::dvec3 e1 = corners_[i + 1] - corners_[i];
+        const glm::dvec3 e2 = corners_[i + 2] - corners_[i];
         // a + u e1 + v e2 = t way, by Cramer's rule.
         const glm::dvec3 across = glm::cross(way, e2);
         const double det = glm::dot(e1, across);
@@ -119,17 +119,18 @@ std::optional<PixelMotion> VelocityOracle::at(double x, double y) const {
             continue;
         }
         nearest = t;
-        const glm::dvec3 was = corners_before_[i]
-                               + u * (corners_before_[i + 1] - corners_before_[i])
-                               + v * (corners_before_[i + 2] - corners_before_[i]);
-        found = PixelMotion{t, project(now_, t * way) - project(before_, was - before_.place)};
+        const glm::dvec3 was = previous_corners_[i]
+                               + u * (previous_corners_[i + 1] - previous_corners_[i])
+                               + v * (previous_corners_[i + 2] - previous_corners_[i]);
+        found = PixelMotion{
+            t, project(eye_, t * way) - project(previous_eye_, was - previous_eye_.place)};
     }
     return found;
 }
 
 glm::dvec2 VelocityOracle::sky(double x, double y) const {
-    const glm::dvec3 way = ray(now_, x, y);
-    return project(now_, way) - project(before_, way);
+    const glm::dvec3 way = ray(eye_, x, y);
+    return project(eye_, way) - project(previous_eye_, way);
 }
 
 }  // namespace limn::oracle

@@ -16,11 +16,11 @@ class World;
 
 namespace limn::oracle {
 
-// The motion of what a pixel shows, by casting a ray in double precision: the triangle it meets,
-// where that point of the triangle was the moment before, and how far its projection has come. It
-// shares no matrix with the renderer.
+// Screen-space velocity by ray casting in double precision: the triangle hit, the previous position
+// of that point of the triangle, and the motion of its projection. Shares no matrix with the
+// renderer.
 
-/// A camera between two steps, as make_render_view has it.
+/// A camera interpolated between two steps, like make_render_view's.
 struct CameraMotion {
     Camera camera;
     Affine previous;
@@ -28,7 +28,7 @@ struct CameraMotion {
     int width = 0;   ///< [px]
     int height = 0;  ///< [px]
     double alpha = 1;
-    double alpha_before = 0;
+    double previous_alpha = 0;
 };
 
 struct PixelMotion {
@@ -36,19 +36,20 @@ struct PixelMotion {
     glm::dvec2 velocity;  ///< [px], right and down
 };
 
-/// World positions of the vertices of a mesh instance, deformed or not, at the moment `alpha`.
+/// World positions of the vertices of a mesh instance, deformed or not, at interpolation factor
+/// `alpha`.
 [[nodiscard]] std::vector<glm::dvec3> corners_at(const World& world, Entity entity, double alpha);
 
 class VelocityOracle {
   public:
     explicit VelocityOracle(const CameraMotion& motion);
 
-    /// Adds all that is drawn of the world; Pose and MorphWeights must have their `previous`.
+    /// Adds all mesh instances of the world; Pose and MorphWeights need valid `previous` values.
     void add(const World& world);
-    /// Of the nearest triangle, front or back, at a point of the picture, from the top left [px];
-    /// none where nothing is.
+    /// Motion of the nearest triangle, front or back, at a point of the image [px from the top
+    /// left]; none without a hit.
     [[nodiscard]] std::optional<PixelMotion> at(double x, double y) const;
-    /// Of what is infinitely far away.
+    /// Motion of the background at infinity.
     [[nodiscard]] glm::dvec2 sky(double x, double y) const;
 
   private:
@@ -57,14 +58,14 @@ class VelocityOracle {
     };
     [[nodiscard]] Eye eye_at(double alpha) const;
     [[nodiscard]] glm::dvec3 ray(const Eye& eye, double x, double y) const;
-    /// Of a way from the eye [px].
+    /// Projection of a vector from the eye [px].
     [[nodiscard]] glm::dvec2 project(const Eye& eye, const glm::dvec3& way) const;
 
     CameraMotion motion_;
-    Eye now_;
-    Eye before_;
-    std::vector<glm::dvec3> corners_now_;  // three a triangle
-    std::vector<glm::dvec3> corners_before_;
+    Eye eye_;
+    Eye previous_eye_;
+    std::vector<glm::dvec3> corners_;  // three per triangle
+    std::vector<glm::dvec3> previous_corners_;
 };
 
 }  // namespace limn::oracle

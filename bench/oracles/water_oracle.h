@@ -9,8 +9,8 @@
 
 namespace limn::oracle {
 
-// Open water in double precision, by sums that need no transform to be fast. In a header, so that
-// tests of systems can use them without the renderer.
+// Open water in double precision by explicit Fourier sums. Header-only, so that tests of systems
+// can use it without the renderer.
 
 using Complex = std::complex<double>;
 
@@ -61,7 +61,7 @@ struct OceanPoint {
 };
 
 /// The sum of a cascade's waves 2 |h0| cos(k.q - omega t + arg h0), each of which runs along its k
-/// and carries the water toward its crests. What runs against them is not looked at.
+/// and displaces the water toward its crests. Waves in the opposite direction are ignored.
 [[nodiscard]] inline OceanPoint
 ocean_at(const OceanCascade& cascade, double choppiness, double x, double z, double time) {
     OceanPoint sum;
@@ -94,8 +94,8 @@ ocean_at(const OceanCascade& cascade, double choppiness, double x, double z, dou
     return sum;
 }
 
-/// The fields of OceanPoint on the cascade's own grid, each a plane as OceanCascade's: by a Fourier
-/// sum of each, from the waves that run ahead alone.
+/// The fields of OceanPoint on the cascade's grid, each a plane in OceanCascade's layout: separate
+/// Fourier sums of only the forward waves.
 struct OceanPlanes {
     std::vector<double> height;
     std::vector<double> shift_x;

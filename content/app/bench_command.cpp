@@ -21,8 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kLightsScene = "lights";  ///< measured by numbers of lights and methods
-constexpr const char* kLensName = "lens";       ///< no scene: the effects of the lens, one by one
+constexpr const char* kLightsScene = "lights";  ///< measured by light count and method
+constexpr const char* kLensName = "lens";       ///< not a scene: the lens effects, one by one
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -49,11 +49,11 @@ Status write_results(
     return written ? write_report(options.csv, csv) : written;
 }
 
-/// Fails if it cannot draw pictures of that size.
+/// Fails if the device cannot render images of that size.
 Result<HeadlessRenderer> create_renderer_for(const IVec2& size) {
     Result<HeadlessRenderer> headless = create_headless_renderer();
     if (headless) {
-        if (const Status fits = check_picture_size(*headless->device, size); !fits) {
+        if (const Status fits = check_image_size(*headless->device, size); !fits) {
             return fits.error();
         }
     }

@@ -13,7 +13,7 @@ struct BenchReport;
 struct HeadlessRenderer;
 struct Stage;
 
-/// `limn bench`: how long everything takes.
+/// `limn bench`: times frames, systems and passes of a scene.
 struct BenchOptions {
     std::string scene;
     int frames = 300;  ///< measured
@@ -24,8 +24,8 @@ struct BenchOptions {
     std::string csv;   ///< the same
 };
 
-/// One step and one picture, whose GPU work is waited for: every frame pays for itself. Adds its
-/// times to `report`, if there is one.
+/// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the
+/// next frame. Adds the times to `report` unless it is null.
 void run_bench_frame(
     Stage& stage, HeadlessRenderer& headless, const IVec2& size, BenchReport* report);
 

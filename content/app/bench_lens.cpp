@@ -22,10 +22,10 @@
 namespace limn {
 namespace {
 
-/// All of the table and what stands on it.
+/// Encloses the table and everything on it.
 constexpr Transform kHotAir = {.position = {0, 0.2f, -0.1f}, .scale = {1, 0.4f, 0.8f}};
 
-/// The resource of the level if `wanted`, a default if it has none; else none.
+/// If `wanted`, keeps the level's resource or inserts a default; else removes it.
 template <typename Resource>
 void set_resource(World& world, bool wanted) {
     if (!wanted) {
@@ -49,7 +49,7 @@ Summary frame_summary(const BenchReport& report) {
     return frames == nullptr ? Summary{} : summarize(frames->samples);
 }
 
-/// Passes of `report` by their medians, the slowest first, that `without` has none of.
+/// Median times of the passes of `report` that `without` does not have, slowest first.
 std::vector<std::pair<std::string, double>>
 passes_beyond(const BenchReport& report, const BenchReport& without) {
     const auto is_pass = [](const BenchSeries& series) {

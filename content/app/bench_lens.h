@@ -12,13 +12,13 @@ struct BenchOptions;
 struct HeadlessRenderer;
 struct Stage;
 
-// What `limn bench lens` prints: what each effect of the lens adds to a frame of one scene, alone,
-// and what ripple, motion blur, depth of field and glow add together. Every one sees the same
-// frames.
+// What `limn bench lens` prints: how much each lens effect adds to the frame time of one scene,
+// alone, and how much ripple, motion blur, depth of field and glow add together. All measure the
+// same frames.
 
 inline constexpr const char* kLensScene = "stilllife";
 
-/// What can be between the scene and the film, bits.
+/// Lens effects, as bit flags.
 enum LensEffect : unsigned {
     kLensNothing = 0,
     kLensAntialiasing = 1,
@@ -30,7 +30,7 @@ enum LensEffect : unsigned {
     kLensFour = kLensRipple | kLensMotionBlur | kLensDepthOfField | kLensGlow,
 };
 
-/// A scene with some of them.
+/// The scene with a set of effects enabled.
 struct LensBenchPoint {
     std::string name = {};
     unsigned effects = kLensNothing;
@@ -38,22 +38,22 @@ struct LensBenchPoint {
 };
 
 struct LensBench {
-    BenchReport machine = {};                 ///< of all: scene, size, threads, OpenGL; no series
-    std::vector<LensBenchPoint> points = {};  ///< the first with none of the effects
+    BenchReport machine = {};  ///< shared by all points: scene, size, threads, OpenGL; no series
+    std::vector<LensBenchPoint> points = {};  ///< the first has no effects
 };
 
-/// What a point costs [ms], medians.
+/// Cost of a point, medians [ms].
 struct LensCost {
     double frame = 0;
-    double added = 0;   ///< to a frame with none of the effects
-    double passes = 0;  ///< of those that are not in such a frame, on the GPU's clock
+    double added = 0;   ///< over a frame without effects
+    double passes = 0;  ///< GPU time of the passes that such a frame does not have
 };
 
-/// Nothing, each alone, and the four.
+/// No effects, each effect alone, and the four together.
 [[nodiscard]] std::vector<LensBenchPoint> lens_points();
 
-/// Turns on `effects` as the level has them, or as they are by default where it has none, and all
-/// others off. Of ripples only those that are turned on here: hot air before the whole picture.
+/// Enables `effects` with the level's settings, or the defaults where it has none, and disables all
+/// others. The only ripple is one added here: hot air in front of the whole image.
 void set_lens_effects(Stage& stage, unsigned effects);
 
 [[nodiscard]] Result<LensBench>
@@ -61,9 +61,9 @@ measure_lens(const BenchOptions& options, HeadlessRenderer& headless);
 
 [[nodiscard]] LensCost lens_cost(const LensBench& bench, const LensBenchPoint& point);
 
-/// For people: a line a point; then what the passes of the four cost.
+/// A text table, one line per point, then the pass times of the four effects together.
 [[nodiscard]] std::string lens_bench_table(const LensBench& bench);
-/// The schema stands in `limn bench --help`.
+/// The schema is in `limn bench --help`.
 [[nodiscard]] std::string lens_bench_json(const LensBench& bench);
 /// effects,frames,median_ms,p95_ms,added_ms,passes_ms
 [[nodiscard]] std::string lens_bench_csv(const LensBench& bench);

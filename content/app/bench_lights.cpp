@@ -21,9 +21,9 @@
 namespace limn {
 namespace {
 
-constexpr int kFewestLights = 16;
-constexpr double kLongestPoint = 4.0;  ///< after so long no further frame is measured [s]
-constexpr int kFewestFrames = 2;       ///< but these are
+constexpr int kMinLights = 16;
+constexpr double kMaxPointTime = 4.0;  ///< no further frame is started after this time [s]
+constexpr int kMinFrames = 2;          ///< measured even beyond that time
 constexpr const char* kMethodNames[kLightMethods] = {
     "clustered", "full_screen", "volumes", "object_major", "light_major"};
 constexpr auto kClustered = static_cast<std::size_t>(LightMethod::Clustered);
@@ -42,7 +42,7 @@ bool was_measured(const LightsBenchPoint& point) {
     return point.left_out.empty();
 }
 
-/// Frames of what the stage shows now, after one that compiles and uploads.
+/// Measures frames of the stage as it is now, after warm-up frames that compile shaders and upload.
 void measure_point(
     Stage& stage, HeadlessRenderer& headless, const BenchOptions& options, BenchReport& report) {
     using Clock = std::chrono::steady_clock;
@@ -53,16 +53,16 @@ void measure_point(
     do {
         run_bench_frame(stage, headless, options.size, nullptr);
         ++report.warmup;
-    } while (report.warmup < options.warmup && seconds_since(warm) < 0.25 * kLongestPoint);
+    } while (report.warmup < options.warmup && seconds_since(warm) < 0.25 * kMaxPointTime);
     const Clock::time_point begin = Clock::now();
     do {
         run_bench_frame(stage, headless, options.size, &report);
         ++report.frames;
     } while (report.frames < options.frames
-             && (report.frames < kFewestFrames || seconds_since(begin) < kLongestPoint));
+             && (report.frames < kMinFrames || seconds_since(begin) < kMaxPointTime));
 }
 
-/// A frame's median over that of the clustered method with as many lights; 0 where one is missing.
+/// Median frame time over that of the clustered method with as many lights; 0 if either is missing.
 double cost_over_clustered(const LightsBench& bench, std::size_t method, std::size_t count) {
     const LightsBenchPoint& point = bench.points[method][count];
     const LightsBenchPoint& clustered = bench.points[kClustered][count];
@@ -77,15 +77,15 @@ double cost_over_clustered(const LightsBench& bench, std::size_t method, std::si
 
 std::vector<int> light_counts(int lights) {
     std::vector<int> counts;
-    for (int count = kFewestLights; count < lights; count *= 4) {
+    for (int count = kMinLights; count < lights; count *= 4) {
         counts.push_back(count);
     }
     counts.push_back(lights);
     return counts;
 }
 
-int shine_some(World& world, int count) {
-    // By the rank of a hash of their number: neighbors in the level are none in this order.
+int enable_some_lights(World& world, int count) {
+    // Ordered by a hash of their index, so that any prefix is spread over the level.
     const auto query = world.query<PointLight>();
     const auto total = static_cast<int>(query.count());
     std::vector<int> order(static_cast<std::size_t>(total));
@@ -105,11 +105,11 @@ int shine_some(World& world, int count) {
 
 Result<LightsBench>
 measure_lights(Stage& stage, HeadlessRenderer& headless, const BenchOptions& options) {
-    const int total = shine_some(stage.world, 0);
+    const int total = enable_some_lights(stage.world, 0);
     if (total == 0) {
         return fail("{}: found no point lights, expected some to count", stage.scene.name);
     }
-    // Every point sees the same, however many frames those before it had.
+    // A fixed camera: every point renders the same view, however many frames came before.
     stage.world.remove<CameraPath>(stage.scene.camera);
     LightsBench bench{.machine = machine_report(stage, headless, options)};
     bench.counts = light_counts(total);
@@ -117,17 +117,17 @@ measure_lights(Stage& stage, HeadlessRenderer& headless, const BenchOptions& opt
     int done = 0;
     for (std::size_t method = 0; method < kLightMethods; ++method) {
         stage.world.resource<Rendering>().lights = static_cast<LightMethod>(method);
-        int measured = 0;       // lights of the last point
-        double frame_ms = 0.0;  // and what its frames took
+        int measured = 0;       // light count of the last measured point
+        double frame_ms = 0.0;  // and its median frame time
         for (const int count : bench.counts) {
             LightsBenchPoint& point = bench.points[method].emplace_back();
             point.lights = count;
             // With twice the lights a frame takes at most twice as long.
             const double expected = measured > 0 ? 1e-3 * frame_ms * count / measured : 0.0;
-            if (expected > kLongestLightFrame) {
+            if (expected > kMaxLightFrame) {
                 point.left_out = fmt::format("a frame would take up to {:.0f} s", expected);
             } else {
-                shine_some(stage.world, count);
+                enable_some_lights(stage.world, count);
                 measure_point(stage, headless, options, point.report);
                 measured = count;
                 frame_ms = frame_summary(point.report).median;
@@ -144,7 +144,7 @@ std::string lights_bench_table(const LightsBench& bench) {
     fmt::format_to(
         out,
         "{}, {} x {}, {} threads\n{}, OpenGL {}\n\n"
-        "Median of a frame [ms], and how often that of the clustered method:\n{:<7}",
+        "Median frame time [ms], and its ratio to the clustered method:\n{:<7}",
         bench.machine.scene, bench.machine.size.x, bench.machine.size.y, bench.machine.threads,
         bench.machine.gl_renderer, bench.machine.gl_version, "lights");
     for (const char* name : kMethodNames) {

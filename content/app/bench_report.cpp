@@ -62,7 +62,8 @@ std::string bench_table(const BenchReport& report) {
     fmt::format_to(
         out,
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
-        "{} entities, {} draws, {} triangles, {:.0f} MiB resident, {:.0f} MiB of targets\n\n",
+        "{} entities, {} draws, {} triangles, {:.0f} MiB resident, {:.0f} MiB of render "
+        "targets\n\n",
         report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
         report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
         report.resident_mib, report.gpu_mib);

@@ -10,12 +10,12 @@
 
 namespace limn {
 
-// The numbers of a bench run and the three ways they are written. All times in milliseconds.
+// The numbers of a bench run and its three output formats. All times in milliseconds.
 
 enum class BenchClock : std::uint8_t { Cpu, Gpu };
 enum class BenchKind : std::uint8_t { Frame, System, Pass };
 
-/// Times of one thing, a sample a frame.
+/// Times of one system, pass or part of the frame, one sample per frame.
 struct BenchSeries {
     std::string name;
     BenchKind kind = BenchKind::Frame;
@@ -32,20 +32,20 @@ struct BenchReport {
     std::string gl_renderer = {};
     std::string gl_version = {};
     double resident_mib = 0.0;  ///< memory of the process
-    double gpu_mib = 0.0;       ///< textures and buffers of the frame graph's pool
+    double gpu_mib = 0.0;       ///< textures and buffers in the frame graph's pool
     std::int64_t entities = 0;
     std::int64_t draws = 0;      ///< of the last frame
     std::int64_t triangles = 0;  ///< of the last frame
     std::vector<BenchSeries> series = {};
 };
 
-/// The series called so, added at its first use.
+/// Returns the series of that name, adding it on first use.
 BenchSeries&
 find_series(BenchReport& report, BenchKind kind, BenchClock clock, std::string_view name);
 
-/// For people: what was run, then a table, the slowest first within each kind.
+/// A text table under a summary of the run, slowest first within each kind.
 [[nodiscard]] std::string bench_table(const BenchReport& report);
-/// The schema stands in `limn bench --help`.
+/// The schema is in `limn bench --help`.
 [[nodiscard]] std::string bench_json(const BenchReport& report);
 /// kind,name,clock,median_ms,p95_ms,max_ms
 [[nodiscard]] std::string bench_csv(const BenchReport& report);

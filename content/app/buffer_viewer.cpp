@@ -50,11 +50,11 @@ find_texture(std::string_view name, const FrameGraph& graph, const FrameOutput& 
     return id.valid() ? graph.texture(id) : nullptr;
 }
 
-bool is_unsigned_byte(GLenum format) {
+bool is_unorm8(GLenum format) {
     return gpu::format_info(format).pixel_type == GL_UNSIGNED_BYTE;
 }
 
-/// One texel, zeros for what the format has not.
+/// One texel; channels that the format lacks are 0.
 Vec4 read_texel(const gpu::Texture& texture, int x, int y) {
     std::array<float, 4> texel = {0, 0, 0, 0};
     const bool depth = gpu::format_info(texture.desc().format).depth;
@@ -76,27 +76,27 @@ Result<BufferViewer> BufferViewer::create(gpu::Device& device) {
     return BufferViewer(*pipeline);
 }
 
-void BufferViewer::choose(std::string name) {
-    chosen_ = std::move(name);
-    fit_wanted_ = true;
+void BufferViewer::select(std::string name) {
+    selected_ = std::move(name);
+    fit_requested_ = true;
 }
 
 void BufferViewer::before_frame(FrameGraph& graph, FrameRequest& request) {
     request.aovs.clear();
-    if (open && is_aov(chosen_)) {
-        request.aovs.push_back(chosen_);
+    if (open && is_aov(selected_)) {
+        request.aovs.push_back(selected_);
     }
     const std::string_view wanted =
-        open && !is_aov(chosen_) ? std::string_view(chosen_) : std::string_view();
-    if (kept_ == wanted) {
+        open && !is_aov(selected_) ? std::string_view(selected_) : std::string_view();
+    if (kept_name_ == wanted) {
         return;
     }
-    if (!kept_.empty()) {
-        graph.forget_named(kept_);
+    if (!kept_name_.empty()) {
+        graph.forget_named(kept_name_);
     }
-    kept_ = wanted;
-    if (!kept_.empty()) {
-        graph.keep_named(kept_);
+    kept_name_ = wanted;
+    if (!kept_name_.empty()) {
+        graph.keep_named(kept_name_);
     }
 }
 
@@ -106,12 +106,12 @@ void BufferViewer::after_frame(
     if (!open) {
         return;
     }
-    const gpu::Texture* texture = find_texture(chosen_, graph, frame);
-    cannot_ = texture == nullptr ? "not part of this frame" : why_not(*texture);
-    if (cannot_[0] != '\0') {
+    const gpu::Texture* texture = find_texture(selected_, graph, frame);
+    why_not_shown_ = texture == nullptr ? "not part of this frame" : why_not(*texture);
+    if (why_not_shown_[0] != '\0') {
         return;
     }
-    if (fit_wanted_) {
+    if (fit_requested_) {
         fit_range(*texture);
     }
     const gpu::TextureDesc wanted = {
@@ -132,16 +132,16 @@ void BufferViewer::after_frame(
 }
 
 void BufferViewer::fit_range(const gpu::Texture& texture) {
-    fit_wanted_ = false;
+    fit_requested_ = false;
     const gpu::FormatInfo& format = gpu::format_info(texture.desc().format);
     channel_ = format.channels >= 3 ? kAllChannels : 0;
-    srgb_ = !is_unsigned_byte(texture.desc().format) && format.channels >= 3;
+    srgb_ = !is_unorm8(texture.desc().format) && format.channels >= 3;
     range_ = {0, 1};
-    if (is_unsigned_byte(texture.desc().format)) {
+    if (is_unorm8(texture.desc().format)) {
         return;
     }
-    // 1st and 99th percentile of what is finite, so that one bright spot does not make all else
-    // black.
+    // 1st and 99th percentile of the finite values, so that one bright texel does not darken the
+    // rest.
     const gpu::FloatImage image = gpu::read_floats(texture);
     std::vector<float> values;
     values.reserve(image.pixels.size());
@@ -164,7 +164,7 @@ void BufferViewer::fit_range(const gpu::Texture& texture) {
     };
     const float low = percentile(1);
     const float high = percentile(99);
-    // Symmetric for what has a sign, from zero for what has none.
+    // Symmetric about zero for signed data, from zero for unsigned data.
     range_ = low < 0.0f ? Vec2(-std::max(-low, high), std::max(-low, high)) : Vec2(0.0f, high);
     srgb_ = srgb_ && low >= 0.0f;
     if (range_.y - range_.x < 1e-12f) {
@@ -189,7 +189,7 @@ void BufferViewer::draw(const HudStyle& style, const FrameGraph& graph) {
         ImGui::SameLine();
         ImGui::BeginChild("##picture");
         draw_mapping(style);
-        draw_picture(style);
+        draw_image(style);
         ImGui::EndChild();
     }
     ImGui::End();
@@ -199,8 +199,8 @@ void BufferViewer::draw_list(const HudStyle& style, const FrameGraph& graph) {
     std::array<char, 128> label;
     const auto entry = [&](std::string_view name) {
         *fmt::format_to_n(label.data(), label.size() - 1, "{}", name).out = '\0';
-        if (ImGui::Selectable(label.data(), name == chosen_) && name != chosen_) {
-            choose(std::string(name));
+        if (ImGui::Selectable(label.data(), name == selected_) && name != selected_) {
+            select(std::string(name));
         }
     };
     ImGui::TextColored(kHudDim, "Surfaces");
@@ -237,12 +237,12 @@ void BufferViewer::draw_mapping(const HudStyle& style) {
         range_.y = range_.x + 1e-6f;
     }
     ImGui::SameLine();
-    fit_wanted_ = ImGui::Button("Fit", {-1, 0}) || fit_wanted_;
+    fit_requested_ = ImGui::Button("Fit", {-1, 0}) || fit_requested_;
 }
 
-void BufferViewer::draw_picture(const HudStyle& style) {
+void BufferViewer::draw_image(const HudStyle& style) {
     if (source_ == nullptr) {
-        ImGui::TextColored(kHudDim, "%s", cannot_);
+        ImGui::TextColored(kHudDim, "%s", why_not_shown_);
         return;
     }
     const float line = ImGui::GetTextLineHeightWithSpacing();

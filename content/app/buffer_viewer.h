@@ -20,24 +20,24 @@ struct HudStyle;
 struct FrameOutput;
 struct FrameRequest;
 
-// F4: the intermediate pictures of the frame. The one that is chosen is kept past its last use by
-// the frame graph, mapped to what a screen can show, and drawn large; the pixel under the pointer
-// is read back as numbers. While the panel is closed none of this happens.
+// F4: shows the intermediate textures of the frame. The frame graph keeps the selected one alive
+// past its last use; it is mapped to the display range and drawn large, and the texel under the
+// pointer is read back. Costs nothing while the panel is closed.
 
 class BufferViewer {
   public:
     /// Fails with the shader compiler's message.
     [[nodiscard]] static Result<BufferViewer> create(gpu::Device& device);
 
-    /// Before render_frame: asks for the chosen texture.
+    /// Call before render_frame: requests the selected texture.
     void before_frame(FrameGraph& graph, FrameRequest& request);
-    /// After render_frame: draws the chosen texture into the viewer's own.
+    /// Call after render_frame: draws the selected texture, mapped, into the viewer's own.
     void after_frame(gpu::Device& device, const FrameGraph& graph, const FrameOutput& frame);
-    /// The panel.
+    /// Draws the panel.
     void draw(const HudStyle& style, const FrameGraph& graph);
 
-    /// Shows the texture of that name.
-    void choose(std::string name);
+    /// Selects the texture of that name.
+    void select(std::string name);
 
     bool open = false;
 
@@ -46,18 +46,18 @@ class BufferViewer {
     void fit_range(const gpu::Texture& texture);
     void draw_list(const HudStyle& style, const FrameGraph& graph);
     void draw_mapping(const HudStyle& style);
-    void draw_picture(const HudStyle& style);
+    void draw_image(const HudStyle& style);
 
     gpu::Pipeline pipeline_;
     gpu::Texture view_;
-    const gpu::Texture* source_ = nullptr;  // the chosen texture of this frame, or null
-    std::string chosen_ = "normal";
-    std::string kept_;         // what the graph was asked to keep
-    const char* cannot_ = "";  // why the chosen texture is not shown
-    Vec2 range_ = {0, 1};      // values shown black and white
-    int channel_ = 4;          // 0 .. 3, or 4 for RGB
+    const gpu::Texture* source_ = nullptr;  // the selected texture of this frame, or null
+    std::string selected_ = "normal";
+    std::string kept_name_;           // name of the texture the graph keeps alive
+    const char* why_not_shown_ = "";  // why the selected texture cannot be shown
+    Vec2 range_ = {0, 1};             // values mapped to black and white
+    int channel_ = 4;                 // 0 .. 3, or 4 for RGB
     bool srgb_ = true;
-    bool fit_wanted_ = true;
+    bool fit_requested_ = true;
 };
 
 }  // namespace limn

@@ -7,9 +7,8 @@
 #include "content/app/info_command.h"
 #include "content/app/list_commands.h"
 #include "content/app/log_sink.h"
-#include "content/app/picture_file.h"
+#include "content/app/image_file.h"
 #include "content/app/play_command.h"
-#include "content/app/quality.h"
 #include "content/app/quality_command.h"
 #include "content/app/render_command.h"
 #include "content/app/view_command.h"
@@ -34,13 +33,13 @@ constexpr int kWrongUsage = 2;
 
 constexpr const char* kSceneDoc = "level name, .level.json, .gltf or .glb";
 
-/// A command of the program and what it does once its options are read.
+/// A command, and the function that runs it once its options are parsed.
 struct Command {
     CLI::App* app = nullptr;
     std::function<Status()> run;
 };
 
-/// An option that `parse` reads strictly; what it refuses is wrong usage.
+/// An option whose value `parse` checks; what it rejects is wrong usage.
 template <typename T, typename Parse>
 CLI::Option*
 add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& target, Parse parse) {
@@ -58,7 +57,7 @@ add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& ta
 }
 
 CLI::Option* add_size(CLI::App& app, IVec2& size) {
-    return add_parsed(app, "--size", "of the picture in pixels", size, parse_size)
+    return add_parsed(app, "--size", "of the image [px]", size, parse_size)
         ->type_name("WxH")
         ->default_str(fmt::format("{}x{}", size.x, size.y));
 }
@@ -84,16 +83,16 @@ CLI::Option* add_number(
 }
 
 Result<std::string> parse_png_path(const std::string& text) {
-    const Result<PictureKind> kind = picture_kind(text);
-    if (!kind || *kind != PictureKind::Png) {
-        return Error{fmt::format("found \"{}\", expected a name that ends in .png", text)};
+    const Result<ImageFileKind> kind = image_file_kind(text);
+    if (!kind || *kind != ImageFileKind::Png) {
+        return Error{fmt::format("found \"{}\", expected a file name ending in .png", text)};
     }
     return text;
 }
 
 CLI::Option* add_seed(CLI::App& app, std::optional<std::uint64_t>& seed) {
     return add_integer(
-        app, "--seed", "of every random number, instead of the level's", seed, 0,
+        app, "--seed", "seed of all random numbers; overrides the level's", seed, 0,
         std::numeric_limits<std::int64_t>::max());
 }
 
@@ -117,10 +116,10 @@ void add_assignments(CLI::App& app, std::vector<Assignment>& assignments) {
 
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
-    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; the tour if absent")
+    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: the tour")
         ->type_name("SCENE");
     add_size(*app, options.size)->description("of the window");
-    app->add_flag("--fullscreen", options.fullscreen, "on the whole screen");
+    app->add_flag("--fullscreen", options.fullscreen, "full screen");
     app->add_option_function<std::string>(
            "--scale",
            [&options](const std::string& text) {
@@ -134,60 +133,63 @@ Command add_play(CLI::App& program, PlayOptions& options) {
                }
                options.scale = static_cast<float>(*scale);
            },
-           "rendered pixels a window pixel, 0.1 to 2, or auto: holds 60 frames a second")
+           "rendered pixels per window pixel, 0.1 to 2; auto adapts it to hold 60 frames per "
+           "second")
         ->type_name("auto|X");
     add_integer(
-        *app, "--headless-frames", "write so many pictures along the camera path; no window",
+        *app, "--headless-frames", "render N frames along the camera path, without a window",
         options.headless_frames, 1, 10000);
-    app->add_option("-o,--out", options.out, "folder for pictures and screenshots")
+    app->add_option("-o,--out", options.out, "folder for frames and screenshots")
         ->type_name("FOLDER");
     app->footer(
-        "Without a display it writes pictures along the camera path and says where they are.\n"
-        "In the window: F1 shows the keys.\n\n"
+        "Without a display, renders frames along the camera path and prints where they are.\n"
+        "F1 in the window lists the keys.\n\n"
         "Examples:\n"
         "  limn play\n"
         "  limn play gallery --size 1920x1080 --scale auto\n"
         "  limn play model.glb --fullscreen\n"
-        "  limn play gallery --headless-frames 12 -o pictures");
+        "  limn play gallery --headless-frames 12 -o frames");
     return {app, [&options] { return run_play(options); }};
 }
 
 Command add_render(CLI::App& program, RenderOptions& options) {
-    CLI::App* app = program.add_subcommand("render", "Write a picture or a range of them");
+    CLI::App* app = program.add_subcommand("render", "Render an image or a range of frames");
     app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
     app->add_option("-o,--out", options.out, "OUT.png, OUT.exr, or frame_%04d.png for --frames")
         ->type_name("FILE")
         ->required();
     add_size(*app, options.size);
-    CLI::Option* time =
-        add_number(*app, "--time", "of the picture, simulated from 0 [s]", options.time, 0, 86400);
-    add_parsed(*app, "--frames", "first and last, both drawn", options.frames, parse_frame_range)
+    CLI::Option* time = add_number(
+        *app, "--time", "simulation time of the image [s]; the simulation starts at 0",
+        options.time, 0, 86400);
+    add_parsed(
+        *app, "--frames", "first and last frame, inclusive", options.frames, parse_frame_range)
         ->type_name("A:B")
         ->excludes(time);
-    add_number(*app, "--fps", "frame n of --frames shows time n / fps", options.fps, 0.001, 10000)
+    add_number(*app, "--fps", "frame n of --frames is at time n / fps", options.fps, 0.001, 10000)
         ->default_str("60");
     add_seed(*app, options.seed);
     add_integer(
-        *app, "--spp", "samples a pixel of lens and shutter, for finals; without it, as played",
+        *app, "--spp",
+        "samples per pixel, over lens and shutter, for final images; default: effects as played",
         options.samples, 1, 65536);
-    add_parsed(*app, "--aov", "named layers to add to an EXR", options.aovs, parse_list)
+    add_parsed(*app, "--aov", "layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
     add_assignments(*app, options.assignments);
-    app->add_option("--camera", options.camera, "by name, instead of the level's")
+    app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
-    app->footer(
-        "Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
-        "shadow_texels (of a map, under a pixel), volume_layers (of shadow volumes).\n"
-        "An EXR holds linear radiance, a PNG what a display shows.\n"
-        "A path of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
-        "a value is JSON or a word.\n"
-        "Files appear under their name once they are whole.\n\n"
-        "Examples:\n"
-        "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
-        "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
-        "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
-        "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
-        "materials.gold.roughness=0.4");
+    app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
+                "shadow_texels (shadow map texels per pixel), volume_layers (of shadow volumes).\n"
+                "An EXR holds linear radiance, a PNG the tone-mapped image.\n"
+                "PATH of --set is ENTITY.COMPONENT.FIELD, RESOURCE.FIELD or materials.NAME.FIELD;\n"
+                "VALUE is JSON or a bare word.\n"
+                "Files are written under a temporary name and renamed when complete.\n\n"
+                "Examples:\n"
+                "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
+                "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
+                "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
+                "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
+                "materials.gold.roughness=0.4");
     app->callback([&options] {
         if (const Status status = check_render_options(options); !status) {
             throw CLI::ValidationError(status.error().message);
@@ -200,9 +202,9 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     CLI::App* app =
         program.add_subcommand("bench", "Measure systems, passes and frames of a scene");
     app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
-    add_integer(*app, "--frames", "measured", options.frames, 1, kMaxFrames)
+    add_integer(*app, "--frames", "frames to measure", options.frames, 1, kMaxFrames)
         ->default_str(std::to_string(options.frames));
-    add_integer(*app, "--warmup", "run before, not measured", options.warmup, 0, kMaxFrames)
+    add_integer(*app, "--warmup", "frames run first, not measured", options.warmup, 0, kMaxFrames)
         ->default_str(std::to_string(options.warmup));
     add_size(*app, options.size);
     add_assignments(*app, options.assignments);
@@ -211,7 +213,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
         ->type_name("FILE");
     app->footer(
-        "Every frame simulates one step and draws; nothing is shown. Times in milliseconds.\n\n"
+        "Every frame simulates one step and renders off screen. Times are in milliseconds.\n\n"
         "JSON: {\"scene\", \"size\": [w, h], \"frames\", \"warmup\", \"threads\", \"gl\": "
         "{\"renderer\",\n"
         "\"version\"}, \"memory\": {\"resident_mib\", \"gpu_mib\"}, \"counts\": {\"entities\", "
@@ -220,24 +222,21 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         "\"cpu\" or\n"
         "\"gpu\", \"median_ms\", \"p95_ms\", \"max_ms\"}}\n"
         "CSV: kind,name,clock,median_ms,p95_ms,max_ms\n\n"
-        "The scene `lights` is measured with 16, 64 ... 4096 lights by every method of "
+        "The scene `lights` is measured with 16, 64 ... 4096 lights, with every method of "
         "rendering.lights,\n"
-        "each for at most --frames frames or some seconds; methods end where a frame would take "
-        "longer\n"
+        "each for at most --frames frames or a few seconds; a method stops where a frame would "
+        "take longer\n"
         "than 12 s. JSON: {\"scene\", \"size\", \"threads\", \"gl\", \"methods\": [{\"name\", "
         "\"points\":\n"
         "[{\"lights\", \"frames\", \"median_ms\", \"p95_ms\", \"max_ms\", \"passes\"} or "
         "{\"lights\",\n"
         "\"left_out\"}]}], \"full_screen_over_clustered\": [{\"lights\", \"ratio\"}]}\n"
         "CSV: method,lights,frames,median_ms,p95_ms,max_ms\n\n"
-        "`limn bench lens` measures the level `stilllife` with none of the effects of the lens, "
-        "with "
-        "each\n"
-        "alone, and with ripple, motion blur, depth of field and glow; \"added\" is to a frame "
-        "with "
-        "none,\n"
-        "\"passes\" the sum of those that such a frame has not. JSON: {\"scene\", \"size\", "
-        "\"frames\",\n"
+        "`limn bench lens` measures the level `stilllife` without lens effects, with each\n"
+        "alone, and with ripple, motion blur, depth of field and glow together. \"added\" is the "
+        "increase\n"
+        "over a frame without effects, \"passes\" the sum of the passes that such a frame lacks.\n"
+        "JSON: {\"scene\", \"size\", \"frames\",\n"
         "\"warmup\", \"threads\", \"gl\", \"points\": [{\"effects\", \"median_ms\", "
         "\"p95_ms\", \"added_ms\",\n"
         "\"passes_ms\", \"passes\"}]}\n"
@@ -251,9 +250,9 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
 }
 
 Command add_view(CLI::App& program, ViewOptions& options) {
-    CLI::App* app = program.add_subcommand("view", "Show a picture of linear light, with sliders");
+    CLI::App* app = program.add_subcommand("view", "Tone map an HDR image, interactively");
     app->add_option("file", options.file, ".exr or .hdr")->type_name("FILE")->required();
-    add_parsed(*app, "-o,--out", "write the picture; no window", options.out, parse_png_path)
+    add_parsed(*app, "-o,--out", "write the image, without a window", options.out, parse_png_path)
         ->type_name("FILE.png");
     add_size(*app, options.size)->description("of the window");
     struct Field {
@@ -262,15 +261,15 @@ Command add_view(CLI::App& program, ViewOptions& options) {
     };
     // Fields of the resource exposure, with its ranges and defaults but for the curve.
     constexpr Field kFields[] = {
-        {"curve", "neutral, aces, linear, reinhard, local or knee, the default"},
-        {"metering", "manual or key: by the log-average luminance"},
-        {"ev", "stops brighter"},
-        {"key", "log-average after metering; 0.18"},
-        {"defog", "share of the mean color taken off; 0 to 0.01"},
-        {"contrast", "of knee; 0 = none"},
-        {"white", "of reinhard: luminance shown as white; 0 = none"},
-        {"encoding", "srgb or power; knee has power always"},
-        {"gamma", "of power and knee; 2.2"},
+        {"curve", "neutral, aces, linear, reinhard, local or knee; default: knee"},
+        {"metering", "manual, or key: from the log-average luminance"},
+        {"ev", "exposure compensation [stops]"},
+        {"key", "log-average luminance after metering; default: 0.18"},
+        {"defog", "fraction of the mean color subtracted, 0 to 0.01"},
+        {"contrast", "contrast of knee; 0 = none"},
+        {"white", "white point of reinhard (luminance); 0 = none"},
+        {"encoding", "srgb or power; knee always uses power"},
+        {"gamma", "gamma of power and knee; default: 2.2"},
         {"dither", "true or false"}};
     for (const Field& field : kFields) {
         const std::string name = std::string("--") + field.name;
@@ -287,10 +286,10 @@ Command add_view(CLI::App& program, ViewOptions& options) {
     }
     app->footer(
         "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
-        "are counted, left out of the numbers and shown black or white.\n"
+        "are counted, left out of the statistics and shown black or white.\n"
         "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "
         "defog).\n"
-        "In the window: Up and Down change the exposure, C the curve, F9 saves what is shown.\n\n"
+        "In the window, Up and Down change the exposure, C the curve; F9 saves the image.\n\n"
         "Examples:\n"
         "  limn view memorial.exr\n"
         "  limn view memorial.exr -o shown.png --ev 3 --defog 0.005 --contrast 1\n"
@@ -303,53 +302,46 @@ Command add_hash(CLI::App& program, HashOptions& options) {
     app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
     add_integer(*app, "--frames", "steps to run", options.frames, 1, kMaxFrames)->required();
     add_integer(
-        *app, "--threads", "to run on; all of the machine's if absent", options.threads, 1, 256);
+        *app, "--threads", "threads to use; default: all hardware threads", options.threads, 1,
+        256);
     add_seed(*app, options.seed);
-    app->footer(
-        "One line a step: frame number, then 16 hex digits. They are equal for every number of\n"
-        "threads and every run.\n\n"
-        "Example:\n"
-        "  limn hash stress-instances --frames 600 --threads 2");
+    app->footer("Prints one line per step: frame number, then 16 hex digits. The hashes are the "
+                "same in every\n"
+                "run and for every number of threads.\n\n"
+                "Example:\n"
+                "  limn hash stress-instances --frames 600 --threads 2");
     return {app, [&options] { return run_hash(options); }};
 }
 
-Command add_quality(CLI::App& program, QualityOptions& options) {
-    CLI::App* app = program.add_subcommand("quality", "Measure the effects against their oracles");
-    app->add_option("effect", options.effect, "one of them; all if absent")->type_name("EFFECT");
-    app->add_option("--json", options.json, "write the numbers")->type_name("FILE");
-    app->add_option("--html", options.html, "write a page with pictures")->type_name("FILE");
-    std::string names;
-    for (const QualityEffect& effect : quality_effects()) {
-        names += fmt::format("  {:<12}against {}\n", effect.name, effect.oracle);
-    }
-    app->footer(
-        "Each number is printed with its bound; the exit status is 1 if one is not kept.\n\n"
-        "Effects:\n"
-        + names
-        + "\nExample:\n"
-          "  limn quality --html quality.html");
-    return {app, [&options] { return run_quality(options); }};
+Command add_quality(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("quality", "Compare the effects with their oracles");
+    app->set_help_flag();  // everything behind the name is for the other program, --help as well
+    app->prefix_command();
+    return {app, [app] { return run_quality(app->remaining()); }};
 }
 
 Command add_compare(CLI::App& program, CompareOptions& options) {
-    CLI::App* app = program.add_subcommand("compare", "Measure how different two pictures are");
-    app->add_option("a", options.a, "first picture")->type_name("A")->required();
-    app->add_option("b", options.b, "second picture, of the same size")->type_name("B")->required();
+    CLI::App* app = program.add_subcommand("compare", "Compare two images");
+    app->add_option("a", options.a, "reference image")->type_name("A")->required();
+    app->add_option("b", options.b, "image to compare, of the same size")
+        ->type_name("B")
+        ->required();
     app->add_flag("--json", options.json, "print JSON");
-    add_parsed(*app, "--diff", "write a picture of the difference", options.diff, parse_png_path)
+    add_parsed(*app, "--diff", "write a difference image", options.diff, parse_png_path)
         ->type_name("FILE.png");
     app->footer(
         "Prints PSNR [dB], SSIM, FLIP (mean and 99th percentile), the largest difference of a\n"
-        "channel, color correctness and the scanline of A's brightest point; of two EXR files the\n"
-        "relative mean square error too. --diff raises differences to the power 1/10: one step of\n"
-        "255 shows as 57 % gray. In JSON, \"psnr\" is null where the pictures are equal.\n\n"
+        "channel, color correctness and the scanline through A's brightest pixel; for two EXR "
+        "files also\n"
+        "the relative mean square error. --diff raises differences to the power 1/10: one step of\n"
+        "255 shows as 57 % gray. In JSON, \"psnr\" is null for equal images.\n\n"
         "Example:\n"
         "  limn compare before.png after.png --diff difference.png");
     return {app, [&options] { return run_compare(options); }};
 }
 
 Command add_info(CLI::App& program, std::string& file) {
-    CLI::App* app = program.add_subcommand("info", "Tell what is in a file");
+    CLI::App* app = program.add_subcommand("info", "Print the contents of a file");
     app->add_option("file", file, ".level.json, .gltf, .glb, .png, .exr ...")
         ->type_name("FILE")
         ->required();
@@ -380,7 +372,6 @@ struct AllOptions {
     ViewOptions view;
     BenchOptions bench;
     HashOptions hash;
-    QualityOptions quality;
     CompareOptions compare;
     std::string info_file;
     bool schema = false;
@@ -393,15 +384,15 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_view(program, options.view),
         add_bench(program, options.bench),
         add_hash(program, options.hash),
-        add_quality(program, options.quality),
+        add_quality(program),
         add_compare(program, options.compare),
         add_info(program, options.info_file),
         add_levels(program),
         add_components(program, options.schema)};
 }
 
-/// "render" of "limn render: ..." or just "limn".
-std::string spoken_name(const std::vector<Command>& commands) {
+/// "limn render" for a parsed subcommand, else "limn".
+std::string command_name(const std::vector<Command>& commands) {
     for (const Command& command : commands) {
         if (command.app->parsed()) {
             return "limn " + command.app->get_name();
@@ -410,7 +401,7 @@ std::string spoken_name(const std::vector<Command>& commands) {
     return "limn";
 }
 
-/// A first word that is neither option nor command: says so, with the command it resembles.
+/// If the first word is neither an option nor a command, prints an error with the nearest command.
 bool explain_unknown_command(std::string_view word, const std::vector<Command>& commands) {
     std::vector<std::string> names;
     for (const Command& command : commands) {
@@ -427,14 +418,6 @@ bool explain_unknown_command(std::string_view word, const std::vector<Command>& 
     return true;
 }
 
-/// The message on one line.
-std::string one_line(std::string text) {
-    for (char& c : text) {
-        c = c == '\n' ? ' ' : c;
-    }
-    return text;
-}
-
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -442,7 +425,7 @@ int run_command_line(int argc, char** argv) {
     CLI::App program("Limn: a data-oriented ECS engine for game effects.", "limn");
     program.get_formatter()->column_width(28);
     program.set_version_flag("--version", "limn " LIMN_VERSION);
-    program.footer("limn COMMAND --help tells more, with examples. Start with: limn play");
+    program.footer("limn COMMAND --help shows details and examples. Start with: limn play");
     AllOptions options;
     const std::vector<Command> commands = add_commands(program, options);
     program.require_subcommand(0, 1);
@@ -459,7 +442,7 @@ int run_command_line(int argc, char** argv) {
     } catch (const CLI::Success& wanted) {  // --help, --version
         return program.exit(wanted);
     } catch (const CLI::Error& error) {
-        const std::string name = spoken_name(commands);
+        const std::string name = command_name(commands);
         fmt::print(stderr, "{}: {} ({} --help)\n", name, one_line(error.what()), name);
         return kWrongUsage;
     }

@@ -86,4 +86,9 @@ Result<std::vector<std::string>> parse_list(std::string_view text) {
     return parts;
 }
 
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
 }  // namespace limn

@@ -10,8 +10,8 @@
 
 namespace limn {
 
-// What people write after an option, read strictly: "640x360" yes, "640x", "640x360x2", "nan" and
-// "1e999" no. Every message says what was found and what was expected.
+// Strict parsers of option values: "640x360" is accepted; "640x", "640x360x2", "nan" and "1e999"
+// are not. Every error says what was found and what was expected.
 
 /// First and last frame of a range, both drawn.
 struct FrameRange {
@@ -27,7 +27,7 @@ struct Assignment {
 };
 
 inline constexpr int kMaxImageSide = 16384;      ///< pixels
-inline constexpr int kMaxImagePixels = 1 << 26;  ///< 1 GiB of radiance
+inline constexpr int kMaxImagePixels = 1 << 26;  ///< 1 GiB as RGBA32F
 inline constexpr int kMaxFrames = 1'000'000;
 
 /// "1280x720": width and height, each 1 .. kMaxImageSide, together at most
@@ -37,7 +37,7 @@ inline constexpr int kMaxFrames = 1'000'000;
 /// "A:B" with 0 <= A <= B < kMaxFrames, or "A" for one frame.
 [[nodiscard]] Result<FrameRange> parse_frame_range(std::string_view text);
 
-/// A whole number from `min` to `max`, nothing behind it.
+/// An integer from `min` to `max`, without trailing text.
 [[nodiscard]] Result<std::int64_t>
 parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 
@@ -49,5 +49,8 @@ parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 
 /// The parts between the commas; an empty part is an error.
 [[nodiscard]] Result<std::vector<std::string>> parse_list(std::string_view text);
+
+/// A message without line breaks.
+[[nodiscard]] std::string one_line(std::string text);
 
 }  // namespace limn

@@ -1,7 +1,7 @@
 #include "content/app/compare_command.h"
 
-#include "bench/oracles/image_compare.h"
-#include "content/app/picture_file.h"
+#include "content/bake/image_compare.h"
+#include "content/app/image_file.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/image_write.h"
@@ -20,11 +20,11 @@
 namespace limn {
 namespace {
 
-/// A picture in both forms that the metrics want.
+/// An image in the encodings that the metrics need.
 struct Loaded {
     ColorImage display;                ///< sRGB encoded, 0 .. 1
     std::optional<ColorImage> linear;  ///< of an EXR
-    std::vector<std::uint8_t> mask;    ///< 0 where the picture is transparent
+    std::vector<std::uint8_t> mask;    ///< 0 where the image is transparent
 };
 
 float display_from_linear(float x) {
@@ -52,7 +52,7 @@ Vec4 read_pixel(const ImageData& image, std::size_t index) {
     return pixel;
 }
 
-Result<Loaded> load_picture(const std::string& path) {
+Result<Loaded> load_comparable(const std::string& path) {
     const Result<ImageData> image = load_image(path, false);
     if (!image) {
         return image.error();
@@ -82,7 +82,7 @@ Result<Loaded> load_picture(const std::string& path) {
     return loaded;
 }
 
-/// The row of the brightest pixel: the scanline that says most about highlights.
+/// The row of the brightest pixel, as the scanline most likely to cross a highlight.
 int brightest_row(const ColorImage& image) {
     const auto brightest = std::max_element(
         image.pixels.begin(), image.pixels.end(),
@@ -138,7 +138,7 @@ void print_table(const Comparison& numbers) {
         numbers.line.roughness_b);
 }
 
-/// JSON has no infinity: equal pictures have "psnr": null.
+/// JSON has no infinity: equal images have "psnr": null.
 nlohmann::ordered_json finite_or_null(double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -180,11 +180,11 @@ Status write_difference(const std::string& path, const ColorImage& a, const Colo
 }  // namespace
 
 Status run_compare(const CompareOptions& options) {
-    const Result<Loaded> a = load_picture(options.a);
+    const Result<Loaded> a = load_comparable(options.a);
     if (!a) {
         return a.error();
     }
-    const Result<Loaded> b = load_picture(options.b);
+    const Result<Loaded> b = load_comparable(options.b);
     if (!b) {
         return b.error();
     }

@@ -6,11 +6,11 @@
 
 namespace limn {
 
-/// `limn compare`: how different two pictures of equal size are.
+/// `limn compare`: compares two images of equal size.
 struct CompareOptions {
     std::string a;
     std::string b;
-    std::string diff;   ///< picture of the difference; empty = none
+    std::string diff;   ///< PNG of the difference; empty = none
     bool json = false;  ///< print JSON instead of a table
 };
 

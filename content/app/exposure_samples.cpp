@@ -10,7 +10,8 @@ constexpr int kDimensions = 4;
 constexpr int kBits = 32;
 using Directions = std::array<std::uint32_t, kBits>;
 
-/// Of the primitive polynomial with `degree` and inner coefficients `a`; `m` are the first numbers.
+/// Direction numbers of the primitive polynomial with `degree` and inner coefficients `a`; `m` are
+/// the initial ones.
 constexpr Directions
 make_directions(std::size_t degree, std::uint32_t a, std::array<std::uint32_t, 3> m) {
     Directions v = {};
@@ -51,7 +52,7 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return reversed;
 }
 
-/// Swaps halves, quarters and so on of 0 .. 1 at random (B. Burley, "Practical Hash-based Owen
+/// Randomly swaps halves, quarters and so on of 0 .. 1 (B. Burley, "Practical Hash-based Owen
 /// Scrambling", 2020).
 constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
     x = reverse_bits(x) + seed;
@@ -62,8 +63,8 @@ constexpr std::uint32_t scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(x);
 }
 
-/// Number `index` of the sequence along `dimension`, 0 .. 1.
-float place(std::uint32_t index, std::size_t dimension) {
+/// Coordinate `dimension` of point `index` of the sequence, 0 .. 1.
+float coordinate(std::uint32_t index, std::size_t dimension) {
     constexpr std::array<std::uint32_t, kDimensions> kSeeds = {
         0x9e3779b9u, 0x7f4a7c15u, 0x94d049bbu, 0x2545f491u};
     std::uint32_t x = 0;
@@ -82,8 +83,8 @@ ExposureSample exposure_sample(int index, int count) {
     const auto i = static_cast<std::uint32_t>(index);
     return {
         (index + 0.5) / count - 0.5,
-        Vec2(place(i, 0), place(i, 1)) - 0.5f,
-        {place(i, 2), place(i, 3)}};
+        Vec2(coordinate(i, 0), coordinate(i, 1)) - 0.5f,
+        {coordinate(i, 2), coordinate(i, 3)}};
 }
 
 }  // namespace limn

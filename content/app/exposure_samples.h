@@ -4,19 +4,19 @@
 
 namespace limn {
 
-// What a picture is the mean of (post.distributed-sampling, after R. Cook, T. Porter and
-// L. Carpenter, "Distributed Ray Tracing", 1984): moments while the shutter is open, places on the
-// lens, places in the pixel.
+// The samples that an accumulated image averages: times while the shutter is open, points on the
+// lens and points in the pixel (post.distributed-sampling, after R. Cook, T. Porter and L.
+// Carpenter, "Distributed Ray Tracing", 1984).
 
 struct ExposureSample {
-    double moment = 0;         ///< of the time that the shutter is open, -0.5 .. 0.5
-    Vec2 jitter = {0, 0};      ///< place in the pixel [px], -0.5 .. 0.5
-    Vec2 square = {0.5, 0.5};  ///< place on the lens, for point_on_aperture()
+    double time = 0;         ///< in exposures from its middle, -0.5 .. 0.5
+    Vec2 jitter = {0, 0};      ///< offset within the pixel [px], -0.5 .. 0.5
+    Vec2 square = {0.5, 0.5};  ///< point on the lens, 0 .. 1, for point_on_aperture()
 };
 
-/// Sample `index` of `count`, in order of time: moments are strata of equal length, the other four
-/// numbers a scrambled Sobol sequence, so that every part of the time sees pixel and lens evenly.
-/// One sample alone is in the middle of all.
+/// Sample `index` of `count`, in order of time: times are the middles of equal strata, the other
+/// four coordinates a scrambled Sobol sequence, so that every part of the exposure covers pixel and
+/// lens evenly. A single sample is at the center of everything.
 [[nodiscard]] ExposureSample exposure_sample(int index, int count);
 
 }  // namespace limn

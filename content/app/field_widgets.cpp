@@ -24,11 +24,11 @@
 namespace limn {
 namespace {
 
-constexpr double kSliderRange = 100.0;     // wider ranges are dragged: a slider would be too coarse
-constexpr std::size_t kMostElements = 64;  // of a list that are shown
-constexpr float kDegrees = 57.29577951f;   // of a radian
+constexpr double kSliderRange = 100.0;    // wider ranges are dragged: a slider would be too coarse
+constexpr std::size_t kMaxElements = 64;  // shown of a list
+constexpr float kDegrees = 57.29577951f;  // of a radian
 
-/// Everything the widgets of one component need to know, and what they report.
+/// What the widgets of one component need, and what they report.
 struct Context {
     const HudStyle& style;
     const World& world;
@@ -55,7 +55,7 @@ Vec3 degrees_from_rotation(const Quat& q) {
     return Vec3(yaw, pitch, roll) * kDegrees + Vec3(0.0f);  // -0 becomes 0
 }
 
-/// Limits in the widget's unit, finite; `scale` turns the field's unit into it.
+/// Finite limits in the widget's unit; `scale` converts from the field's unit.
 struct WidgetRange {
     float min = -FLT_MAX;
     float max = FLT_MAX;
@@ -104,7 +104,7 @@ bool edit_floats(const FieldInfo& field, float* values, int count) {
     for (int i = 0; changed && i < count; ++i) {
         const float value = shown[static_cast<std::size_t>(i)] / scale;
         if (std::isfinite(value)) {
-            // The way through degrees must not step over the field's own limits.
+            // Rounding in the conversion to degrees must not exceed the field's own limits.
             values[i] = std::clamp(
                 value, static_cast<float>(std::max(field.meta.min, -static_cast<double>(FLT_MAX))),
                 static_cast<float>(std::min(field.meta.max, static_cast<double>(FLT_MAX))));
@@ -252,7 +252,7 @@ void show_entity(Context& context, const void* element) {
     } else if (!context.world.alive(entity)) {
         ImGui::TextDisabled("gone");
     } else if (ImGui::SmallButton(entity_label(context.world, entity).c_str())) {
-        context.change.wanted = entity;
+        context.change.clicked = entity;
     }
 }
 
@@ -319,7 +319,7 @@ bool edit_element(Context& context, const FieldInfo& field, void* element) {
     return false;
 }
 
-/// Left column: the name; its documentation and range appear while the pointer is on it.
+/// Left column: the name, with documentation and range as its tooltip.
 void draw_name(const FieldInfo& field, const char* name) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -337,8 +337,7 @@ void draw_name(const FieldInfo& field, const char* name) {
     ImGui::EndTooltip();
 }
 
-/// A table of names and widgets, open only while fields without a heading of their own follow each
-/// other.
+/// A table of names and widgets, open only across consecutive fields that are not structs or lists.
 class FieldTable {
   public:
     FieldTable() = default;
@@ -402,7 +401,7 @@ void edit_elements(Context& context, FieldTable& table, const FieldInfo& field, 
         return;
     }
     FieldTable elements;
-    for (std::size_t i = 0; i < std::min(count, kMostElements); ++i) {
+    for (std::size_t i = 0; i < std::min(count, kMaxElements); ++i) {
         *fmt::format_to_n(name.data(), name.size() - 1, "{}", i).out = '\0';
         edit_one(context, elements, field, name.data(), element_ptr(field, data, i));
     }
@@ -436,7 +435,7 @@ std::string entity_label(const World& world, Entity entity) {
     if (name != nullptr && !name->text.empty()) {
         return name->text;
     }
-    // Nameless: by what it shows or does.
+    // Nameless: by its mesh or kind.
     const char* kind = world.has<PointLight>(entity)         ? "point light"
                        : world.has<SpotLight>(entity)        ? "spot light"
                        : world.has<DirectionalLight>(entity) ? "sun"

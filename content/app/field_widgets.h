@@ -14,11 +14,11 @@ struct HudStyle;
 // known, drags where it is not, degrees for radians, sRGB color pickers for linear colors, combos
 // for enums and assets, yaw-pitch-roll for quaternions. Values stay within their range.
 
-/// What happened to the fields drawn.
+/// What the user did to the fields drawn.
 struct FieldChange {
-    bool changed = false;    ///< a value is new since the last frame
+    bool changed = false;    ///< a value was edited in this frame
     const char* field = "";  ///< name of the last field that changed; lives as long as the program
-    Entity wanted;           ///< an entity whose link was clicked, or null
+    Entity clicked;          ///< the entity whose link was clicked, or null
 };
 
 /// Draws the fields of `object` as rows of name and widget, and edits it in place. `world` gives
@@ -26,7 +26,7 @@ struct FieldChange {
 FieldChange
 edit_fields(const HudStyle& style, const World& world, const ComponentInfo& info, void* object);
 
-/// Its name, or what it shows or does with its number: "teapot 12", "point light 3", "entity 7".
+/// Its name, or its mesh or kind with its index: "teapot 12", "point light 3", "entity 7".
 [[nodiscard]] std::string entity_label(const World& world, Entity entity);
 
 }  // namespace limn

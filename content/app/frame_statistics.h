@@ -6,17 +6,17 @@
 
 namespace limn {
 
-/// What a bench prints of a series of times.
+/// Summary of a series of times.
 struct Summary {
-    double median = 0.0;  ///< mean of the middle two of an even number
-    double p95 = 0.0;     ///< the smallest sample that at least 95 % do not exceed
+    double median = 0.0;  ///< of an even count, the mean of the middle two
+    double p95 = 0.0;     ///< smallest sample that at least 95 % of them do not exceed
     double max = 0.0;
 };
 
 /// All zero for an empty series. Order does not matter.
 [[nodiscard]] Summary summarize(std::span<const double> samples);
 
-/// The last `capacity` samples of a running series, for the graph of the HUD. Allocates once.
+/// Ring buffer of the last `capacity` samples, for the HUD's graph. Allocates once.
 class FrameHistory {
   public:
     explicit FrameHistory(std::size_t capacity) : ring_(capacity), scratch_(capacity) {}

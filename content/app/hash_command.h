@@ -8,15 +8,15 @@
 
 namespace limn {
 
-/// `limn hash`: the state of the world after every step, as one number.
+/// `limn hash`: a hash of the world's state after every step.
 struct HashOptions {
     std::string scene;
     int frames = 60;
-    int threads = 0;  ///< 0 = as many as the machine has
+    int threads = 0;  ///< 0 = all hardware threads
     std::optional<std::uint64_t> seed;
 };
 
-/// Prints "frame hash" a line, the hash in 16 hex digits.
+/// Prints one line "frame hash" per step, the hash as 16 hex digits.
 [[nodiscard]] Status run_hash(const HashOptions& options);
 
 }  // namespace limn

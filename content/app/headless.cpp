@@ -6,12 +6,12 @@
 
 namespace limn {
 
-Status check_picture_size(const gpu::Device& device, const IVec2& size) {
-    const int most = device.caps().max_texture_size;
-    if (size.x > most || size.y > most) {
+Status check_image_size(const gpu::Device& device, const IVec2& size) {
+    const int limit = device.caps().max_texture_size;
+    if (size.x > limit || size.y > limit) {
         return fail(
-            "--size: found {}x{}, expected at most {} a side: {} can draw no more", size.x, size.y,
-            most, device.caps().renderer);
+            "--size: found {}x{}, expected at most {} per side, the limit of {}", size.x, size.y,
+            limit, device.caps().renderer);
     }
     return Done{};
 }

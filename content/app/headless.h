@@ -10,15 +10,15 @@
 
 namespace limn {
 
-/// What drawing without a window takes; destroyed in the order OpenGL needs.
+/// What rendering without a window needs; members are destroyed in the order OpenGL requires.
 struct HeadlessRenderer {
     std::unique_ptr<gpu::Context> context;
     std::unique_ptr<gpu::Device> device;
     RendererPtr renderer;
 };
 
-/// Fails if the device cannot draw a picture of that size.
-[[nodiscard]] Status check_picture_size(const gpu::Device& device, const IVec2& size);
+/// Fails if the device cannot render an image of that size.
+[[nodiscard]] Status check_image_size(const gpu::Device& device, const IVec2& size);
 
 /// Fails without OpenGL 4.5 or with a shader compiler's message.
 [[nodiscard]] Result<HeadlessRenderer> create_headless_renderer();

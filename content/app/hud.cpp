@@ -17,49 +17,39 @@ namespace {
 constexpr float kToastLife = 5.0f;  // [s]
 constexpr float kToastFade = 0.6f;  // [s]
 constexpr float kMargin = 14.0f;    // from the edge of the window, in units of the layout
-constexpr std::size_t kMostToasts = 5;
+constexpr std::size_t kMaxToasts = 5;
 
 constexpr ImGuiWindowFlags kOverlay =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing
     | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
 
-struct KeyHelp {
-    const char* key;  ///< null: `text` is a heading
-    const char* text;
-};
+const std::vector<KeyHelp>& program_keys() {
+    static const std::vector<KeyHelp> keys = {
+        {"", "Look"},
+        {"Drag", "look around, or circle the target"},
+        {"Wheel", "speed when flying, distance when circling"},
+        {"C", "camera: those of the level, fly, orbit"},
+        {"Click", "select what is under the pointer, throw a stone into water"},
+        {"", "Time and levels"},
+        {"Space", "pause, resume"},
+        {".", "one step"},
+        {"R", "restart the level"},
+        {"PgUp PgDn", "previous, next level (Tab too)"},
+        {"", "Tools"},
+        {"F1", "these keys"},
+        {"F2", "inspector: every component, with undo"},
+        {"F3", "profiler of systems and passes"},
+        {"F4", "intermediate textures of the frame"},
+        {"F5", "reload the shaders"},
+        {"F9  F10", "screenshot as PNG; HDR image as EXR"},
+        {"Ctrl Z  Y", "undo, redo"},
+        {"F8  F11", "hide the status, full screen"},
+        {"Esc", "quit"},
+    };
+    return keys;
+}
 
-constexpr std::array kKeys = {
-    KeyHelp{nullptr, "Move"},
-    KeyHelp{"W A S D", "forward, left, back, right; drive, sail, walk"},
-    KeyHelp{"Q  E", "down, up; duck and dive, rise"},
-    KeyHelp{"Shift", "faster; boost; the sail trims itself"},
-    KeyHelp{"Drag", "look around, or circle the target"},
-    KeyHelp{"Wheel", "speed when flying, distance when circling"},
-    KeyHelp{"C", "camera: those of the level, fly, orbit"},
-    KeyHelp{"[  ]", "pull focus nearer, farther"},
-    KeyHelp{"-  =", "close, open the aperture"},
-    KeyHelp{"9  0", "shutter: shorter, longer"},
-    KeyHelp{"I K  J L", "wind: stronger, weaker; backs, veers"},
-    KeyHelp{"O  U", "more, less rain"},
-    KeyHelp{"Click", "select what is under the pointer, throw a stone into water"},
-    KeyHelp{nullptr, "Time and levels"},
-    KeyHelp{"Space", "pause, go on"},
-    KeyHelp{".", "one step"},
-    KeyHelp{"R", "restart the level"},
-    KeyHelp{"PgUp PgDn", "previous, next level (Tab too)"},
-    KeyHelp{nullptr, "Look inside"},
-    KeyHelp{"F1", "these keys"},
-    KeyHelp{"F2", "inspector: every component, with undo"},
-    KeyHelp{"F3", "profiler of systems and passes"},
-    KeyHelp{"F4", "intermediate pictures of the frame"},
-    KeyHelp{"F5", "reload the shaders"},
-    KeyHelp{"F9  F10", "save what is shown: PNG, HDR as EXR"},
-    KeyHelp{"Ctrl Z  Y", "undo, redo"},
-    KeyHelp{"F8  F11", "hide the status, full screen"},
-    KeyHelp{"Esc", "quit"},
-};
-
-/// Text in the numbers' face.
+/// Text in the monospaced font.
 void numbers_text(const HudStyle& style, const ImVec4& color, const char* text) {
     ImGui::PushFont(style.numbers);
     ImGui::TextColored(color, "%s", text);
@@ -78,7 +68,7 @@ const ImVec4& toast_color(ToastKind kind) {
     return kHudText;
 }
 
-/// A key as it looks on a keyboard.
+/// Draws a key cap.
 void draw_key_cap(const char* key, float width) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const ImVec2 text_size = ImGui::CalcTextSize(key);
@@ -98,7 +88,7 @@ Hud::Hud(Window& window) : window_(window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // panels start where we put them; nothing is written to the disk
+    io.IniFilename = nullptr;  // panels start at their default places; nothing is written to disk
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     // Readable on a fine display and from across the room on a large one.
@@ -144,7 +134,7 @@ bool Hud::wants_keyboard() const {
 
 void Hud::toast(std::string text, ToastKind kind) {
     toasts_.push_back({std::move(text), kind});
-    if (toasts_.size() > kMostToasts) {
+    if (toasts_.size() > kMaxToasts) {
         toasts_.erase(toasts_.begin());
     }
 }
@@ -189,7 +179,7 @@ void Hud::draw_status(const HudStatus& status) {
             ImGui::TextColored(kHudText, "%s", status.weather);
         }
         if (status.software_gl) {
-            ImGui::TextColored(kHudAccent, "software OpenGL: the processor draws");
+            ImGui::TextColored(kHudAccent, "software OpenGL: rendering on the CPU");
         }
         if (!help_open) {
             ImGui::TextColored(kHudDim, "F1 keys");
@@ -238,21 +228,25 @@ void Hud::draw_help() {
     if (ImGui::Begin("##help", nullptr, kOverlay)) {
         const float key_width = 104.0f * style_.scale;
         bool first = true;
-        for (const KeyHelp& entry : kKeys) {
-            if (entry.key == nullptr) {
-                if (!first) {
-                    ImGui::Dummy({0, 3 * style_.scale});
+        const auto draw_lines = [&](const std::vector<KeyHelp>& lines) {
+            for (const KeyHelp& line : lines) {
+                if (line.keys.empty()) {
+                    if (!first) {
+                        ImGui::Dummy({0, 3 * style_.scale});
+                    }
+                    ImGui::PushFont(style_.title);
+                    ImGui::TextUnformatted(line.text.c_str());
+                    ImGui::PopFont();
+                } else {
+                    draw_key_cap(line.keys.c_str(), key_width);
+                    ImGui::SameLine();
+                    ImGui::TextUnformatted(line.text.c_str());
                 }
-                ImGui::PushFont(style_.title);
-                ImGui::TextUnformatted(entry.text);
-                ImGui::PopFont();
-            } else {
-                draw_key_cap(entry.key, key_width);
-                ImGui::SameLine();
-                ImGui::TextUnformatted(entry.text);
+                first = false;
             }
-            first = false;
-        }
+        };
+        draw_lines(actions);
+        draw_lines(program_keys());
     }
     ImGui::End();
 }

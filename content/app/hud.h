@@ -10,30 +10,36 @@ namespace limn {
 
 class Window;
 
-// What lies over the picture while playing: a status line, the keys, short messages. The panels
-// (inspector, profiler, buffer viewer) draw themselves between begin_frame and end_frame.
+// The overlay of the player: a status line, the key help, short messages. The panels (inspector,
+// profiler, buffer viewer) draw themselves between begin_frame and end_frame.
 
-/// What the status line says; filled anew every frame.
+/// Contents of the status line, filled in every frame.
 struct HudStatus {
     const char* level = "";
-    const char* camera = "";     ///< how the camera moves
+    const char* camera = "";     ///< name of the camera mode
     const char* weather = "";    ///< wind and rain, where there is any
     double time = 0.0;           ///< of the simulation [s]
     double frame_ms = 0.0;       ///< median of the last second
-    IVec2 render_size = {0, 0};  ///< pixels drawn
-    IVec2 window_size = {0, 0};  ///< pixels shown
-    bool software_gl = false;    ///< the processor draws
+    IVec2 render_size = {0, 0};  ///< rendered resolution [px]
+    IVec2 window_size = {0, 0};  ///< of the framebuffer [px]
+    bool software_gl = false;    ///< OpenGL runs on the CPU
     bool scale_auto = false;
     bool paused = false;
-    const char* error = "";  ///< stays until it is mended: a shader that does not compile
+    const char* error = "";  ///< shown until it is fixed: a shader that does not compile
+};
+
+/// A line of the key help.
+struct KeyHelp {
+    std::string keys;  ///< empty: `text` is a heading
+    std::string text;
 };
 
 enum class ToastKind : std::uint8_t { Note, Good, Bad };
 
 class Hud {
   public:
-    /// Draws into `window`, whose context is current. Its callbacks pass events on to those
-    /// installed before.
+    /// Draws into `window`, whose context is current. Its GLFW callbacks chain to those already
+    /// installed.
     explicit Hud(Window& window);
     Hud(const Hud&) = delete;
     Hud& operator=(const Hud&) = delete;
@@ -42,7 +48,7 @@ class Hud {
     /// `dt`: real time since the last frame [s].
     void begin_frame(float dt);
     void draw_status(const HudStatus& status);
-    /// A whole frame that says what is being loaded.
+    /// Draws a whole frame that says what is being loaded.
     void draw_loading(const std::string& what);
     /// Draws everything since begin_frame into the window's framebuffer.
     void end_frame();
@@ -50,13 +56,14 @@ class Hud {
     /// A line that fades after some seconds; the newest is lowest.
     void toast(std::string text, ToastKind kind = ToastKind::Note);
 
-    /// The pointer is over a panel, or a field is being typed into: the game leaves them alone.
+    /// The pointer is over a panel, or a text field has the focus: the game ignores that input.
     [[nodiscard]] bool wants_mouse() const;
     [[nodiscard]] bool wants_keyboard() const;
 
     [[nodiscard]] const HudStyle& style() const { return style_; }
 
-    bool help_open = false;  ///< F1
+    bool help_open = false;        ///< F1
+    std::vector<KeyHelp> actions;  ///< of the level, shown with the help
     bool status_shown = true;
 
   private:

@@ -12,7 +12,7 @@ constexpr const char* kFontFolder = "/usr/share/fonts/truetype/dejavu/";
 ImFont* load_font(const char* file, float pixels) {
     ImFontAtlas* atlas = ImGui::GetIO().Fonts;
     const std::string path = std::string(kFontFolder) + file;
-    // Latin and the few signs our texts use: punctuation, arrows, mathematics, triangles.
+    // Latin and the symbols that the HUD uses: punctuation, arrows, mathematics, triangles.
     static constexpr std::array<ImWchar, 11> kGlyphs = {
         0x0020, 0x00ff, 0x2010, 0x2026, 0x2190, 0x2193, 0x2200, 0x226f, 0x25a0, 0x25cf, 0};
     std::error_code ignored;

@@ -1,5 +1,6 @@
 #include "content/app/info_command.h"
 
+#include "content/game/game.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/scene_load.h"
@@ -20,21 +21,21 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kMostLines = 40;  // of a list; the rest is counted
+constexpr std::size_t kMaxLines = 40;  // of a list; the rest is only counted
 
-/// The last ending of the name in small letters: ".png".
-std::string ending_of(const std::string& path) {
+/// The file name's extension in lower case: ".png".
+std::string extension_of(const std::string& path) {
     const std::size_t dot = path.rfind('.');
-    std::string ending = dot == std::string::npos ? "" : path.substr(dot);
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
+    std::string extension = dot == std::string::npos ? "" : path.substr(dot);
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
         return static_cast<char>(std::tolower(c));
     });
-    return ending;
+    return extension;
 }
 
 void print_rest(std::size_t count) {
-    if (count > kMostLines) {
-        fmt::print("    and {} more\n", count - kMostLines);
+    if (count > kMaxLines) {
+        fmt::print("    and {} more\n", count - kMaxLines);
     }
 }
 
@@ -59,7 +60,7 @@ void print_assets(const Assets& assets) {
         vertices += mesh.positions.size();
     }
     fmt::print("{} meshes, {} triangles, {} vertices\n", assets.meshes.size(), triangles, vertices);
-    for (std::size_t i = 0; i < std::min(assets.meshes.size(), kMostLines); ++i) {
+    for (std::size_t i = 0; i < std::min(assets.meshes.size(), kMaxLines); ++i) {
         const MeshData& mesh = assets.meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
         fmt::print(
@@ -70,7 +71,7 @@ void print_assets(const Assets& assets) {
 
     static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit", "skin"};
     fmt::print("{} materials\n", assets.materials.size());
-    for (std::size_t i = 0; i < std::min(assets.materials.size(), kMostLines); ++i) {
+    for (std::size_t i = 0; i < std::min(assets.materials.size(), kMaxLines); ++i) {
         const Material& material = assets.materials[i];
         fmt::print(
             "    {:<5}  metalness {:.2f}  roughness {:.2f}  {}\n",
@@ -80,7 +81,7 @@ void print_assets(const Assets& assets) {
     print_rest(assets.materials.size());
 
     fmt::print("{} images\n", assets.images.size());
-    for (std::size_t i = 0; i < std::min(assets.images.size(), kMostLines); ++i) {
+    for (std::size_t i = 0; i < std::min(assets.images.size(), kMaxLines); ++i) {
         const ImageData& image = assets.images[i];
         fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
     }
@@ -92,7 +93,7 @@ void print_assets(const Assets& assets) {
     if (!assets.clips.empty()) {
         fmt::print("{} clips\n", assets.clips.size());
     }
-    for (std::size_t i = 0; i < std::min(assets.clips.size(), kMostLines); ++i) {
+    for (std::size_t i = 0; i < std::min(assets.clips.size(), kMaxLines); ++i) {
         const ClipData& clip = assets.clips[i];
         fmt::print("    {:>8.2f} s  {} numbers  {}\n", clip.duration, clip_size(clip), clip.name);
     }
@@ -101,6 +102,7 @@ void print_assets(const Assets& assets) {
 
 Status print_scene(const std::string& file) {
     World world;
+    register_game_components();
     const Result<LoadedScene> scene = load_scene(world, file);
     if (!scene) {
         return scene.error();
@@ -133,15 +135,15 @@ Status print_exr(const std::string& file) {
         "{}\nOpenEXR, {} x {} pixels, {} channels\n", file, image->width, image->height,
         image->channels.size());
     for (const ExrChannel& channel : image->channels) {
-        float least = INFINITY;
-        float most = -INFINITY;
+        float smallest = INFINITY;
+        float largest = -INFINITY;
         for (const float value : channel.values) {
-            least = std::min(least, value);
-            most = std::max(most, value);
+            smallest = std::min(smallest, value);
+            largest = std::max(largest, value);
         }
         fmt::print(
             "    {:<16} {:<5} {:.6g} .. {:.6g}\n", channel.name, channel.half ? "half" : "float",
-            least, most);
+            smallest, largest);
     }
     for (const auto& [name, value] : image->metadata) {
         fmt::print("    {} = {}\n", name, value);
@@ -164,13 +166,13 @@ Status print_image(const std::string& file) {
 }  // namespace
 
 Status run_info(const std::string& file) {
-    const std::string ending = ending_of(file);
-    if (ending == ".exr") {
+    const std::string extension = extension_of(file);
+    if (extension == ".exr") {
         return print_exr(file);
     }
     static constexpr std::array<std::string_view, 6> kImages = {".png", ".jpg",  ".jpeg",
                                                                 ".bmp", ".webp", ".hdr"};
-    if (std::find(kImages.begin(), kImages.end(), ending) != kImages.end()) {
+    if (std::find(kImages.begin(), kImages.end(), extension) != kImages.end()) {
         return print_image(file);
     }
     return print_scene(file);

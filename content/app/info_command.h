@@ -6,7 +6,7 @@
 
 namespace limn {
 
-/// `limn info`: what is in a level, a glTF file or a picture.
+/// `limn info`: prints the contents of a level, a glTF file or an image.
 [[nodiscard]] Status run_info(const std::string& file);
 
 }  // namespace limn

@@ -20,11 +20,11 @@
 namespace limn {
 namespace {
 
-constexpr double kRowsLife = 0.5;  // [s] after which the tree is built anew
+constexpr double kRowsLifetime = 0.5;  // [s] after which the tree is rebuilt
 
 constexpr ImGuiTreeNodeFlags kNoFields = ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_Bullet;
 
-/// Whether `text` contains `part`, capital letters or not.
+/// Whether `text` contains `part`, ignoring case.
 bool contains(std::string_view text, std::string_view part) {
     const auto same = [](char a, char b) {
         return std::tolower(static_cast<unsigned char>(a))
@@ -33,7 +33,7 @@ bool contains(std::string_view text, std::string_view part) {
     return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
-/// Has a value that may be copied, shown and put back.
+/// Has fields, and a value that can be copied.
 bool is_editable(const ComponentInfo& info) {
     return !info.fields.empty() && info.ops.construct_copy != nullptr;
 }
@@ -140,7 +140,7 @@ void Inspector::rebuild_rows(World& world) {
 }
 
 void Inspector::draw_tree(const HudStyle& style, World& world) {
-    if (rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLife) {
+    if (rows_built_at_ < 0.0 || ImGui::GetTime() - rows_built_at_ > kRowsLifetime) {
         rebuild_rows(world);
         rows_built_at_ = ImGui::GetTime();
     }
@@ -186,7 +186,7 @@ void Inspector::draw_tree(const HudStyle& style, World& world) {
         }
     }
     if (rows_.empty()) {
-        ImGui::TextDisabled("nothing of that name");
+        ImGui::TextDisabled("no match");
     }
 }
 
@@ -268,8 +268,8 @@ void Inspector::edit_copy(
     edit.before = AnyComponent(info, value);
     AnyComponent after = edit.before;
     const FieldChange change = edit_fields(style, world, info, after.data());
-    if (!change.wanted.is_null()) {
-        select(change.wanted);
+    if (!change.clicked.is_null()) {
+        select(change.clicked);
     }
     if (!change.changed) {
         return;

@@ -17,13 +17,13 @@ struct HudStyle;
 class Schedule;
 class World;
 
-// F2: the world, open for changes. Entities as a tree with search, every component of the selected
-// one, resources, materials, and what the ECS is made of. Nothing is touched until a
-// value really changes, so that looking costs no change versions and no uploads.
+// F2: inspects and edits the world. Entities as a searchable tree, every component of the selected
+// one, resources, materials and ECS storage. Nothing is written until a value really changes, so
+// that inspecting bumps no change versions and causes no uploads.
 
 class Inspector {
   public:
-    /// The panel; edits go to `world` at once and onto the undo stack.
+    /// Draws the panel; edits are applied to `world` at once and recorded on the undo stack.
     void draw(const HudStyle& style, World& world, const Schedule& schedule);
 
     void select(Entity entity) {
@@ -32,7 +32,7 @@ class Inspector {
     }
     [[nodiscard]] Entity selected() const { return selected_; }
     [[nodiscard]] UndoStack& undo_stack() { return undo_; }
-    /// Another world: nothing is selected, nothing can be undone.
+    /// For a new world: clears the selection and the undo stack.
     void reset();
 
     bool open = false;
@@ -55,7 +55,8 @@ class Inspector {
 
     void rebuild_rows(World& world);
     void add_rows(const Hierarchy& tree, Entity entity, int depth);
-    /// Edits a copy of the value; on a change records it under `place` and gives it to the world.
+    /// Edits a copy of the value; on a change, records it under the label `place` and applies it to
+    /// the world.
     void edit_copy(
         const HudStyle& style, World& world, Edit edit, const ComponentInfo& info,
         const void* value, const std::string& place);
@@ -69,7 +70,7 @@ class Inspector {
     bool reveal_ = false;          // scroll to the selected entity
     std::uint32_t material_ = 0;
     StoragePanel storage_;
-    std::string dragging_;  // label of the edit that goes on while the mouse is held
+    std::string dragging_;  // label of the edit that a drag extends
 };
 
 }  // namespace limn

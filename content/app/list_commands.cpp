@@ -2,7 +2,7 @@
 
 #include "content/load/level_list.h"
 #include "content/load/level_schema.h"
-#include "ecs/components/all.h"
+#include "content/game/game.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
 
@@ -88,7 +88,7 @@ Status run_levels() {
 }
 
 Status run_components(bool schema) {
-    register_all_components();
+    register_game_components();
     if (schema) {
         fmt::print("{}\n", write_json(level_schema()));
         return Done{};

@@ -4,7 +4,7 @@
 
 namespace limn {
 
-/// `limn levels`: name and title of every level, one a line.
+/// `limn levels`: name and title of every level, one per line.
 [[nodiscard]] Status run_levels();
 
 /// `limn components`: every component with its fields, units, ranges and defaults; with `schema`

@@ -13,7 +13,7 @@ spdlog::logger& logger() {
     static const std::shared_ptr<spdlog::logger> instance = [] {
         auto created = spdlog::stderr_color_mt("limn");
         created->set_pattern("%^%l%$: %v");
-        created->set_level(spdlog::level::trace);  // what is too small never gets here
+        created->set_level(spdlog::level::trace);  // filtered before it gets here
         return created;
     }();
     return *instance;

@@ -2,7 +2,7 @@
 
 namespace limn {
 
-/// Messages of the log go to stderr through spdlog from now on, colored where it is a terminal.
+/// Routes log messages to stderr through spdlog, colored on a terminal.
 void log_through_spdlog();
 
 }  // namespace limn

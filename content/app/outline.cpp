@@ -10,8 +10,9 @@
 namespace limn {
 namespace {
 
-/// Cuts the edge a b, in clip space, to the part before the near plane; false if there is none.
-bool cut_at_near_plane(Vec4& a, Vec4& b, float near) {
+/// Clips the edge a b, in clip space, to the part in front of the near plane; false if there is
+/// none.
+bool clip_to_near_plane(Vec4& a, Vec4& b, float near) {
     if (a.w < near && b.w < near) {
         return false;
     }
@@ -34,7 +35,7 @@ void draw_box_outline(const RenderView& view, const Affine& transform, const Bou
         const Vec3 corner = {
             (i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
             (i & 4) != 0 ? box.max.z : box.min.z};
-        corners[i] = view.steady_from_world * Vec4(transform_point(transform, corner), 1.0f);
+        corners[i] = view.unjittered_from_world * Vec4(transform_point(transform, corner), 1.0f);
     }
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const auto to_screen = [&](const Vec4& clip) {
@@ -48,7 +49,7 @@ void draw_box_outline(const RenderView& view, const Affine& transform, const Bou
         for (const std::size_t bit : {1u, 2u, 4u}) {
             Vec4 a = corners[i];
             Vec4 b = corners[i | bit];
-            if ((i & bit) == 0 && cut_at_near_plane(a, b, view.near)) {
+            if ((i & bit) == 0 && clip_to_near_plane(a, b, view.near)) {
                 list->AddLine(to_screen(a), to_screen(b), color, 1.5f);
             }
         }

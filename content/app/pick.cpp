@@ -17,8 +17,8 @@
 namespace limn {
 namespace {
 
-/// Distance along the ray at which it enters the box, or nothing. The ray need not be unit.
-std::optional<float> meet_box(const Vec3& origin, const Vec3& direction, const Bounds& box) {
+/// Distance along the ray at which it enters the box, if it does. `direction` need not be unit.
+std::optional<float> hit_box(const Vec3& origin, const Vec3& direction, const Bounds& box) {
     float enter = 0.0f;
     float leave = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +37,7 @@ std::optional<float> meet_box(const Vec3& origin, const Vec3& direction, const B
 }
 
 /// Moeller and Trumbore 1997; both sides.
-std::optional<float> meet_triangle(
+std::optional<float> hit_triangle(
     const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 edge1 = b - a;
     const Vec3 edge2 = c - a;
@@ -55,14 +55,14 @@ std::optional<float> meet_triangle(
                                                                        : std::nullopt;
 }
 
-/// A box that the ray meets, in the mesh's own space.
+/// A mesh whose box the ray hits, in the mesh's own space.
 struct Candidate {
     Entity entity;
     const MeshData* mesh = nullptr;
-    std::vector<Vec3> posed;  // its positions if it has a shape of its own
+    std::vector<Vec3> posed;  // deformed positions; empty if it is drawn at rest
     float inflate = 0.0f;
     Vec3 origin;
-    Vec3 direction;  // scaled so that distances stay those of the world
+    Vec3 direction;  // scaled so that distances are those of the world
     float enter = 0.0f;
 };
 
@@ -75,7 +75,7 @@ Bounds shape_bounds(const MeshData& mesh, const std::vector<Vec3>& posed) {
     return box;
 }
 
-std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
+std::optional<float> hit_mesh(const Candidate& candidate, float nearest) {
     const MeshData& mesh = *candidate.mesh;
     const auto corner = [&](std::size_t i) {
         const std::uint32_t vertex = mesh.indices[i];
@@ -87,7 +87,7 @@ std::optional<float> meet_mesh(const Candidate& candidate, float nearest) {
     };
     std::optional<float> hit;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const std::optional<float> distance = meet_triangle(
+        const std::optional<float> distance = hit_triangle(
             candidate.origin, candidate.direction, corner(i), corner(i + 1), corner(i + 2));
         if (distance && *distance < nearest) {
             nearest = *distance;
@@ -133,7 +133,7 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
                 .inflate = inflate != nullptr ? inflate->distance : 0.0f,
                 .origin = transform_point(mesh_from_world, ray.origin),
                 .direction = transform_vector(mesh_from_world, ray.direction)};
-            if (const auto enter = meet_box(
+            if (const auto enter = hit_box(
                     candidate.origin, candidate.direction,
                     inflated(shape_bounds(mesh, candidate.posed), {candidate.inflate}))) {
                 candidate.enter = *enter;
@@ -146,10 +146,10 @@ std::optional<Hit> pick_entity(const World& world, const Ray& ray) {
     std::optional<Hit> nearest;
     for (const Candidate& candidate : candidates) {
         if (nearest && candidate.enter >= nearest->distance) {
-            break;  // the others begin behind what was hit
+            break;  // the remaining boxes begin behind the hit
         }
         const float limit = nearest ? nearest->distance : INFINITY;
-        if (const std::optional<float> distance = meet_mesh(candidate, limit)) {
+        if (const std::optional<float> distance = hit_mesh(candidate, limit)) {
             nearest = Hit{candidate.entity, *distance};
         }
     }

@@ -10,16 +10,16 @@ namespace limn {
 class World;
 struct RenderView;
 
-// What lies under the pointer, and where it is on the screen. On the CPU, against the meshes' boxes
-// and then their triangles: a click may take a millisecond.
+// Picking: ray tests on the CPU against the meshes' boxes, then their triangles. Fast enough for a
+// click (about a millisecond).
 
-/// A half line in world space.
+/// A ray in world space.
 struct Ray {
     Vec3 origin = {0, 0, 0};
     Vec3 direction = {0, 0, -1};  ///< unit
 };
 
-/// Through the point (x, y) of the picture, 0 .. 1 from the top left.
+/// The camera ray through the point (x, y) of the image, 0 .. 1 from the top left.
 [[nodiscard]] Ray ray_through(const RenderView& view, const Vec2& point);
 
 struct Hit {
@@ -27,17 +27,16 @@ struct Hit {
     float distance = 0.0f;  ///< along the ray [m]
 };
 
-/// The nearest MeshInstance that the ray meets, front or back.
+/// The nearest MeshInstance that the ray hits, on either side of its triangles.
 [[nodiscard]] std::optional<Hit> pick_entity(const World& world, const Ray& ray);
 
-/// Box of what the entity draws, inflated and posed as it is, in its own space; empty if it draws
-/// nothing.
+/// Box of the entity's mesh, inflated and posed as drawn, in its own space; empty without a mesh.
 [[nodiscard]] Bounds local_bounds(const World& world, Entity entity);
 
 /// The same in world space.
 [[nodiscard]] Bounds entity_bounds(const World& world, Entity entity);
 
-/// Where the entity is: the middle of its box, or its origin.
+/// The center of the entity's box, or its origin if it has none.
 [[nodiscard]] std::optional<Vec3> entity_middle(const World& world, Entity entity);
 
 }  // namespace limn

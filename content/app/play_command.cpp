@@ -1,7 +1,7 @@
 #include "content/app/play_command.h"
 
 #include "content/app/headless.h"
-#include "content/app/picture_file.h"
+#include "content/app/image_file.h"
 #include "content/app/player.h"
 #include "content/app/progress.h"
 #include "content/app/stage.h"
@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kHeadlessFrames = 8;  // where there is no display
 constexpr int kHeadlessSamples = 8;
-constexpr double kStillDuration = 4.0;  // [s] of a scene without a camera path
+constexpr double kStillDuration = 4.0;  // [s] for a scene without a camera path
 
-/// "tour" where there is one, else the gallery, which shows something of everything.
+/// "tour" if there is one, else the gallery, which shows a bit of everything.
 std::string default_scene() {
     return find_level("tour") ? "tour" : "gallery";
 }
@@ -43,17 +43,17 @@ Status play_headless(const PlayOptions& options, bool no_display) {
     if (!headless) {
         return headless.error();
     }
-    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
+    if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
         return fits.error();
     }
     fmt::print(
-        "{}Rendering {} pictures along the camera path of {} on {}.\n",
-        no_display ? "There is no display: no window is opened. " : "", options.headless_frames,
+        "{}Rendering {} frames along the camera path of {} on {}.\n",
+        no_display ? "There is no display, so no window is opened. " : "", options.headless_frames,
         stage.scene.name, headless->device->caps().renderer);
     std::fflush(stdout);
 
     const double duration = stage.scene.duration > 0.0 ? stage.scene.duration : kStillDuration;
-    Progress progress("picture", options.headless_frames);
+    Progress progress("frame", options.headless_frames);
     for (int i = 0; i < options.headless_frames; ++i) {
         const double time = duration * i / options.headless_frames;
         const float alpha = advance_stage(stage, time);
@@ -62,18 +62,18 @@ Status play_headless(const PlayOptions& options, bool no_display) {
             {.width = options.size.x,
              .height = options.size.y,
              .alpha = alpha,
-             .alpha_before = alpha - 1.0f});
+             .previous_alpha = alpha - 1.0f});
         const FrameOutput frame =
             render_accumulated(*headless->renderer, stage.world, view, kHeadlessSamples);
         const std::string path =
             (std::filesystem::path(folder) / numbered_path("picture_%04d.png", i)).string();
-        const Status written = write_picture(path, frame);
+        const Status written = write_image_file(path, frame);
         if (!written) {
             return written.error();
         }
         progress.update(i + 1);
     }
-    fmt::print("The pictures are in {}\n", std::filesystem::absolute(folder).string());
+    fmt::print("The frames are in {}\n", std::filesystem::absolute(folder).string());
     return Done{};
 }
 

@@ -7,17 +7,17 @@
 
 namespace limn {
 
-/// `limn play`: a level in a window or, where there is no display, as pictures along its camera
+/// `limn play`: plays a level in a window or, without a display, renders frames along its camera
 /// path.
 struct PlayOptions {
     std::string scene;  ///< empty: the tour
     IVec2 size = {1280, 720};
     bool fullscreen = false;
-    float scale = 0.0f;       ///< rendered pixels a window pixel; 0 = by the machine
-    bool scale_auto = false;  ///< changes the scale to hold 60 frames a second
-    int headless_frames = 0;  ///< > 0: so many pictures along the camera path, and no window
-    std::string out;  ///< folder of pictures and screenshots; empty = limn-<level> for pictures,
-                      ///< the current one for screenshots
+    float scale = 0.0f;       ///< rendered pixels per window pixel; 0 = automatic
+    bool scale_auto = false;  ///< adapts the scale to hold 60 frames per second
+    int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window
+    std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
+                      ///< current one for screenshots
 };
 
 [[nodiscard]] Status run_play(const PlayOptions& options);

@@ -1,17 +1,14 @@
 #include "content/app/player.h"
 
+#include "content/app/image_file.h"
 #include "content/app/outline.h"
 #include "content/app/pick.h"
-#include "content/app/picture_file.h"
 #include "content/load/image_write.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
 #include "ecs/components/name.h"
-#include "ecs/components/racer.h"
-#include "ecs/components/sailing.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
-#include "ecs/components/walker.h"
 #include "ecs/components/weather.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
@@ -22,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <unordered_map>
 #include <utility>
 
 #define GLFW_INCLUDE_NONE
@@ -30,10 +28,10 @@
 namespace limn {
 namespace {
 
-constexpr int kMostSteps = 4;           // a frame; beyond that time slows down
-constexpr double kLongestFrame = 0.25;  // [s] after a pause of the whole program
+constexpr int kMaxSteps = 4;            // per frame; beyond that, simulation time slows down
+constexpr double kMaxFrameTime = 0.25;  // [s] longer frames are clamped
 constexpr int kExrSamples = 16;
-constexpr double kShaderInterval = 0.5;  // [s] between looks at the shader files
+constexpr double kShaderInterval = 0.5;  // [s] between checks of the shader files
 
 double seconds_between(
     std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) {
@@ -58,54 +56,81 @@ std::vector<std::uint8_t> read_window(const IVec2& size) {
     return pixels;
 }
 
-/// What in the level has the keys that otherwise move the camera.
-enum class Driver : std::uint8_t { None, Racer, Sailor, Walker };
-
-/// While the level is seen through `camera`.
-Driver driver_of(World& world, Entity camera) {
-    Driver driver = Driver::None;
-    world.query<const Racer>().each(
-        [&](const Racer& racer) { driver = racer.player ? Driver::Racer : driver; });
-    world.query<const Sailboat>().each([&](const Sailboat& boat) {
-        const bool seen = boat.camera == Entity{} || boat.camera == camera;
-        driver = boat.player && seen ? Driver::Sailor : driver;
-    });
-    world.query<const Walker>().each([&](const Walker& walker) {
-        const bool seen = walker.camera == Entity{} || walker.camera == camera;
-        driver = seen ? Driver::Walker : driver;
-    });
-    return driver;
+/// The group of actions that moves something else than the player's own camera; nullptr: none.
+const ActionGroup* driving_group(const World& world, Entity camera) {
+    for (const ActionGroup& group : action_groups()) {
+        if (group.drives && group.is_used(world, camera)) {
+            return &group;
+        }
+    }
+    return nullptr;
 }
 
-/// Its keys, in a line.
-const char* driver_keys(Driver driver) {
-    switch (driver) {
-    case Driver::Racer:
-        return "drive: W A S D, Shift boosts";
-    case Driver::Sailor:
-        return "sail: A D rudder, W S sheet in and out, Shift: it trims itself";
-    case Driver::Walker:
-        return "on foot: W A S D, drag to look, Q dives, E rises";
-    case Driver::None:
-        break;
+/// GLFW's code of a bound key; those of one character are its code.
+int key_code(std::string_view name) {
+    static const std::unordered_map<std::string_view, int> codes = {
+        {"Left", GLFW_KEY_LEFT},   {"Right", GLFW_KEY_RIGHT},        {"Up", GLFW_KEY_UP},
+        {"Down", GLFW_KEY_DOWN},   {"Shift", GLFW_KEY_LEFT_SHIFT},   {"Alt", GLFW_KEY_LEFT_ALT},
+        {"Enter", GLFW_KEY_ENTER}, {"Backspace", GLFW_KEY_BACKSPACE}};
+    const auto found = codes.find(name);
+    return found != codes.end() ? found->second : name.size() == 1 ? name[0] : GLFW_KEY_UNKNOWN;
+}
+
+bool is_down(const Window& window, std::string_view name) {
+    const int key = key_code(name);
+    const bool has_right = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_LEFT_ALT;
+    return key != GLFW_KEY_UNKNOWN
+           && (window.is_key_down(key)
+               || (has_right && window.is_key_down(key + GLFW_KEY_RIGHT_ALT - GLFW_KEY_LEFT_ALT)));
+}
+
+/// Help for the actions of a group; neighbors with the same meaning share a line.
+void add_help(const ActionGroup& group, const Bindings* bindings, std::vector<KeyHelp>& lines) {
+    lines.push_back({"", group.title});
+    const ActionInfo* last = nullptr;
+    for (const ActionInfo& action : group.actions) {
+        const std::span<const std::string> keys = keys_of(action, bindings);
+        if (keys.empty()) {
+            continue;
+        }
+        if (last != nullptr && last->doc == action.doc) {
+            lines.back().keys += " " + keys.front();
+        } else {
+            lines.push_back({keys.front(), action.doc});
+        }
+        last = &action;
     }
-    return "";
+}
+
+/// "drive: W S accelerate, brake; A D steer ..."
+std::string describe_group(const ActionGroup& group, const Bindings* bindings) {
+    std::vector<KeyHelp> lines;
+    add_help(group, bindings, lines);
+    std::string text;
+    for (const KeyHelp& line : lines) {
+        text += line.keys.empty()
+                    ? line.text + ":"
+                    : (text.ends_with(':') ? " " : "; ") + line.keys + ' ' + line.text;
+    }
+    return text;
 }
 
 /// "wind 7.0 m/s from SW, rain 30 %"; nothing where a level has no weather. -z is north.
 std::string describe_weather(const World& world) {
-    const auto* weather = world.find_resource<Weather>();
-    if (weather == nullptr) {
+    const auto* settings = world.find_resource<Weather>();
+    const auto* state = world.find_resource<WeatherState>();
+    if (settings == nullptr || state == nullptr) {
         return {};
     }
+    const Weather weather = current_weather(*settings, *state);
     constexpr std::array kPoints = {"E", "SE", "S", "SW", "W", "NW", "N", "NE"};
-    const float from = weather->wind_direction + kPi;
+    const float from = weather.wind_direction + kPi;
     const int point = static_cast<int>(std::lround(from / (kPi / 4))) % 8;
     std::string line = fmt::format(
-        "wind {:.1f} m/s from {}", weather->wind_speed,
+        "wind {:.1f} m/s from {}", weather.wind_speed,
         kPoints[static_cast<std::size_t>((point + 8) % 8)]);
-    if (weather->rain > 0) {
-        line += fmt::format(", rain {:.0f} %", 100 * weather->rain);
+    if (weather.rain > 0) {
+        line += fmt::format(", rain {:.0f} %", 100 * weather.rain);
     }
     return line;
 }
@@ -149,7 +174,7 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
         const IVec2 window_size = player->window_->framebuffer_size();
         const IVec2 size = render_size(player->scale_, window_size);
         log_info(
-            "{} draws on the processor: {} x {} pixels, shown at {} x {}",
+            "{} renders on the CPU: {} x {} pixels, shown at {} x {}",
             player->device_->caps().renderer, size.x, size.y, window_size.x, window_size.y);
     }
     return player;
@@ -186,11 +211,11 @@ void Player::draw_loading(const std::string& scene) {
     glClearColor(0.02f, 0.02f, 0.025f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
     hud_->draw_loading(std::filesystem::path(scene).filename().string());
-    device_->forget_state();
+    device_->invalidate_state();
     window_->swap();
 }
 
-void Player::load_or_say(const std::string& scene) {
+void Player::load_or_report(const std::string& scene) {
     const Status status = load(scene);
     if (!status) {
         log_error("{}", status.error().message);
@@ -209,11 +234,11 @@ void Player::load_neighbor(int offset) {
         index = levels[static_cast<std::size_t>(i)].name == stage_->scene.name ? i : index;
     }
     const LevelEntry& next = levels[static_cast<std::size_t>((index + offset + count) % count)];
-    load_or_say(next.name);
+    load_or_report(next.name);
     hud_->toast(next.title.empty() ? next.name : next.title);
 }
 
-// ---- what the player does -----------------------------------------------------------------------
+// ---- input --------------------------------------------------------------------------------------
 
 void Player::handle_key(const KeyPress& press) {
     if (press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F12) {
@@ -249,7 +274,7 @@ void Player::handle_key(const KeyPress& press) {
         cycle_camera();
         break;
     case GLFW_KEY_R:
-        load_or_say(options_.scene);
+        load_or_report(options_.scene);
         break;
     case GLFW_KEY_TAB:
     case GLFW_KEY_PAGE_DOWN:
@@ -319,34 +344,27 @@ Input Player::read_input(const WindowEvents& events) {
     }
     if (!hud_->wants_keyboard() && !window_->is_key_down(GLFW_KEY_LEFT_CONTROL)
         && !window_->is_key_down(GLFW_KEY_RIGHT_CONTROL)) {
-        const auto axis = [this](int plus, int minus, int plus2, int minus2) {
-            const bool more = window_->is_key_down(plus) || window_->is_key_down(plus2);
-            const bool less = window_->is_key_down(minus) || window_->is_key_down(minus2);
-            return static_cast<float>(more) - static_cast<float>(less);
-        };
-        input.move = {
-            axis(GLFW_KEY_D, GLFW_KEY_A, GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
-            axis(GLFW_KEY_E, GLFW_KEY_Q, GLFW_KEY_E, GLFW_KEY_Q),
-            axis(GLFW_KEY_W, GLFW_KEY_S, GLFW_KEY_UP, GLFW_KEY_DOWN)};
-        const auto turn = [&axis](int plus, int minus) { return axis(plus, minus, plus, minus); };
-        input.lens = {
-            turn(GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_LEFT_BRACKET),
-            turn(GLFW_KEY_EQUAL, GLFW_KEY_MINUS), turn(GLFW_KEY_0, GLFW_KEY_9)};
-        input.weather = {
-            turn(GLFW_KEY_L, GLFW_KEY_J), turn(GLFW_KEY_I, GLFW_KEY_K),
-            turn(GLFW_KEY_O, GLFW_KEY_U)};
-        input.fast =
-            window_->is_key_down(GLFW_KEY_LEFT_SHIFT) || window_->is_key_down(GLFW_KEY_RIGHT_SHIFT);
+        const auto* bindings = std::as_const(stage_->world).find_resource<Bindings>();
+        for (const ActionGroup& group : action_groups()) {
+            for (const ActionInfo& action : group.actions) {
+                const std::span<const std::string> keys = keys_of(action, bindings);
+                if (std::any_of(keys.begin(), keys.end(), [this](const std::string& key) {
+                        return is_down(*window_, key);
+                    })) {
+                    set_action(input, action.name);
+                }
+            }
+        }
     }
     const Ray ray = pointer_ray();
     input.eye = ray.origin;
     input.pointing = on_panel ? Vec3(0) : ray.direction;
     input.click = events.left_clicked && !on_panel;
-    // The level's camera gives way to whoever takes hold of it.
-    const Driver driver = driver_of(stage_->world, stage_->scene.camera);
-    const bool turns = driver == Driver::Sailor || driver == Driver::Walker;
-    const bool moved =
-        (input.look != Vec2(0) && !turns) || (input.move != Vec3(0) && driver == Driver::None);
+    // Moving or looking around takes over from the level's camera.
+    const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
+    const bool turns = driver != nullptr && driver->turns;
+    const bool moved = (input.look != Vec2(0) && !turns)
+                       || (driver == nullptr && camera_input(input).move != Vec3(0));
     if (camera_.mode == CameraMode::Level && camera_.started && moved) {
         start_fly(camera_, camera_.pose);
     }
@@ -372,7 +390,7 @@ void Player::cycle_camera() {
     }
     case CameraMode::Orbit:
         camera_.mode = CameraMode::Level;
-        look_through(0);
+        activate_camera(0);
         break;
     }
     hud_->toast(camera_mode_name(camera_.mode));
@@ -385,10 +403,14 @@ bool Player::next_level_camera() {
     if (next >= cameras.size()) {
         return false;
     }
-    look_through(next);
+    activate_camera(next);
     const auto* name = std::as_const(stage_->world).find<Name>(stage_->scene.camera);
-    const char* keys = driver_keys(driver_of(stage_->world, stage_->scene.camera));
-    hud_->toast(*keys != '\0' ? keys : name != nullptr ? name->text : "level camera");
+    if (const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera)) {
+        hud_->toast(
+            describe_group(*driver, std::as_const(stage_->world).find_resource<Bindings>()));
+    } else {
+        hud_->toast(name != nullptr ? name->text : "level camera");
+    }
     return true;
 }
 
@@ -404,7 +426,7 @@ std::vector<Entity> Player::level_cameras() {
     return cameras;
 }
 
-void Player::look_through(std::size_t index) {
+void Player::activate_camera(std::size_t index) {
     const std::vector<Entity> cameras = level_cameras();
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         stage_->world.get<Camera>(cameras[i]).active = i == index;
@@ -430,14 +452,15 @@ void Player::select_under_pointer() {
 void Player::simulate(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
     if (Input* resource = stage_->world.find_resource<Input>()) {
-        const bool waiting = resource->click;  // for a step, which a frame need not have
+        const bool waiting = resource->click;  // until a step has seen it: a frame may run none
         *resource = input;
         resource->click = input.click || waiting;
-        const bool driven = driver_of(stage_->world, stage_->scene.camera) != Driver::None;
-        if (camera_.mode != CameraMode::Level && driven) {
-            resource->move = Vec3(0);  // the camera has them
+        const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
+        if (camera_.mode != CameraMode::Level && driver != nullptr) {
+            for (const ActionInfo& action : driver->actions) {
+                set_action(*resource, action.name, 0);  // these inputs move the camera
+            }
             resource->look = Vec2(0);
-            resource->fast = false;
         }
     }
     const double step = stage_step(*stage_);
@@ -446,7 +469,7 @@ void Player::simulate(float dt, const Input& input) {
         unsimulated_ += dt;
         steps = static_cast<int>(unsimulated_ / step);
         unsimulated_ -= steps * step;
-        steps = std::min(steps, kMostSteps);
+        steps = std::min(steps, kMaxSteps);
     } else if (step_once_) {
         steps = 1;
         unsimulated_ = 0.0;
@@ -460,7 +483,7 @@ void Player::simulate(float dt, const Input& input) {
 
 RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) {
     const double step = stage_step(*stage_);
-    // Right after loading there is one moment only.
+    // Right after loading there is only one state, nothing to interpolate.
     const double steps_done = stage_time(*stage_) / step;
     const float alpha =
         paused_ && unsimulated_ == 0.0 ? 1.0f : static_cast<float>(unsimulated_ / step);
@@ -469,7 +492,7 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
         .width = size.x,
         .height = size.y,
         .alpha = alpha,
-        .alpha_before =
+        .previous_alpha =
             alpha - static_cast<float>(std::clamp((shown - shown_time_) / step, 0.0, 8.0))};
     shown_time_ = shown;
 
@@ -486,9 +509,9 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     if (camera_.mode == CameraMode::Orbit) {
         const Vec3 target =
             entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.focus);
-        step_orbit(camera_, input, target, dt);
+        step_orbit(camera_, camera_input(input), target, dt);
     } else {
-        step_fly(camera_, input, dt);
+        step_fly(camera_, camera_input(input), dt);
     }
     RenderView view = make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
     view.lens = lens_view(stage_->world, level_camera);
@@ -541,11 +564,20 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .scale_auto = scale_.automatic,
          .paused = paused_,
          .error = shader_error_.c_str()});
+    if (hud_->help_open) {
+        const World& world = stage_->world;
+        hud_->actions.clear();
+        for (const ActionGroup& group : action_groups()) {
+            if (group.is_used(world, stage_->scene.camera)) {
+                add_help(group, world.find_resource<Bindings>(), hud_->actions);
+            }
+        }
+    }
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
     hud_->end_frame();
-    device_->forget_state();
+    device_->invalidate_state();
 }
 
 void Player::draw_outline(const RenderView& view) const {
@@ -577,7 +609,7 @@ Status Player::run() {
         }
         const Clock::time_point now = Clock::now();
         const double real = seconds_between(last, now);
-        const float dt = static_cast<float>(std::min(real, kLongestFrame));
+        const float dt = static_cast<float>(std::min(real, kMaxFrameTime));
         last = now;
 
         if (events.left_clicked && !hud_->wants_mouse()) {
@@ -638,7 +670,7 @@ std::string Player::next_file(const char* ending) {
 void Player::save_screenshot(const IVec2& size) {
     const std::string path = next_file(".png");
     const Status status = write_png(path, size.x, size.y, 3, read_window(size));
-    device_->forget_state();
+    device_->invalidate_state();
     report_saved(path, status);
 }
 
@@ -650,7 +682,7 @@ void Player::save_exr(const RenderView& view) {
     }
     const FrameOutput frame =
         render_accumulated(*renderer_, stage_->world, view, kExrSamples, request);
-    report_saved(path, write_picture(path, frame, {{"limn.scene", stage_->scene.name}}));
+    report_saved(path, write_image_file(path, frame, {{"limn.scene", stage_->scene.name}}));
 }
 
 void Player::report_saved(const std::string& path, const Status& status) {

@@ -23,9 +23,9 @@
 
 namespace limn {
 
-// The loop of `limn play`: events, simulation in fixed steps, a picture between the last two of
-// them, the HUD over it. Real time is read here and nowhere else; a slow machine shows the world in
-// slow motion rather than in ever longer frames.
+// The main loop of `limn play`: events, simulation in fixed steps, a frame interpolated between the
+// last two steps, the HUD over it. Real time is read only here. A machine that is too slow runs in
+// slow motion instead of simulating ever more steps per frame.
 
 class Player {
   public:
@@ -34,7 +34,7 @@ class Player {
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
-    /// Until the window is closed.
+    /// Runs until the window is closed.
     [[nodiscard]] Status run();
 
   private:
@@ -44,10 +44,10 @@ class Player {
         std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
         const PlayOptions& options);
 
-    /// Replaces the level; the old one stays if the new one cannot be loaded.
+    /// Replaces the level; keeps the old one if the new one cannot be loaded.
     [[nodiscard]] Status load(const std::string& scene);
     void draw_loading(const std::string& scene);
-    void load_or_say(const std::string& scene);
+    void load_or_report(const std::string& scene);
     void load_neighbor(int offset);
 
     void handle_key(const KeyPress& press);
@@ -55,11 +55,11 @@ class Player {
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events);
     void cycle_camera();
-    /// False where the level's last camera is looked through.
+    /// Switches to the level's next camera; false if the last one is active.
     bool next_level_camera();
-    /// The one that it starts with first.
+    /// All cameras of the level, the initial one first.
     [[nodiscard]] std::vector<Entity> level_cameras();
-    void look_through(std::size_t index);
+    void activate_camera(std::size_t index);
     [[nodiscard]] Ray pointer_ray() const;
     void select_under_pointer();
 
@@ -72,7 +72,7 @@ class Player {
     void reload_shaders(bool all);
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
-    /// On stdout and as a message, or why not.
+    /// Prints the path and shows a message, or the error.
     void report_saved(const std::string& path, const Status& status);
     [[nodiscard]] std::string next_file(const char* ending);
 
@@ -90,14 +90,14 @@ class Player {
     ProfilerPanel profiler_;
     PlayerCamera camera_;
     RenderScale scale_;
-    RenderView view_;  ///< of the last picture
+    RenderView view_;  ///< of the last frame
     FrameRequest request_;
     IVec2 last_window_size_ = {0, 0};
     std::string shader_error_;
     FrameCost cost_;
 
-    double unsimulated_ = 0.0;         ///< real time that no step covers yet [s]
-    double shown_time_ = 0.0;          ///< of the last picture, in simulated time [s]
+    double unsimulated_ = 0.0;         ///< real time not yet simulated [s]
+    double shown_time_ = 0.0;          ///< simulation time of the last frame [s]
     double until_shader_check_ = 0.0;  ///< [s]
     bool paused_ = false;
     bool step_once_ = false;

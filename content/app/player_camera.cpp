@@ -14,8 +14,8 @@ namespace limn {
 namespace {
 
 constexpr float kMaxElevation = radians(88.8f);  // OrbitCamera::elevation's range
-constexpr float kEaseTime = 0.08f;               // [s] in which speed gets 63 % of the way
-constexpr float kStill = 1e-3f;                  // share of full speed that counts as none
+constexpr float kEaseTime = 0.08f;               // [s] time constant: 63 % of a change of speed
+constexpr float kStill = 1e-3f;                  // fraction of full speed treated as 0
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
 constexpr float kZoomStep = 0.88f;               // of one wheel step
 constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
@@ -52,7 +52,7 @@ void start_fly(PlayerCamera& camera, const Affine& pose) {
     camera.glide = {0, 0, 0};
 }
 
-void step_fly(PlayerCamera& camera, const Input& input, float dt) {
+void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
     camera.fly.speed =
         std::clamp(camera.fly.speed * std::pow(kSpeedStep, input.zoom), 0.01f, 1000.0f);
     const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
@@ -60,7 +60,7 @@ void step_fly(PlayerCamera& camera, const Input& input, float dt) {
     if (input.move == Vec3(0) && glm::length(camera.glide) < kStill) {
         camera.glide = {0, 0, 0};
     }
-    Input eased = input;
+    MoveInput eased = input;
     eased.move = camera.glide;
     step_fly_camera(camera.place, camera.fly, eased, dt);
     camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
@@ -78,7 +78,7 @@ void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {
         std::clamp(std::asin(std::clamp(direction.y, -1.0f, 1.0f)), -kMaxElevation, kMaxElevation);
 }
 
-void step_orbit(PlayerCamera& camera, const Input& input, const Vec3& target, float dt) {
+void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target, float dt) {
     OrbitCamera& orbit = camera.orbit;
     const float sensitivity =
         1.5f * camera.fly.sensitivity;  // by eye: circling feels slower than turning

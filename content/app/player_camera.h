@@ -8,10 +8,10 @@
 
 namespace limn {
 
-// The camera in the player's hands. It is no entity: it moves while the simulation is paused and
-// never changes what a level does. C goes round its three modes, and each takes over where the one
-// before stood, so the picture never jumps except back to the level's camera. How it moves is in
-// systems/fly_camera_system.h and systems/orbit_camera_system.h.
+// The user-controlled camera. It is not an entity: it moves while the simulation is paused and
+// never affects the level. C cycles through its three modes; each starts from the pose of the
+// previous one, so that the view jumps only on the way back to the level's camera. The motion
+// itself is in systems/fly_camera_system.h and systems/orbit_camera_system.h.
 
 enum class CameraMode : std::uint8_t {
     Level,  ///< the level's own camera and path
@@ -21,15 +21,15 @@ enum class CameraMode : std::uint8_t {
 
 struct PlayerCamera {
     CameraMode mode = CameraMode::Level;
-    bool started = false;  ///< it has a pose
+    bool started = false;  ///< `pose` is valid
     Camera lens;
-    Affine pose;      ///< world from camera, of this picture
-    Affine previous;  ///< of the picture before
+    Affine pose;      ///< world from camera, of this frame
+    Affine previous;  ///< of the previous frame
     FlyCamera fly;
     OrbitCamera orbit;
-    Transform place;         ///< while flying
-    Vec3 glide = {0, 0, 0};  ///< Input::move, eased in and out
-    Vec3 focus = {0, 0, 0};  ///< point that orbit looks at now; follows its target with a lag [m]
+    Transform place;         ///< pose while flying
+    Vec3 glide = {0, 0, 0};  ///< MoveInput::move, eased in and out
+    Vec3 focus = {0, 0, 0};  ///< point that the orbit looks at; follows its target with a lag [m]
 };
 
 /// The name of the mode for the HUD.
@@ -37,16 +37,16 @@ struct PlayerCamera {
 
 /// Moves a flying camera by `input` for `dt` real seconds. Speed eases in and out within a tenth of
 /// a second; the wheel changes `fly.speed`.
-void step_fly(PlayerCamera& camera, const Input& input, float dt);
+void step_fly(PlayerCamera& camera, const MoveInput& input, float dt);
 
-/// Turns and zooms a circling camera about `target`, which it follows with `orbit.follow`
+/// Rotates and zooms an orbiting camera about `target`, which it follows with `orbit.follow`
 /// (engine.camera-lag).
-void step_orbit(PlayerCamera& camera, const Input& input, const Vec3& target, float dt);
+void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target, float dt);
 
-/// Flies on from `pose`, upright.
+/// Starts flying from `pose`, made upright.
 void start_fly(PlayerCamera& camera, const Affine& pose);
 
-/// Circles `target` from where `pose` is, and turns toward it.
+/// Starts orbiting `target` from the position of `pose`, looking at it.
 void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target);
 
 }  // namespace limn

@@ -48,19 +48,19 @@ std::vector<Vec3> posed_positions(const World& world, Entity entity) {
     std::vector<Vec3> positions = mesh.positions;
     std::vector<Vec3> normals(positions.size(), Vec3(0, 0, 1));
     std::vector<Vec4> tangents(positions.size(), Vec4(1, 0, 0, 1));
-    const MovedVertices moved = {positions, normals, tangents};
+    const SkinnedVertices moved = {positions, normals, tangents};
     add_morphs(mesh.morphs, weights_of(source.morphs, deformed->first_morph), moved);
     if (source.skin == nullptr) {
         return positions;
     }
     const RestVertices rest = {positions, normals, tangents};
     std::vector<Affine> palette(source.skin->joints.size());
-    find_palette(*source.skin, source.pose->joints, palette);
+    compute_skin_palette(*source.skin, source.pose->joints, palette);
     if (deformed->skinning == Skinning::Linear) {
         skin_linear(mesh.skin, palette, rest, moved, 0, positions.size());
     } else {
         std::vector<DualQuaternion> duals(palette.size());
-        find_dual_palette(palette, duals);
+        compute_dual_palette(palette, duals);
         skin_dual(mesh.skin, duals, rest, moved, 0, positions.size());
     }
     const bool finite = std::all_of(positions.begin(), positions.end(), [](const Vec3& p) {

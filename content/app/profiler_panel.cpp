@@ -18,11 +18,11 @@
 namespace limn {
 namespace {
 
-constexpr double kSmoothing = 0.08;   // share of a new time in what is shown
-constexpr int kMemoryInterval = 30;   // frames between two looks at the memory
+constexpr double kSmoothing = 0.08;   // weight of a new sample in the moving average
+constexpr int kMemoryInterval = 30;   // frames between memory readings
 constexpr double kGoodFrame = 16.67;  // [ms]
 
-/// A number in the right place of its column.
+/// A right-aligned number.
 void number_cell(const HudStyle& style, const ImVec4& color, const char* format, double value) {
     std::array<char, 32> text;
     *fmt::format_to_n(text.data(), text.size() - 1, fmt::runtime(format), value).out = '\0';
@@ -35,7 +35,7 @@ void number_cell(const HudStyle& style, const ImVec4& color, const char* format,
     ImGui::PopFont();
 }
 
-/// Headings: the first names the rows, the others stand over numbers.
+/// Headings: the first is of the row names, the others of numeric columns.
 void heading_row(const char* name, std::initializer_list<const char*> numbers) {
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     ImGui::TableNextColumn();
@@ -49,7 +49,7 @@ void heading_row(const char* name, std::initializer_list<const char*> numbers) {
     }
 }
 
-/// A name with a bar behind it that shows its share of the whole.
+/// A name with a bar behind it that shows its fraction of the total.
 void name_cell(std::string_view name, double share) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -62,7 +62,7 @@ void name_cell(std::string_view name, double share) {
     ImGui::TextUnformatted(name.data(), name.data() + name.size());
 }
 
-/// The shade of a time: dim when it hardly matters.
+/// The color of a time: dim if it is negligible.
 const ImVec4& time_color(double ms) {
     return ms < 0.05 ? kHudDim : kHudText;
 }
@@ -204,7 +204,7 @@ void ProfilerPanel::draw_passes(const HudStyle& style, const FrameGraph& graph) 
     name_cell("extract", 0.0);
     number_cell(style, kHudText, "{:.3f}", cost_.statistics.extract_ms);
     ImGui::TableNextColumn();
-    name_cell("drawing, all of it", 0.0);
+    name_cell("drawing, total", 0.0);
     number_cell(style, kHudText, "{:.3f}", cost_.render_ms);
     ImGui::EndTable();
 }

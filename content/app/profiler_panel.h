@@ -14,16 +14,16 @@ struct HudStyle;
 class Schedule;
 class World;
 
-/// What the profiler is told once a frame.
+/// The profiler's input, once per frame.
 struct FrameCost {
-    double frame_ms = 0.0;     ///< from picture to picture
-    double simulate_ms = 0.0;  ///< all systems of all steps of the frame
+    double frame_ms = 0.0;     ///< between consecutive frames
+    double simulate_ms = 0.0;  ///< all systems, all steps of the frame
     double render_ms = 0.0;    ///< CPU time of drawing
     FrameStatistics statistics;
 };
 
-// F3: where the time of a frame goes. Systems and passes with their times on the CPU and the GPU, a
-// graph of the last seconds, counts and memory. Collecting costs a few additions a frame.
+// F3: shows where a frame's time goes. Systems and passes with their times on the CPU and the GPU,
+// a graph of the last seconds, counts and memory. Collecting costs a few additions per frame.
 
 class ProfilerPanel {
   public:
@@ -32,7 +32,7 @@ class ProfilerPanel {
         const HudStyle& style, const World& world, const Schedule& schedule,
         const FrameGraph& graph);
 
-    /// Of the last second or so [ms].
+    /// Over about the last second [ms].
     [[nodiscard]] double median_frame_ms() const { return summary_.median; }
 
     bool open = false;

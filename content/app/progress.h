@@ -6,16 +6,16 @@
 namespace limn {
 
 /// "frame 12 of 100 [#####-----] 8 s left" on stderr, redrawn in place at most ten times a second.
-/// Prints nothing unless stderr is a terminal, so logs stay clean. Ends with the object.
+/// Prints nothing unless stderr is a terminal, so logs stay clean. The destructor clears the line.
 class Progress {
   public:
-    /// `what` names one of the `total` things, e.g. "frame".
+    /// `what` names the unit counted, e.g. "frame"; `total` of them make 100 %.
     Progress(std::string what, int total);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress();
 
-    /// `done` things of the total are done.
+    /// `done` of the total are finished.
     void update(int done);
 
   private:

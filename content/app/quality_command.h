@@ -3,17 +3,12 @@
 #include "ecs/base/result.h"
 
 #include <string>
+#include <vector>
 
 namespace limn {
 
-/// `limn quality`: effects against their oracles.
-struct QualityOptions {
-    std::string effect;  ///< empty = all
-    std::string json;    ///< file to write; empty = none
-    std::string html;    ///< file to write; empty = none
-};
-
-/// Prints the table; fails if a bound is not kept, after everything is written.
-[[nodiscard]] Status run_quality(const QualityOptions& options);
+/// `limn quality`: becomes the program `limn-quality` beside this one, with these arguments. It is
+/// a program of its own so that this one does not contain the oracles. Returns only if that fails.
+[[nodiscard]] Status run_quality(std::vector<std::string> arguments);
 
 }  // namespace limn

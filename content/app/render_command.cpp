@@ -2,7 +2,7 @@
 
 #include "content/app/exposure_samples.h"
 #include "content/app/headless.h"
-#include "content/app/picture_file.h"
+#include "content/app/image_file.h"
 #include "content/app/progress.h"
 #include "content/app/stage.h"
 #include "ecs/base/text.h"
@@ -20,15 +20,15 @@
 namespace limn {
 namespace {
 
-constexpr int kPlayedSamples = 16;  ///< of a pixel's edges
+constexpr int kEdgeSamples = 16;  ///< antialiasing samples per pixel
 
-/// What keeps pictures keeps whole ones.
+/// Motion blur modes that keep previous frames must keep whole frames, not antialiasing samples.
 int played_samples(const World& world) {
     const auto* blur = world.find_resource<MotionBlur>();
-    return blur != nullptr && keeps_pictures(blur->mode) ? 1 : kPlayedSamples;
+    return blur != nullptr && needs_previous_frames(blur->mode) ? 1 : kEdgeSamples;
 }
 
-/// The names of all cameras, for the error about one that is not there.
+/// The names of all cameras, for the error about an unknown one.
 std::string camera_names(const World& world) {
     std::string names;
     world.query<const Name, const Camera>().each(
@@ -48,7 +48,7 @@ Result<Entity> choose_camera(const Stage& stage, const std::string& name) {
         camera_names(stage.world));
 }
 
-/// Fails before hours of rendering if the first picture could not be written.
+/// Fails early, before hours of rendering, if the output folder does not exist.
 Status check_folder(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code ignored;
@@ -58,46 +58,46 @@ Status check_folder(const std::string& path) {
     return Done{};
 }
 
-/// The moment a picture shows and the one of the picture before it [s].
-struct PictureTime {
+/// Simulation times of a frame and of the previous one [s].
+struct FrameTimes {
     double shown = 0;
-    double before = 0;
+    double previous = 0;
 };
 
-/// What the camera sees, after the steps up to the moment shown.
-RenderView advance_to_view(
-    Stage& stage, Entity camera, const RenderOptions& options, const PictureTime& time) {
+/// Steps the simulation to the frame's time and returns the camera's view.
+RenderView
+advance_to_view(Stage& stage, Entity camera, const RenderOptions& options, const FrameTimes& time) {
     const float alpha = advance_stage(stage, time.shown);
-    const double steps = (time.shown - time.before) / stage_step(stage);
+    const double steps = (time.shown - time.previous) / stage_step(stage);
     return make_render_view(
         stage.world, camera,
         {.width = options.size.x,
          .height = options.size.y,
          .alpha = alpha,
-         .alpha_before = alpha - static_cast<float>(steps)});
+         .previous_alpha = alpha - static_cast<float>(steps)});
 }
 
-/// How long the shutter is open [s]: as long as it can be before it opens for the next picture.
-double open_seconds(const World& world, const PictureTime& time) {
+/// Exposure time [s]: at most the time between frames.
+double open_seconds(const World& world, const FrameTimes& time) {
     const auto* blur = world.find_resource<MotionBlur>();
     const double share = blur != nullptr ? static_cast<double>(blur->shutter) / 360.0 : 0.0;
-    return std::clamp(share, 0.0, 1.0) * (time.shown - time.before);
+    return std::clamp(share, 0.0, 1.0) * (time.shown - time.previous);
 }
 
-/// As it is played, its edges made smooth.
+/// Renders the frame with effects as in `limn play`, antialiased by accumulation.
 FrameOutput draw_played(
     Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
-    const PictureTime& time) {
+    const FrameTimes& time) {
     const RenderView view = advance_to_view(stage, camera, options, time);
     return render_accumulated(
         renderer, stage.world, view, played_samples(stage.world), {.aovs = options.aovs});
 }
 
-/// The mean of samples of shutter, lens and pixel, while the world goes on: the truth that the
-/// effects of the played picture come near.
+/// Averages samples over shutter, lens and pixel while the simulation advances: the ground truth
+/// that the real-time effects approximate.
 FrameOutput draw_sampled(
     Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options,
-    const PictureTime& time) {
+    const FrameTimes& time) {
     const double open = open_seconds(stage.world, time);
     const float weight = 1.0f / static_cast<float>(options.samples);
     begin_accumulation(renderer, options.size, SampleKind::Instant);
@@ -105,13 +105,13 @@ FrameOutput draw_sampled(
     RenderView shown;
     for (int i = 0; i < options.samples; ++i) {
         const ExposureSample sample = exposure_sample(i, options.samples);
-        const double moment = std::max(time.shown + sample.moment * open, 0.0);
-        if (!half_done && sample.moment >= 0) {
+        const double sample_time = std::max(time.shown + sample.time * open, 0.0);
+        if (!half_done && sample.time >= 0) {
             shown = advance_to_view(stage, camera, options, time);
             accumulate_aovs(renderer, stage.world, shown, {.aovs = options.aovs});
             half_done = true;
         }
-        const RenderView view = advance_to_view(stage, camera, options, {moment, moment});
+        const RenderView view = advance_to_view(stage, camera, options, {sample_time, sample_time});
         accumulate(
             renderer, stage.world,
             with_lens_sample(
@@ -121,13 +121,13 @@ FrameOutput draw_sampled(
     return finish_accumulation(renderer, stage.world, shown);
 }
 
-Status render_picture(
+Status render_image(
     HeadlessRenderer& headless, Stage& stage, Entity camera, const RenderOptions& options,
-    const PictureTime& time, const std::string& path) {
+    const FrameTimes& time, const std::string& path) {
     const FrameOutput frame = options.samples > 0
                                   ? draw_sampled(*headless.renderer, stage, camera, options, time)
                                   : draw_played(*headless.renderer, stage, camera, options, time);
-    return write_picture(
+    return write_image_file(
         path, frame,
         {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time.shown)}});
 }
@@ -135,7 +135,7 @@ Status render_picture(
 }  // namespace
 
 Status check_render_options(const RenderOptions& options) {
-    const Result<PictureKind> kind = picture_kind(options.out);
+    const Result<ImageFileKind> kind = image_file_kind(options.out);
     if (!kind) {
         return fail("--out: {}", kind.error().message);
     }
@@ -149,7 +149,7 @@ Status check_render_options(const RenderOptions& options) {
     if (!options.frames && *numbered) {
         return fail("--out: found \"{}\", expected --frames with it", options.out);
     }
-    if (!options.aovs.empty() && *kind != PictureKind::Exr) {
+    if (!options.aovs.empty() && *kind != ImageFileKind::Exr) {
         return fail("--aov: found \"{}\", expected a name that ends in .exr with it", options.out);
     }
     for (const std::string& aov : options.aovs) {
@@ -180,19 +180,19 @@ Status run_render(const RenderOptions& options) {
     if (!headless) {
         return headless.error();
     }
-    if (const Status fits = check_picture_size(*headless->device, options.size); !fits) {
+    if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
         return fits.error();
     }
     if (!options.frames) {
         const double step = stage_step(stage);
-        return render_picture(
+        return render_image(
             *headless, stage, *camera, options, {options.time, options.time - step}, options.out);
     }
     const int count = options.frames->last - options.frames->first + 1;
     Progress progress("frame", count);
     for (int i = 0; i < count; ++i) {
         const int frame = options.frames->first + i;
-        const Status status = render_picture(
+        const Status status = render_image(
             *headless, stage, *camera, options, {frame / options.fps, (frame - 1) / options.fps},
             numbered_path(options.out, frame));
         if (!status) {

@@ -6,12 +6,11 @@
 namespace limn {
 namespace {
 
-constexpr float kInterval = 0.5f;  // [s] between changes
-constexpr float kTooSlow = 1.10f;  // of the target: below it nobody sees the difference
-constexpr float kHeadroom =
-    0.70f;                        // of the target that work may take before the scale stops growing
-constexpr float kMostUp = 1.15f;  // by which the scale grows at once
-constexpr float kMostDown = 0.70f;
+constexpr float kInterval = 0.5f;        // [s] between changes
+constexpr float kSlowThreshold = 1.10f;  // of the target; smaller excesses are not noticeable
+constexpr float kHeadroom = 0.70f;       // of the target; the scale grows while work takes less
+constexpr float kMaxGrowth = 1.15f;      // limits of one change
+constexpr float kMaxShrink = 0.70f;
 
 }  // namespace
 
@@ -44,11 +43,11 @@ bool update_render_scale(RenderScale& scale, float frame_ms, float busy_ms, floa
     scale.patience = 0.0f;
     // The time of a frame grows with its pixels, the square of the scale.
     float factor = 1.0f;
-    if (frame_ms > kTooSlow * scale.target_ms) {
-        factor = std::max(std::sqrt(scale.target_ms / frame_ms), kMostDown);
+    if (frame_ms > kSlowThreshold * scale.target_ms) {
+        factor = std::max(std::sqrt(scale.target_ms / frame_ms), kMaxShrink);
     } else if (busy_ms < kHeadroom * scale.target_ms) {
         factor =
-            std::min(std::sqrt(kHeadroom * scale.target_ms / std::max(busy_ms, 0.1f)), kMostUp);
+            std::min(std::sqrt(kHeadroom * scale.target_ms / std::max(busy_ms, 0.1f)), kMaxGrowth);
     }
     const float before = scale.scale;
     scale.scale = std::clamp(scale.scale * factor, kMinScale, kMaxAutoScale);

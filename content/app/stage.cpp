@@ -1,8 +1,8 @@
 #include "content/app/stage.h"
 
+#include "content/game/game.h"
 #include "content/load/set_value.h"
 #include "ecs/components/time.h"
-#include "systems/update_world.h"
 
 #include <algorithm>
 #include <utility>
@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-// Of a step. A step is a float, so n steps and n / 60 s drift apart: by less than this for nine
-// minutes.
+// Fraction of a step. A step is a float, so n steps and n / 60 s drift apart, by less than this for
+// nine minutes.
 constexpr double kRounding = 1e-3;
 
 }  // namespace
@@ -19,14 +19,15 @@ constexpr double kRounding = 1e-3;
 Result<std::unique_ptr<Stage>> open_stage(
     const std::string& scene, std::optional<std::uint64_t> seed,
     std::span<const Assignment> assignments) {
+    register_game_components();
     auto stage = std::make_unique<Stage>();
     Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = seed});
     if (!loaded) {
         return loaded.error();
     }
     stage->scene = *std::move(loaded);
-    stage->schedule = make_world_schedule();
-    start_world(stage->world);
+    stage->schedule = make_world_schedule(add_game_systems);
+    start_world(stage->world, add_game_systems);
     for (const Assignment& assignment : assignments) {
         const Status status = set_value(stage->world, assignment.path, assignment.value);
         if (!status) {

@@ -14,7 +14,8 @@
 
 namespace limn {
 
-// A loaded scene with what moves it: where every command that shows or measures a scene begins.
+// A loaded scene with its world and schedule, the starting point of every command that shows or
+// measures one.
 
 struct Stage {
     World world;
@@ -22,7 +23,7 @@ struct Stage {
     LoadedScene scene;
 };
 
-/// Fails with the loader's line, or that of the first assignment that cannot be made.
+/// Fails with the loader's error, or that of the first invalid assignment.
 [[nodiscard]] Result<std::unique_ptr<Stage>> open_stage(
     const std::string& scene, std::optional<std::uint64_t> seed = std::nullopt,
     std::span<const Assignment> assignments = {});
@@ -30,11 +31,11 @@ struct Stage {
 /// One step of the simulation.
 void step_stage(Stage& stage);
 
-/// Steps until the simulation has reached `time` [s], at most one step beyond. Returns where `time`
-/// lies between the last two steps: 0 at the one before, 1 at the last.
+/// Steps until the simulation has reached `time` [s], at most one step beyond. Returns the
+/// interpolation factor of `time` between the last two states: 0 the previous, 1 the current.
 float advance_stage(Stage& stage, double time);
 
-/// The state of the world after its last step, to render: time and length of a step [s].
+/// Simulation time after the last step, and the length of a step [s].
 [[nodiscard]] double stage_time(const Stage& stage);
 [[nodiscard]] double stage_step(const Stage& stage);
 

@@ -15,11 +15,11 @@
 namespace limn {
 namespace {
 
-constexpr double kLife = 0.25;           // of figures [s]
-constexpr float kLeastCell = 5.0f;       // width of a chunk that is still drawn alone
-const ImVec4 kLines = {1, 1, 1, 0.07f};  // behind what is not filled
+constexpr double kRefreshInterval = 0.25;  // of the figures [s]
+constexpr float kMinCell = 5.0f;           // narrower chunks are merged into one bar
+const ImVec4 kLines = {1, 1, 1, 0.07f};    // unfilled part of a bar
 
-/// What a name is colored by: where the component lives.
+/// Name and color of a component's storage kind.
 struct StorageLook {
     const char* name;
     ImVec4 color;
@@ -52,7 +52,7 @@ const StorageLook& look_of(std::string_view component) {
     return info->is_tag ? kTagLook : kTableLook;
 }
 
-/// Words one behind the other, on as many lines as they need.
+/// Lays out words in a row, wrapping at the window's edge.
 class WordFlow {
   public:
     void add(std::string_view word, const ImVec4& color) {
@@ -118,13 +118,13 @@ bool section(const char* title, std::size_t count) {
     return ImGui::CollapsingHeader(label.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
 }
 
-/// A cell a chunk, filled as far as its rows go; many chunks become one bar.
+/// One cell per chunk, filled in proportion to its rows; many chunks are merged into one bar.
 void draw_chunks(const HudStyle& style, const ArchetypeStats& archetype) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     const float height = 7.0f * style.scale;
     const auto chunks = static_cast<float>(std::max(archetype.chunks, 1u));
-    const bool cells = width / chunks >= kLeastCell * style.scale;
+    const bool cells = width / chunks >= kMinCell * style.scale;
     const std::uint32_t count = cells ? std::max(archetype.chunks, 1u) : 1;
     const float cell = width / static_cast<float>(count);
     const std::uint32_t rows_a_cell = cells ? kChunkRows : archetype.chunks * kChunkRows;
@@ -213,10 +213,10 @@ void wrapped_cell(const ImVec4& color, const std::string& text) {
 
 void StoragePanel::draw(const HudStyle& style, const World& world, const Schedule& schedule) {
     const double now = ImGui::GetTime();
-    if (taken_at_ < 0.0 || now - taken_at_ > kLife) {
+    if (refreshed_at_ < 0.0 || now - refreshed_at_ > kRefreshInterval) {
         world_ = world_stats(world);
         schedule_ = schedule_stats(schedule);
-        taken_at_ = now;
+        refreshed_at_ = now;
     }
     draw_summary(style);
     ImGui::BeginChild("##storage");
@@ -232,8 +232,7 @@ void StoragePanel::draw_summary(const HudStyle& style) const {
     numbers_text(
         style, kHudAccent,
         fmt::format(
-            "{} entities, {} for them", grouped(world_.entities),
-            bytes_text(world_.memory.total())));
+            "{} entities, {}", grouped(world_.entities), bytes_text(world_.memory.total())));
     WordFlow words;
     for (const StorageLook* look :
          {&kTableLook, &kSplitLook, &kToggleLook, &kSharedLook, &kSparseLook, &kTagLook}) {
@@ -336,7 +335,7 @@ void StoragePanel::draw_flushes(const HudStyle& style) const {
     if (!section("Sync points", flush.flushes)) {
         return;
     }
-    if (!begin_figures("##flush", "since the beginning", {""})) {
+    if (!begin_figures("##flush", "since start", {""})) {
         return;
     }
     const auto line = [&](const char* name, std::uint64_t count) {
@@ -349,7 +348,7 @@ void StoragePanel::draw_flushes(const HudStyle& style) const {
     line("entities with several commands", flush.entities_folded);
     line("rows moved in ranges", flush.rows_moved_in_ranges);
     line("rows moved singly", flush.rows_moved_singly);
-    line("rows handed over with their columns", flush.rows_handed_over);
+    line("rows moved with their whole columns", flush.rows_handed_over);
     ImGui::EndTable();
 }
 

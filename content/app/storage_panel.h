@@ -8,16 +8,16 @@ struct HudStyle;
 class Schedule;
 class World;
 
-// What the ECS is made of at this moment, a tab of the inspector: archetypes with how full their
-// chunks are and where their components live, sparse sets, systems with the queries they run,
-// queries asked elsewhere, and what sync points have done.
+// The inspector's tab of ECS storage: archetypes with the fill of their chunks and the storage of
+// their components, sparse sets, systems with their queries, other queries, and sync point
+// statistics.
 
 class StoragePanel {
   public:
-    /// Into the current window. Figures are taken anew a few times a second.
+    /// Draws into the current window. Refreshes its figures a few times per second.
     void draw(const HudStyle& style, const World& world, const Schedule& schedule);
-    /// Another world: figures are taken at once.
-    void reset() { taken_at_ = -1.0; }
+    /// For a new world: refreshes the figures at the next draw.
+    void reset() { refreshed_at_ = -1.0; }
 
   private:
     void draw_summary(const HudStyle& style) const;
@@ -29,7 +29,7 @@ class StoragePanel {
 
     WorldStats world_;
     ScheduleStats schedule_;
-    double taken_at_ = -1.0;  // [s]
+    double refreshed_at_ = -1.0;  // [s]
 };
 
 }  // namespace limn

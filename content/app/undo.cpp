@@ -16,7 +16,7 @@ bool apply_to_component(World& world, const Edit& edit, const AnyComponent& valu
         const AnyComponent& other = edit.before.is_empty() ? edit.after : edit.before;
         world.remove(edit.entity, other.info().id);
     } else {
-        // Adding enables, but a value that is only replaced stays as disabled as it was.
+        // Adding enables the component, but replacing its value must keep it disabled.
         const ComponentId id = value.info().id;
         const bool is_disabled = world.has(edit.entity, id) && !world.is_enabled(edit.entity, id);
         world.add_copy(edit.entity, id, value.data());
@@ -68,7 +68,7 @@ bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value)
 void UndoStack::record(Edit edit) {
     edits_.resize(done_);
     edits_.push_back(std::move(edit));
-    if (edits_.size() > kMostEdits) {
+    if (edits_.size() > kMaxEdits) {
         edits_.erase(edits_.begin());
     }
     done_ = edits_.size();

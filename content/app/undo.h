@@ -12,9 +12,9 @@ namespace limn {
 
 class World;
 
-// What the inspector changed, so that it can be taken back. An edit holds one component of one
-// entity (or a resource, or a material of Assets) before and after; these are small, so whole
-// values are kept, and a drag of a slider is one edit however many frames it took.
+// Undo and redo of the inspector's edits. An edit holds one component of one entity (or a resource,
+// or a material of Assets) before and after; these are small, so whole values are kept. Dragging a
+// slider is one edit, however many frames it takes.
 
 enum class EditKind : std::uint8_t { Component, Resource, Material };
 
@@ -29,17 +29,17 @@ struct Edit {
 
 class UndoStack {
   public:
-    static constexpr std::size_t kMostEdits = 1000;  ///< the oldest are forgotten
+    static constexpr std::size_t kMaxEdits = 1000;  ///< older ones are dropped
 
-    /// Adds an edit that has been made. What was undone cannot be redone any more.
+    /// Records an edit already applied. Clears the redo history.
     void record(Edit edit);
-    /// The edit recorded last goes on: it now ends at `after`.
+    /// Extends the last recorded edit: its final value is now `after`.
     void extend(AnyComponent after);
 
-    /// Takes the last edit back; its label, or "" if there is none. Edits of entities that are gone
-    /// are dropped, and the one before them taken.
+    /// Undoes the last edit and returns its label, or "" if there is none. Edits of destroyed
+    /// entities are dropped and skipped.
     std::string undo(World& world);
-    /// Makes it again.
+    /// Redoes the next edit, likewise.
     std::string redo(World& world);
 
     [[nodiscard]] std::size_t undo_count() const { return done_; }
@@ -51,8 +51,8 @@ class UndoStack {
     std::size_t done_ = 0;
 };
 
-/// Gives the edit's target the value, or takes the component away if it is empty. False: the target
-/// is gone.
+/// Sets the edit's target to the value, or removes the component if the value is empty. Returns
+/// false if the target no longer exists.
 bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value);
 
 }  // namespace limn

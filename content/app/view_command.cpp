@@ -1,13 +1,13 @@
 #include "content/app/view_command.h"
 
-#include "content/app/hdr_picture.h"
+#include "content/app/hdr_image.h"
 #include "content/app/headless.h"
-#include "content/app/picture_viewer.h"
+#include "content/app/image_viewer.h"
 #include "content/app/window.h"
 #include "content/load/image_write.h"
 #include "content/load/set_value.h"
 #include "ecs/base/text.h"
-#include "ecs/components/all.h"
+#include "content/game/game.h"
 #include "ecs/world.h"
 #include "render/gpu/readback.h"
 
@@ -25,12 +25,12 @@ Status view_headless(const ViewOptions& options) {
     if (!device) {
         return device.error();
     }
-    const Result<std::unique_ptr<HdrPicture>> picture = HdrPicture::load(**device, options.file);
-    if (!picture) {
-        return picture.error();
+    const Result<std::unique_ptr<HdrImage>> hdr = HdrImage::load(**device, options.file);
+    if (!hdr) {
+        return hdr.error();
     }
-    fmt::print("{}", describe(**picture));
-    const gpu::Texture& display = (*picture)->show(options.exposure);
+    fmt::print("{}", describe(**hdr));
+    const gpu::Texture& display = (*hdr)->show(options.exposure);
     fmt::print("clipped {:.2f} % of the pixels\n", 100.0 * clipped_share(display));
     if (options.out.empty()) {
         return Done{};
@@ -42,12 +42,12 @@ Status view_headless(const ViewOptions& options) {
 }  // namespace
 
 Status set_exposure(Exposure& exposure, std::string_view field, std::string_view value) {
-    register_all_components();
+    register_game_components();
     World world;
     world.insert_resource(exposure);
     const Status status = set_value(world, "exposure." + std::string(field), value);
     if (!status) {
-        // Without the place in a level: "--set exposure.ev: found ..."
+        // Without the prefix that names the option: "--set exposure.ev: found ..."
         const std::string& message = status.error().message;
         const std::size_t found = message.find(": ");
         return Error{found == std::string::npos ? message : message.substr(found + 2)};
@@ -61,11 +61,11 @@ Status run_view(const ViewOptions& options) {
         return view_headless(options);
     }
     if (!Window::has_display()) {
-        fmt::print("There is no display: no window is opened. -o FILE.png writes the picture.\n");
+        fmt::print("There is no display, so no window is opened. -o FILE.png writes the image.\n");
         return view_headless(options);
     }
-    Result<std::unique_ptr<PictureViewer>> viewer =
-        PictureViewer::open(options.file, options.exposure, options.size);
+    Result<std::unique_ptr<ImageViewer>> viewer =
+        ImageViewer::open(options.file, options.exposure, options.size);
     return viewer ? (*viewer)->run() : Status(viewer.error());
 }
 

@@ -9,10 +9,10 @@
 
 namespace limn {
 
-/// `limn view`: a picture of linear light in a window with sliders, or as a PNG.
+/// `limn view`: tone maps an HDR image, in a window with sliders or to a PNG.
 struct ViewOptions {
     std::string file;          ///< .exr or .hdr
-    std::string out;           ///< .png: no window
+    std::string out;           ///< .png; not empty: no window
     IVec2 size = {1280, 720};  ///< of the window
     Exposure exposure = {.curve = ToneCurve::Knee};
 };

@@ -11,18 +11,18 @@
 namespace limn {
 namespace {
 
-constexpr float kDragThreshold = 4.0f;  // pixels: a press that moves further is no click
+constexpr float kDragThreshold = 4.0f;  // [px] a press that moves farther is a drag, not a click
 
-/// GLFW's last complaint, for the next error message; GLFW reports through a callback only.
-std::string& last_complaint() {
-    static std::string complaint;
-    return complaint;
+/// GLFW's last error, for our next message; GLFW reports through a callback only.
+std::string& last_glfw_error() {
+    static std::string error;
+    return error;
 }
 
 /// Initializes GLFW once; false without a display.
 bool start_glfw() {
     static const bool started = [] {
-        glfwSetErrorCallback([](int, const char* text) { last_complaint() = text; });
+        glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
         return glfwInit() == GLFW_TRUE;
     }();
     return started;
@@ -40,7 +40,7 @@ bool Window::has_display() {
 
 Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
     if (!start_glfw()) {
-        return fail("window: found no display ({}), expected one", last_complaint());
+        return fail("window: found no display ({}), expected one", last_glfw_error());
     }
     glfwDefaultWindowHints();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -65,7 +65,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
     if (window->window_ == nullptr) {
         return fail(
             "window: found no OpenGL 4.5 core context on this display ({}), expected one",
-            last_complaint());
+            last_glfw_error());
     }
     glfwMakeContextCurrent(window->window_);
     glfwSwapInterval(options.vsync ? 1 : 0);
@@ -188,7 +188,7 @@ void Window::capture_mouse(bool captured) {
         return;
     }
     captured_ = captured;
-    // The pointer jumps when its mode changes; that is no motion of the player's.
+    // The pointer jumps when its mode changes; that must not count as motion.
     mouse_known_ = false;
     glfwSetInputMode(window_, GLFW_CURSOR, captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }

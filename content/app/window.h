@@ -11,12 +11,12 @@ struct GLFWwindow;
 
 namespace limn {
 
-// A window with an OpenGL 4.5 core context, and what the player did since the last look. Through
-// GLFW; everything happens on the main thread. Keys and buttons are GLFW's codes.
+// A window with an OpenGL 4.5 core context, and the input events since the last poll. Uses GLFW, on
+// the main thread only. Keys and buttons are GLFW's codes.
 
 struct WindowOptions {
     std::string title = "Limn";
-    IVec2 size = {1280, 720};  ///< of the window without its frame [screen units]
+    IVec2 size = {1280, 720};  ///< of the client area [screen units]
     bool fullscreen = false;
     bool vsync = true;
 };
@@ -28,7 +28,7 @@ struct KeyPress {
     bool repeated = false;
 };
 
-/// What happened between two calls of poll.
+/// Input events between two calls of poll.
 struct WindowEvents {
     std::vector<KeyPress> keys;  ///< in order
     Vec2 mouse_motion = {0, 0};  ///< [pixels], x right, y down
@@ -50,9 +50,9 @@ class Window {
 
     /// Takes the events since the last call. The reference holds until the next one.
     const WindowEvents& poll();
-    /// Sleeps until something happens, `seconds` at most; the events wait for poll.
+    /// Sleeps until an event arrives, at most `seconds`; poll returns it.
     void wait_events(double seconds);
-    /// Shows what was drawn; waits for the display if vsync is on.
+    /// Presents the back buffer; waits for the display if vsync is on.
     void swap();
 
     [[nodiscard]] bool wants_to_close() const;
@@ -60,15 +60,15 @@ class Window {
 
     [[nodiscard]] IVec2 framebuffer_size() const;  ///< [pixels]; 0 x 0 while minimized
     [[nodiscard]] Vec2 mouse_position() const;  ///< [pixels of the framebuffer], from the top left
-    [[nodiscard]] float content_scale() const;  ///< 1 on a usual display, 2 on a very fine one
+    [[nodiscard]] float content_scale() const;  ///< 1 on a standard display, 2 on a high-DPI one
     [[nodiscard]] bool is_key_down(int key) const;
     [[nodiscard]] bool is_button_down(int button) const;
 
-    /// Hides the pointer and lets it move without bounds, for looking around.
+    /// Hides the pointer and unbounds its motion, for mouse look.
     void capture_mouse(bool captured);
     [[nodiscard]] bool is_mouse_captured() const { return captured_; }
 
-    /// Between the whole primary screen and the window as it was.
+    /// Switches between full screen on the primary monitor and the previous window.
     void toggle_fullscreen();
 
     void set_title(const std::string& title);

@@ -20,7 +20,7 @@ using DVec3 = glm::dvec3;
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Above this many corners in one point all are smoothed together: the pairs would take for ever.
+/// With more corners at one point all are smoothed together, to avoid quadratic run time.
 constexpr std::size_t kMaxCreaseCorners = 256;
 
 /// Floats as a key of a hash map, by their bits; -0 equals 0.
@@ -94,7 +94,7 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
     append(mesh.uvs);
     append(mesh.uvs1);
     append(mesh.colors);
-    append(mesh.positions);  // last: its size is what the others are compared with
+    append(mesh.positions);  // last, since the others compare with its size
     if (SkinWeights& skin = mesh.skin; !skin.empty()) {
         for (std::uint32_t i = skin.first[v], end = skin.first[v + 1]; i < end; ++i) {
             skin.joints.push_back(std::uint16_t{skin.joints[i]});
@@ -112,7 +112,7 @@ std::uint32_t duplicate_vertex(MeshData& mesh, std::uint32_t v) {
                     values->push_back(Vec3((*values)[place]));
                 }
             }
-            morph.vertices.push_back(copy);  // the largest yet
+            morph.vertices.push_back(copy);  // keeps the list sorted
         }
     }
     return copy;
@@ -124,8 +124,7 @@ void get_corners(const MeshData& mesh, std::size_t triangle, DVec3 (&p)[3]) {
     }
 }
 
-/// For each point the corners (3 * triangle + k) that lie in it: corners[first[point] ..
-/// first[point + 1]).
+/// The corners (3 * triangle + k) at each point: corners[first[point] .. first[point + 1]).
 struct PointCorners {
     std::vector<std::uint32_t> first;
     std::vector<std::uint32_t> corners;
@@ -201,7 +200,7 @@ std::vector<Vec3> find_corner_normals(const MeshData& mesh, float crease_angle) 
     return normals;
 }
 
-/// Gives mirrored triangles vertices of their own; returns the sign of every vertex' triangles.
+/// Splits vertices shared with mirrored triangles; returns the uv orientation sign of each vertex.
 std::vector<std::int8_t> split_mirrored(MeshData& mesh, const std::vector<TriangleFrame>& frames) {
     std::vector<std::int8_t> side(mesh.positions.size(), 0);
     std::vector<std::uint32_t> twin(mesh.positions.size(), kNone);
@@ -237,7 +236,7 @@ find_triangle_frames(const MeshData& mesh, const std::vector<Vec2>& uvs) {
     return frames;
 }
 
-/// What triangle `t` adds to the normals of its corners.
+/// Adds the contribution of the triangle with vertices `v` to the normals of its corners.
 void add_face(
     const std::vector<Vec3>& positions, const std::uint32_t* v, DVec3 (&shares)[3], double sign) {
     const DVec3 p[3] = {DVec3(positions[v[0]]), DVec3(positions[v[1]]), DVec3(positions[v[2]])};
@@ -247,10 +246,10 @@ void add_face(
     }
 }
 
-/// Vertices of equal position and normal, numbered: their faces are smoothed together.
+/// Groups vertices of equal position and normal, whose faces are smoothed together.
 struct SmoothGroups {
     std::vector<std::uint32_t> group_of;
-    std::vector<DVec3> sums;  ///< of the faces around each
+    std::vector<DVec3> sums;  ///< of the face normals around each group
 
     explicit SmoothGroups(const MeshData& mesh) {
         Welder<6> welder(mesh.positions.size());
@@ -289,13 +288,13 @@ void generate_normals_of(MorphTarget& morph, const MeshData& mesh, const SmoothG
             }
         }
     }
-    constexpr float kLeastTurn = 1e-6f;  // rounding of the sums stays below
+    constexpr float kMinTurn = 1e-6f;  // above the rounding of the sums
     MorphTarget result;
     result.name = std::move(morph.name);
     for (std::uint32_t v = 0; v < moved.size(); ++v) {
         const std::uint32_t group = groups.group_of[v];
         const Vec3 turn(direction(sums[group]) - direction(groups.sums[group]));
-        if (moves[v] || glm::length(turn) > kLeastTurn) {
+        if (moves[v] || glm::length(turn) > kMinTurn) {
             result.vertices.push_back(v);
             result.normals.push_back(turn);
             result.positions.emplace_back(0);
@@ -319,7 +318,7 @@ TriangleFrame triangle_frame(const Vec3 (&p)[3], const Vec2 (&uv)[3]) {
     const glm::dvec2 d2 = glm::dvec2(uv[2]) - glm::dvec2(uv[0]);
     const double determinant = d1.x * d2.y - d2.x * d1.y;
 
-    // Compared with the lengths it is made of: uvs may be as small as they like, but not flat.
+    // Relative to the edge lengths: uvs may be arbitrarily small, but not degenerate.
     const double scale = glm::length(d1) * glm::length(d2);
     if (!(std::abs(determinant) > 1e-9 * scale) || !(std::abs(determinant) > 1e-30)) {
         return {};
@@ -333,8 +332,8 @@ void generate_normals(MeshData& mesh, float crease_angle) {
     LIMN_CHECK(mesh.indices.size() % 3 == 0);
     const std::vector<Vec3> corner_normals = find_corner_normals(mesh, crease_angle);
 
-    // A vertex keeps the normal of its first corner; every other one gets a copy of the vertex.
-    // Copies of one vertex form a list, so that equal normals share a copy.
+    // A vertex keeps the normal of its first corner; corners with other normals get copies of it.
+    // The copies of a vertex form a linked list, so that equal normals share a copy.
     mesh.normals.assign(mesh.positions.size(), Vec3(0, 1, 0));
     std::vector<bool> taken(mesh.positions.size(), false);
     std::vector<std::uint32_t> next_copy(mesh.positions.size(), kNone);

@@ -6,7 +6,7 @@ namespace limn {
 
 struct MeshData;
 
-// Normals and tangents for meshes that come without them.
+// Generates normals and tangents for meshes without them.
 //
 // A triangle has an exact frame: T and B are the gradients of position along u and v
 // (bump.tangent-triangle). A vertex has the sum of the frames around it, weighted by the angle of
@@ -32,26 +32,25 @@ struct TriangleFrame {
 
 /// Replaces the normals of `mesh`. Faces that meet in a point (equal positions, whatever their
 /// index) are smoothed together where they differ by at most `crease_angle` [rad]: 0 gives flat
-/// faces, pi one normal for each point. Vertices are split where faces stay apart. Degenerate
-/// triangles count nothing; vertices of no triangle get +y. What splits a vertex keeps its joints
-/// and morph targets.
+/// faces, pi one normal for each point. Vertices are split at creases and keep their skin weights
+/// and morph targets. Degenerate triangles do not count; vertices of no triangle get +y.
 void generate_normals(MeshData& mesh, float crease_angle = kPi);
 
 /// Replaces the tangents of `mesh` by those of `uvs` (or `uvs1` for set 1), which must be there as
 /// well as normals. Splits vertices where mirrored and unmirrored triangles meet. A vertex without
-/// any triangle that has an area in uv gets some tangent perpendicular to its normal, w = 1.
+/// any triangle with an area in uv gets an arbitrary tangent perpendicular to its normal, w = 1.
 void generate_tangents(MeshData& mesh, int uv_set = 0);
 
-/// Gives normals to the morph targets that have none: the differences between the smooth normals of
-/// the mesh and of the mesh with the whole target. Vertices that share position and normal stay
-/// smooth. Vertices that only turn are added to the target.
+/// Generates normals for morph targets without them: the difference between the smooth normals of
+/// the mesh with the target at weight 1 and without it. Vertices that share position and normal
+/// stay smooth. Vertices whose normal alone changes are added to the target.
 void generate_morph_normals(MeshData& mesh);
 
-/// Gives tangents to the morph targets that have normals but no tangents: with the whole target,
-/// tangents are perpendicular to the normals again.
+/// Generates tangents for morph targets with normals but no tangents, perpendicular to the normals
+/// at weight 1.
 void generate_morph_tangents(MeshData& mesh);
 
-/// Makes `bounds` the box of the positions.
+/// Sets `bounds` to the bounding box of the positions.
 void update_bounds(MeshData& mesh);
 
 }  // namespace limn

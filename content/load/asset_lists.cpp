@@ -20,41 +20,30 @@ void append(std::vector<T>& target, std::vector<T>& source) {
 
 }  // namespace
 
-std::uint32_t AssetOffsets::of(std::string_view kind) const {
-    return kind == asset_kind<MeshId>       ? mesh
-           : kind == asset_kind<ImageId>    ? image
-           : kind == asset_kind<MaterialId> ? material
-           : kind == asset_kind<SkeletonId> ? skeleton
-           : kind == asset_kind<SkinId>     ? skin
-           : kind == asset_kind<ClipId>     ? clip
-           : kind == asset_kind<PathId>     ? path
-                                            : 0;
-}
-
-AssetOffsets ends_of(const Assets& assets) {
+AssetOffsets asset_counts(const Assets& assets) {
     const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
     return {
-        .mesh = size(assets.meshes),
-        .image = size(assets.images),
-        .material = size(assets.materials),
-        .skeleton = size(assets.skeletons),
-        .skin = size(assets.skins),
-        .clip = size(assets.clips),
-        .path = size(assets.paths)};
+        .meshes = size(assets.meshes),
+        .images = size(assets.images),
+        .materials = size(assets.materials),
+        .skeletons = size(assets.skeletons),
+        .skins = size(assets.skins),
+        .clips = size(assets.clips),
+        .paths = size(assets.paths)};
 }
 
-void shift_assets(const ComponentInfo& info, void* object, const AssetOffsets& offsets) {
+void offset_asset_ids(const ComponentInfo& info, void* object, const AssetOffsets& offsets) {
     for_each_asset(info.fields, object, [&](std::string_view kind, std::uint32_t& index) {
         if (index != kNoAsset) {
-            index += offsets.of(kind);
+            visit_asset_list(offsets, kind, [&](std::uint32_t offset) { index += offset; });
         }
     });
 }
 
 AssetOffsets append_assets(Assets& target, Assets& source) {
-    const AssetOffsets offsets = ends_of(target);
+    const AssetOffsets offsets = asset_counts(target);
     for (Material& material : source.materials) {
-        shift_assets(component_info<Material>(), &material, offsets);
+        offset_asset_ids(component_info<Material>(), &material, offsets);
     }
     append(target.images, source.images);
     append(target.meshes, source.meshes);

@@ -4,14 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 namespace limn {
 
-// Assets by the kind that a reference to them has ("mesh", "clip" ...: asset_kind in reflect.h).
+// Access to asset lists by kind: "mesh", "clip" ... (asset_kind in reflect.h).
 
-/// Calls visit(list) with the list of that kind in `assets`, which is an Assets or has lists of the
-/// same names; an unknown kind has none.
+/// Calls visit(list) with the list of `kind` in `assets`: an Assets, or any struct with lists of
+/// the same names. Does nothing for an unknown kind.
 template <typename AssetsT, typename Visit>
 void visit_asset_list(AssetsT& assets, std::string_view kind, Visit&& visit) {
     if (kind == asset_kind<MeshId>) {
@@ -31,28 +33,50 @@ void visit_asset_list(AssetsT& assets, std::string_view kind, Visit&& visit) {
     }
 }
 
-/// How many of each kind stand before others: what is to be added to an index when its list is
-/// appended to another.
-struct AssetOffsets {
-    std::uint32_t mesh = 0;
-    std::uint32_t image = 0;
-    std::uint32_t material = 0;
-    std::uint32_t skeleton = 0;
-    std::uint32_t skin = 0;
-    std::uint32_t clip = 0;
-    std::uint32_t path = 0;
+/// Index of the first asset of that kind and name, in a struct as above.
+template <typename AssetsT>
+[[nodiscard]] std::optional<std::uint32_t>
+find_asset(const AssetsT& assets, std::string_view kind, std::string_view name) {
+    std::optional<std::uint32_t> found;
+    visit_asset_list(assets, kind, [&](const auto& list) {
+        for (std::uint32_t i = 0; i < list.size() && !found; ++i) {
+            found = list[i].name == name ? std::optional(i) : std::nullopt;
+        }
+    });
+    return found;
+}
 
-    [[nodiscard]] std::uint32_t of(std::string_view kind) const;
+template <typename AssetsT>
+[[nodiscard]] std::vector<std::string_view>
+asset_names(const AssetsT& assets, std::string_view kind) {
+    std::vector<std::string_view> names;
+    visit_asset_list(assets, kind, [&](const auto& list) {
+        for (const auto& asset : list) {
+            names.emplace_back(asset.name);
+        }
+    });
+    return names;
+}
+
+/// Number of assets of each kind: the offset of an index when its list is appended to another.
+struct AssetOffsets {
+    std::uint32_t meshes = 0;
+    std::uint32_t images = 0;
+    std::uint32_t materials = 0;
+    std::uint32_t skeletons = 0;
+    std::uint32_t skins = 0;
+    std::uint32_t clips = 0;
+    std::uint32_t paths = 0;
 };
 
-/// The ends of the lists.
-[[nodiscard]] AssetOffsets ends_of(const Assets& assets);
+/// The sizes of the lists.
+[[nodiscard]] AssetOffsets asset_counts(const Assets& assets);
 
-/// Adds the offsets to every asset that the object of type `info` names.
-void shift_assets(const ComponentInfo& info, void* object, const AssetOffsets& offsets);
+/// Adds the offsets to every asset index in `object`, which is of type `info`.
+void offset_asset_ids(const ComponentInfo& info, void* object, const AssetOffsets& offsets);
 
-/// Moves everything in `source` behind what `target` has, its references with it; returns where it
-/// begins there.
+/// Moves all assets of `source` to the end of the lists of `target` and remaps their references;
+/// returns the offsets at which they begin.
 AssetOffsets append_assets(Assets& target, Assets& source);
 
 }  // namespace limn

@@ -49,8 +49,8 @@ bool write_all(int fd, std::span<const std::byte> bytes) {
         }
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
-    // Without the flush a crash of the machine could leave the new name on an empty file. Pipes and
-    // some network folders cannot be flushed; that is no reason to fail.
+    // Without the flush a system crash could leave an empty file under the new name. Pipes and some
+    // network file systems cannot be flushed; that is not an error.
     return ::fsync(fd) == 0 || errno == EINVAL || errno == EROFS;
 }
 
@@ -59,15 +59,15 @@ std::filesystem::path folder_of(const std::string& path) {
     return folder.empty() ? std::filesystem::path(".") : folder;
 }
 
-/// The hidden neighbor that takes the place of `path` in one step.
+/// The hidden file in the same folder that replaces `path` in one step.
 std::string partial_name(const std::string& path) {
     const std::string name = std::filesystem::path(path).filename().string();
     return (folder_of(path) / ("." + name + "." + std::to_string(::getpid()) + ".partial"))
         .string();
 }
 
-/// Gives the nameless file its name; replaces an old one through a neighbor. False with errno.
-bool give_name(int fd, const std::string& path) {
+/// Links the unnamed file to `path`, through the partial name if that exists. False with errno.
+bool link_to_name(int fd, const std::string& path) {
     const std::string self = "/proc/self/fd/" + std::to_string(fd);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
         return true;
@@ -120,8 +120,8 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
     if (!write_all(file.get(), bytes)) {
         return system_error(path, "cannot be written");
     }
-    if (!give_name(file.get(), path)) {
-        return write_through_partial(path, bytes);  // no /proc, or links are forbidden here
+    if (!link_to_name(file.get(), path)) {
+        return write_through_partial(path, bytes);  // no /proc, or hard links are not permitted
     }
     return Done{};
 }

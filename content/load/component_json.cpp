@@ -18,57 +18,12 @@ namespace limn {
 
 namespace {
 
-struct Reader {
-    const JsonPlace& place;
-    const FindNames& names;
-
-    Status read_fields(
-        const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
-        const std::string& path) const;
-    Status read_shape(
-        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
-    Status read_one(
-        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
-
-  private:
-    Error refuse(
-        const std::string& path, SourcePosition at, std::string_view found,
-        std::string_view expected) const {
-        return error_at({place.file, path}, at, found, expected);
-    }
-
-    Status read_scalar(
-        const JsonValue& json, const FieldInfo& info, const std::string& path,
-        double& number) const;
-    Status read_floats(
-        const JsonValue& json, const FieldInfo& info, std::span<float> floats,
-        const std::string& path) const;
-    Status read_integer(
-        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
-    Status
-    read_color(const JsonValue& json, std::span<float> floats, const std::string& path) const;
-    Status read_rotation(
-        const JsonValue& json, const FieldInfo& info, Quat& q, const std::string& path) const;
-    Status read_enum(
-        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
-    Status read_name(
-        const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const;
-};
-
 std::vector<std::string_view> names_of(const std::vector<FieldInfo>& fields) {
     std::vector<std::string_view> names;
     for (const FieldInfo& field : fields) {
         names.emplace_back(field.name);
     }
     return names;
-}
-
-std::string joined(const std::vector<std::string_view>& words) {
-    std::string text;
-    for (const std::string_view word : words) {
-        text += (text.empty() ? "" : " ") + std::string(word);
-    }
-    return text;
 }
 
 bool is_angle(const FieldInfo& info) {
@@ -81,7 +36,7 @@ std::string expected_number(const FieldInfo& info, std::string_view noun) {
     return range.empty() ? std::string(noun) : fmt::format("{} {}", noun, range);
 }
 
-/// "45deg" as radians; nothing for other strings.
+/// "45deg" in radians; nullopt for other strings.
 std::optional<double> angle_from_text(std::string_view text) {
     if (!text.ends_with("deg")) {
         return std::nullopt;
@@ -96,331 +51,308 @@ std::optional<double> angle_from_text(std::string_view text) {
     return degrees_read * (3.14159265358979323846 / 180.0);
 }
 
-Status Reader::read_fields(
-    const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
-    const std::string& path) const {
-    if (json.kind != JsonKind::Object) {
-        return refuse(path, json.at, describe(json), "an object with the fields to set");
-    }
-    for (const JsonMember& member : json.members) {
-        const FieldInfo* const field = find_field(fields, member.key);
-        if (field == nullptr) {
-            const std::vector<std::string_view> known = names_of(fields);
-            return refuse(
-                path, member.at, "the field " + in_quotes(member.key),
-                (known.empty() ? "none" : "one of " + joined(known))
-                    + did_you_mean(member.key, known));
-        }
-        const Status status = read_shape(
-            member.value, *field, field_ptr(object, *field),
-            path.empty() ? member.key : path + '.' + member.key);
-        if (!status) {
-            return status;
-        }
-    }
-    return Done{};
-}
+struct Reader {
+    const NameResolver& names;
 
-Status Reader::read_shape(
-    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
-    if (info.shape == FieldShape::One) {
-        return read_one(json, info, field, path);
-    }
-    const bool is_list = info.shape == FieldShape::List;
-    if (json.kind != JsonKind::Array || (!is_list && json.items.size() != info.count)) {
-        return refuse(
-            path, json.at, describe(json),
-            is_list ? "an array" : fmt::format("an array of {}", info.count));
-    }
-    if (is_list) {
-        info.list.resize(field, 0);  // elements start from their defaults
-        info.list.resize(field, json.items.size());
-    }
-    for (std::size_t i = 0; i < json.items.size(); ++i) {
-        const Status status = read_one(
-            json.items[i], info, element_ptr(info, field, i), fmt::format("{}[{}]", path, i));
-        if (!status) {
-            return status;
-        }
-    }
-    return Done{};
-}
-
-Status Reader::read_one(
-    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
-    switch (info.type) {
-    case FieldType::Bool:
-        if (json.kind != JsonKind::Bool) {
-            return refuse(path, json.at, describe(json), "true or false");
-        }
-        *static_cast<bool*>(field) = json.truth;
-        return Done{};
-    case FieldType::Int:
-    case FieldType::UInt:
-        return read_integer(json, info, field, path);
-    case FieldType::Double:
-        return read_scalar(json, info, path, *static_cast<double*>(field));
-    case FieldType::Float:
-    case FieldType::Vec2:
-    case FieldType::Vec3:
-    case FieldType::Vec4:
-    case FieldType::Mat3:
-    case FieldType::Mat4:
-    case FieldType::Affine:
-        return read_floats(
-            json, info, {static_cast<float*>(field), info.size / sizeof(float)}, path);
-    case FieldType::Quat:
-        return read_rotation(json, info, *static_cast<Quat*>(field), path);
-    case FieldType::IVec2:
-    case FieldType::IVec3: {
-        const std::size_t count = info.size / sizeof(int);
-        if (json.kind != JsonKind::Array || json.items.size() != count) {
-            return refuse(
-                path, json.at, describe(json), fmt::format("an array of {} integers", count));
-        }
-        FieldInfo element = info;
-        element.type = FieldType::Int;
-        element.size = sizeof(int);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Status status = read_integer(
-                json.items[i], element, static_cast<int*>(field) + i,
-                fmt::format("{}[{}]", path, i));
-            if (!status) {
-                return status;
+    Status read_fields(
+        const JsonValue& json, const std::vector<FieldInfo>& fields, void* object,
+        const JsonPlace& at) const {
+        LIMN_TRY(expect(json, JsonKind::Object, at, "an object with the fields to set"));
+        for (const JsonMember& member : json.members) {
+            const FieldInfo* const field = find_field(fields, member.key);
+            if (field == nullptr) {
+                const std::vector<std::string_view> known = names_of(fields);
+                return error_at(
+                    at, member.at, "the field " + in_quotes(member.key),
+                    (known.empty() ? "none" : fmt::format("one of {}", fmt::join(known, " ")))
+                        + did_you_mean(member.key, known));
             }
+            LIMN_TRY(read_shape(
+                member.value, *field, field_ptr(object, *field), place_in(at, member.key)));
         }
         return Done{};
     }
-    case FieldType::String:
-        if (json.kind != JsonKind::String) {
-            return refuse(path, json.at, describe(json), "a string");
-        }
-        *static_cast<std::string*>(field) = json.text;
-        return Done{};
-    case FieldType::Enum:
-        return read_enum(json, info, field, path);
-    case FieldType::Entity:
-    case FieldType::Asset:
-        return read_name(json, info, field, path);
-    case FieldType::Struct:
-        return read_fields(json, info.fields, field, path);
-    }
-    return Done{};
-}
 
-Status Reader::read_scalar(
-    const JsonValue& json, const FieldInfo& info, const std::string& path, double& number) const {
-    const std::optional<double> angle =
-        json.kind == JsonKind::String && is_angle(info) ? angle_from_text(json.text) : std::nullopt;
-    if (json.kind != JsonKind::Number && !angle) {
-        const std::string or_degrees = is_angle(info) ? " or a string like \"45deg\"" : "";
-        return refuse(
-            path, json.at, describe(json), expected_number(info, "a number") + or_degrees);
-    }
-    const double read = angle.value_or(json.number);
-    if (!(read >= info.meta.min && read <= info.meta.max)) {
-        return refuse(path, json.at, describe(json), expected_number(info, "a number"));
-    }
-    number = read;
-    return Done{};
-}
-
-Status Reader::read_floats(
-    const JsonValue& json, const FieldInfo& info, std::span<float> floats,
-    const std::string& path) const {
-    const auto read_float = [&](const JsonValue& item, float& out, const std::string& where) {
-        double number = 0.0;
-        Status status = read_scalar(item, info, where, number);
-        if (!status) {
-            return status;
+    Status read_shape(
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        if (info.shape == FieldShape::One) {
+            return read_one(json, info, field, at);
         }
-        if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
-            return Status(
-                refuse(where, item.at, describe(item), "a number that fits 32-bit floating point"));
+        const bool is_list = info.shape == FieldShape::List;
+        if (json.kind != JsonKind::Array || (!is_list && json.items.size() != info.count)) {
+            return unexpected(
+                json, at, is_list ? "an array" : fmt::format("an array of {}", info.count));
         }
-        out = static_cast<float>(number);
-        return status;
-    };
-    if (floats.size() == 1) {
-        return read_float(json, floats[0], path);
-    }
-    if (info.meta.color && json.kind == JsonKind::String) {
-        return read_color(json, floats, path);
-    }
-    const bool without_alpha = info.meta.color && floats.size() == 4 && json.items.size() == 3;
-    if (json.kind != JsonKind::Array || (json.items.size() != floats.size() && !without_alpha)) {
-        const std::string color = info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
-        return refuse(
-            path, json.at, describe(json),
-            fmt::format("an array of {} numbers{}", floats.size(), color));
-    }
-    for (std::size_t i = 0; i < json.items.size(); ++i) {
-        const Status status = read_float(json.items[i], floats[i], fmt::format("{}[{}]", path, i));
-        if (!status) {
-            return status;
+        if (is_list) {
+            info.list.resize(field, 0);  // elements start from their defaults
+            info.list.resize(field, json.items.size());
         }
-    }
-    return Done{};
-}
-
-Status
-Reader::read_color(const JsonValue& json, std::span<float> floats, const std::string& path) const {
-    const std::string& text = json.text;
-    const std::size_t digits = text.size() - 1;
-    std::uint32_t code = 0;
-    bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
-    if (good) {
-        const char* const end = text.data() + text.size();
-        const std::from_chars_result parsed = std::from_chars(text.data() + 1, end, code, 16);
-        good = parsed.ec == std::errc() && parsed.ptr == end;
-    }
-    if (!good) {
-        const char* const form = floats.size() == 4 ? "#rrggbb or #rrggbbaa" : "#rrggbb";
-        return refuse(path, json.at, describe(json), std::string("a color as ") + form);
-    }
-    if (digits == 8) {
-        floats[3] = static_cast<float>(code & 0xff) / 255.0f;
-        code >>= 8;
-    }
-    for (int i = 0; i < 3; ++i) {
-        floats[i] = linear_from_srgb(static_cast<float>((code >> (16 - 8 * i)) & 0xff) / 255.0f);
-    }
-    return Done{};
-}
-
-Status Reader::read_rotation(
-    const JsonValue& json, const FieldInfo& info, Quat& q, const std::string& path) const {
-    const bool is_euler = json.kind == JsonKind::Array && json.items.size() == 3;
-    if (!is_euler && (json.kind != JsonKind::Array || json.items.size() != 4)) {
-        return refuse(
-            path, json.at, describe(json),
-            "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
-    }
-    FieldInfo plain = info;
-    plain.meta = {};
-    float v[4] = {};
-    const Status status = read_floats(json, plain, {v, json.items.size()}, path);
-    if (!status) {
-        return status;
-    }
-    if (is_euler) {
-        q = rotation_from_degrees({v[0], v[1], v[2]});
+        for (std::size_t i = 0; i < json.items.size(); ++i) {
+            LIMN_TRY(read_one(json.items[i], info, element_ptr(info, field, i), item_in(at, i)));
+        }
         return Done{};
     }
-    const float largest =
-        std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
-    if (largest == 0.0f) {
-        return refuse(path, json.at, "a quaternion of length 0", "one that is a rotation");
-    }
-    // First by the largest, so that no square overflows.
-    const Vec4 scaled(v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest);
-    const Vec4 unit = scaled / std::sqrt(glm::dot(scaled, scaled));
-    q = Quat(unit.w, unit.x, unit.y, unit.z);
-    return Done{};
-}
 
-Status Reader::read_integer(
-    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
-    const bool is_signed = info.type == FieldType::Int;
-    const unsigned bits = 8 * info.size;
-    const std::uint64_t high = (~std::uint64_t{0} >> (64 - bits)) >> (is_signed ? 1 : 0);
-    const std::string expected = expected_number(info, "an integer");
-    std::uint64_t magnitude = 0;
-    bool is_negative = false;
-    bool good = json.kind == JsonKind::Number;
-    if (good) {
-        std::string_view digits = json.text;
-        is_negative = digits.starts_with('-');
-        digits.remove_prefix(is_negative ? 1 : 0);
-        const char* const end = digits.data() + digits.size();
-        const std::from_chars_result parsed = std::from_chars(digits.data(), end, magnitude);
-        good = parsed.ec == std::errc() && parsed.ptr == end;
-    }
-    // Two's complement: one further below zero than above.
-    good = good && magnitude <= high + (is_signed && is_negative ? 1 : 0)
-           && (is_signed || !is_negative || magnitude == 0) && json.number >= info.meta.min
-           && json.number <= info.meta.max;
-    if (!good) {
-        const bool is_limited = std::isfinite(info.meta.min) && std::isfinite(info.meta.max);
-        const std::string width =
-            is_limited ? std::string() : fmt::format(" of {} bits", bits - (is_signed ? 1 : 0));
-        return refuse(path, json.at, describe(json), expected + width);
-    }
-    const std::uint64_t value = is_negative ? ~magnitude + 1 : magnitude;
-    std::memcpy(field, &value, info.size);  // little-endian
-    return Done{};
-}
-
-Status Reader::read_enum(
-    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
-    const auto value = std::find(info.values.begin(), info.values.end(), json.text);
-    if (json.kind != JsonKind::String || value == info.values.end()) {
-        const std::string hint =
-            json.kind == JsonKind::String ? did_you_mean(json.text, info.values) : std::string();
-        return refuse(path, json.at, describe(json), "one of " + joined(info.values) + hint);
-    }
-    const auto index = static_cast<std::uint64_t>(value - info.values.begin());
-    std::memcpy(field, &index, info.size);
-    return Done{};
-}
-
-Status Reader::read_name(
-    const JsonValue& json, const FieldInfo& info, void* field, const std::string& path) const {
-    const bool is_entity = info.type == FieldType::Entity;
-    const std::string kind = is_entity ? "entity" : info.asset;
-    if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
-        return refuse(path, json.at, describe(json), "the name of an " + kind + ", or null");
-    }
-    bool found = false;
-    if (is_entity) {
-        Entity& entity = *static_cast<Entity*>(field);
-        std::optional<Entity> named = Entity{};
-        if (json.kind == JsonKind::String) {
-            named = names.entity ? names.entity(json.text, json.at) : std::nullopt;
+    Status
+    read_one(const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        switch (info.type) {
+        case FieldType::Bool:
+            LIMN_TRY(expect(json, JsonKind::Bool, at, "true or false"));
+            *static_cast<bool*>(field) = json.truth;
+            return Done{};
+        case FieldType::Int:
+        case FieldType::UInt:
+            return read_integer(json, info, field, at);
+        case FieldType::Double:
+            return read_scalar(json, info, at, *static_cast<double*>(field));
+        case FieldType::Float:
+        case FieldType::Vec2:
+        case FieldType::Vec3:
+        case FieldType::Vec4:
+        case FieldType::Mat3:
+        case FieldType::Mat4:
+        case FieldType::Affine:
+            return read_floats(
+                json, info, {static_cast<float*>(field), info.size / sizeof(float)}, at);
+        case FieldType::Quat:
+            return read_rotation(json, info, *static_cast<Quat*>(field), at);
+        case FieldType::IVec2:
+        case FieldType::IVec3: {
+            const std::size_t count = info.size / sizeof(int);
+            if (json.kind != JsonKind::Array || json.items.size() != count) {
+                return unexpected(json, at, fmt::format("an array of {} integers", count));
+            }
+            FieldInfo element = info;
+            element.type = FieldType::Int;
+            element.size = sizeof(int);
+            for (std::size_t i = 0; i < count; ++i) {
+                LIMN_TRY(read_integer(
+                    json.items[i], element, static_cast<int*>(field) + i, item_in(at, i)));
+            }
+            return Done{};
         }
-        found = named.has_value();
-        entity = named.value_or(Entity{});
-    } else {
-        std::optional<std::uint32_t> index = std::numeric_limits<std::uint32_t>::max();
-        if (json.kind == JsonKind::String) {
-            index = names.asset ? names.asset(kind, json.text) : std::nullopt;
+        case FieldType::String:
+            LIMN_TRY(expect(json, JsonKind::String, at, "a string"));
+            *static_cast<std::string*>(field) = json.text;
+            return Done{};
+        case FieldType::Enum:
+            return read_enum(json, info, field, at);
+        case FieldType::Entity:
+        case FieldType::Asset:
+            return read_name(json, info, field, at);
+        case FieldType::Struct:
+            return read_fields(json, info.fields, field, at);
         }
-        found = index.has_value();
-        const std::uint32_t value = index.value_or(0);
-        std::memcpy(field, &value, sizeof(value));
+        return Done{};
     }
-    if (!found) {
-        const std::vector<std::string_view> all =
-            names.all ? names.all(kind) : std::vector<std::string_view>();
-        return refuse(
-            path, json.at, fmt::format("the {} {}", kind, in_quotes(json.text)),
-            (all.empty() ? "none: there are no names of that kind here"
-                         : "the name of one that exists")
-                + did_you_mean(json.text, all));
-    }
-    return Done{};
-}
 
-/// What ranges of single fields cannot say; empty when all is well.
-std::string misfit(const ComponentInfo& info, const void* object) {
+  private:
+    Status read_scalar(
+        const JsonValue& json, const FieldInfo& info, const JsonPlace& at, double& number) const {
+        const std::optional<double> angle = json.kind == JsonKind::String && is_angle(info)
+                                                ? angle_from_text(json.text)
+                                                : std::nullopt;
+        if (json.kind != JsonKind::Number && !angle) {
+            const std::string or_degrees = is_angle(info) ? " or a string like \"45deg\"" : "";
+            return unexpected(json, at, expected_number(info, "a number") + or_degrees);
+        }
+        const double read = angle.value_or(json.number);
+        if (!(read >= info.meta.min && read <= info.meta.max)) {
+            return unexpected(json, at, expected_number(info, "a number"));
+        }
+        number = read;
+        return Done{};
+    }
+
+    Status read_floats(
+        const JsonValue& json, const FieldInfo& info, std::span<float> floats,
+        const JsonPlace& at) const {
+        const auto read_float = [&](const JsonValue& item, float& out,
+                                    const JsonPlace& where) -> Status {
+            double number = 0.0;
+            LIMN_TRY(read_scalar(item, info, where, number));
+            if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max())) {
+                return unexpected(item, where, "a number that fits 32-bit floating point");
+            }
+            out = static_cast<float>(number);
+            return Done{};
+        };
+        if (floats.size() == 1) {
+            return read_float(json, floats[0], at);
+        }
+        if (info.meta.color && json.kind == JsonKind::String) {
+            return read_color(json, floats, at);
+        }
+        const bool without_alpha = info.meta.color && floats.size() == 4 && json.items.size() == 3;
+        if (json.kind != JsonKind::Array
+            || (json.items.size() != floats.size() && !without_alpha)) {
+            const std::string color =
+                info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
+            return unexpected(
+                json, at, fmt::format("an array of {} numbers{}", floats.size(), color));
+        }
+        for (std::size_t i = 0; i < json.items.size(); ++i) {
+            LIMN_TRY(read_float(json.items[i], floats[i], item_in(at, i)));
+        }
+        return Done{};
+    }
+
+    Status read_integer(
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const bool is_signed = info.type == FieldType::Int;
+        const unsigned bits = 8 * info.size;
+        const std::uint64_t high = (~std::uint64_t{0} >> (64 - bits)) >> (is_signed ? 1 : 0);
+        const std::string expected = expected_number(info, "an integer");
+        std::uint64_t magnitude = 0;
+        bool is_negative = false;
+        bool good = json.kind == JsonKind::Number;
+        if (good) {
+            std::string_view digits = json.text;
+            is_negative = digits.starts_with('-');
+            digits.remove_prefix(is_negative ? 1 : 0);
+            const char* const end = digits.data() + digits.size();
+            const std::from_chars_result parsed = std::from_chars(digits.data(), end, magnitude);
+            good = parsed.ec == std::errc() && parsed.ptr == end;
+        }
+        // Two's complement: the negative range is larger by one.
+        good = good && magnitude <= high + (is_signed && is_negative ? 1 : 0)
+               && (is_signed || !is_negative || magnitude == 0) && json.number >= info.meta.min
+               && json.number <= info.meta.max;
+        if (!good) {
+            const bool is_limited = std::isfinite(info.meta.min) && std::isfinite(info.meta.max);
+            const std::string width =
+                is_limited ? std::string() : fmt::format(" of {} bits", bits - (is_signed ? 1 : 0));
+            return unexpected(json, at, expected + width);
+        }
+        const std::uint64_t value = is_negative ? ~magnitude + 1 : magnitude;
+        std::memcpy(field, &value, info.size);  // little-endian
+        return Done{};
+    }
+
+    Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
+        const std::string& text = json.text;
+        const std::size_t digits = text.size() - 1;
+        std::uint32_t code = 0;
+        bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
+        if (good) {
+            const char* const end = text.data() + text.size();
+            const std::from_chars_result parsed = std::from_chars(text.data() + 1, end, code, 16);
+            good = parsed.ec == std::errc() && parsed.ptr == end;
+        }
+        if (!good) {
+            const char* const form = floats.size() == 4 ? "#rrggbb or #rrggbbaa" : "#rrggbb";
+            return unexpected(json, at, std::string("a color as ") + form);
+        }
+        if (digits == 8) {
+            floats[3] = static_cast<float>(code & 0xff) / 255.0f;
+            code >>= 8;
+        }
+        for (int i = 0; i < 3; ++i) {
+            floats[i] =
+                linear_from_srgb(static_cast<float>((code >> (16 - 8 * i)) & 0xff) / 255.0f);
+        }
+        return Done{};
+    }
+
+    Status read_rotation(
+        const JsonValue& json, const FieldInfo& info, Quat& q, const JsonPlace& at) const {
+        const bool is_euler = json.kind == JsonKind::Array && json.items.size() == 3;
+        if (!is_euler && (json.kind != JsonKind::Array || json.items.size() != 4)) {
+            return unexpected(
+                json, at, "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
+        }
+        FieldInfo plain = info;
+        plain.meta = {};
+        float v[4] = {};
+        LIMN_TRY(read_floats(json, plain, {v, json.items.size()}, at));
+        if (is_euler) {
+            q = rotation_from_degrees({v[0], v[1], v[2]});
+            return Done{};
+        }
+        const float largest =
+            std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
+        if (largest == 0.0f) {
+            return error_at(at, json.at, "a quaternion of length 0", "a nonzero one");
+        }
+        // Scaled by the largest component first, so that no square overflows.
+        const Vec4 scaled(v[0] / largest, v[1] / largest, v[2] / largest, v[3] / largest);
+        const Vec4 unit = scaled / std::sqrt(glm::dot(scaled, scaled));
+        q = Quat(unit.w, unit.x, unit.y, unit.z);
+        return Done{};
+    }
+
+    Status read_enum(
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const std::optional<std::uint64_t> value =
+            json.kind == JsonKind::String ? find_enumerator(info, json.text) : std::nullopt;
+        if (!value) {
+            const std::string hint = json.kind == JsonKind::String
+                                         ? did_you_mean(json.text, info.values)
+                                         : std::string();
+            return unexpected(
+                json, at, fmt::format("one of {}", fmt::join(info.values, " ")) + hint);
+        }
+        std::memcpy(field, &*value, info.size);  // little-endian
+        return Done{};
+    }
+
+    Status read_name(
+        const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& at) const {
+        const bool is_entity = info.type == FieldType::Entity;
+        const std::string kind = is_entity ? "entity" : info.asset;
+        if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
+            return unexpected(json, at, "the name of an " + kind + ", or null");
+        }
+        bool found = false;
+        if (is_entity) {
+            Entity& entity = *static_cast<Entity*>(field);
+            std::optional<Entity> named = Entity{};
+            if (json.kind == JsonKind::String) {
+                named = names.entity ? names.entity(json.text, json.at) : std::nullopt;
+            }
+            found = named.has_value();
+            entity = named.value_or(Entity{});
+        } else {
+            std::optional<std::uint32_t> index = std::numeric_limits<std::uint32_t>::max();
+            if (json.kind == JsonKind::String) {
+                index = names.asset ? names.asset(kind, json.text) : std::nullopt;
+            }
+            found = index.has_value();
+            const std::uint32_t value = index.value_or(0);
+            std::memcpy(field, &value, sizeof(value));
+        }
+        if (!found) {
+            const std::vector<std::string_view> all =
+                names.all ? names.all(kind) : std::vector<std::string_view>();
+            return error_at(
+                at, json.at, fmt::format("the {} {}", kind, in_quotes(json.text)),
+                (all.empty() ? "none, since no names of that kind exist here" : "an existing name")
+                    + did_you_mean(json.text, all));
+        }
+        return Done{};
+    }
+};
+
+/// Constraints beyond the ranges of single fields; empty when satisfied.
+std::string constraint_error(const ComponentInfo& info, const void* object) {
     if (&info == &component_info<Transform>()) {
         const Vec3 scale = static_cast<const Transform*>(object)->scale;
         if (scale.x == 0.0f || scale.y == 0.0f || scale.z == 0.0f) {
-            return "found a scale of 0, expected one along each axis";
+            return "found a scale of 0, expected a nonzero scale along each axis";
         }
     }
     if (&info == &component_info<SpotLight>()) {
         const auto* light = static_cast<const SpotLight*>(object);
         if (light->inner_angle > light->outer_angle) {
             return fmt::format(
-                "found an inner_angle {} beyond the outer_angle {}, expected at most that",
+                "found an inner_angle {} above the outer_angle {}, expected at most that",
                 light->inner_angle, light->outer_angle);
         }
     }
     if (&info == &component_info<Environment>()) {
         const auto* environment = static_cast<const Environment*>(object);
         if (environment->sky == SkyKind::Panorama && environment->panorama.index == kNoAsset) {
-            return "found a sky that is a panorama without the image \"panorama\", expected both";
+            return "found a panorama sky without the image \"panorama\", expected both";
         }
     }
     return "";
@@ -446,7 +378,7 @@ JsonValue write_integer(const FieldInfo& info, const void* field) {
 }
 
 JsonValue
-write_fields(const std::vector<FieldInfo>& fields, const void* object, const GiveNames& names) {
+write_fields(const std::vector<FieldInfo>& fields, const void* object, const NameProvider& names) {
     JsonValue json = json_object();
     for (const FieldInfo& field : fields) {
         json.members.push_back(
@@ -459,7 +391,7 @@ JsonValue write_name(const std::string& name) {
     return name.empty() ? JsonValue() : json_of(std::string_view(name));
 }
 
-JsonValue write_one(const FieldInfo& info, const void* field, const GiveNames& names) {
+JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider& names) {
     switch (info.type) {
     case FieldType::Bool:
         return json_of(*static_cast<const bool*>(field));
@@ -515,42 +447,77 @@ Error error_at(
     return fail("{}: found {}, expected {}", line, found, expected);
 }
 
+Error unexpected(const JsonValue& json, const JsonPlace& place, std::string_view expected) {
+    return error_at(place, json.at, describe(json), expected);
+}
+
+JsonPlace item_in(const JsonPlace& place, std::size_t index) {
+    return {place.file, fmt::format("{}[{}]", place.path, index)};
+}
+
+JsonPlace place_in(const JsonPlace& place, std::string_view key) {
+    return {
+        place.file, place.path.empty() ? std::string(key) : fmt::format("{}.{}", place.path, key)};
+}
+
+Status
+expect(const JsonValue& json, JsonKind kind, const JsonPlace& place, std::string_view expected) {
+    return json.kind == kind ? Status(Done{}) : unexpected(json, place, expected);
+}
+
+Status expect_keys(
+    const JsonValue& json, const JsonPlace& place, std::span<const std::string_view> known,
+    std::string_view expected) {
+    LIMN_TRY(expect(json, JsonKind::Object, place, expected));
+    for (const JsonMember& member : json.members) {
+        if (std::find(known.begin(), known.end(), member.key) == known.end()) {
+            return error_at(
+                place, member.at, "the key " + in_quotes(member.key),
+                fmt::format("one of {}", fmt::join(known, " ")) + did_you_mean(member.key, known));
+        }
+    }
+    return Done{};
+}
+
+Result<double>
+expect_number(const JsonValue& json, double min, double max, const JsonPlace& place) {
+    if (json.kind != JsonKind::Number || json.number < min || json.number > max) {
+        return unexpected(json, place, fmt::format("a number {} .. {}", min, max));
+    }
+    return json.number;
+}
+
 Status read_component(
     const JsonValue& json, const ComponentInfo& info, void* object, const JsonPlace& place,
-    const FindNames& names) {
-    Status status = Reader{place, names}.read_fields(json, info.fields, object, place.path);
-    if (!status) {
-        return status;
-    }
-    if (const std::string problem = misfit(info, object); !problem.empty()) {
+    const NameResolver& names) {
+    LIMN_TRY(Reader{names}.read_fields(json, info.fields, object, place));
+    if (const std::string problem = constraint_error(info, object); !problem.empty()) {
         return fail(
             "{}:{}:{}: {}: {}", place.file, json.at.line, json.at.column, place.path, problem);
     }
-    return status;
+    return Done{};
 }
 
 Result<AnyComponent> read_component(
     const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
-    const FindNames& names) {
+    const NameResolver& names) {
     AnyComponent component(info);
-    const Status status = read_component(json, info, component.data(), place, names);
-    if (!status) {
-        return status.error();
-    }
+    LIMN_TRY(read_component(json, info, component.data(), place, names));
     return component;
 }
 
 Status read_field(
     const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
-    const FindNames& names) {
-    return Reader{place, names}.read_shape(json, info, field, place.path);
+    const NameResolver& names) {
+    return Reader{names}.read_shape(json, info, field, place);
 }
 
-JsonValue write_component(const ComponentInfo& info, const void* object, const GiveNames& names) {
+JsonValue
+write_component(const ComponentInfo& info, const void* object, const NameProvider& names) {
     return write_fields(info.fields, object, names);
 }
 
-JsonValue write_field(const FieldInfo& info, const void* field, const GiveNames& names) {
+JsonValue write_field(const FieldInfo& info, const void* field, const NameProvider& names) {
     if (info.shape == FieldShape::One) {
         return write_one(info, field, names);
     }
@@ -583,8 +550,16 @@ void for_each_asset(
     }
 }
 
+AnyComponent* find_in(std::span<AnyComponent> components, ComponentId id) {
+    const auto found =
+        std::find_if(components.begin(), components.end(), [id](const AnyComponent& c) {
+            return c.info().id == id;
+        });
+    return found == components.end() ? nullptr : &*found;
+}
+
 Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {
-    // In double, so that the angles of a quarter turn give exact-looking matrices.
+    // In double, so that multiples of 90 degrees give nearly exact matrices.
     const auto about = [](double angle_deg, int axis) {
         const double half = angle_deg * (3.14159265358979323846 / 360.0);
         glm::dquat q(std::cos(half), 0.0, 0.0, 0.0);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr float kLargestHalf = 65504.0f;
 
-/// Bounds what OpenEXR itself allocates for a header, before our own limits are asked.
+/// Limits what OpenEXR allocates for a header, before our own limits are checked.
 constexpr int kLibraryMaxSize = 65536;
 
 class MemoryReader : public Imf::IStream {
@@ -34,7 +34,7 @@ class MemoryReader : public Imf::IStream {
         : IStream(place.c_str()), bytes_(bytes) {}
     bool read(char c[], int n) override {
         if (n < 0 || static_cast<std::uint64_t>(n) > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends early");
+            throw std::runtime_error("the file is truncated");
         }
         std::memcpy(c, bytes_.data() + position_, static_cast<std::size_t>(n));
         position_ += static_cast<std::size_t>(n);
@@ -43,7 +43,7 @@ class MemoryReader : public Imf::IStream {
     std::uint64_t tellg() override { return position_; }
     void seekg(std::uint64_t position) override {
         if (position > bytes_.size()) {
-            throw std::runtime_error("the file ends early");
+            throw std::runtime_error("the file is truncated");
         }
         position_ = position;
     }
@@ -72,12 +72,12 @@ class MemoryWriter : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
-/// What of the format we do not read; checked before OpenEXR sees the file.
+/// Rejects unsupported kinds of files before OpenEXR reads them.
 Status check_kind(std::span<const std::byte> bytes, const std::string& place) {
     constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
     if (bytes.size() < 8 || std::memcmp(bytes.data(), kMagic, 4) != 0) {
         return fail(
-            "{}: found {} bytes without the mark of OpenEXR, expected 76 2f 31 01", place,
+            "{}: found {} bytes without the OpenEXR signature, expected 76 2f 31 01", place,
             bytes.size());
     }
     const auto version = std::to_integer<unsigned>(bytes[4]);
@@ -128,16 +128,12 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
 
 Result<ExrImage>
 decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits) {
-    if (Status status = check_kind(bytes, place); !status) {
-        return status.error();
-    }
+    LIMN_TRY(check_kind(bytes, place));
     Imf::Header::setMaxImageSize(kLibraryMaxSize, kLibraryMaxSize);
     MemoryReader reader(bytes, place);
     Imf::InputFile file(reader);
     const Imf::Header& header = file.header();
-    if (Status status = check_header(header, place, limits); !status) {
-        return status.error();
-    }
+    LIMN_TRY(check_header(header, place, limits));
     const Imath::Box2i& window = header.dataWindow();
 
     ExrImage image;
@@ -218,7 +214,7 @@ std::vector<std::byte> encode(const ExrImage& image, ExrCompression compression)
     return std::move(writer.bytes);
 }
 
-/// First line of a library's message.
+/// The first line of a library's message.
 std::string one_line(std::string message) {
     message.resize(std::min(message.find('\n'), message.size()));
     return message;
@@ -227,11 +223,8 @@ std::string one_line(std::string message) {
 }  // namespace
 
 Result<ExrImage> read_exr(const std::string& path, const ExrLimits& limits) {
-    const Result<std::vector<std::byte>> bytes = read_file(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    return decode_exr(*bytes, path, limits);
+    const std::vector<std::byte> bytes = LIMN_TRY(read_file(path));
+    return decode_exr(bytes, path, limits);
 }
 
 Result<ExrImage>
@@ -239,7 +232,7 @@ decode_exr(std::span<const std::byte> bytes, const std::string& place, const Exr
     try {
         return decode(bytes, place, limits);
     } catch (const std::exception& exception) {
-        return fail("{}: broken OpenEXR file: {}", place, one_line(exception.what()));
+        return fail("{}: corrupt OpenEXR file: {}", place, one_line(exception.what()));
     }
 }
 

@@ -14,11 +14,10 @@ namespace limn {
 
 struct ImageData;
 
-// OpenEXR pictures with any number of named channels (hdr.openexr): linear light for further work,
-// and the buffers a frame was made from. A layer is a prefix: "normal.X", "normal.Y", "normal.Z";
-// the picture itself is R, G, B and A without one. Values are floats in memory whatever the file
-// holds: a half goes through a float and back without a change (hdr.float-formats); a 32 bit
-// integer rounds to a float.
+// OpenEXR images with any number of named channels (hdr.openexr): linear color and AOVs. A layer is
+// a channel prefix: "normal.X", "normal.Y", "normal.Z"; the color is R, G, B and A without one.
+// Values are floats in memory whatever the file holds: half to float and back is lossless
+// (hdr.float-formats); a 32 bit integer rounds to a float.
 //
 // Scan-line files of one part; tiled, deep, multi-part and subsampled (luminance/chroma) files are
 // errors that say so.
@@ -32,11 +31,11 @@ struct ExrChannel {
 };
 
 struct ExrImage {
-    int width = 0;   ///< of the data window [pixels], > 0
-    int height = 0;  ///< of the data window [pixels], > 0
-    int x = 0;       ///< where the data window begins
-    int y = 0;
-    std::vector<ExrChannel> channels = {};  ///< names differ; the file orders them by name
+    int width = 0;                          ///< of the data window [pixels], > 0
+    int height = 0;                         ///< of the data window [pixels], > 0
+    int x = 0;                              ///< left edge of the data window [pixels]
+    int y = 0;                              ///< top edge of the data window [pixels]
+    std::vector<ExrChannel> channels = {};  ///< unique names; the file sorts them by name
     std::vector<std::pair<std::string, std::string>> metadata = {};  ///< text attributes by name
 };
 
@@ -49,18 +48,17 @@ struct ExrLimits {
 /// Reads the file `path`. Fails with "path: found X, expected Y".
 [[nodiscard]] Result<ExrImage> read_exr(const std::string& path, const ExrLimits& limits = {});
 
-/// The same from memory; `place` begins the message of an error.
+/// The same from memory; `place` is the prefix of error messages.
 [[nodiscard]] Result<ExrImage> decode_exr(
     std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits = {});
 
-/// Writes the file whole or not at all. Finite values beyond the range of a half become its
-/// largest, 65504, in half channels; infinities and NaN stay what they are.
+/// Writes the file atomically. Half channels clamp finite values to +-65504 and keep inf and NaN.
 [[nodiscard]] Status write_exr(
     const std::string& path, const ExrImage& image,
     ExrCompression compression = ExrCompression::Zip);
 
 /// Appends the channels "layer.X" ... for the letters of `letters`, from interleaved `values` with
-/// one value a letter. An empty `layer` gives plain "R", "G" ...
+/// one value per letter. An empty `layer` gives plain "R", "G" ...
 void add_layer(
     ExrImage& image, std::string_view layer, std::string_view letters,
     std::span<const float> values, bool half);
@@ -68,7 +66,7 @@ void add_layer(
 /// The channel called `name`, or null.
 [[nodiscard]] const ExrChannel* find_channel(const ExrImage& image, std::string_view name);
 
-/// Replaces NaN by 0 and infinities by the largest half of their sign; returns how many there were.
+/// Replaces NaN by 0 and infinities by +-65504; returns how many values were replaced.
 std::size_t replace_non_finite(std::span<float> values);
 
 /// R, G, B and A as an image for a texture: Rgba16F where all are half, else Rgba32F. Without R, G

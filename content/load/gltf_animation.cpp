@@ -1,6 +1,4 @@
-#include "content/load/gltf_animation.h"
-
-#include "content/load/gltf_accessor.h"
+#include "content/load/gltf_document.h"
 #include "ecs/base/rotation.h"
 #include "ecs/base/text.h"
 
@@ -16,9 +14,9 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kMostJoints = std::numeric_limits<std::uint16_t>::max();
+constexpr std::size_t kMaxJoints = std::numeric_limits<std::uint16_t>::max();
 
-/// What a channel moves.
+/// What a channel animates.
 enum class Path : std::uint8_t { Rotation, Translation, Scale, Weights };
 constexpr std::pair<std::string_view, Path> kPaths[] = {
     {"rotation", Path::Rotation},
@@ -26,24 +24,11 @@ constexpr std::pair<std::string_view, Path> kPaths[] = {
     {"scale", Path::Scale},
     {"weights", Path::Weights}};
 
-constexpr std::pair<std::string_view, Interpolation> kInterpolations[] = {
-    {"LINEAR", Interpolation::Linear},
-    {"STEP", Interpolation::Step},
-    {"CUBICSPLINE", Interpolation::Cubic}};
-
-const JsonValue& member(const JsonValue& object, std::string_view key) {
-    return *object.find(key);  // gltf_schema.cpp has seen it
-}
-
-std::size_t index_in(const JsonValue& number) {
-    return static_cast<std::size_t>(number.number);
-}
-
 /// One joint's keys of one kind, or those of a node's morph weights.
 struct Channel {
     Path path = Path::Rotation;
-    std::uint16_t subject = 0;  ///< the joint; the first of the weights
-    std::size_t count = 1;      ///< of weights, as many a row
+    std::uint16_t subject = 0;  ///< the joint, or the first of the weights
+    std::size_t count = 1;      ///< of weights per row
     std::vector<float> values;  ///< of the sampler's output
 };
 
@@ -54,12 +39,12 @@ struct ChannelGroup {
     std::vector<Channel> channels;
 };
 
-/// Rows of its sheet; cubic keys have three.
+/// Rows of its sheet; a cubic key has three.
 std::size_t height_of(const ChannelGroup& group) {
     return group.times.size() * (group.interpolation == Interpolation::Cubic ? 3 : 1);
 }
 
-/// The keys of all channels of one kind as rows, a value a joint; cubic keys are three rows.
+/// The keys of all channels of one kind as rows of one value per joint; cubic keys are three rows.
 template <typename T>
 void fill_rows(
     const ChannelGroup& group, Path path, std::vector<std::uint16_t>& joints, std::vector<T>& rows,
@@ -81,7 +66,7 @@ void fill_rows(
     }
 }
 
-/// As above; a channel has several neighboring weights.
+/// The same for weights, of which a channel has several consecutive ones.
 void fill_weights(const ChannelGroup& group, ClipSheet& sheet) {
     for (const Channel& channel : group.channels) {
         for (std::size_t i = 0; channel.path == Path::Weights && i < channel.count; ++i) {
@@ -110,17 +95,12 @@ Quat quaternion_of(const float* numbers) {
 class AnimationBuilder {
   public:
     AnimationBuilder(GltfDocument& document, GltfScene& scene)
-        : document_(document), scene_(scene), animations_(document.json.find("animations")) {}
+        : document_(document), scene_(scene), animations_(document.json["animations"].items) {}
 
     Status build() {
-        for (const auto step :
-             {&AnimationBuilder::find_joints, &AnimationBuilder::add_skins,
-              &AnimationBuilder::add_clips}) {
-            if (Status status = (this->*step)(); !status) {
-                return status;
-            }
-        }
-        return Done{};
+        LIMN_TRY(find_joints());
+        LIMN_TRY(add_skins());
+        return add_clips();
     }
 
   private:
@@ -129,76 +109,62 @@ class AnimationBuilder {
     }
 
     /// The node of the scene that node `node` of the file became, -1 for none.
-    [[nodiscard]] std::int32_t scene_node(std::size_t node) const {
-        return document_.scene_nodes[node];
+    [[nodiscard]] std::int32_t scene_node(const JsonValue& node) const {
+        const std::int32_t index = index_of(node);
+        return index >= 0 ? document_.scene_nodes[static_cast<std::size_t>(index)] : -1;
     }
 
-    template <typename Visit>
-    void each_channel(Visit&& visit) const {
-        if (animations_ == nullptr) {
-            return;
-        }
-        for (const JsonValue& animation : animations_->items) {
-            for (const JsonValue& channel : member(animation, "channels").items) {
-                visit(channel);
-            }
-        }
-    }
-
-    /// The nodes that a skin in use or a channel names.
+    /// The nodes that a skin in use or a channel references.
     Result<std::vector<bool>> find_moving_nodes() {
         std::vector<bool> moves(scene_.nodes.size(), false);
         for (const GltfNode& node : scene_.nodes) {
             if (node.skin >= 0) {
                 const auto skin = static_cast<std::size_t>(node.skin);
-                for (const int joint : document_.model.skins[skin].joints) {
-                    const std::int32_t found = scene_node(static_cast<std::size_t>(joint));
+                for (const JsonValue& joint : document_.json["skins"].items[skin]["joints"].items) {
+                    const std::int32_t found = scene_node(joint);
                     if (found < 0) {
                         return fail(
                             "{}.joints: found node {}, which is not in the scene", skin_place(skin),
-                            joint);
+                            index_of(joint));
                     }
                     moves[static_cast<std::size_t>(found)] = true;
                 }
             }
         }
-        each_channel([&](const JsonValue& channel) {
-            const JsonValue& target = member(channel, "target");
-            const JsonValue* node =
-                member(target, "path").text == "weights" ? nullptr : target.find("node");
-            const std::int32_t found = node != nullptr ? scene_node(index_in(*node)) : -1;
-            if (found >= 0) {
-                moves[static_cast<std::size_t>(found)] = true;
+        for (const JsonValue& animation : animations_) {
+            for (const JsonValue& channel : animation["channels"].items) {
+                const JsonValue& target = channel["target"];
+                const std::int32_t found = scene_node(target["node"]);
+                if (found >= 0 && target["path"].text != "weights") {
+                    moves[static_cast<std::size_t>(found)] = true;
+                }
             }
-        });
+        }
         return moves;
     }
 
     Status find_joints() {
-        Result<std::vector<bool>> moves = find_moving_nodes();
-        if (!moves) {
-            return moves.error();
-        }
-        // Parents are before their children: from the end on, each tells the one above it.
+        std::vector<bool> moves = LIMN_TRY(find_moving_nodes());
+        // Parents come before their children: propagate from the end to the ancestors.
         for (std::size_t i = scene_.nodes.size(); i-- > 0;) {
-            if ((*moves)[i] && scene_.nodes[i].parent >= 0) {
-                (*moves)[static_cast<std::size_t>(scene_.nodes[i].parent)] = true;
+            if (moves[i] && scene_.nodes[i].parent >= 0) {
+                moves[static_cast<std::size_t>(scene_.nodes[i].parent)] = true;
             }
         }
         scene_.joints.assign(scene_.nodes.size(), -1);
-        const auto count = static_cast<std::size_t>(std::count(moves->begin(), moves->end(), true));
+        const auto count = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), true));
         if (count == 0) {
             return Done{};
         }
-        if (count >= kMostJoints) {
+        if (count >= kMaxJoints) {
             return fail(
-                "{}: nodes: found {} that move, expected at most {}", document_.file, count,
-                kMostJoints - 1);
+                "{}: nodes: found {} animated, expected at most {}", document_.file, count,
+                kMaxJoints - 1);
         }
         scene_.skeleton.name = scene_.name;
         add_joint(scene_.name, -1, {});
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
-            if ((*moves)[i]) {
+            if (moves[i]) {
                 const GltfNode& node = scene_.nodes[i];
                 const std::int32_t parent =
                     node.parent < 0 ? 0 : scene_.joints[static_cast<std::size_t>(node.parent)];
@@ -221,12 +187,12 @@ class AnimationBuilder {
         skeleton.rest.scales.push_back(rest.scale);
     }
 
-    [[nodiscard]] std::uint16_t joint_of(std::size_t node) const {
+    [[nodiscard]] std::uint16_t joint_of(const JsonValue& node) const {
         return static_cast<std::uint16_t>(
             scene_.joints[static_cast<std::size_t>(scene_node(node))]);
     }
 
-    /// Those that a node uses, in the order of the first use; nodes name them by the new number.
+    /// Adds the skins in use, in order of first use, and updates the indices of the nodes.
     Status add_skins() {
         std::map<std::int32_t, std::int32_t> numbers;
         for (GltfNode& node : scene_.nodes) {
@@ -236,9 +202,7 @@ class AnimationBuilder {
             const auto [number, is_new] =
                 numbers.try_emplace(node.skin, static_cast<std::int32_t>(scene_.skins.size()));
             if (is_new) {
-                if (Status status = add_skin(static_cast<std::size_t>(node.skin)); !status) {
-                    return status;
-                }
+                LIMN_TRY(add_skin(static_cast<std::size_t>(node.skin)));
             }
             node.skin = number->second;
         }
@@ -246,27 +210,24 @@ class AnimationBuilder {
     }
 
     Status add_skin(std::size_t index) {
-        const tinygltf::Skin& source = document_.model.skins[index];
+        const JsonValue& source = document_.json["skins"].items[index];
         SkinData skin;
-        skin.name = source.name;
-        for (const int joint : source.joints) {
-            skin.joints.push_back(joint_of(static_cast<std::size_t>(joint)));
+        skin.name = source["name"].text;
+        for (const JsonValue& joint : source["joints"].items) {
+            skin.joints.push_back(joint_of(joint));
         }
         skin.joint_from_mesh.resize(skin.joints.size());
-        if (source.inverseBindMatrices >= 0) {
+        if (const JsonValue* const matrices = source.find("inverseBindMatrices")) {
             const std::string place = skin_place(index) + ".inverseBindMatrices";
-            const Result<std::vector<float>> values =
-                read_floats(document_, source.inverseBindMatrices, 16, place);
-            if (!values) {
-                return values.error();
-            }
-            if (values->size() < 16 * skin.joints.size()) {
+            const std::vector<float> values =
+                LIMN_TRY(read_floats(document_, index_of(*matrices), 16, place));
+            if (values.size() < 16 * skin.joints.size()) {
                 return fail(
                     "{}: found {} matrices, expected one for each of {} joints", place,
-                    values->size() / 16, skin.joints.size());
+                    values.size() / 16, skin.joints.size());
             }
             for (std::size_t i = 0; i < skin.joints.size(); ++i) {
-                const float* columns = values->data() + 16 * i;
+                const float* columns = values.data() + 16 * i;
                 for (int row = 0; row < 3; ++row) {
                     skin.joint_from_mesh[i].row[row] = {
                         columns[row], columns[4 + row], columns[8 + row], columns[12 + row]};
@@ -281,14 +242,11 @@ class AnimationBuilder {
     }
 
     Status add_clips() {
-        const std::size_t count = animations_ != nullptr ? animations_->items.size() : 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const JsonValue& animation = animations_->items[i];
+        for (std::size_t i = 0; i < animations_.size(); ++i) {
+            const JsonValue& animation = animations_[i];
             place_ = fmt::format("{}: animations[{}]", document_.file, i);
             groups_.clear();
-            if (Status status = read_channels(animation); !status) {
-                return status;
-            }
+            LIMN_TRY(read_channels(animation));
             const JsonValue* name = animation.find("name");
             ClipData clip;
             clip.name = name != nullptr ? name->text : fmt::format("clip {}", i);
@@ -307,30 +265,31 @@ class AnimationBuilder {
     }
 
     Status read_channels(const JsonValue& animation) {
-        const std::vector<JsonValue>& samplers = member(animation, "samplers").items;
-        const std::vector<JsonValue>& channels = member(animation, "channels").items;
+        const std::vector<JsonValue>& samplers = animation["samplers"].items;
+        const std::vector<JsonValue>& channels = animation["channels"].items;
         for (std::size_t i = 0; i < channels.size(); ++i) {
-            const std::size_t sampler = index_in(member(channels[i], "sampler"));
+            const auto sampler = static_cast<std::size_t>(channels[i]["sampler"].number);
             if (sampler >= samplers.size()) {
                 return fail(
                     "{}.channels[{}].sampler: found the number {}, expected an index below {}",
                     place_, i, sampler, samplers.size());
             }
-            const JsonValue& target = member(channels[i], "target");
-            const JsonValue* node = target.find("node");
-            if (node == nullptr || scene_node(index_in(*node)) < 0) {
-                continue;  // as the specification wants; and what is in no scene moves nothing
+            const JsonValue& target = channels[i]["target"];
+            const JsonValue& node = target["node"];
+            if (scene_node(node) < 0) {
+                continue;  // ignored, as specified; nodes outside of the scene likewise
             }
-            const std::string& name = member(target, "path").text;
+            const std::string& name = target["path"].text;
             const auto* path =
                 std::find_if(std::begin(kPaths), std::end(kPaths), [&](const auto& known) {
                     return known.first == name;
                 });
             const bool is_weights = path != std::end(kPaths) && path->second == Path::Weights;
-            const GltfMorphs& morphs = document_.node_morphs[index_in(*node)];
+            const GltfMorphs& morphs =
+                document_.node_morphs[static_cast<std::size_t>(index_of(node))];
             if (path == std::end(kPaths) || (is_weights && morphs.count == 0)) {
                 document_.warnings.push_back(fmt::format(
-                    "{}.channels[{}].target.path: {} is left out", place_, i, in_quotes(name)));
+                    "{}.channels[{}].target.path: {} is ignored", place_, i, in_quotes(name)));
                 continue;
             }
             const std::string place = fmt::format("{}.samplers[{}]", place_, sampler);
@@ -339,53 +298,40 @@ class AnimationBuilder {
                 moved.subject = static_cast<std::uint16_t>(morphs.first);
                 moved.count = morphs.count;
             } else {
-                moved.subject = joint_of(index_in(*node));
+                moved.subject = joint_of(node);
             }
-            if (Status status = read_sampler(samplers[sampler], place, std::move(moved)); !status) {
-                return status;
-            }
+            LIMN_TRY(read_sampler(samplers[sampler], place, std::move(moved)));
         }
         return Done{};
     }
 
-    /// Reads the sampler's output into `channel` and puts it with the others of its times.
+    /// Reads the sampler's output into `channel` and adds that to the group with its times.
     Status read_sampler(const JsonValue& sampler, const std::string& place, Channel channel) {
-        const JsonValue* word = sampler.find("interpolation");
-        Interpolation interpolation = Interpolation::Linear;
-        for (const auto& [name, value] : kInterpolations) {
-            interpolation = word != nullptr && word->text == name ? value : interpolation;
-        }
-        const auto input = static_cast<int>(index_in(member(sampler, "input")));
+        const std::string& word = sampler["interpolation"].text;
+        const Interpolation interpolation = word == "STEP"          ? Interpolation::Step
+                                            : word == "CUBICSPLINE" ? Interpolation::Cubic
+                                                                    : Interpolation::Linear;
+        const std::int32_t input = index_of(sampler["input"]);
         ChannelGroup& group = groups_[{input, interpolation}];
         if (group.times.empty()) {
-            Result<std::vector<float>> times = read_floats(document_, input, 1, place + ".input");
-            if (!times) {
-                return times.error();
-            }
-            group.times = std::move(*times);
+            group.times = LIMN_TRY(read_floats(document_, input, 1, place + ".input"));
             group.interpolation = interpolation;
         }
         const int width = channel.path == Path::Weights    ? 1
                           : channel.path == Path::Rotation ? 4
                                                            : 3;
-        const auto output = static_cast<int>(index_in(member(sampler, "output")));
-        Result<std::vector<float>> values =
-            read_floats(document_, output, width, place + ".output");
-        if (!values) {
-            return values.error();
-        }
+        channel.values =
+            LIMN_TRY(read_floats(document_, index_of(sampler["output"]), width, place + ".output"));
         const std::size_t expected = height_of(group) * channel.count;
-        const std::size_t found = values->size() / static_cast<std::size_t>(width);
+        const std::size_t found = channel.values.size() / static_cast<std::size_t>(width);
         if (found != expected) {
             return fail(
                 "{}.output: found {} values, expected {} for {} keys{}{}", place, found, expected,
                 group.times.size(),
                 channel.path == Path::Weights ? fmt::format(" of {} morph targets", channel.count)
                                               : "",
-                interpolation == Interpolation::Cubic ? ", with a slope on both sides of each"
-                                                      : "");
+                interpolation == Interpolation::Cubic ? ", with in- and out-tangents" : "");
         }
-        channel.values = std::move(*values);
         group.channels.push_back(std::move(channel));
         return Done{};
     }
@@ -398,38 +344,39 @@ class AnimationBuilder {
         fill_rows(group, Path::Translation, sheet.translating, sheet.translations, vector_of);
         fill_rows(group, Path::Scale, sheet.scaling, sheet.scales, vector_of);
         fill_weights(group, sheet);
-        make_unit_and_near(sheet);
+        normalize_rotations(sheet);
         return sheet;
     }
 
-    /// Rotations of length 1, each near the one before it; the slopes of cubic keys follow them.
-    static void make_unit_and_near(ClipSheet& sheet) {
+    /// Normalizes rotations, each in the hemisphere of the previous key; scales tangents of cubic
+    /// keys alike.
+    static void normalize_rotations(ClipSheet& sheet) {
         const bool is_cubic = sheet.interpolation == Interpolation::Cubic;
         const std::size_t joints = sheet.rotating.size();
         const std::size_t step = (is_cubic ? 3 : 1) * joints;
         const std::size_t value = is_cubic ? joints : 0;
         for (std::size_t joint = 0; joint < joints; ++joint) {
-            const Quat* before = nullptr;
+            const Quat* previous = nullptr;
             for (std::size_t at = joint; at < sheet.rotations.size(); at += step) {
                 Quat& key = sheet.rotations[at + value];
                 const float length = glm::length(key);
                 const float sign =
-                    before != nullptr && glm::dot(*before, key) < 0.0f ? -1.0f : 1.0f;
+                    previous != nullptr && glm::dot(*previous, key) < 0.0f ? -1.0f : 1.0f;
                 const float factor = length > 1e-6f ? sign / length : sign;
                 for (std::size_t part = 0; part < step; part += joints) {
                     sheet.rotations[at + part] *= factor;
                 }
-                before = &key;
+                previous = &key;
             }
         }
     }
 
     GltfDocument& document_;
     GltfScene& scene_;
-    const JsonValue* animations_;
+    const std::vector<JsonValue>& animations_;
     std::string place_;  ///< of the animation being read
     /// By input accessor and interpolation.
-    std::map<std::pair<int, Interpolation>, ChannelGroup> groups_;
+    std::map<std::pair<std::int32_t, Interpolation>, ChannelGroup> groups_;
 };
 
 }  // namespace

@@ -1,6 +1,4 @@
-#include "content/load/gltf_deform.h"
-
-#include "content/load/gltf_accessor.h"
+#include "content/load/gltf_document.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -14,11 +12,11 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kWidth = 4;  ///< influences a vertex of one set
-constexpr double kMostOff = 1e-3;  ///< of a sum of weights from 1
-/// What rounding may make of a weight of 0.
-constexpr float kLeastWeight = -1e-3f;
-/// [m]; as that of positions.
+constexpr std::size_t kWidth = 4;       ///< influences per vertex of one set
+constexpr double kMaxDeviation = 1e-3;  ///< of a sum of weights from 1
+/// What a weight of 0 may become by rounding.
+constexpr float kMinWeight = -1e-3f;
+/// [m]; same as for positions.
 constexpr float kLargestOffset = 1e9f;
 
 using Influence = std::pair<std::uint16_t, double>;
@@ -32,53 +30,46 @@ struct InfluenceSet {
 };
 
 Result<std::vector<float>> read_attribute(
-    GltfDocument& document, const GltfVertices& vertices, int accessor, int width,
+    GltfDocument& document, const GltfVertices& vertices, const JsonValue& accessor, int width,
     const std::string& place) {
-    Result<std::vector<float>> values = read_floats(document, accessor, width, place);
-    if (values && values->size() != vertices.count * static_cast<std::size_t>(width)) {
+    std::vector<float> values = LIMN_TRY(read_floats(document, index_of(accessor), width, place));
+    if (values.size() != vertices.count * static_cast<std::size_t>(width)) {
         return fail(
             "{}: found {} elements, expected as many as POSITION has, {}", place,
-            values->size() / static_cast<std::size_t>(width), vertices.count);
+            values.size() / static_cast<std::size_t>(width), vertices.count);
     }
     return values;
 }
 
 Result<std::vector<InfluenceSet>>
 read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
-    const auto& attributes = vertices.primitive.attributes;
+    const JsonValue& attributes = vertices.primitive["attributes"];
     std::vector<InfluenceSet> sets;
     for (int n = 0;; ++n) {
-        const auto joints = attributes.find(fmt::format("JOINTS_{}", n));
-        const auto weights = attributes.find(fmt::format("WEIGHTS_{}", n));
-        if (joints == attributes.end() && weights == attributes.end()) {
+        const std::string names[] = {fmt::format("JOINTS_{}", n), fmt::format("WEIGHTS_{}", n)};
+        const JsonValue* const joints = attributes.find(names[0]);
+        const JsonValue* const weights = attributes.find(names[1]);
+        if (joints == nullptr && weights == nullptr) {
             return sets;
         }
-        if (joints == attributes.end() || weights == attributes.end()) {
+        if (joints == nullptr || weights == nullptr) {
             return fail(
-                "{}.attributes: found {} alone, expected JOINTS_{} and WEIGHTS_{}", vertices.place,
-                joints == attributes.end() ? weights->first : joints->first, n, n);
+                "{}.attributes: found {} alone, expected {} and {}", vertices.place,
+                names[joints == nullptr ? 1 : 0], names[0], names[1]);
         }
         InfluenceSet set;
-        set.joints_place = fmt::format("{}.attributes.{}", vertices.place, joints->first);
-        set.weights_place = fmt::format("{}.attributes.{}", vertices.place, weights->first);
-        const int type =
-            document.model.accessors[static_cast<std::size_t>(joints->second)].componentType;
-        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
-            && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
+        set.joints_place = fmt::format("{}.attributes.{}", vertices.place, names[0]);
+        set.weights_place = fmt::format("{}.attributes.{}", vertices.place, names[1]);
+        const int type = accessor_at(document, index_of(*joints)).type;
+        if (type != kGltfUnsignedByte && type != kGltfUnsignedShort) {
             return fail(
                 "{}: accessors[{}].componentType: found {}, expected 5121 or 5123",
-                set.joints_place, joints->second, type);
+                set.joints_place, index_of(*joints), type);
         }
-        for (const auto& [accessor, place, target] :
-             {std::tuple(joints->second, &set.joints_place, &set.joints),
-              std::tuple(weights->second, &set.weights_place, &set.weights)}) {
-            Result<std::vector<float>> values =
-                read_attribute(document, vertices, accessor, kWidth, *place);
-            if (!values) {
-                return values.error();
-            }
-            *target = std::move(*values);
-        }
+        set.joints =
+            LIMN_TRY(read_attribute(document, vertices, *joints, kWidth, set.joints_place));
+        set.weights =
+            LIMN_TRY(read_attribute(document, vertices, *weights, kWidth, set.weights_place));
         sets.push_back(std::move(set));
     }
 }
@@ -102,7 +93,7 @@ void append_influences(SkinWeights& skin, std::vector<Influence>& influences, do
     const std::size_t begin = skin.joints.size();
     for (const auto& [joint, weight] : influences) {
         const auto share = static_cast<float>(weight / sum);
-        if (share == 0.0f) {  // beside one that is larger by far
+        if (share == 0.0f) {  // negligible next to the others
             continue;
         }
         if (skin.joints.size() > begin && skin.joints.back() == joint) {
@@ -114,7 +105,7 @@ void append_influences(SkinWeights& skin, std::vector<Influence>& influences, do
     }
 }
 
-/// The influences of vertex `vertex` of the file, those without weight left out.
+/// The influences of vertex `vertex` of the file, without zero weights.
 Status gather_influences(
     const std::vector<InfluenceSet>& sets, std::uint32_t vertex, std::size_t joints,
     std::vector<Influence>& influences) {
@@ -122,7 +113,7 @@ Status gather_influences(
     for (const InfluenceSet& set : sets) {
         for (std::size_t i = kWidth * vertex; i < kWidth * (vertex + std::size_t{1}); ++i) {
             const float weight = set.weights[i];
-            if (weight < kLeastWeight) {
+            if (weight < kMinWeight) {
                 return fail(
                     "{}: found {} in element {}, expected at least 0", set.weights_place, weight,
                     vertex);
@@ -142,11 +133,7 @@ Status gather_influences(
     return Done{};
 }
 
-std::string name_of(const std::vector<std::string>& names, std::size_t target) {
-    return target < names.size() ? names[target] : fmt::format("target {}", target);
-}
-
-/// The differences of one target at all of the primitive's vertices; empty where it has none.
+/// Displacements of one target at all vertices of the primitive; empty where it has none.
 struct Differences {
     std::vector<float> positions;
     std::vector<float> normals;
@@ -159,7 +146,7 @@ Vec3 vector_at(const std::vector<float>& values, std::size_t element) {
                : Vec3(values[3 * element], values[3 * element + 1], values[3 * element + 2]);
 }
 
-MorphTarget keep_moving(const Differences& all, std::span<const std::uint32_t> used) {
+MorphTarget keep_displaced(const Differences& all, std::span<const std::uint32_t> used) {
     MorphTarget target;
     for (std::size_t i = 0; i < used.size(); ++i) {
         const Vec3 position = vector_at(all.positions, used[i]);
@@ -181,32 +168,29 @@ MorphTarget keep_moving(const Differences& all, std::span<const std::uint32_t> u
 }
 
 Result<Differences> read_differences(
-    GltfDocument& document, const GltfVertices& vertices, const std::map<std::string, int>& source,
+    GltfDocument& document, const GltfVertices& vertices, const JsonValue& source,
     const std::string& place) {
     Differences all;
-    for (const auto& [name, accessor] : source) {
+    for (const auto& [name, at, accessor] : source.members) {
         std::vector<float>* const target = name == "POSITION"  ? &all.positions
                                            : name == "NORMAL"  ? &all.normals
                                            : name == "TANGENT" ? &all.tangents
                                                                : nullptr;
         const std::string here = fmt::format("{}.{}", place, name);
         if (target == nullptr) {
-            document.warnings.push_back(here + " is left out");
+            document.warnings.push_back(here + " is ignored");
             continue;
         }
-        Result<std::vector<float>> values = read_attribute(document, vertices, accessor, 3, here);
-        if (!values) {
-            return values.error();
-        }
-        const auto large = std::find_if(values->begin(), values->end(), [](float value) {
+        std::vector<float> values = LIMN_TRY(read_attribute(document, vertices, accessor, 3, here));
+        const auto large = std::find_if(values.begin(), values.end(), [](float value) {
             return std::abs(value) > kLargestOffset;
         });
-        if (large != values->end()) {
+        if (large != values.end()) {
             return fail(
                 "{}: found {} in element {}, expected at most {}", here, *large,
-                (large - values->begin()) / 3, kLargestOffset);
+                (large - values.begin()) / 3, kLargestOffset);
         }
-        *target = std::move(*values);
+        *target = std::move(values);
     }
     return all;
 }
@@ -215,12 +199,9 @@ Result<Differences> read_differences(
 
 Result<SkinWeights>
 read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::size_t joints) {
-    const Result<std::vector<InfluenceSet>> sets = read_influence_sets(document, vertices);
-    if (!sets) {
-        return sets.error();
-    }
+    const std::vector<InfluenceSet> sets = LIMN_TRY(read_influence_sets(document, vertices));
     SkinWeights skin;
-    if (sets->empty()) {
+    if (sets.empty()) {
         return skin;
     }
     Changed loose;  // no weight at all
@@ -228,9 +209,7 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
     std::vector<Influence> influences;
     for (const std::uint32_t vertex : vertices.used) {
         skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
-        if (Status status = gather_influences(*sets, vertex, joints, influences); !status) {
-            return status.error();
-        }
+        LIMN_TRY(gather_influences(sets, vertex, joints, influences));
         double sum = 0;
         for (const auto& [joint, weight] : influences) {
             sum += weight;
@@ -239,13 +218,13 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
             loose.add(vertex, 0);
             influences = {{std::uint16_t{0}, 1.0}};
             sum = 1;
-        } else if (std::abs(sum - 1.0) > kMostOff) {
+        } else if (std::abs(sum - 1.0) > kMaxDeviation) {
             off.add(vertex, sum);
         }
         append_influences(skin, influences, sum);
     }
     skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
-    const std::string& place = (*sets)[0].weights_place;
+    const std::string& place = sets[0].weights_place;
     if (off.count > 0) {
         document.warnings.push_back(fmt::format(
             "{}: the weights of {} vertices do not sum to 1 and were scaled; of element {} the "
@@ -261,17 +240,14 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
 }
 
 Result<std::vector<MorphTarget>> read_morph_targets(
-    GltfDocument& document, const GltfVertices& vertices, const std::vector<std::string>& names) {
+    GltfDocument& document, const GltfVertices& vertices, const std::vector<JsonValue>& names) {
     std::vector<MorphTarget> targets;
-    for (std::size_t i = 0; i < vertices.primitive.targets.size(); ++i) {
-        const Result<Differences> all = read_differences(
-            document, vertices, vertices.primitive.targets[i],
-            fmt::format("{}.targets[{}]", vertices.place, i));
-        if (!all) {
-            return all.error();
-        }
-        targets.push_back(keep_moving(*all, vertices.used));
-        targets.back().name = name_of(names, i);
+    for (const JsonValue& source : vertices.primitive["targets"].items) {
+        const std::size_t i = targets.size();
+        const Differences all = LIMN_TRY(read_differences(
+            document, vertices, source, fmt::format("{}.targets[{}]", vertices.place, i)));
+        targets.push_back(keep_displaced(all, vertices.used));
+        targets.back().name = i < names.size() ? names[i].text : fmt::format("target {}", i);
     }
     return targets;
 }

@@ -1,7 +1,6 @@
-#include "content/load/gltf_extras.h"
-
 #include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
+#include "content/load/gltf_document.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -15,55 +14,6 @@
 namespace limn {
 
 namespace {
-
-/// Calls visit(name of the asset of that kind) in order.
-template <typename Visit>
-void visit_names(const GltfScene& scene, std::string_view kind, Visit&& visit) {
-    if (kind == asset_kind<SkeletonId>) {
-        if (!scene.skeleton.joints.empty()) {
-            visit(scene.skeleton.name);
-        }
-        return;
-    }
-    struct Lists {
-        const std::vector<MeshData>& meshes;
-        const std::vector<Material>& materials;
-        const std::vector<ImageData>& images;
-        std::vector<SkeletonData> skeletons;
-        const std::vector<SkinData>& skins;
-        const std::vector<ClipData>& clips;
-        std::vector<PathData> paths;
-    };
-    const Lists lists{
-        scene.meshes, scene.materials, scene.images, {}, scene.skins, scene.clips, {}};
-    visit_asset_list(lists, kind, [&](const auto& list) {
-        for (const auto& asset : list) {
-            visit(asset.name);
-        }
-    });
-}
-
-std::optional<std::uint32_t>
-find_asset(const GltfScene& scene, std::string_view kind, std::string_view name) {
-    std::optional<std::uint32_t> found;
-    std::uint32_t index = 0;
-    visit_names(scene, kind, [&](const std::string& candidate) {
-        found = !found && candidate == name ? std::optional(index) : found;
-        ++index;
-    });
-    return found;
-}
-
-std::vector<std::string_view> all_names(const GltfScene& scene, std::string_view kind) {
-    std::vector<std::string_view> names;
-    visit_names(scene, kind, [&](const std::string& name) { names.emplace_back(name); });
-    if (kind == "entity") {
-        for (const GltfNode& node : scene.nodes) {
-            names.emplace_back(node.name);
-        }
-    }
-    return names;
-}
 
 class ExtrasReader {
   public:
@@ -79,9 +29,15 @@ class ExtrasReader {
                                            : std::optional(gltf_node_entity(found->second));
         };
         names_.asset = [this](std::string_view kind, std::string_view name) {
-            return find_asset(scene_, kind, name);
+            return find_asset(list_assets(scene_), kind, name);
         };
-        names_.all = [this](std::string_view kind) { return all_names(scene_, kind); };
+        names_.all = [this](std::string_view kind) {
+            std::vector<std::string_view> all = asset_names(list_assets(scene_), kind);
+            for (std::size_t i = 0; kind == "entity" && i < scene_.nodes.size(); ++i) {
+                all.emplace_back(scene_.nodes[i].name);
+            }
+            return all;
+        };
     }
 
     Status read() {
@@ -89,30 +45,23 @@ class ExtrasReader {
             if (document_.scene_nodes[index] < 0) {
                 continue;
             }
-            const JsonValue& source = json_item(document_, "nodes", index);
-            const JsonValue* extras = source.find("extras");
-            const JsonValue* limn = extras != nullptr ? extras->find("limn") : nullptr;
-            if (limn != nullptr) {
-                if (Status status = read_components(*limn, index); !status) {
-                    return status;
-                }
+            const JsonValue& source = document_.json["nodes"].items[index];
+            if (const JsonValue* const limn = source["extras"].find("limn")) {
+                LIMN_TRY(read_components(*limn, index));
             }
         }
         return Done{};
     }
 
   private:
-    /// An object with a member for each component; or that object as text, as Blender writes a
-    /// custom property that somebody typed.
+    /// An object with a member for each component; or that object as a string, as Blender exports
+    /// custom properties.
     Status read_components(const JsonValue& limn, std::size_t index) {
         const std::string where = fmt::format("nodes[{}].extras.limn", index);
         if (limn.kind == JsonKind::String) {
-            const Result<JsonValue> parsed =
-                parse_json(limn.text, fmt::format("{}: {}", document_.file, where));
-            if (!parsed) {
-                return parsed.error();
-            }
-            return read_object(*parsed, index, where);
+            const JsonValue parsed =
+                LIMN_TRY(parse_json(limn.text, fmt::format("{}: {}", document_.file, where)));
+            return read_object(parsed, index, where);
         }
         return read_object(limn, index, where);
     }
@@ -134,13 +83,9 @@ class ExtrasReader {
                     "{}: {}: found {}, expected the name of a component{}", document_.file, where,
                     in_quotes(member.key), did_you_mean(member.key, known));
             }
-            Result<AnyComponent> component = read_component(
-                member.value, *info, {document_.file, where + "." + member.key}, names_);
-            if (!component) {
-                return component.error();
-            }
             const auto node = static_cast<std::size_t>(document_.scene_nodes[index]);
-            scene_.nodes[node].components.push_back(std::move(*component));
+            scene_.nodes[node].components.push_back(LIMN_TRY(read_component(
+                member.value, *info, {document_.file, where + "." + member.key}, names_)));
         }
         return Done{};
     }
@@ -148,7 +93,7 @@ class ExtrasReader {
     const GltfDocument& document_;
     GltfScene& scene_;
     std::unordered_map<std::string_view, std::uint32_t> by_name_;  ///< nodes of the scene
-    FindNames names_;
+    NameResolver names_;
 };
 
 }  // namespace

@@ -43,8 +43,7 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
     const std::uint32_t length = little_endian(bytes, 8);
     if (length != bytes.size()) {
         return fail(
-            "{}: found {} bytes, expected the {} that the GLB header says", file, bytes.size(),
-            length);
+            "{}: found {} bytes, expected {} as in the GLB header", file, bytes.size(), length);
     }
     GltfChunks chunks;
     bool has_json = false;
@@ -80,7 +79,7 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
     if (!has_json) {
         return fail("{}: found a GLB without chunks, expected JSON", file);
     }
-    // Spaces are the padding of the standard; zeros are that of some exporters.
+    // The standard pads with spaces, some exporters with zeros.
     chunks.json = chunks.json.substr(0, chunks.json.find_last_not_of('\0') + 1);
     return chunks;
 }
@@ -93,7 +92,7 @@ int hex_digit(char c) {
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// "%20" to " "; nothing when a % is not followed by two hexadecimal digits or gives a zero byte.
+/// "%20" to " "; nullopt when a % is not followed by two hexadecimal digits or gives a zero byte.
 std::optional<std::string> decode_percent(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -217,7 +216,7 @@ Result<std::vector<std::byte>> fetch_uri(
             in_quotes(uri));
     }
     if (folder.empty()) {
-        return fail("{}: found {}, expected no other files here", place, in_quotes(uri));
+        return fail("{}: found {}, expected no references to other files", place, in_quotes(uri));
     }
     std::error_code error;
     const std::filesystem::path base = std::filesystem::canonical(folder, error);

@@ -11,23 +11,22 @@
 
 namespace limn {
 
-// The outside of a glTF file: the GLB container, and URIs, which lead to base64 text or to files
-// under one folder and nowhere else.
+// The container of a glTF file: GLB chunks, and URIs, which may be base64 data or files under one
+// folder and nothing else.
 
-/// A GLB taken apart, or a .gltf as JSON alone; views into the file's bytes.
+/// The chunks of a GLB, or a .gltf as JSON only; views into the file's bytes.
 struct GltfChunks {
     std::string_view json;
     std::span<const std::byte> binary;
     bool has_binary = false;
 };
 
-/// Fails when a GLB is cut short, its lengths disagree or it is not version 2.
+/// Fails when a GLB is truncated, has inconsistent lengths or is not version 2.
 [[nodiscard]] Result<GltfChunks>
 split_gltf(std::span<const std::byte> bytes, const std::string& file);
 
-/// The bytes that `uri` stands for: those of a data: URI, or of a file under `folder`. Refused are
-/// schemes, absolute paths, "..", symbolic links out of the folder, and files at all when `folder`
-/// is "".
+/// The bytes of a data: URI, or of a file under `folder`. Rejects other schemes, absolute paths,
+/// "..", symbolic links out of the folder, and all files when `folder` is "".
 [[nodiscard]] Result<std::vector<std::byte>> fetch_uri(
     const std::string& uri, const std::string& folder, const std::string& place,
     std::uint64_t max_bytes);

@@ -11,35 +11,33 @@
 
 namespace limn {
 
-// glTF 2.0, as .gltf with its files or as .glb, from anybody: every size, index, offset and count
-// is checked before it is used, a file can name only files under its own folder, and one line says
-// what is wrong: "file: meshes[2].primitives[0].attributes.POSITION: found X, expected Y".
+// Loads untrusted glTF 2.0 files, .gltf or .glb: every size, index, offset and count is checked
+// before it is used, a file can reference only files under its own folder, and an error is one
+// line: "file: meshes[2].primitives[0].attributes.POSITION: found X, expected Y".
 //
-// Understood: nodes, meshes of all index types as triangles, strips and fans, vertex colors, two uv
+// Supported: nodes, meshes of all index types as triangles, strips and fans, vertex colors, two uv
 // sets, normalized and sparse accessors, metal-rough materials, textures, samplers, perspective
 // cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
-// KHR_mesh_quantization, KHR_texture_transform, skeletons, skins of any number of joints a vertex,
-// morph targets, clips of all of them, and our components in extras.limn of a node. Left out, with
-// a warning: points and lines, orthographic cameras, textures without an image we can read, morph
+// KHR_mesh_quantization, KHR_texture_transform, skeletons, skins with any number of joints per
+// vertex, morph targets, animation clips, and our components in extras.limn of a node. Ignored with
+// a warning: points and lines, orthographic cameras, textures in unsupported image formats, morph
 // targets of texture coordinates and colors.
 //
-// Missing normals are made with a crease angle of 50 degrees instead of flat, as the specification
-// has it: models without normals are mostly organic scans and low-poly animals, which gain, and
-// boxes stay boxes. Missing tangents: content/bake/tangents.h.
+// Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
+// demands: models without normals are mostly organic scans and low-poly animals, which look better
+// smooth, and boxes keep their edges. Missing tangents: content/bake/tangents.h.
 //
-// The way of a file: gltf_file.h (container and URIs) -> gltf_schema.h (every value has the right
-// type and every index a target) -> tinygltf (structs; it never sees a URI or an image) ->
-// gltf_accessor.h, gltf_material.h, gltf_mesh.h, gltf_deform.h, gltf_node.h, gltf_animation.h,
-// gltf_extras.h -> GltfScene.
+// Data flow: gltf_file.h (container and URIs) -> parse_json -> gltf_schema.cpp (types and ranges of
+// all values and indices) -> gltf_document.h (accessors) -> gltf_material.cpp, gltf_mesh.cpp,
+// gltf_deform.cpp, gltf_node.cpp, gltf_animation.cpp, gltf_extras.cpp -> GltfScene.
 
-/// What a file may cost.
+/// Limits on untrusted files.
 struct GltfLimits {
-    std::uint64_t max_bytes = std::uint64_t{1} << 30;  ///< of each file
-    std::uint64_t max_values = std::uint64_t{1}
-                               << 28;  ///< numbers read from accessors, all together
+    std::uint64_t max_bytes = std::uint64_t{1} << 30;   ///< of each file
+    std::uint64_t max_values = std::uint64_t{1} << 28;  ///< numbers read from all accessors
     std::uint64_t max_pixels = std::uint64_t{1} << 28;  ///< of all images together
     std::size_t max_json_values = 4'000'000;            ///< numbers, strings ... in the JSON
-    std::uint32_t max_depth = 256;                      ///< nodes in each other
+    std::uint32_t max_depth = 256;                      ///< of the node hierarchy
     ImageLimits image;
 };
 
@@ -47,8 +45,8 @@ struct GltfLimits {
 /// warnings.
 [[nodiscard]] Result<GltfScene> load_gltf(const std::string& path, const GltfLimits& limits = {});
 
-/// The same from memory. `file` begins the messages; other files are looked for under `folder`, or
-/// not at all when it is empty: then naming one is an error.
+/// The same from memory. `file` is the prefix of messages; URIs are resolved under `folder`, and if
+/// that is empty, a reference to another file is an error.
 [[nodiscard]] Result<GltfScene> parse_gltf(
     std::span<const std::byte> bytes, const std::string& file, const std::string& folder,
     const GltfLimits& limits = {});

@@ -1,5 +1,4 @@
-#include "content/load/gltf_node.h"
-
+#include "content/load/gltf_document.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -15,20 +14,15 @@ namespace limn {
 
 namespace {
 
+constexpr std::string_view kLightExtension = "KHR_lights_punctual";
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-constexpr std::size_t kMostMorphs = std::numeric_limits<std::uint16_t>::max();
+constexpr std::size_t kMaxMorphs = std::numeric_limits<std::uint16_t>::max();
 
-/// A scale of 0, with which some files hide a node, has no inverse; this is as good as hidden.
+/// Replaces a scale of 0, which has no inverse; some files hide nodes with it.
 constexpr float kSmallestScale = 1e-6f;
 
-Vec3 vector_of(const std::vector<double>& values) {
-    return {
-        static_cast<float>(values[0]), static_cast<float>(values[1]),
-        static_cast<float>(values[2])};
-}
-
-/// Position, rotation and scale of an affine matrix; `sheared` where those cannot say all of it.
+/// Position, rotation and scale of an affine matrix; `sheared` is set if it has shear.
 Transform decompose(const Mat4& matrix, bool& sheared) {
     Transform result;
     result.position = Vec3(matrix[3]);
@@ -44,7 +38,7 @@ Transform decompose(const Mat4& matrix, bool& sheared) {
         result.scale.x = -result.scale.x;
         axes[0] = -axes[0];
     }
-    // Gram-Schmidt, so that a sheared matrix gives a rotation, too.
+    // Gram-Schmidt, so that a sheared matrix gives a rotation as well.
     axes[1] =
         normalize_or(axes[1] - axes[0] * glm::dot(axes[0], axes[1]), any_perpendicular(axes[0]));
     axes[2] = glm::cross(axes[0], axes[1]);
@@ -63,24 +57,16 @@ void avoid_zero_scale(Transform& transform) {
 class NodeBuilder {
   public:
     NodeBuilder(GltfDocument& document, const GltfParts& parts, GltfScene& scene)
-        : document_(document), nodes_(document.model.nodes), parts_(parts), scene_(scene) {}
+        : document_(document), nodes_(document.json["nodes"].items), parts_(parts), scene_(scene) {}
 
     Status build() {
-        if (Status status = find_parents(); !status) {
-            return status;
-        }
-        if (Status status = order_nodes(); !status) {
-            return status;
-        }
+        LIMN_TRY(find_parents());
+        LIMN_TRY(order_nodes());
         document_.node_morphs.assign(nodes_.size(), {});
         for (const std::uint32_t index : order_) {
-            if (Status status = add_node(index); !status) {
-                return status;
-            }
+            LIMN_TRY(add_node(index));
         }
-        if (Status status = add_skinned_meshes(); !status) {
-            return status;
-        }
+        LIMN_TRY(add_skinned_meshes());
         document_.scene_nodes.assign(nodes_.size(), -1);
         for (const auto& [node, number] : number_) {
             document_.scene_nodes[node] = static_cast<std::int32_t>(number);
@@ -96,7 +82,8 @@ class NodeBuilder {
     Status find_parents() {
         parent_.assign(nodes_.size(), kNone);
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            for (const int child : nodes_[i].children) {
+            for (const JsonValue& item : nodes_[i]["children"].items) {
+                const std::int32_t child = index_of(item);
                 std::uint32_t& parent = parent_[static_cast<std::size_t>(child)];
                 if (parent != kNone) {
                     return fail(
@@ -110,16 +97,14 @@ class NodeBuilder {
         return Done{};
     }
 
-    /// Lists the nodes of the scene, parents first. Nodes that no root reaches form cycles.
+    /// Lists the nodes of the scene, parents first. Nodes unreachable from any root form cycles.
     Status order_nodes() {
-        const std::vector<tinygltf::Scene>& scenes = document_.model.scenes;
+        const std::vector<JsonValue>& scenes = document_.json["scenes"].items;
         std::vector<bool> reached(nodes_.size(), false);
         std::vector<std::uint32_t> all;
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
             if (parent_[i] == kNone) {
-                if (Status status = visit(i, reached, all); !status) {
-                    return status;
-                }
+                LIMN_TRY(visit(i, reached, all));
             }
         }
         if (all.size() < nodes_.size()) {
@@ -132,27 +117,23 @@ class NodeBuilder {
             order_ = std::move(all);
             return Done{};
         }
-        const std::size_t scene = document_.model.defaultScene >= 0
-                                      ? static_cast<std::size_t>(document_.model.defaultScene)
-                                      : 0;
+        const std::int32_t scene = std::max(index_of(document_.json["scene"]), 0);
         reached.assign(nodes_.size(), false);
-        for (const int root : scenes[scene].nodes) {
-            const auto index = static_cast<std::uint32_t>(root);
+        for (const JsonValue& root : scenes[static_cast<std::size_t>(scene)]["nodes"].items) {
+            const auto index = static_cast<std::uint32_t>(index_of(root));
             if (parent_[index] != kNone || reached[index]) {
                 return fail(
                     "{}: scenes[{}].nodes: found node {}, which {}, expected each root once",
-                    document_.file, scene, root,
+                    document_.file, scene, index,
                     reached[index] ? "is there twice" : "has a parent");
             }
-            if (Status status = visit(index, reached, order_); !status) {
-                return status;
-            }
+            LIMN_TRY(visit(index, reached, order_));
         }
         return Done{};
     }
 
-    /// Appends `root` and what is under it to `order`, without recursion. Each node has one parent
-    /// and roots have none, so that nothing is met twice.
+    /// Appends `root` and its descendants to `order`, without recursion. Each node has at most one
+    /// parent, so nothing is visited twice.
     Status
     visit(std::uint32_t root, std::vector<bool>& reached, std::vector<std::uint32_t>& order) {
         struct Open {
@@ -165,38 +146,34 @@ class NodeBuilder {
             open.pop_back();
             if (now.depth > document_.limits.max_depth) {
                 return fail(
-                    "{}: found more than {} nodes in each other", place(now.node),
+                    "{}: found a hierarchy deeper than {} nodes", place(now.node),
                     document_.limits.max_depth);
             }
             reached[now.node] = true;
             order.push_back(now.node);
-            const std::vector<int>& children = nodes_[now.node].children;
+            const std::vector<JsonValue>& children = nodes_[now.node]["children"].items;
             for (auto child = children.rbegin(); child != children.rend(); ++child) {
-                open.push_back({static_cast<std::uint32_t>(*child), now.depth + 1});
+                open.push_back({static_cast<std::uint32_t>(index_of(*child)), now.depth + 1});
             }
         }
         return Done{};
     }
 
     Status add_node(std::uint32_t index) {
-        const tinygltf::Node& source = nodes_[index];
+        const JsonValue& source = nodes_[index];
         GltfNode node;
-        node.name = source.name;
+        node.name = source["name"].text;
         if (parent_[index] != kNone) {
             node.parent = static_cast<std::int32_t>(number_.at(parent_[index]));
         }
-        if (Status status = read_transform(index, node.transform); !status) {
-            return status;
-        }
-        if (source.mesh >= 0 && source.skin < 0) {
-            if (Status status = add_parts(index, node); !status) {
-                return status;
-            }
+        LIMN_TRY(read_transform(index, node.transform));
+        if (source.find("mesh") != nullptr && source.find("skin") == nullptr) {
+            LIMN_TRY(add_parts(index, node));
         }
         read_camera(source, node);
-        if (const auto light = source.extensions.find("KHR_lights_punctual");
-            light != source.extensions.end()) {
-            node.light = make_light(light->second.Get("light").GetNumberAsInt());
+        const std::int32_t light = index_of(source["extensions"][kLightExtension]["light"]);
+        if (light >= 0) {
+            node.light = make_light(light);
         }
         number_[index] = static_cast<std::uint32_t>(scene_.nodes.size());
         scene_.nodes.push_back(std::move(node));
@@ -204,116 +181,118 @@ class NodeBuilder {
     }
 
     Status read_transform(std::uint32_t index, Transform& transform) {
-        const tinygltf::Node& source = nodes_[index];
-        if (source.matrix.size() == 16) {
-            const std::vector<double>& m = source.matrix;
-            if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
+        const JsonValue& source = nodes_[index];
+        if (const std::vector<JsonValue>& items = source["matrix"].items; !items.empty()) {
+            const auto m = [&](std::size_t i) { return items[i].number; };
+            if (m(3) != 0 || m(7) != 0 || m(11) != 0 || m(15) != 1) {
                 return fail(
                     "{}.matrix: found {}, {}, {}, {} as its last row, expected 0, 0, 0, 1",
-                    place(index), m[3], m[7], m[11], m[15]);
+                    place(index), m(3), m(7), m(11), m(15));
             }
             Mat4 matrix;
             for (int i = 0; i < 16; ++i) {
-                matrix[i / 4][i % 4] = static_cast<float>(m[static_cast<std::size_t>(i)]);
+                matrix[i / 4][i % 4] = static_cast<float>(m(static_cast<std::size_t>(i)));
             }
             bool sheared = false;
             transform = decompose(matrix, sheared);
             if (sheared) {
-                document_.warnings.push_back(place(index) + ".matrix: its shear is left out");
+                document_.warnings.push_back(place(index) + ".matrix: its shear is ignored");
             }
-        }
-        if (source.translation.size() == 3) {
-            transform.position = vector_of(source.translation);
-        }
-        if (source.scale.size() == 3) {
-            transform.scale = vector_of(source.scale);
-        }
-        if (source.rotation.size() == 4) {
-            const std::vector<double>& q = source.rotation;
-            const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-            if (length < 1e-6) {
-                return fail(
-                    "{}.rotation: found a quaternion of length {}, expected 1", place(index),
-                    length);
-            }
-            transform.rotation = Quat(
-                static_cast<float>(q[3] / length), static_cast<float>(q[0] / length),
-                static_cast<float>(q[1] / length), static_cast<float>(q[2] / length));
+        } else {
+            transform.position = vector_of(source["translation"], Vec3(0));
+            transform.scale = vector_of(source["scale"], Vec3(1));
+            LIMN_TRY(read_rotation(index, transform.rotation));
         }
         avoid_zero_scale(transform);
         return Done{};
     }
 
-    void read_camera(const tinygltf::Node& source, GltfNode& node) {
-        if (source.camera < 0) {
+    Status read_rotation(std::uint32_t index, Quat& rotation) {
+        const std::vector<JsonValue>& items = nodes_[index]["rotation"].items;
+        if (items.empty()) {
+            return Done{};
+        }
+        const glm::dvec4 q(items[0].number, items[1].number, items[2].number, items[3].number);
+        const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+        if (length < 1e-6) {
+            return fail(
+                "{}.rotation: found a quaternion of length {}, expected 1", place(index), length);
+        }
+        rotation = Quat(
+            static_cast<float>(q.w / length), static_cast<float>(q.x / length),
+            static_cast<float>(q.y / length), static_cast<float>(q.z / length));
+        return Done{};
+    }
+
+    void read_camera(const JsonValue& source, GltfNode& node) {
+        const std::int32_t index = index_of(source["camera"]);
+        if (index < 0) {
             return;
         }
-        const tinygltf::Camera& camera =
-            document_.model.cameras[static_cast<std::size_t>(source.camera)];
-        if (camera.type != "perspective") {
+        const JsonValue& camera = json_item(document_, "cameras", index);
+        if (camera["type"].text != "perspective") {
             document_.warnings.push_back(fmt::format(
-                "{}: cameras[{}] is left out: it is orthographic", document_.file, source.camera));
+                "{}: cameras[{}] is ignored: it is orthographic", document_.file, index));
             return;
         }
         node.has_camera = true;
-        node.camera.fov_y = static_cast<float>(camera.perspective.yfov);
-        node.camera.near = static_cast<float>(camera.perspective.znear);
+        node.camera.fov_y = number_of(camera["perspective"]["yfov"], 0);
+        node.camera.near = number_of(camera["perspective"]["znear"], 0);
         if (node.name.empty()) {
-            node.name = camera.name;
+            node.name = camera["name"].text;
         }
     }
 
-    [[nodiscard]] GltfLight make_light(int index) const {
-        const tinygltf::Light& source = document_.model.lights[static_cast<std::size_t>(index)];
-        const Vec3 color = source.color.size() == 3 ? vector_of(source.color) : Vec3(1);
-        const auto intensity = static_cast<float>(source.intensity);
-        const auto radius =
-            static_cast<float>(source.range);  // 0 when the file gives none: as ours
-        if (source.type == "directional") {
+    [[nodiscard]] GltfLight make_light(std::int32_t index) const {
+        const JsonValue& lights = document_.json["extensions"][kLightExtension]["lights"];
+        const JsonValue& source = lights.items[static_cast<std::size_t>(index)];
+        const Vec3 color = vector_of(source["color"], Vec3(1));
+        const float intensity = number_of(source["intensity"], 1);
+        const float radius = number_of(source["range"], 0);  // 0 = none, as in our lights
+        if (source["type"].text == "directional") {
             DirectionalLight light;
             light.color = color;
             light.illuminance = intensity;
             return light;
         }
-        if (source.type == "point") {
+        if (source["type"].text == "point") {
             PointLight light;
             light.color = color;
             light.intensity = intensity;
             light.radius = radius;
             return light;
         }
+        const JsonValue& spot = source["spot"];
         SpotLight light;
         light.color = color;
         light.intensity = intensity;
         light.radius = radius;
-        light.outer_angle = std::min(static_cast<float>(source.spot.outerConeAngle), 0.5f * kPi);
-        light.inner_angle =
-            std::min(static_cast<float>(source.spot.innerConeAngle), light.outer_angle);
+        light.outer_angle = std::min(number_of(spot["outerConeAngle"], 0.7853981634), 0.5f * kPi);
+        light.inner_angle = std::min(number_of(spot["innerConeAngle"], 0), light.outer_angle);
         return light;
     }
 
-    /// Their joints put them where they are, not their nodes: they stand in nodes of their own.
+    /// Their joints place them, not their nodes, so they get nodes of their own.
     Status add_skinned_meshes() {
         for (const std::uint32_t index : order_) {
-            const tinygltf::Node& source = nodes_[index];
-            if (source.mesh < 0 || source.skin < 0) {
+            const JsonValue& source = nodes_[index];
+            const std::string& name = source["name"].text;
+            if (source.find("mesh") == nullptr || source.find("skin") == nullptr) {
                 continue;
             }
             GltfNode node;
-            node.name = source.name.empty() ? "" : source.name + ".skin";
-            node.skin = source.skin;
-            if (Status status = add_parts(index, node); !status) {
-                return status;
-            }
+            node.name = name.empty() ? "" : name + ".skin";
+            node.skin = index_of(source["skin"]);
+            LIMN_TRY(add_parts(index, node));
             scene_.nodes.push_back(std::move(node));
         }
         return Done{};
     }
 
-    /// What draws the mesh of node `index`, and weights for its morph targets.
+    /// Adds the parts of the mesh of node `index`, and weights for its morph targets.
     Status add_parts(std::uint32_t index, GltfNode& node) {
-        const tinygltf::Node& source = nodes_[index];
-        const auto mesh = static_cast<std::size_t>(source.mesh);
+        const JsonValue& source = nodes_[index];
+        const auto mesh = static_cast<std::size_t>(index_of(source["mesh"]));
         node.parts = parts_[mesh];
         const std::size_t count =
             node.parts.empty() ? 0 : scene_.meshes[node.parts[0].mesh].morphs.size();
@@ -328,13 +307,13 @@ class NodeBuilder {
             return Done{};
         }
         std::vector<float>& weights = scene_.morph_weights;
-        if (weights.size() + count > kMostMorphs) {
+        if (weights.size() + count > kMaxMorphs) {
             return fail(
-                "{}: found more than {} morph targets in all nodes", place(index), kMostMorphs);
+                "{}: found more than {} morph targets in all nodes", place(index), kMaxMorphs);
         }
-        const bool own = !source.weights.empty();
-        const std::vector<double>& values =
-            own ? source.weights : document_.model.meshes[mesh].weights;
+        const bool own = !source["weights"].items.empty();
+        const std::vector<JsonValue>& values =
+            (own ? source : document_.json["meshes"].items[mesh])["weights"].items;
         if (!values.empty() && values.size() != count) {
             return fail(
                 "{}.weights: found {}, expected one for each of {} targets",
@@ -344,13 +323,13 @@ class NodeBuilder {
         node.first_morph = static_cast<std::int32_t>(weights.size());
         document_.node_morphs[index] = {node.first_morph, count};
         for (std::size_t i = 0; i < count; ++i) {
-            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i]));
+            weights.push_back(values.empty() ? 0.0f : static_cast<float>(values[i].number));
         }
         return Done{};
     }
 
     GltfDocument& document_;
-    const std::vector<tinygltf::Node>& nodes_;
+    const std::vector<JsonValue>& nodes_;
     const GltfParts& parts_;
     GltfScene& scene_;
     std::vector<std::uint32_t> parent_;  ///< of each node of the file

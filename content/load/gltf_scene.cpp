@@ -6,6 +6,18 @@
 
 namespace limn {
 
+GltfAssetLists list_assets(const GltfScene& scene) {
+    const std::size_t skeletons = scene.skeleton.joints.empty() ? 0 : 1;
+    return {
+        scene.meshes,
+        scene.materials,
+        scene.images,
+        {&scene.skeleton, skeletons},
+        scene.skins,
+        scene.clips,
+        {}};
+}
+
 std::vector<Affine> find_node_matrices(const GltfScene& scene) {
     std::vector<Affine> matrices;
     matrices.reserve(scene.nodes.size());
@@ -23,7 +35,7 @@ Bounds transform_bounds(const Affine& matrix, const Bounds& box) {
     if (is_empty(box)) {
         return result;
     }
-    // The extent along an axis is the sum of what the three half sides contribute (Arvo 1990).
+    // The extent along an axis is the sum over the three half extents (Arvo 1990).
     const Vec3 middle = transform_point(matrix, center(box));
     const Vec3 half = half_extent(box);
     Vec3 extent;
@@ -93,7 +105,7 @@ Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect) {
     const Vec3 right = glm::normalize(glm::cross(Vec3(0, 1, 0), to_camera));
     const Vec3 up = glm::cross(to_camera, right);
 
-    // The nearest distance at which each corner of the box lies within the picture, with a margin.
+    // The smallest distance at which all corners of the box are within the frame, with a margin.
     constexpr float kMargin = 1.08f;
     const float tan_y = std::tan(0.5f * fov_y) / kMargin;
     const float tan_x = tan_y * aspect;

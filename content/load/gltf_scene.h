@@ -15,9 +15,8 @@
 
 namespace limn {
 
-// What a glTF file holds, checked to the last index and independent of any world. Loading stops
-// here when anything is wrong, so that gltf_spawn.h, which puts it into a world, cannot fail
-// halfway.
+// The content of a glTF file, fully validated and independent of any world. All errors are found
+// while loading, so that spawning it (gltf_spawn.h) cannot fail halfway.
 
 /// A mesh and its material: indices into GltfScene.
 struct GltfPart {
@@ -35,10 +34,10 @@ struct GltfNode {
     bool has_camera = false;
     Camera camera;
     GltfLight light;
-    std::int32_t skin = -1;         ///< of `parts`, an index into GltfScene::skins
-    std::int32_t first_morph = -1;  ///< of `parts`, the place of target 0 in morph_weights
-    /// From extras.limn. Entities in them are nodes, as gltf_node_entity() writes them; assets are
-    /// indices into this scene.
+    std::int32_t skin = -1;         ///< of `parts`: index into GltfScene::skins, or -1
+    std::int32_t first_morph = -1;  ///< of `parts`: first index into morph_weights, or -1
+    /// From extras.limn. Entities are nodes encoded by gltf_node_entity(), assets are indices into
+    /// this scene.
     std::vector<AnyComponent> components;
 };
 
@@ -48,39 +47,50 @@ struct GltfScene {
     std::vector<MeshData> meshes;     ///< one for each primitive that is drawn
     std::vector<Material> materials;  ///< their ImageIds are indices into `images`
     std::vector<ImageData> images;
-    SkeletonData skeleton;             ///< no joints where nothing moves; joint 0 is the scene
-    std::vector<std::int32_t> joints;  ///< of each node, -1: stays where its parent is
+    SkeletonData skeleton;             ///< empty if nothing is animated; joint 0 is the scene
+    std::vector<std::int32_t> joints;  ///< joint of each node; -1: fixed to its parent
     std::vector<SkinData> skins;
     std::vector<ClipData> clips;
-    std::vector<float> morph_weights;   ///< of all nodes with morph targets, as the file has them
-    std::vector<std::string> warnings;  ///< what the file asks for and was left out, a line each
+    std::vector<float> morph_weights;   ///< initial weights of all nodes with morph targets
+    std::vector<std::string> warnings;  ///< one line per ignored feature of the file
 };
 
-/// Stands for node `node` in a component until there are entities.
+/// The assets of a scene, as lists of the names that Assets has (asset_lists.h).
+struct GltfAssetLists {
+    const std::vector<MeshData>& meshes;
+    const std::vector<Material>& materials;
+    const std::vector<ImageData>& images;
+    std::span<const SkeletonData> skeletons;
+    const std::vector<SkinData>& skins;
+    const std::vector<ClipData>& clips;
+    std::span<const PathData> paths;
+};
+[[nodiscard]] GltfAssetLists list_assets(const GltfScene& scene);
+
+/// Placeholder for node `node` in components until entities exist.
 [[nodiscard]] constexpr Entity gltf_node_entity(std::uint32_t node) {
     return {node, 0xffffffffu};
 }
 
-/// World matrix of every node, when roots stand at the origin.
+/// Matrix of every node relative to the scene.
 [[nodiscard]] std::vector<Affine> find_node_matrices(const GltfScene& scene);
 
-/// skeleton_from_joint of every joint at rest.
+/// skeleton_from_joint of every joint in the rest pose.
 [[nodiscard]] std::vector<Affine> find_rest_joints(const SkeletonData& skeleton);
 
-/// Box around the vertices of `mesh` where `joints` put them; in the space of those matrices.
+/// Bounds of the vertices of `mesh` skinned by `joints`, in the space of those matrices.
 [[nodiscard]] Bounds
 posed_bounds(const MeshData& mesh, const SkinData& skin, std::span<const Affine> joints);
 
-/// Box around everything that is drawn, skinned meshes at rest, in world space [m]; empty when
-/// nothing is.
+/// World-space bounds of everything drawn, skinned meshes in the rest pose [m]; may be empty.
 [[nodiscard]] Bounds find_bounds(const GltfScene& scene);
 
-/// The box around `box` after `matrix`.
+/// Bounds of the transformed `box`.
 [[nodiscard]] Bounds transform_bounds(const Affine& matrix, const Bounds& box);
 
-/// Where a camera with the vertical angle `fov_y` [rad] stands to see all of `bounds` in a picture
-/// of `aspect` = width / height: somewhat from above and from the side. An empty box is taken for a
-/// unit cube.
+/// Camera transform that frames all of `bounds` with the vertical field of view `fov_y` [rad] and
+/// `aspect` = width / height, from slightly above and to the side. An empty box counts as a unit
+/// cube.
 [[nodiscard]] Transform frame_bounds(const Bounds& bounds, float fov_y, float aspect);
 
 }  // namespace limn

@@ -1,5 +1,4 @@
-#include "content/load/gltf_schema.h"
-
+#include "content/load/gltf_document.h"
 #include "ecs/base/text.h"
 
 #include <fmt/format.h>
@@ -27,8 +26,8 @@ constexpr bool kRequired = true;
 constexpr double kLargestNumber = 1e9;  ///< no length, angle or intensity is larger
 constexpr double kLargestSize = 9e15;   ///< integers that a double holds exactly
 
-/// What must hold for everything that `path` leads to: "a.b" is a member, "a[]" every item of an
-/// array, "a.*" every member. Members that are absent are fine unless the last one is `required`.
+/// A constraint on all values at `path`: "a.b" is a member, "a[]" every item of an array, "a.*"
+/// every member. Members may be absent unless the last one is `required`.
 struct Rule {
     const char* path;
     Shape shape;
@@ -71,7 +70,7 @@ constexpr Rule required_array(const char* path, double min) {
     return {path, Shape::Array, kRequired, min, kLargestSize};
 }
 
-// Containers before what is in them: a rule takes the way to its value for granted.
+// Containers before their contents: a rule assumes that the path to its value is valid.
 constexpr Rule kRules[] = {
     object("asset", kRequired),
     text("asset.version", "", kRequired),
@@ -150,7 +149,9 @@ constexpr Rule kRules[] = {
 
     array("cameras"),
     object("cameras[]"),
+    text("cameras[].name"),
     text("cameras[].type", "perspective orthographic", kRequired),
+    object("cameras[].orthographic"),
     object("cameras[].perspective"),
     {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-3, 3.1},
     {"cameras[].perspective.znear", Shape::Number, kRequired, 1e-9, kLargestNumber},
@@ -184,6 +185,7 @@ constexpr Rule kRules[] = {
 
     array("skins"),
     object("skins[]"),
+    text("skins[].name"),
     required_array("skins[].joints", 1),
     index_of("skins[].joints[]", "nodes"),
     index_of("skins[].inverseBindMatrices", "accessors"),
@@ -228,7 +230,7 @@ constexpr Rule kRules[] = {
     index_of("scene", "scenes"),
 };
 
-/// The places where a material names a texture; each has the rules of a textureInfo.
+/// The texture references of a material; each has the rules of a textureInfo.
 constexpr const char* kTextureInfos[] = {
     "materials[].pbrMetallicRoughness.baseColorTexture",
     "materials[].pbrMetallicRoughness.metallicRoughnessTexture",
@@ -248,7 +250,7 @@ constexpr Rule kTextureRules[] = {
     size(".extensions.KHR_texture_transform.texCoord", 0, false, 255),
 };
 
-/// One step of the way to a value, kept to spell the place if it is wrong.
+/// One step of the path to a value, for messages.
 struct Step {
     std::string_view key;      ///< of a member; "" for an item
     std::size_t position = 0;  ///< of an item
@@ -260,7 +262,7 @@ class Checker {
 
     Status check(const Rule& rule) {
         rule_ = &rule;
-        way_.clear();
+        steps_.clear();
         target_size_ = 0;
         if (rule.shape == Shape::Index) {
             const JsonValue* target = find_target(rule.text);
@@ -288,17 +290,13 @@ class Checker {
         if (path.starts_with("[]")) {
             path.remove_prefix(path.starts_with("[].") ? 3 : 2);
             for (std::size_t i = 0; i < value.items.size(); ++i) {
-                if (Status status = descend(value.items[i], {"", i}, path); !status) {
-                    return status;
-                }
+                LIMN_TRY(descend(value.items[i], {"", i}, path));
             }
             return Done{};
         }
         if (path.starts_with("*")) {
             for (const JsonMember& member : value.members) {
-                if (Status status = descend(member.value, {member.key}, path.substr(1)); !status) {
-                    return status;
-                }
+                LIMN_TRY(descend(member.value, {member.key}, path.substr(1)));
             }
             return Done{};
         }
@@ -312,19 +310,17 @@ class Checker {
             return descend(*member, {key}, path);
         }
         if (path.empty() && rule_->required) {
-            way_.push_back({key});
+            steps_.push_back({key});
             return fail("{}: {}: found nothing, expected {}", file_, place(), expectation());
         }
         return Done{};
     }
 
     Status descend(const JsonValue& value, Step step, std::string_view path) {
-        way_.push_back(step);
-        Status status = walk(value, path);
-        if (status) {
-            way_.pop_back();
-        }
-        return status;
+        steps_.push_back(step);
+        LIMN_TRY(walk(value, path));
+        steps_.pop_back();
+        return Done{};
     }
 
     Status check_value(const JsonValue& value) const {
@@ -405,7 +401,7 @@ class Checker {
 
     [[nodiscard]] std::string place() const {
         std::string result;
-        for (const Step& step : way_) {
+        for (const Step& step : steps_) {
             if (step.key.empty()) {
                 result += fmt::format("[{}]", step.position);
             } else {
@@ -419,9 +415,21 @@ class Checker {
     const JsonValue& root_;
     const std::string& file_;
     const Rule* rule_ = nullptr;
-    std::vector<Step> way_;
+    std::vector<Step> steps_;
     std::size_t target_size_ = 0;
 };
+
+/// Fails unless each item has the member that its type asks for.
+Status check_member_of_type(
+    const std::vector<JsonValue>& items, std::string_view type, std::string_view path,
+    const std::string& file) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (items[i]["type"].text == type && items[i].find(type) == nullptr) {
+            return fail("{}: {}[{}].{}: found nothing, expected an object", file, path, i, type);
+        }
+    }
+    return Done{};
+}
 
 }  // namespace
 
@@ -431,21 +439,21 @@ Status check_gltf_schema(const JsonValue& json, const std::string& file) {
     }
     Checker checker(json, file);
     for (const Rule& rule : kRules) {
-        if (Status status = checker.check(rule); !status) {
-            return status;
-        }
+        LIMN_TRY(checker.check(rule));
     }
     for (const char* info : kTextureInfos) {
         for (const Rule& rule : kTextureRules) {
             const std::string path = std::string(info) + rule.path;
             Rule placed = rule;
             placed.path = path.c_str();
-            if (Status status = checker.check(placed); !status) {
-                return status;
-            }
+            LIMN_TRY(checker.check(placed));
         }
     }
-    return Done{};
+    const std::vector<JsonValue>& cameras = json["cameras"].items;
+    LIMN_TRY(check_member_of_type(cameras, "perspective", "cameras", file));
+    LIMN_TRY(check_member_of_type(cameras, "orthographic", "cameras", file));
+    const JsonValue& lights = json["extensions"]["KHR_lights_punctual"]["lights"];
+    return check_member_of_type(lights.items, "spot", kLights, file);
 }
 
 }  // namespace limn

@@ -50,7 +50,7 @@ std::vector<bool> find_kept_nodes(const GltfScene& scene, bool has_character) {
             keeps[static_cast<std::size_t>(node.parent)] = true;
         }
         for (const AnyComponent& component : node.components) {
-            // for_each_entity gives what may be written
+            // for_each_entity gives mutable references
             AnyComponent copy = component;
             for_each_entity(copy.info().fields, copy.data(), [&](const Entity& named) {
                 if (!named.is_null()) {
@@ -92,7 +92,7 @@ class GltfSpawner {
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
             entities_.push_back(keeps_[i] ? create(i) : Entity{});
         }
-        // After all nodes, since components may name any of them.
+        // After all nodes, since components may reference any of them.
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
             if (keeps_[i]) {
                 add_parts(entities_[i], scene_.nodes[i]);
@@ -114,10 +114,10 @@ class GltfSpawner {
             return;
         }
         if (has_joints_) {
-            rig.skeleton = {offsets_.skeleton};
+            rig.skeleton = {offsets_.skeletons};
         }
         if (has_clips_) {
-            rig.player.clip = {offsets_.clip};
+            rig.player.clip = {offsets_.clips};
         }
         rig.weights = std::move(scene_.morph_weights);
         if (parent_.is_null()) {
@@ -136,7 +136,7 @@ class GltfSpawner {
         const GltfNode& node = scene_.nodes[index];
         const std::int32_t joint = scene_.joints[index];
         const Entity entity = world_.create(
-            joint >= 0 ? placement_of(rest_[static_cast<std::size_t>(joint)])
+            joint >= 0 ? decompose_affine(rest_[static_cast<std::size_t>(joint)])
                        : Transform{node.transform});
         if (joint >= 0) {
             world_.add(entity, JointAttachment{parent_, static_cast<std::uint16_t>(joint)});
@@ -162,7 +162,7 @@ class GltfSpawner {
     void add_parts(Entity entity, const GltfNode& node) {
         for (const GltfPart& part : node.parts) {
             const MeshInstance instance{
-                {part.mesh + offsets_.mesh}, {part.material + offsets_.material}};
+                {part.mesh + offsets_.meshes}, {part.material + offsets_.materials}};
             Entity drawn = entity;
             if (node.parts.size() == 1) {
                 world_.add(entity, instance);
@@ -174,7 +174,7 @@ class GltfSpawner {
                 Deformed deformed;
                 deformed.character = parent_;
                 if (node.skin >= 0) {
-                    deformed.skin = {static_cast<std::uint32_t>(node.skin) + offsets_.skin};
+                    deformed.skin = {static_cast<std::uint32_t>(node.skin) + offsets_.skins};
                 }
                 deformed.first_morph = static_cast<std::uint32_t>(std::max(node.first_morph, 0));
                 world_.add(drawn, deformed);
@@ -189,7 +189,7 @@ class GltfSpawner {
                 reference = entities_[reference.index];
             }
         });
-        shift_assets(info, component.data(), offsets_);
+        offset_asset_ids(info, component.data(), offsets_);
         const bool is_for_character = result_.rig.is_character && is_of_character(component);
         const Entity target = is_for_character ? parent_ : entities_[node];
         if (!is_for_character || !world_.has(target, info.id)) {

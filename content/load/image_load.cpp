@@ -21,7 +21,7 @@ namespace limn {
 
 namespace {
 
-/// The reader for files that begin like `bytes`; "" when unknown.
+/// Name of the format of `bytes`; "" when unknown.
 std::string sniff_format(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr std::pair<std::string_view, const char*> kMagic[] = {
@@ -40,18 +40,17 @@ std::string sniff_format(std::span<const std::byte> bytes) {
     return "";
 }
 
-/// libjpeg fills a picture that ends early with gray and OpenImageIO takes it; so ask for its end
-/// mark.
+/// libjpeg fills a truncated image with gray and OpenImageIO accepts it, so check the end mark.
 bool is_truncated_jpeg(std::span<const std::byte> bytes) {
     constexpr std::string_view kEnd = "\xff\xd9";
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     return text.rfind(kEnd) == std::string_view::npos;
 }
 
-/// First line of a library's message, which may have many.
+/// The first line of a library's message.
 std::string one_line(std::string message) {
     message.resize(std::min(message.find('\n'), message.size()));
-    return message.empty() ? "the reader does not say why" : message;
+    return message.empty() ? "unknown reason" : message;
 }
 
 template <typename T>
@@ -64,7 +63,7 @@ template <>
 float one() {
     return 1.0f;
 }
-/// Spreads `count` pixels of `channels` interleaved values to RGBA, in place of nothing.
+/// Expands `count` pixels of `channels` interleaved values to RGBA.
 template <typename T>
 void expand_to_rgba(const T* source, std::size_t count, int channels, T* rgba) {
     for (std::size_t i = 0; i < count; ++i, source += channels, rgba += 4) {
@@ -95,44 +94,39 @@ Result<ImageData> decode(
     const ImageLimits& limits) {
     const std::string format = sniff_format(bytes);
     if (bytes.empty()) {
-        return fail("{}: found nothing, expected a picture", place);
+        return fail("{}: found an empty file, expected an image", place);
     }
     if (format.empty()) {
         return fail(
-            "{}: found {} bytes of an unknown kind, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
-            "picture",
+            "{}: found {} bytes in an unknown format, expected a PNG, JPEG, BMP, WebP, HDR or EXR "
+            "image",
             place, bytes.size());
     }
     if (format == "png") {
-        if (Status status = check_png(bytes, place); !status) {
-            return status.error();
-        }
+        LIMN_TRY(check_png(bytes, place));
     }
     if (format == "jpeg" && is_truncated_jpeg(bytes)) {
-        return fail("{}: the JPEG picture ends early", place);
+        return fail("{}: truncated JPEG image", place);
     }
 
     if (format == "exr") {
         const ExrLimits exr_limits{
             .max_size = limits.max_size, .max_values = 4 * limits.max_pixels, .max_channels = 64};
-        const Result<ExrImage> picture = decode_exr(bytes, place, exr_limits);
-        if (!picture) {
-            return picture.error();
-        }
-        return to_image_data(*picture, place);
+        const ExrImage exr = LIMN_TRY(decode_exr(bytes, place, exr_limits));
+        return to_image_data(exr, place);
     }
 
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-    OIIO::ImageSpec wishes;
-    wishes.attribute("oiio:UnassociatedAlpha", 1);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
     if (input == nullptr || !input->supports("ioproxy") || !input->set_ioproxy(&memory)) {
         OIIO::geterror();
-        return fail("{}: this OpenImageIO cannot read {} pictures from memory", place, format);
+        return fail("{}: this OpenImageIO cannot read {} images from memory", place, format);
     }
     OIIO::ImageSpec spec;
-    if (!input->open(place, spec, wishes)) {
-        return fail("{}: broken {} picture: {}", place, format, one_line(input->geterror()));
+    if (!input->open(place, spec, config)) {
+        return fail("{}: corrupt {} image: {}", place, format, one_line(input->geterror()));
     }
     if (spec.width <= 0 || spec.height <= 0 || spec.width > limits.max_size
         || spec.height > limits.max_size
@@ -142,7 +136,7 @@ Result<ImageData> decode(
             spec.width, spec.height, limits.max_size, limits.max_pixels);
     }
     if (spec.depth > 1 || spec.nchannels < 1 || spec.deep) {
-        return fail("{}: found a deep or volume picture, expected a flat one", place);
+        return fail("{}: found a deep or volume image, expected a flat one", place);
     }
 
     ImageData image;
@@ -159,7 +153,7 @@ Result<ImageData> decode(
         complete = read_pixels<std::uint8_t>(*input, channels, image.pixels, OIIO::TypeUInt8);
     }
     if (!complete || input->has_error()) {
-        return fail("{}: broken {} picture: {}", place, format, one_line(input->geterror()));
+        return fail("{}: corrupt {} image: {}", place, format, one_line(input->geterror()));
     }
     return image;
 }
@@ -168,7 +162,7 @@ Result<ImageData> decode(
 
 namespace {
 
-/// Floats or halves by their bits: all ones in `exponent` is what is not finite.
+/// Floats or halves by their bits: non-finite values have all bits of `exponent` set.
 template <typename Bits>
 std::size_t replace_bits(std::vector<std::uint8_t>& pixels, Bits exponent, Bits largest_half) {
     constexpr Bits kSign = static_cast<Bits>(Bits{1} << (8 * sizeof(Bits) - 1));
@@ -201,11 +195,8 @@ std::size_t replace_non_finite(ImageData& image) {
 }
 
 Result<ImageData> load_image(const std::string& path, bool srgb, const ImageLimits& limits) {
-    const Result<std::vector<std::byte>> bytes = read_file(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    Result<ImageData> image = decode_image(*bytes, path, srgb, limits);
+    const std::vector<std::byte> bytes = LIMN_TRY(read_file(path));
+    Result<ImageData> image = decode_image(bytes, path, srgb, limits);
     if (image) {
         image->name = std::filesystem::path(path).stem().string();
     }
@@ -218,7 +209,7 @@ Result<ImageData> decode_image(
     try {
         return decode(bytes, place, srgb, limits);
     } catch (const std::exception& exception) {
-        return fail("{}: broken picture: {}", place, one_line(exception.what()));
+        return fail("{}: corrupt image: {}", place, one_line(exception.what()));
     }
 }
 

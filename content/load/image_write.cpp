@@ -36,7 +36,7 @@ encode_png(int width, int height, int channels, OIIO::TypeDesc type, const void*
     return bytes;
 }
 
-/// The same of checked sizes and without exceptions.
+/// The same with checked sizes and without exceptions.
 Result<std::vector<unsigned char>> encode_values(
     int width, int height, int channels, OIIO::TypeDesc type, std::size_t count,
     const void* values) {

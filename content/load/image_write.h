@@ -9,9 +9,8 @@
 
 namespace limn {
 
-// PNG, encoded in memory by OpenImageIO and written whole or not at all (atomic_file.h). Values are
-// what a display gets: sRGB encoded, alpha not multiplied into the color. Equal pixels give equal
-// files.
+// PNG files, encoded in memory by OpenImageIO and written atomically (atomic_file.h). Values are
+// display-referred: sRGB encoded, alpha not premultiplied. Equal pixels give equal files.
 
 /// Writes `width` x `height` pixels of `channels` (1 gray, 2 gray and alpha, 3 RGB, 4 RGBA)
 /// interleaved values, rows from top to bottom.
@@ -19,12 +18,12 @@ namespace limn {
     const std::string& path, int width, int height, int channels,
     std::span<const std::uint8_t> pixels);
 
-/// The same with 16 bits a value, for ramps that 8 bits would band.
+/// The same with 16 bits per value, for gradients that would show banding with 8.
 [[nodiscard]] Status write_png16(
     const std::string& path, int width, int height, int channels,
     std::span<const std::uint16_t> pixels);
 
-/// The file of write_png as bytes, for pictures within other files.
+/// The file of write_png as bytes, to embed in other files.
 [[nodiscard]] Result<std::vector<std::uint8_t>>
 png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pixels);
 

@@ -1,5 +1,6 @@
 #include "content/load/json_document.h"
 
+#include "content/load/atomic_file.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
 
@@ -8,18 +9,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <iterator>
-#include <memory>
 #include <unordered_set>
 
 namespace limn {
 
 namespace {
 
-constexpr std::size_t kQuotedBytes = 48;  // of a file's string that a message repeats
-constexpr std::size_t kLineWidth = 96;    // write_json breaks what is longer
+constexpr std::size_t kQuotedBytes = 48;  // of a string that messages show
+constexpr std::size_t kLineWidth = 96;    // write_json breaks longer values
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -100,7 +98,7 @@ class JsonParser {
     [[nodiscard]] bool at_end() const { return next_ == text_.size(); }
     [[nodiscard]] char peek() const { return at_end() ? '\0' : text_[next_]; }
 
-    /// Of next_. Counts each character once in all, however long the lines are.
+    /// Position of next_. Counts each character once, however long the lines are.
     [[nodiscard]] SourcePosition position() {
         const std::string_view passed = text_.substr(counted_, next_ - counted_);
         column_ += static_cast<std::uint32_t>(std::count_if(
@@ -115,7 +113,7 @@ class JsonParser {
         return false;
     }
 
-    /// What stands at next_ is not what was expected.
+    /// Error: found the character at next_.
     bool refuse(std::string_view expected) {
         if (at_end()) {
             return refuse_at(position(), "the end of the file", expected);
@@ -162,7 +160,7 @@ class JsonParser {
         }
         const std::size_t end = text_.find("*/", next_ + 2);
         if (end == std::string_view::npos) {
-            return refuse_at(start, "a comment without end", "*/");
+            return refuse_at(start, "an unterminated comment", "*/");
         }
         while (next_ < end) {
             if (text_[next_++] == '\n') {
@@ -270,7 +268,7 @@ class JsonParser {
         ++next_;
         while (peek() != '"' || at_end()) {
             if (at_end() || peek() == '\n') {
-                return refuse_at(start, "a string without end", "a closing \"");
+                return refuse_at(start, "an unterminated string", "a closing \"");
             }
             if (peek() == '\\') {
                 if (!parse_escape(out)) {
@@ -326,7 +324,7 @@ class JsonParser {
         return true;
     }
 
-    /// The four digits after a u, which next_ stands at.
+    /// The four digits after the u at next_.
     bool parse_hex4(std::uint32_t& code) {
         ++next_;
         const std::string_view digits = text_.substr(next_, 4);
@@ -339,45 +337,43 @@ class JsonParser {
         return true;
     }
 
-    bool parse_array(JsonValue& value, int depth) {
-        value.kind = JsonKind::Array;
+    /// Calls parse_item for the items between two brackets, which commas separate.
+    template <typename ParseItem>
+    bool parse_list(char close, std::string_view expected, ParseItem&& parse_item) {
         ++next_;
         if (!skip_blank()) {
             return false;
         }
-        if (peek() == ']') {
+        if (peek() == close) {
             ++next_;
             return true;
         }
-        while (true) {
-            if (!parse_value(value.items.emplace_back(), depth + 1) || !skip_blank()) {
-                return false;
-            }
-            if (peek() == ']') {
-                ++next_;
-                return true;
-            }
-            if (peek() != ',') {
-                return refuse("',' or ']' in the array");
+        while (parse_item() && skip_blank()) {
+            const char c = peek();
+            if (c != close && c != ',') {
+                return refuse(expected);
             }
             ++next_;
+            if (c == close) {
+                return true;
+            }
             if (!skip_blank()) {
                 return false;
             }
         }
+        return false;
+    }
+
+    bool parse_array(JsonValue& value, int depth) {
+        value.kind = JsonKind::Array;
+        return parse_list(']', "',' or ']' in the array", [&] {
+            return parse_value(value.items.emplace_back(), depth + 1);
+        });
     }
 
     bool parse_object(JsonValue& value, int depth) {
         value.kind = JsonKind::Object;
-        ++next_;
-        if (!skip_blank()) {
-            return false;
-        }
-        if (peek() == '}') {
-            ++next_;
-            return true;
-        }
-        while (true) {
+        const auto parse_member = [&] {
             JsonMember& member = value.members.emplace_back();
             member.at = position();
             if (peek() != '"') {
@@ -390,21 +386,10 @@ class JsonParser {
                 return refuse("':' after the key " + in_quotes(member.key));
             }
             ++next_;
-            if (!skip_blank() || !parse_value(member.value, depth + 1) || !skip_blank()) {
-                return false;
-            }
-            if (peek() == '}') {
-                ++next_;
-                return check_keys_differ(value);
-            }
-            if (peek() != ',') {
-                return refuse("',' or '}' in the object");
-            }
-            ++next_;
-            if (!skip_blank()) {
-                return false;
-            }
-        }
+            return skip_blank() && parse_value(member.value, depth + 1);
+        };
+        return parse_list('}', "',' or '}' in the object", parse_member)
+               && check_keys_differ(value);
     }
 
     bool check_keys_differ(const JsonValue& object) {
@@ -412,8 +397,7 @@ class JsonParser {
         for (const JsonMember& member : object.members) {
             if (!seen.insert(member.key).second) {
                 return refuse_at(
-                    member.at, "the key " + in_quotes(member.key) + " for the second time",
-                    "each key once");
+                    member.at, "a duplicate key " + in_quotes(member.key), "each key once");
             }
         }
         return true;
@@ -489,7 +473,7 @@ std::string write_compact(const JsonValue& value) {
     return "null";
 }
 
-/// What does not fit on a line is broken, one item a line.
+/// Containers that do not fit on a line are broken into one item per line.
 void write_broken(const JsonValue& value, std::size_t indent, std::size_t used, std::string& out) {
     std::string compact = write_compact(value);
     const bool is_container = value.kind == JsonKind::Array || value.kind == JsonKind::Object;
@@ -539,40 +523,20 @@ const JsonValue* JsonValue::find(std::string_view key) const {
     return nullptr;
 }
 
+const JsonValue& JsonValue::operator[](std::string_view key) const {
+    static const JsonValue null;
+    const JsonValue* const member = find(key);
+    return member != nullptr ? *member : null;
+}
+
 Result<JsonValue>
 parse_json(std::string_view text, std::string_view file, const JsonLimits& limits) {
     return JsonParser(text, file, limits).parse();
 }
 
 Result<JsonValue> load_json(const std::string& path, const JsonLimits& limits) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        return fail("{}: found no such file, expected JSON", path);
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        return fail(
-            "{}: found {}, expected a file", path,
-            std::filesystem::is_directory(status) ? "a directory" : "a special file");
-    }
-    const auto close = [](std::FILE* file) { std::fclose(file); };
-    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
-    if (file == nullptr) {
-        return fail("{}: found a file that cannot be opened, expected one that can be read", path);
-    }
-    std::string text;
-    char block[1 << 16];
-    while (const std::size_t got = std::fread(block, 1, sizeof(block), file.get())) {
-        text.append(block, got);
-        if (text.size() > limits.max_bytes) {
-            break;  // parse_json says so
-        }
-    }
-    if (std::ferror(file.get()) != 0) {
-        return fail(
-            "{}: found a read error after {} bytes, expected a readable file", path, text.size());
-    }
-    return parse_json(text, path, limits);
+    const std::vector<std::byte> bytes = LIMN_TRY(read_file(path, limits.max_bytes));
+    return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, limits);
 }
 
 std::string write_json(const JsonValue& value) {
@@ -653,8 +617,8 @@ std::string in_quotes(std::string_view text) {
     return '"' + shown + (i < text.size() ? "...\"" : "\"");
 }
 
-std::string did_you_mean(std::string_view name, const std::vector<std::string_view>& candidates) {
-    // What is long is no typo, and the search is quadratic in it.
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
+    // Long names are rarely typos, and the search is quadratic in their length.
     constexpr std::size_t kLongestName = 64;
     std::vector<std::string_view> short_ones;
     std::copy_if(

@@ -15,7 +15,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::uint32_t kUseGeneration = 0xfffffffdu;  // of an Entity that stands for a NameUse
+constexpr std::uint32_t kUseGeneration = 0xfffffffdu;  // marks a placeholder for a NameUse
 constexpr std::size_t kMaxLayers = 64;
 
 const std::vector<std::string_view> kNodeKeys = {"name", "prefab", "gltf", "repeat", "children"};
@@ -24,7 +24,7 @@ bool is_node_key(std::string_view key) {
     return std::find(kNodeKeys.begin(), kNodeKeys.end(), key) != kNodeKeys.end();
 }
 
-/// The key in the last layer that has it; null: in none.
+/// The value of `key` in the last layer that has it, or null.
 const JsonValue* find_in_layers(const std::vector<const JsonValue*>& layers, std::string_view key) {
     for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
         if (const JsonValue* const value = (*layer)->find(key)) {
@@ -34,7 +34,7 @@ const JsonValue* find_in_layers(const std::vector<const JsonValue*>& layers, std
     return nullptr;
 }
 
-/// "repeat" of all layers: later ones replace single keys, as with components, or all of it by
+/// "repeat" of all layers: later ones replace single keys, as with components, or reset it with
 /// null.
 JsonValue merged_repeat(const std::vector<const JsonValue*>& layers) {
     JsonValue merged;
@@ -57,7 +57,7 @@ JsonValue merged_repeat(const std::vector<const JsonValue*>& layers) {
     return merged;
 }
 
-/// What it costs to read a value, in values.
+/// Cost of reading a value, in values.
 std::size_t weight(const JsonValue& json) {
     std::size_t sum = 1 + json.text.size() / 16;
     for (const JsonValue& item : json.items) {
@@ -69,52 +69,42 @@ std::size_t weight(const JsonValue& json) {
     return sum;
 }
 
-AnyComponent* find_component_in(std::vector<AnyComponent>& components, ComponentId id) {
-    const auto found =
-        std::find_if(components.begin(), components.end(), [id](const AnyComponent& c) {
-            return c.info().id == id;
-        });
-    return found == components.end() ? nullptr : &*found;
-}
-
-/// What is to follow a character and names none follows its own entity, or else the nearest one
-/// above that is a character.
+/// Points unset character references at the nearest character, the entity itself or an ancestor.
 void follow_character(Prefab& list, std::uint32_t index) {
     std::vector<AnyComponent>& own = list.entities[index].components;
     std::vector<Entity*> open;
-    if (AnyComponent* const deformed = find_component_in(own, component_id<Deformed>)) {
-        open.push_back(&deformed->as<Deformed>().character);
+    if (auto* const deformed = find_in<Deformed>(own)) {
+        open.push_back(&deformed->character);
     }
-    if (AnyComponent* const attached = find_component_in(own, component_id<JointAttachment>)) {
-        open.push_back(&attached->as<JointAttachment>().character);
+    if (auto* const attached = find_in<JointAttachment>(own)) {
+        open.push_back(&attached->character);
     }
     std::erase_if(open, [](const Entity* character) { return !character->is_null(); });
     for (std::uint32_t at = index; !open.empty();) {
         std::vector<AnyComponent>& components = list.entities[at].components;
-        if (find_component_in(components, component_id<Skeleton>) != nullptr
-            || find_component_in(components, component_id<MorphWeights>) != nullptr) {
+        if (find_in<Skeleton>(components) != nullptr
+            || find_in<MorphWeights>(components) != nullptr) {
             for (Entity* const character : open) {
                 *character = prefab_entity(at);
             }
             return;
         }
-        const AnyComponent* const parent = find_component_in(components, component_id<Parent>);
+        const auto* const parent = find_in<Parent>(components);
         if (parent == nullptr) {
             return;
         }
-        at = parent->as<Parent>().entity.index;
+        at = parent->entity.index;
     }
 }
 
 }  // namespace
 
 LevelEntities::LevelEntities(
-    std::string file, const JsonValue* prefabs, FindNames names, const EntityLimits& limits)
+    std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
+    const EntityLimits& limits)
     : file_(std::move(file)), names_(std::move(names)), limits_(limits) {
-    if (prefabs != nullptr) {
-        for (const JsonMember& prefab : prefabs->members) {
-            prefabs_[prefab.key].json = &prefab.value;
-        }
+    for (const JsonMember& prefab : prefabs) {
+        prefabs_[prefab.key].json = &prefab.value;
     }
 }
 
@@ -123,28 +113,21 @@ Status LevelEntities::add(const JsonValue& node, const std::string& path) {
 }
 
 Status LevelEntities::add_node(
-    List& list, const JsonValue& json, const Around& around, const std::string& path) {
+    List& list, const JsonValue& json, const Context& context, const std::string& path) {
     Node node;
     node.json = &json;
     node.path = path;
-    if (json.kind != JsonKind::Object) {
-        return refuse(path, json.at, describe(json), "an entity: an object");
-    }
-    if (around.depth >= limits_.max_depth) {
+    LIMN_TRY(expect(json, JsonKind::Object, {file_, path}, "an entity (an object)"));
+    if (context.depth >= limits_.max_depth) {
         return refuse(
-            path, json.at, fmt::format("more than {} entities in each other", limits_.max_depth),
-            "fewer");
+            path, json.at, fmt::format("more than {} nested entities", limits_.max_depth), "fewer");
     }
     const std::size_t open_before = open_.size();
-    Status status = read_own_keys(node);
-    if (status) {
-        status = find_layers(node);
-    }
-    if (status) {
-        status = add_copies(list, node, around);
-    }
+    LIMN_TRY(read_own_keys(node));
+    LIMN_TRY(find_layers(node));
+    LIMN_TRY(add_copies(list, node, context));
     open_.resize(open_before);
-    return status;
+    return Done{};
 }
 
 Status LevelEntities::read_own_keys(Node& node) const {
@@ -155,16 +138,14 @@ Status LevelEntities::read_own_keys(Node& node) const {
     const bool good = name->kind == JsonKind::String && !name->text.empty()
                       && name->text.find('.') == std::string::npos;
     if (!good) {
-        return refuse(
-            node.path, name->at, describe(*name),
-            "a name: a string that is not empty, without '.'");
+        return unexpected(*name, {file_, node.path}, "a name: a non-empty string without '.'");
     }
     node.name = name->text;
     node.path = "entity " + in_quotes(name->text);
     return Done{};
 }
 
-/// Follows "prefab" to the prefab that uses no other one.
+/// Collects the chain of prefabs that the node is based on.
 Status LevelEntities::find_layers(Node& node) {
     const JsonValue* layer = node.json;
     node.layers.push_back(layer);
@@ -192,34 +173,30 @@ Status LevelEntities::find_layers(Node& node) {
         }
         layer = prefab->second.json;
         prefab->second.is_used = true;
-        if (layer->kind != JsonKind::Object) {
-            return refuse(
-                "prefabs." + used->text, layer->at, describe(*layer), "an entity: an object");
-        }
+        const std::string path = "prefabs." + used->text;
+        LIMN_TRY(expect(*layer, JsonKind::Object, {file_, path}, "an entity (an object)"));
         if (const JsonValue* const name = layer->find("name")) {
             return refuse(
-                "prefabs." + used->text, name->at, "a name",
-                "none: the entities that use it have names");
+                path, name->at, "a name", "none, since the entities that use it have names");
         }
         open_.push_back(used->text);
         node.layers.push_back(layer);
         if (node.layers.size() > kMaxLayers) {
             return refuse(
-                node.path, used->at, fmt::format("more than {} prefabs of prefabs", kMaxLayers),
+                node.path, used->at, fmt::format("a chain of more than {} prefabs", kMaxLayers),
                 "fewer");
         }
     }
     std::reverse(node.layers.begin(), node.layers.end());
     node.is_copy = node.layers.size() > 1;
     node.has_children = std::any_of(node.layers.begin(), node.layers.end(), [](const JsonValue* l) {
-        const JsonValue* const children = l->find("children");
-        return children != nullptr && !children->items.empty();
+        return !(*l)["children"].items.empty();
     });
     return Done{};
 }
 
-/// Refuses to go on when the level as a whole becomes too large.
-Status LevelEntities::spend(const Node& node, std::uint64_t copies) {
+/// Fails when the level as a whole exceeds its limits.
+Status LevelEntities::charge_limits(const Node& node, std::uint64_t copies) {
     std::size_t values = 1;
     for (const JsonValue* const layer : node.layers) {
         for (const JsonMember& member : layer->members) {
@@ -241,8 +218,8 @@ Status LevelEntities::spend(const Node& node, std::uint64_t copies) {
     return Done{};
 }
 
-FindNames LevelEntities::names_in(List& list) const {
-    FindNames names = names_;
+NameResolver LevelEntities::names_in(List& list) const {
+    NameResolver names = names_;
     names.entity = [&list](std::string_view name, SourcePosition at) -> std::optional<Entity> {
         list.uses.push_back({std::string(name), at});
         return Entity{static_cast<std::uint32_t>(list.uses.size() - 1), kUseGeneration};
@@ -250,66 +227,56 @@ FindNames LevelEntities::names_in(List& list) const {
     return names;
 }
 
-Status LevelEntities::add_copies(List& list, Node& node, const Around& around) {
-    Status status = spend(node, 1);
-    if (!status) {
-        return status;
-    }
-    Result<std::vector<AnyComponent>> components = read_components(list, node);
-    if (!components) {
-        return components.error();
-    }
+Status LevelEntities::add_copies(List& list, Node& node, const Context& context) {
+    LIMN_TRY(charge_limits(node, 1));
+    std::vector<AnyComponent> components = LIMN_TRY(read_components(list, node));
     const JsonValue json = merged_repeat(node.layers);
     if (json.kind == JsonKind::Null) {
-        return add_copy(list, node, around, *std::move(components), node.name);
+        return add_copy(list, node, context, std::move(components), node.name);
     }
     node.is_copy = true;
-    const Result<Repeat> repeat =
-        read_repeat(json, *components, {file_, node.path + ".repeat"}, names_in(list));
-    if (!repeat) {
-        return repeat.error();
-    }
-    const std::uint64_t count = repeat_count(*repeat);
-    status = spend(node, count - 1);
-    for (std::uint64_t i = 0; i < count && status; ++i) {
-        std::vector<AnyComponent> copy = *components;
-        apply_repeat(*repeat, i, copy);
+    const Repeat repeat =
+        LIMN_TRY(read_repeat(json, components, {file_, node.path + ".repeat"}, names_in(list)));
+    const std::uint64_t count = repeat_count(repeat);
+    LIMN_TRY(charge_limits(node, count - 1));
+    for (std::uint64_t i = 0; i < count; ++i) {
+        std::vector<AnyComponent> copy = components;
+        apply_repeat(repeat, i, copy);
         const std::string name = node.name.empty() ? "" : fmt::format("{}[{}]", node.name, i);
-        status = add_copy(list, node, around, std::move(copy), name);
+        LIMN_TRY(add_copy(list, node, context, std::move(copy), name));
     }
-    return status;
+    return Done{};
 }
 
 Status LevelEntities::add_copy(
-    List& list, const Node& node, const Around& around, std::vector<AnyComponent> components,
+    List& list, const Node& node, const Context& context, std::vector<AnyComponent> components,
     const std::string& name) {
     const auto index = static_cast<std::uint32_t>(list.entities.entities.size());
-    if (around.parent >= 0) {
+    if (context.parent >= 0) {
         components.push_back(
-            AnyComponent::of(Parent{prefab_entity(static_cast<std::uint32_t>(around.parent)), 0}));
+            AnyComponent::of(Parent{prefab_entity(static_cast<std::uint32_t>(context.parent)), 0}));
     }
     if (!name.empty()) {
         components.push_back(AnyComponent::of(Name{name}));
-        const auto [place, is_new] = list.scopes[around.scope].names.try_emplace(name, index);
+        const auto [place, is_new] = list.scopes[context.scope].names.try_emplace(name, index);
         if (!is_new) {
             return refuse(
-                node.path, node.json->find("name")->at,
-                "the name " + in_quotes(name) + " for the second time", "each name once");
+                node.path, node.json->find("name")->at, "a duplicate name " + in_quotes(name),
+                "each name once");
         }
     }
     list.entities.entities.push_back({std::move(components)});
     follow_character(list.entities, index);
-    std::uint32_t scope = around.scope;
+    std::uint32_t scope = context.scope;
     if (node.is_copy && node.has_children) {
         scope = static_cast<std::uint32_t>(list.scopes.size());
-        list.scopes.push_back({around.scope, {}});
+        list.scopes.push_back({context.scope, {}});
     }
     list.scope_of.push_back(scope);
 
     if (const JsonValue* const gltf = find_in_layers(node.layers, "gltf")) {
-        if (gltf->kind != JsonKind::String) {
-            return refuse(node.path, gltf->at, describe(*gltf), "the path of a .gltf or .glb file");
-        }
+        const JsonPlace place{file_, node.path};
+        LIMN_TRY(expect(*gltf, JsonKind::String, place, "the path of a .gltf or .glb file"));
         const auto known =
             std::find_if(list.gltfs.begin(), list.gltfs.end(), [&](const GltfUse& use) {
                 return use.file == gltf->text;
@@ -324,16 +291,11 @@ Status LevelEntities::add_copy(
         if (children == nullptr) {
             continue;
         }
-        if (children->kind != JsonKind::Array) {
-            return refuse(node.path, children->at, describe(*children), "an array of entities");
-        }
+        LIMN_TRY(expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
         for (std::size_t i = 0; i < children->items.size(); ++i) {
-            const Status status = add_node(
-                list, children->items[i], {index, scope, around.depth + 1},
-                fmt::format("{}.children[{}]", node.path, i));
-            if (!status) {
-                return status;
-            }
+            LIMN_TRY(add_node(
+                list, children->items[i], {index, scope, context.depth + 1},
+                fmt::format("{}.children[{}]", node.path, i)));
         }
     }
     return Done{};
@@ -344,30 +306,26 @@ Result<std::vector<AnyComponent>> LevelEntities::read_components(List& list, con
     components.push_back(AnyComponent::of(Transform{}));
     bool has_center = false;
     for (const JsonValue* const layer : node.layers) {
-        const Status status = read_layer(list, *layer, node, components);
-        if (!status) {
-            return status.error();
-        }
-        const JsonValue* const sway = layer->find("sway");
-        has_center = has_center || (sway != nullptr && sway->find("center") != nullptr);
+        LIMN_TRY(read_layer(list, *layer, node, components));
+        has_center = has_center || (*layer)["sway"].find("center") != nullptr;
     }
-    AnyComponent* const transform = find_component_in(components, component_id<Transform>);
-    AnyComponent* const sway = find_component_in(components, component_id<Sway>);
+    const auto* const transform = find_in<Transform>(components);
+    auto* const sway = find_in<Sway>(components);
     if (transform != nullptr && sway != nullptr && !has_center) {
-        sway->as<Sway>().center = transform->as<Transform>().position;
+        sway->center = transform->position;
     }
     return components;
 }
 
 Status LevelEntities::read_layer(
     List& list, const JsonValue& layer, const Node& node, std::vector<AnyComponent>& components) {
-    const FindNames names = names_in(list);
+    const NameResolver names = names_in(list);
     for (const JsonMember& member : layer.members) {
         if (is_node_key(member.key)) {
             continue;
         }
         const ComponentInfo* const info = find_component(member.key);
-        const bool is_ours = info == &component_info<Parent>();  // "children" says it
+        const bool is_ours = info == &component_info<Parent>();  // implied by "children"
         if (info == nullptr || is_ours || info->ops.construct_default == nullptr
             || info->ops.construct_copy == nullptr) {
             std::vector<std::string_view> known = kNodeKeys;
@@ -380,7 +338,7 @@ Status LevelEntities::read_layer(
                 "one of `limn components`, or one of name prefab gltf repeat children"
                     + did_you_mean(member.key, known));
         }
-        AnyComponent* component = find_component_in(components, info->id);
+        AnyComponent* component = find_in(components, info->id);
         if (member.value.kind == JsonKind::Null) {
             std::erase_if(components, [info](const AnyComponent& c) { return &c.info() == info; });
             continue;
@@ -388,11 +346,8 @@ Status LevelEntities::read_layer(
         if (component == nullptr) {
             component = &components.emplace_back(*info);
         }
-        const Status status = read_component(
-            member.value, *info, component->data(), {file_, node.path + ": " + member.key}, names);
-        if (!status) {
-            return status;
-        }
+        LIMN_TRY(read_component(
+            member.value, *info, component->data(), {file_, node.path + ": " + member.key}, names));
     }
     return Done{};
 }
@@ -440,7 +395,7 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
             }
             return refuse(
                 "", unknown->at, "the entity " + in_quotes(unknown->name),
-                "the name of one that exists" + did_you_mean(unknown->name, known));
+                "an existing name" + did_you_mean(unknown->name, known));
         }
     }
     return Done{};
@@ -462,16 +417,12 @@ std::vector<std::string_view> LevelEntities::names() const {
 
 Result<Prefab> LevelEntities::read_prefab(const JsonValue& node, const std::string& path) {
     List list;
-    Status status = add_node(list, node, {}, path);
-    if (status) {
-        status = resolve(list, false);
-    }
-    if (!status) {
-        return status.error();
-    }
+    LIMN_TRY(add_node(list, node, {}, path));
+    LIMN_TRY(resolve(list, false));
     if (!list.gltfs.empty()) {
         return refuse(
-            path, list.gltfs[0].at, "a glTF file", "none: events spawn what the level has loaded");
+            path, list.gltfs[0].at, "a glTF file",
+            "none, since events can only spawn assets that the level has loaded");
     }
     return std::move(list.entities);
 }
@@ -486,13 +437,8 @@ Status LevelEntities::check_unused_prefabs() {
         node.at = prefab.json->at;
         node.members[0].value.at = prefab.json->at;
         List list;
-        Status status = add_node(list, node, {}, "prefabs." + name);
-        if (status) {
-            status = resolve(list, false);
-        }
-        if (!status) {
-            return status;
-        }
+        LIMN_TRY(add_node(list, node, {}, "prefabs." + name));
+        LIMN_TRY(resolve(list, false));
     }
     return Done{};
 }

@@ -16,72 +16,71 @@
 
 namespace limn {
 
-// The nodes of a level file (level_load.h), with their prefabs, repetitions and children, written
-// out as one flat list of entities. Names are looked up from the inside out: in the copy of the
-// prefab that uses them, then around it; they may be used before the entity they name is written.
+// Expands the nodes of a level file (level_load.h), with their prefabs, repeats and children, into
+// one flat list of entities. Names are resolved from the innermost scope outwards: in the prefab
+// instance that uses them, then around it; forward references are allowed.
 
-/// What writing out may cost.
+/// Limits of the expansion.
 struct EntityLimits {
     std::size_t max_entities = 2'000'000;
-    std::size_t max_values = std::size_t{1} << 25;  ///< JSON values, as often as they are used
-    std::size_t max_depth = 128;                    ///< of children in each other
+    std::size_t max_values = std::size_t{1} << 25;  ///< JSON values, counted at each use
+    std::size_t max_depth = 128;                    ///< of nested children
 };
 
-/// A glTF file and the entities that it belongs under.
+/// A glTF file and the entities that use it.
 struct GltfUse {
     std::string file;
     SourcePosition at;
-    std::vector<std::uint32_t> entities;  ///< numbers in the list
+    std::vector<std::uint32_t> entities;  ///< indices into the list
 };
 
 class LevelEntities {
   public:
-    /// `prefabs` is the object of that name in `file`, or null; it must outlive this. `names` knows
-    /// the assets.
+    /// `prefabs` are those of `file` and must outlive this. `names` resolves assets.
     LevelEntities(
-        std::string file, const JsonValue* prefabs, FindNames names, const EntityLimits& limits);
+        std::string file, const std::vector<JsonMember>& prefabs, NameResolver names,
+        const EntityLimits& limits);
 
-    /// Appends the entity `node` and all below it. `path` names it in messages unless it has a
-    /// name.
+    /// Appends the entity `node` and its descendants. `path` is used in messages if it has no name.
     [[nodiscard]] Status add(const JsonValue& node, const std::string& path);
 
-    /// Puts numbers in the place of names, once all is added.
+    /// Replaces names by entity indices, after all nodes are added.
     [[nodiscard]] Status resolve_names();
 
-    /// The number of the entity with this name outside of prefabs; -1: there is none.
+    /// Index of the entity with this name outside of prefabs, or -1.
     [[nodiscard]] std::int64_t find(std::string_view name) const;
     [[nodiscard]] std::vector<std::string_view> names() const;
 
-    /// `node` and what is below it as a prefab of its own, after all is added. Names that it does
-    /// not hold are the level's, and become level_entity(number). It may use no glTF.
+    /// `node` and its descendants as a separate prefab, after all nodes are added. Names that it
+    /// does not define are those of the level and become level_entity(index). It may use no glTF.
     [[nodiscard]] Result<Prefab> read_prefab(const JsonValue& node, const std::string& path);
 
-    /// Refuses prefabs that no entity uses but that could not be used either.
+    /// Validates the prefabs that no entity uses.
     [[nodiscard]] Status check_unused_prefabs();
 
     [[nodiscard]] Prefab& entities() { return level_.entities; }
     [[nodiscard]] std::vector<GltfUse>& gltfs() { return level_.gltfs; }
 
   private:
-    /// Names that may be used in a part of a list. Scope 0 is around all.
+    /// Names visible in a part of a list. Scope 0 is the outermost.
     struct Scope {
         std::uint32_t outer = 0;
         std::unordered_map<std::string, std::uint32_t> names;
     };
-    /// A name that a component uses.
+    /// An entity that a component references by name.
     struct NameUse {
         std::string name;
         SourcePosition at;
     };
     struct List {
         Prefab entities;
-        std::vector<std::uint32_t> scope_of;  // of each entity's own names
+        std::vector<std::uint32_t> scope_of;  // in which each entity resolves names
         std::vector<Scope> scopes = {Scope{}};
         std::vector<NameUse> uses;
         std::vector<GltfUse> gltfs;
     };
     /// Where a node is added.
-    struct Around {
+    struct Context {
         std::int64_t parent = -1;
         std::uint32_t scope = 0;
         std::size_t depth = 0;
@@ -92,16 +91,16 @@ class LevelEntities {
         std::string path;
         std::string name;
         bool has_children = false;
-        bool is_copy = false;  // of a prefab, or repeated: it has a scope of its own
+        bool is_copy = false;  // a prefab instance, or repeated: has its own scope
     };
 
     [[nodiscard]] Status
-    add_node(List& list, const JsonValue& json, const Around& around, const std::string& path);
+    add_node(List& list, const JsonValue& json, const Context& context, const std::string& path);
     [[nodiscard]] Status find_layers(Node& node);
     [[nodiscard]] Status read_own_keys(Node& node) const;
-    [[nodiscard]] Status add_copies(List& list, Node& node, const Around& around);
+    [[nodiscard]] Status add_copies(List& list, Node& node, const Context& context);
     [[nodiscard]] Status add_copy(
-        List& list, const Node& node, const Around& around, std::vector<AnyComponent> components,
+        List& list, const Node& node, const Context& context, std::vector<AnyComponent> components,
         const std::string& name);
     [[nodiscard]] Status
     add_name(List& list, const Node& node, std::uint32_t scope, const std::string& name);
@@ -109,8 +108,8 @@ class LevelEntities {
     [[nodiscard]] Status read_layer(
         List& list, const JsonValue& layer, const Node& node,
         std::vector<AnyComponent>& components);
-    [[nodiscard]] Status spend(const Node& node, std::uint64_t copies);
-    [[nodiscard]] FindNames names_in(List& list) const;
+    [[nodiscard]] Status charge_limits(const Node& node, std::uint64_t copies);
+    [[nodiscard]] NameResolver names_in(List& list) const;
     [[nodiscard]] Status resolve(List& list, bool is_level) const;
     [[nodiscard]] Error refuse(
         const std::string& path, SourcePosition at, std::string_view found,
@@ -125,15 +124,15 @@ class LevelEntities {
 
     std::string file_;
     std::map<std::string, PrefabJson, std::less<>> prefabs_;
-    std::vector<std::string> open_;  // prefabs that are being written out
-    FindNames names_;
+    std::vector<std::string> open_;  // prefabs being expanded
+    NameResolver names_;
     EntityLimits limits_;
     std::size_t entities_ = 0;
     std::size_t values_ = 0;
     List level_;
 };
 
-/// Entity `index` of the level, in what an event spawns.
+/// Placeholder for entity `index` of the level in a prefab that an event spawns.
 [[nodiscard]] constexpr Entity level_entity(std::uint32_t index) {
     return {index, 0xfffffffeu};
 }

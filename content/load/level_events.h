@@ -8,25 +8,27 @@
 
 namespace limn {
 
-// What happens at which time of a level (ecs/components/script.h):
+// Timed events of a level (ecs/components/script.h):
 //
 //     {
-//       "at": 2.0,                                   // seconds since the level began
-//       "every": 0.5, "times": 10,                   // again: ten times in all
-//       "set": {"lamp": {"point_light": {"enabled": false}}},       // fields get a value
+//       "at": 2.0,                   // seconds since the start of the level
+//       "every": 0.5, "times": 10,   // repeated: ten times in total
+//       // assigns fields
+//       "set": {"lamp": {"point_light": {"enabled": false}}},
 //       "set_resources": {"exposure": {"ev": -1}},
-//       "impulse": {"lamp": {"transform": {"position": [0, 1, 0]}}},  // numbers grow, rotations
-//       turn further "spawn": [NODE, ...],                        // each a new root "destroy":
-//       ["old lamp"]                      // with what is below it
+//       // adds to numbers, composes rotations
+//       "impulse": {"lamp": {"transform": {"position": [0, 1, 0]}}},
+//       "spawn": [NODE, ...],        // each a new root
+//       "destroy": ["old lamp"]      // with its descendants
 //     }
 //
-// The parts of one event happen in the order in which they are written.
+// The actions of an event run in the order in which they are written.
 
-/// Reads an entity of "spawn" and what is below it.
+/// Reads an entity of "spawn" and its descendants.
 using ReadPrefab = std::function<Result<Prefab>(const JsonValue& node, const JsonPlace& place)>;
 
 [[nodiscard]] Result<ScriptEvent> read_event(
-    const JsonValue& json, const JsonPlace& place, const FindNames& names,
+    const JsonValue& json, const JsonPlace& place, const NameResolver& names,
     const ReadPrefab& read_prefab);
 
 }  // namespace limn

@@ -8,23 +8,22 @@
 
 namespace limn {
 
-// Levels are files NAME.level.json in the folders of level_folders; a name is enough to ask for
-// one.
+// Levels are files NAME.level.json in the folders of level_folders, found by name.
 
 struct LevelEntry {
     std::string name;   ///< "gallery"
     std::string path;   ///< of the file
-    std::string title;  ///< one line for people; what is wrong with the file when it cannot be read
+    std::string title;  ///< one line; the error when the file cannot be read
 };
 
-/// Where levels are looked for, in this order: `levels` beside the program, the folder of the
-/// source tree that the program was built from. Folders that are not there are left out.
+/// Search folders, in order: `levels` next to the program, and that of the source tree that the
+/// program was built from. Missing folders are omitted.
 [[nodiscard]] std::vector<std::string> level_folders();
 
-/// Every level, in the order of the names; of two with one name the first folder's.
+/// All levels, sorted by name; of equal names the one in the first folder.
 [[nodiscard]] std::vector<LevelEntry> list_levels();
 
-/// The file of the level `name`; the error names the nearest one.
+/// The file of the level `name`; the error suggests the most similar name.
 [[nodiscard]] Result<std::string> find_level(std::string_view name);
 
 }  // namespace limn

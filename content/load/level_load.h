@@ -7,6 +7,7 @@
 #include "content/make/patterns.h"
 #include "ecs/any_component.h"
 #include "ecs/base/result.h"
+#include "ecs/components/input.h"
 #include "ecs/components/script.h"
 #include "ecs/components/surface.h"
 #include "ecs/prefab.h"
@@ -20,22 +21,23 @@ namespace limn {
 
 class World;
 
-// A level is JSON with comments, NAME.level.json. All of its parts may be missing:
+// A level is JSON with comments, NAME.level.json. Every part is optional:
 //
 //     {
-//       "title": "One line for people",
+//       "title": "One line to display",
 //       "resources": {                          // any registered resource, by name
 //         "environment": {"sky": "studio"}, "exposure": {"ev": 0.5},
 //         "random_seed": {"seed": 7}, "frame_time": {"step": 0.01}
 //       },
-//       "images": {                             // files lie in the level's own folder or below it
-//         "floor": {"make": "marble", "size": 512},   // -> floor.base_color, floor.normal,
-//         floor.orm "leaf": {"file": "leaf.png"},               // color; data has "srgb": false
+//       "images": {                             // files are in the level's folder or below it
+//         // the three images floor.base_color, floor.normal, floor.orm
+//         "floor": {"make": "marble", "size": 512},
+//         "leaf": {"file": "leaf.png"}          // color; data has "srgb": false
 //       },
 //       "materials": {                          // fields of Material, and:
 //         "gold": {"base_color": "#ffd27a", "metalness": 1, "roughness": 0.2},
 //         "dull gold": {"like": "gold", "roughness": 0.6},      // a copy of an earlier one
-//         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all images of a made one
+//         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all maps of a pattern
 //       },
 //       "meshes": {"pot": {"make": "teapot", "divisions": 12},
 //                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
@@ -44,49 +46,49 @@ class World;
 //       "events": [EVENT, ...]
 //     }
 //
-// A NODE is an entity and what is below it. Every entity has a Transform.
+// A NODE is an entity and its descendants. Every entity has a Transform.
 //
 //     {
-//       "name": "lamp 1",          // unique among its neighbors; no '.'
-//       "prefab": "lamp",          // begins as a copy of it; what follows is changed in it
+//       "name": "lamp 1",          // unique in its prefab or the level; no '.'
+//       "prefab": "lamp",          // starts as a copy of it; the other keys override it
 //       "transform": {"position": [0, 2, 0], "rotation": [90, 0, 0]},
 //       "point_light": {"color": "#ffcc80", "intensity": 30},
-//       "spin": null,              // the prefab's is left out
+//       "spin": null,              // removes the prefab's
 //       "gltf": "fox.glb",         // its roots become children
 //       "clip_player": {"clip": "Run"},     // a clip of that file
-//       "repeat": REPEAT,          // as many of it, with what is below it
+//       "repeat": REPEAT,          // copies of it and its descendants
 //       "children": [NODE, ...]    // after those of the prefab
 //     }
 //
-// Components by name: content/load/component_json.h. A field that is an entity names one of the
-// same prefab, or else one of the level. A `sway` without center swings about where its entity
-// stands. A `deformed` or `joint_attachment` without character follows the entity it is on, or the
-// nearest above, that has a `skeleton` or `morph_weights`. A glTF file with joints or morph targets
-// makes its entity a character (gltf_spawn.h). A repeated entity called "post" becomes "post[0]",
-// "post[1]" ... REPEAT and the ways its copies differ are in level_repeat.h, EVENT is in
+// Components are described in content/load/component_json.h. A field of entity type names an entity
+// of the same prefab, or else of the level. A `sway` without center swings about its entity's
+// position. A `deformed` or `joint_attachment` without character follows its own entity, or the
+// nearest ancestor, that has a `skeleton` or `morph_weights`. A glTF file with joints or morph
+// targets makes its entity a character (gltf_spawn.h). A repeated entity called "post" becomes
+// "post[0]", "post[1]" ... REPEAT and per-copy variation are in level_repeat.h, EVENT is in
 // level_events.h; `limn components --schema` prints it all as JSON Schema.
 //
-// Loading has three steps, so that a bad file leaves nothing half done: parse_level reads and
-// checks the text and touches nothing else; load_level_assets reads the files it names and makes
-// its meshes and images; spawn_level puts it into a world and cannot fail.
+// Loading has three steps, so that a bad file leaves no partial state: parse_level parses and
+// validates the text only; load_level_assets reads the referenced files and generates meshes and
+// images; spawn_level puts the level into a world and cannot fail.
 
-/// What a file may cost.
+/// Limits on untrusted levels.
 struct LevelLimits {
     JsonLimits json = {};
     EntityLimits entities = {};
-    std::uint64_t max_vertices = std::uint64_t{1} << 25;  ///< of the meshes made
+    std::uint64_t max_vertices = std::uint64_t{1} << 25;  ///< of all generated meshes
     std::uint64_t max_pixels = std::uint64_t{1} << 27;    ///< of all images
     GltfLimits gltf = {};
 };
 
-/// A mesh to make.
+/// A mesh to generate.
 struct LevelMesh {
     std::string name;
     const MeshKind* kind = nullptr;
     AnyComponent parameters;
 };
 
-/// An image to load, or the three images of a pattern to make.
+/// An image to load, or a pattern to generate as three images.
 struct LevelImage {
     std::string name;
     SourcePosition at;
@@ -98,41 +100,41 @@ struct LevelImage {
 };
 
 struct Level {
-    std::string file;   ///< as it was named, for messages
+    std::string file;   ///< path as given, for messages
     std::string name;   ///< "gallery"
     std::string title;  ///< may be empty
     std::vector<AnyComponent> resources;
+    Bindings bindings;  ///< keys of actions; those not listed keep their defaults
     std::vector<LevelMesh> meshes;
     std::vector<LevelImage> images;
     std::vector<GltfUse> gltfs;
-    /// Everything that is there at the start; roots have no Parent. Assets are indices into
-    /// `assets`.
+    /// All initial entities; roots have no Parent. Assets are indices into `assets`.
     Prefab entities;
-    /// Entities outside the action's own prefab are level_entity(number in `entities`).
+    /// Entities outside the action's own prefab are level_entity(index in `entities`).
     EventList events;
 
-    /// Names of skeletons, skins and clips in components, which hold their places here until
-    /// load_level_assets has read the files that they are in.
-    std::vector<std::string> late_names;
+    /// Names of skeletons, skins and clips; components hold indices into this list until
+    /// load_level_assets has read the files that define them.
+    std::vector<std::string> deferred_names;
 
     Assets assets;  ///< materials after parse_level, the rest after load_level_assets
     std::vector<GltfScene> scenes;  ///< one for each of `gltfs`, after load_level_assets
 };
 
-/// Reads and checks `text`. `file` begins the messages and gives the level its name. Components
-/// must be registered (ecs/components/all.h).
+/// Reads and checks `text`. `file` is the prefix of messages and gives the level its name.
+/// Components must be registered (ecs/components/all.h).
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});
 
-/// Fills `assets` and `scenes`; files are looked for under `folder`.
+/// Fills `assets` and `scenes`; files are resolved under `folder`.
 [[nodiscard]] Status
 load_level_assets(Level& level, const std::string& folder, const LevelLimits& limits = {});
 
 /// Both, for the file `path`.
 [[nodiscard]] Result<Level> load_level(const std::string& path, const LevelLimits& limits = {});
 
-/// Puts the level into the world: assets behind those there are, resources replaced, entities
-/// created in one batch, EventList inserted. Returns the entities in the order of `level.entities`.
+/// Puts the level into the world: appends assets, replaces resources, creates entities in one
+/// batch, inserts the EventList. Returns the entities in the order of `level.entities`.
 std::vector<Entity> spawn_level(World& world, Level level);
 
 }  // namespace limn

@@ -17,7 +17,7 @@ namespace limn {
 
 namespace {
 
-/// Names of one kind in one file; the index of the first counts what stands before.
+/// Names of one kind in one file; `first` is the number of names in the lists before it.
 struct NameList {
     std::vector<std::string_view> names;
     std::uint32_t first = 0;
@@ -32,9 +32,9 @@ struct NameList {
     }
 };
 
-class LateNames {
+class DeferredNames {
   public:
-    explicit LateNames(Level& level) : level_(level) {
+    explicit DeferredNames(Level& level) : level_(level) {
         for (const char* const kind :
              {asset_kind<SkeletonId>, asset_kind<SkinId>, asset_kind<ClipId>}) {
             list_names(kind);
@@ -48,24 +48,17 @@ class LateNames {
 
     Status resolve() {
         for (AnyComponent& resource : level_.resources) {
-            if (Status status = resolve(resource, resource.info().name, {}); !status) {
-                return status;
-            }
+            LIMN_TRY(resolve(resource, resource.info().name, {}));
         }
-        if (Status status = resolve(level_.entities, true); !status) {
-            return status;
-        }
+        LIMN_TRY(resolve(level_.entities, true));
         for (ScriptEvent& event : level_.events.events) {
             for (ScriptAction& action : event.actions) {
-                Status status = resolve(action.prefab, false);
-                if (status && !action.value.is_empty()) {
+                LIMN_TRY(resolve(action.prefab, false));
+                if (!action.value.is_empty()) {
                     const bool is_entity = action.entity.generation == prefab_entity(0).generation;
-                    status = resolve(
+                    LIMN_TRY(resolve(
                         action.value, "events: " + action.value.info().name,
-                        is_entity ? scene_of(action.entity.index) : std::nullopt);
-                }
-                if (!status) {
-                    return status;
+                        is_entity ? scene_of(action.entity.index) : std::nullopt));
                 }
             }
         }
@@ -78,26 +71,15 @@ class LateNames {
     void list_names(std::string_view kind) {
         std::vector<NameList>& lists = lists_[std::string(kind)];
         lists.resize(level_.scenes.size() + 1);
-        std::uint32_t before = 0;
-        const auto add = [&](NameList& list, const auto& assets) {
-            list.first = before;
-            for (const auto& asset : assets) {
-                list.names.emplace_back(asset.name);
-            }
-            before += static_cast<std::uint32_t>(list.names.size());
+        std::uint32_t count = 0;
+        const auto add = [&](NameList& list, std::vector<std::string_view> names) {
+            list.first = count;
+            count += static_cast<std::uint32_t>(names.size());
+            list.names = std::move(names);
         };
-        visit_asset_list(level_.assets, kind, [&](const auto& assets) { add(lists[0], assets); });
+        add(lists[0], asset_names(level_.assets, kind));
         for (std::size_t i = 0; i < level_.scenes.size(); ++i) {
-            const GltfScene& scene = level_.scenes[i];
-            if (kind == asset_kind<SkinId>) {
-                add(lists[i + 1], scene.skins);
-            } else if (kind == asset_kind<ClipId>) {
-                add(lists[i + 1], scene.clips);
-            } else if (scene.skeleton.joints.empty()) {
-                lists[i + 1].first = before;
-            } else {
-                add(lists[i + 1], std::span(&scene.skeleton, 1));
-            }
+            add(lists[i + 1], asset_names(list_assets(level_.scenes[i]), kind));
         }
     }
 
@@ -109,19 +91,12 @@ class LateNames {
     Status resolve(Prefab& prefab, bool is_level) {
         for (std::uint32_t i = 0; i < prefab.entities.size(); ++i) {
             std::vector<AnyComponent>& components = prefab.entities[i].components;
-            const AnyComponent* name = nullptr;
-            for (const AnyComponent& component : components) {
-                name = &component.info() == &component_info<Name>() ? &component : name;
-            }
+            const auto* const name = find_in<Name>(components);
             for (AnyComponent& component : components) {
                 const std::string place = fmt::format(
-                    "entity {}: {}",
-                    name != nullptr ? in_quotes(name->as<Name>().text) : std::to_string(i),
+                    "entity {}: {}", name != nullptr ? in_quotes(name->text) : std::to_string(i),
                     component.info().name);
-                Status status = resolve(component, place, is_level ? scene_of(i) : std::nullopt);
-                if (!status) {
-                    return status;
-                }
+                LIMN_TRY(resolve(component, place, is_level ? scene_of(i) : std::nullopt));
             }
         }
         return Done{};
@@ -136,7 +111,7 @@ class LateNames {
                 if (lists == lists_.end() || index == kNoAsset || !result) {
                     return;
                 }
-                const std::string& name = level_.late_names[index];
+                const std::string& name = level_.deferred_names[index];
                 const std::optional<std::uint32_t> found = find(lists->second, name, own);
                 if (found) {
                     index = *found;
@@ -147,7 +122,7 @@ class LateNames {
                     known.insert(known.end(), list.names.begin(), list.names.end());
                 }
                 result = fail(
-                    "{}: {}: found the {} {}, expected one of a glTF file or a made mesh{}",
+                    "{}: {}: found the {} {}, expected one of a glTF file or a generated mesh{}",
                     level_.file, place, kind, in_quotes(name), did_you_mean(name, known));
             });
         return result;
@@ -169,8 +144,8 @@ class LateNames {
 
 }  // namespace
 
-Status resolve_late_names(Level& level) {
-    return level.late_names.empty() ? Status(Done{}) : LateNames(level).resolve();
+Status resolve_deferred_names(Level& level) {
+    return level.deferred_names.empty() ? Status(Done{}) : DeferredNames(level).resolve();
 }
 
 }  // namespace limn

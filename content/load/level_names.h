@@ -5,10 +5,10 @@
 
 namespace limn {
 
-/// Puts indices of assets in the place of Level::late_names, once all files are read: the names of
-/// skeletons, skins and clips, which the level's glTF files and made meshes bring. Looks in the
-/// file of the entity itself first, then in what the level makes, then in its files in their order.
-/// The indices count the level's assets, then those of `scenes`. Fails at a name that nobody has.
-[[nodiscard]] Status resolve_late_names(Level& level);
+/// Resolves Level::deferred_names to asset indices after all files are read: the names of
+/// skeletons, skins and clips, which glTF files and generated meshes define. Searches the entity's
+/// own glTF file first, then the generated meshes, then the glTF files in order. Indices count the
+/// level's assets, then those of `scenes`. Fails on an unknown name.
+[[nodiscard]] Status resolve_deferred_names(Level& level);
 
 }  // namespace limn

@@ -15,40 +15,14 @@ namespace limn {
 
 namespace {
 
-const std::vector<std::string_view> kByNames = {"random", "x",     "y",    "z",
-                                                "radius", "angle", "index"};
-const std::vector<std::string_view> kVariationKeys = {"by", "from", "to", "pick", "noise", "times"};
+constexpr std::string_view kByNames[] = {"random", "x", "y", "z", "radius", "angle", "index"};
+constexpr std::string_view kVariationKeys[] = {"by", "from", "to", "pick", "noise", "times"};
 
-/// `json` is an object with known keys only.
-Status check_keys(
-    const JsonValue& json, const std::vector<std::string_view>& known, const JsonPlace& place) {
-    if (json.kind != JsonKind::Object) {
-        return error_at(place, json.at, describe(json), "an object");
-    }
-    for (const JsonMember& member : json.members) {
-        if (std::find(known.begin(), known.end(), member.key) == known.end()) {
-            return error_at(
-                place, member.at, "the key " + in_quotes(member.key),
-                fmt::format("one of {}", fmt::join(known, " ")) + did_you_mean(member.key, known));
-        }
-    }
-    return Done{};
-}
-
-Result<float> read_number(const JsonValue& json, float min, float max, const JsonPlace& place) {
-    const bool good = json.kind == JsonKind::Number && json.number >= static_cast<double>(min)
-                      && json.number <= static_cast<double>(max);
-    if (!good) {
-        return error_at(place, json.at, describe(json), fmt::format("a number {} .. {}", min, max));
-    }
-    return static_cast<float>(json.number);
-}
-
-/// The numbers of `from` or `to`, one a lane of the field. Checked by reading them into the field
-/// of a copy of its component.
+/// The numbers of `from` or `to`, one per lane of the field. Validated by reading them into a copy
+/// of the component.
 Result<std::vector<double>> read_lanes(
     const JsonValue& json, const Variation& variation, const AnyComponent& component,
-    const JsonPlace& place, const FindNames& names) {
+    const JsonPlace& place, const NameResolver& names) {
     const FieldInfo& field = *variation.field;
     std::vector<double> lanes;
     if (field.type == FieldType::Quat) {
@@ -61,16 +35,13 @@ Result<std::vector<double>> read_lanes(
                    return item.kind == JsonKind::Number && std::abs(item.number) <= 1e6;
                });
         if (!good) {
-            return error_at(place, json.at, describe(json), "angles [yaw, pitch, roll] in degrees");
+            return unexpected(json, place, "angles [yaw, pitch, roll] in degrees");
         }
         return lanes;
     }
     AnyComponent scratch = component;
     void* const data = static_cast<std::byte*>(scratch.data()) + variation.offset;
-    const Status status = read_field(json, field, data, place, names);
-    if (!status) {
-        return status.error();
-    }
+    LIMN_TRY(read_field(json, field, data, place, names));
     for (int lane = 0; lane < number_count(field.type); ++lane) {
         lanes.push_back(get_number(field, data, lane));
     }
@@ -79,50 +50,39 @@ Result<std::vector<double>> read_lanes(
 
 Status read_picks(
     const JsonValue& json, const AnyComponent& component, const JsonPlace& place,
-    const FindNames& names, Variation& variation) {
+    const NameResolver& names, Variation& variation) {
     if (json.kind != JsonKind::Array || json.items.empty()) {
-        return error_at(place, json.at, describe(json), "an array of values");
+        return unexpected(json, place, "an array of values");
     }
     for (const JsonValue& item : json.items) {
         AnyComponent& pick = variation.picks.emplace_back(component);
         void* const data = static_cast<std::byte*>(pick.data()) + variation.offset;
-        const Status status = read_field(item, *variation.field, data, place, names);
-        if (!status) {
-            return status;
-        }
+        LIMN_TRY(read_field(item, *variation.field, data, place, names));
     }
     return Done{};
 }
 
 Status read_options(const JsonValue& json, const JsonPlace& place, Variation& variation) {
     if (const JsonValue* const by = json.find("by")) {
-        const auto name = std::find(kByNames.begin(), kByNames.end(), by->text);
-        if (by->kind != JsonKind::String || name == kByNames.end()) {
-            return error_at(
-                place, by->at, describe(*by),
+        const auto name = std::find(std::begin(kByNames), std::end(kByNames), by->text);
+        if (by->kind != JsonKind::String || name == std::end(kByNames)) {
+            return unexpected(
+                *by, place,
                 fmt::format("one of {}", fmt::join(kByNames, " "))
                     + did_you_mean(by->text, kByNames));
         }
-        variation.by = static_cast<VaryBy>(name - kByNames.begin());
+        variation.by = static_cast<VaryBy>(name - std::begin(kByNames));
     }
     if (const JsonValue* const noise = json.find("noise")) {
-        const Result<float> number = read_number(*noise, 0.0f, 1.0f, place);
-        if (!number) {
-            return number.error();
-        }
-        variation.noise = *number;
+        variation.noise = static_cast<float>(LIMN_TRY(expect_number(*noise, 0.0, 1.0, place)));
     }
     if (const JsonValue* const times = json.find("times")) {
-        const Result<float> number = read_number(*times, 0.001f, 1e6f, place);
-        if (!number) {
-            return number.error();
-        }
-        variation.times = *number;
+        variation.times = static_cast<float>(LIMN_TRY(expect_number(*times, 0.001, 1e6, place)));
     }
     return Done{};
 }
 
-/// Which field of which component "sway.phase" is.
+/// Resolves "sway.phase" to a component and its field.
 Status find_varied_field(
     const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& place,
     Variation& variation, const AnyComponent*& component) {
@@ -148,7 +108,8 @@ Status find_varied_field(
     if (!field || field->field->shape != FieldShape::One) {
         return error_at(
             place, member.at, "the field " + in_quotes(member.key),
-            field ? "one that is no list" : "a field of the component: " + field.error().message);
+            field ? "a field that is not a list"
+                  : "a field of the component: " + field.error().message);
     }
     variation.component = scratch.info().id;
     variation.field = field->field;
@@ -160,20 +121,13 @@ Status find_varied_field(
 
 Result<Variation> read_variation(
     const JsonMember& member, std::span<const AnyComponent> components, const JsonPlace& outer,
-    const FindNames& names) {
-    const JsonPlace place{outer.file, outer.path + '.' + member.key};
+    const NameResolver& names) {
+    const JsonPlace place = place_in(outer, member.key);
     Variation variation;
     const AnyComponent* component = nullptr;
-    Status status = find_varied_field(member, components, place, variation, component);
-    if (status) {
-        status = check_keys(member.value, kVariationKeys, place);
-    }
-    if (status) {
-        status = read_options(member.value, place, variation);
-    }
-    if (!status) {
-        return status.error();
-    }
+    LIMN_TRY(find_varied_field(member, components, place, variation, component));
+    LIMN_TRY(expect_keys(member.value, place, kVariationKeys));
+    LIMN_TRY(read_options(member.value, place, variation));
     const JsonValue* const pick = member.value.find("pick");
     const JsonValue* const from = member.value.find("from");
     const JsonValue* const to = member.value.find("to");
@@ -181,33 +135,21 @@ Result<Variation> read_variation(
         return error_at(place, member.value.at, "other keys", "either pick, or from and to");
     }
     if (pick != nullptr) {
-        status = read_picks(*pick, *component, place, names, variation);
-        return status ? Result<Variation>(std::move(variation)) : status.error();
+        LIMN_TRY(read_picks(*pick, *component, place, names, variation));
+        return variation;
     }
     if (number_count(variation.field->type) == 0) {
         return error_at(
-            place, member.value.at, "from and to", "pick: the field is not made of numbers");
+            place, member.value.at, "from and to", "pick, since the field is not numeric");
     }
     for (const auto& [json, lanes] :
          {std::pair(from, &variation.from), std::pair(to, &variation.to)}) {
-        Result<std::vector<double>> read = read_lanes(*json, variation, *component, place, names);
-        if (!read) {
-            return read.error();
-        }
-        *lanes = *std::move(read);
+        *lanes = LIMN_TRY(read_lanes(*json, variation, *component, place, names));
     }
     return variation;
 }
 
-AnyComponent* find_in(std::span<AnyComponent> components, ComponentId id) {
-    const auto found =
-        std::find_if(components.begin(), components.end(), [id](const AnyComponent& c) {
-            return c.info().id == id;
-        });
-    return found == components.end() ? nullptr : &*found;
-}
-
-/// Where copy `index` is in the grid: each axis from 0 to 1.
+/// Position of a copy in the grid.
 struct Cell {
     IVec3 at;
     Vec3 share;  ///< 0 .. 1 along each axis; 0 where there is one copy only
@@ -225,13 +167,13 @@ Cell cell_of(const RepeatGrid& grid, std::uint64_t index) {
     return cell;
 }
 
-/// Middle of the grid to the cell, in copies.
-Vec3 from_middle(const RepeatGrid& grid, const Cell& cell) {
+/// Offset from the center of the grid to the cell, in copies.
+Vec3 from_center(const RepeatGrid& grid, const Cell& cell) {
     return Vec3(cell.at) - 0.5f * Vec3(grid.count - IVec3(1));
 }
 
-/// The copy's number before noise, 0 .. 1; of VaryBy::Random one a lane.
-float number_of(
+/// The parameter of the copy before noise, 0 .. 1; for VaryBy::Random one per lane.
+float parameter_of(
     const Variation& variation, const RepeatGrid& grid, const Cell& cell, std::uint64_t index,
     float random) {
     switch (variation.by) {
@@ -246,11 +188,11 @@ float number_of(
     case VaryBy::Radius: {
         const Vec3 extent = 0.5f * Vec3(grid.count - IVec3(1)) * grid.spacing;
         const float farthest = glm::length(extent);
-        return farthest > 0.0f ? glm::length(from_middle(grid, cell) * grid.spacing) / farthest
+        return farthest > 0.0f ? glm::length(from_center(grid, cell) * grid.spacing) / farthest
                                : 0.0f;
     }
     case VaryBy::Angle: {
-        const Vec3 d = from_middle(grid, cell) * grid.spacing;
+        const Vec3 d = from_center(grid, cell) * grid.spacing;
         return std::atan2(d.x, d.z) / (2.0f * kPi) + 0.5f;
     }
     case VaryBy::Index: {
@@ -278,7 +220,7 @@ void apply_variation(
     const FieldInfo& field = *variation.field;
     void* const data = static_cast<std::byte*>(component.data()) + variation.offset;
     const auto draw = [&] {
-        const float t = number_of(variation, repeat.grid, cell, index, random.uniform());
+        const float t = parameter_of(variation, repeat.grid, cell, index, random.uniform());
         return with_noise_and_times(variation, t, random.uniform());
     };
     const float t = draw();
@@ -290,10 +232,10 @@ void apply_variation(
         copy_field(field, data, static_cast<const std::byte*>(source.data()) + variation.offset);
         return;
     }
-    const bool own_number_each = variation.by == VaryBy::Random && !field.meta.color;
+    const bool is_per_lane = variation.by == VaryBy::Random && !field.meta.color;
     std::vector<double> lanes(variation.from.size());
     for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
-        const double share = static_cast<double>(lane > 0 && own_number_each ? draw() : t);
+        const double share = static_cast<double>(lane > 0 && is_per_lane ? draw() : t);
         lanes[lane] = variation.from[lane] + (variation.to[lane] - variation.from[lane]) * share;
     }
     if (field.type == FieldType::Quat) {
@@ -304,34 +246,33 @@ void apply_variation(
         const bool is_whole = field.type == FieldType::Int || field.type == FieldType::UInt
                               || field.type == FieldType::IVec2 || field.type == FieldType::IVec3;
         const double value = is_whole ? std::round(lanes[lane]) : lanes[lane];
-        // Between two values that were in range it is in range too.
+        // An interpolation of two values in range is in range as well.
         (void)set_number(field, data, value, static_cast<int>(lane)).ok();
     }
 }
 
 void move_to_place(const Repeat& repeat, std::uint64_t index, std::span<AnyComponent> components) {
-    AnyComponent* const transform_component = find_in(components, component_id<Transform>);
-    if (transform_component == nullptr) {
+    auto* const transform = find_in<Transform>(components);
+    if (transform == nullptr) {
         return;
     }
     const RepeatGrid& grid = repeat.grid;
     const Cell cell = cell_of(grid, index);
-    Vec3 offset = (grid.centered ? from_middle(grid, cell) : Vec3(cell.at)) * grid.spacing;
-    auto& transform = transform_component->as<Transform>();
+    Vec3 offset = (grid.centered ? from_center(grid, cell) : Vec3(cell.at)) * grid.spacing;
     if (grid.radius > 0.0f) {
         const float angle =
             2.0f * kPi * static_cast<float>(cell.at.x) / static_cast<float>(grid.count.x);
         offset.x = grid.radius * std::sin(angle);
         offset.z += grid.radius * std::cos(angle);
-        transform.rotation = glm::angleAxis(angle, Vec3(0, 1, 0)) * transform.rotation;
+        transform->rotation = glm::angleAxis(angle, Vec3(0, 1, 0)) * transform->rotation;
     }
     Random random(grid.seed, index, name_hash("jitter"), 0);
     for (int axis = 0; axis < 3; ++axis) {
         offset[axis] += grid.jitter[axis] * random.uniform(-1.0f, 1.0f);
     }
-    transform.position += offset;
-    if (AnyComponent* const sway = find_in(components, component_id<Sway>)) {
-        sway->as<Sway>().center += offset;
+    transform->position += offset;
+    if (auto* const sway = find_in<Sway>(components)) {
+        sway->center += offset;
     }
 }
 
@@ -345,31 +286,20 @@ std::uint64_t repeat_count(const Repeat& repeat) {
 
 Result<Repeat> read_repeat(
     const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
-    const FindNames& names) {
+    const NameResolver& names) {
     Repeat repeat;
-    if (json.kind != JsonKind::Object) {
-        return error_at(place, json.at, describe(json), "an object");
-    }
+    LIMN_TRY(expect(json, JsonKind::Object, place, "an object"));
     JsonValue grid = json;
     std::erase_if(grid.members, [](const JsonMember& member) { return member.key == "vary"; });
-    const Status status = read_struct(grid, repeat.grid, place, names);
-    if (!status) {
-        return status.error();
-    }
+    LIMN_TRY(read_struct(grid, repeat.grid, place, names));
     const JsonValue* const vary = json.find("vary");
     if (vary == nullptr) {
         return repeat;
     }
-    const JsonPlace inner{place.file, place.path + ".vary"};
-    if (vary->kind != JsonKind::Object) {
-        return error_at(inner, vary->at, describe(*vary), "an object");
-    }
+    const JsonPlace inner = place_in(place, "vary");
+    LIMN_TRY(expect(*vary, JsonKind::Object, inner, "an object"));
     for (const JsonMember& member : vary->members) {
-        Result<Variation> variation = read_variation(member, components, inner, names);
-        if (!variation) {
-            return variation.error();
-        }
-        repeat.variations.push_back(*std::move(variation));
+        repeat.variations.push_back(LIMN_TRY(read_variation(member, components, inner, names)));
     }
     return repeat;
 }

@@ -12,11 +12,12 @@
 
 namespace limn {
 
-// Many of one entity, in a grid or a ring, each a little different:
+// Copies of one entity in a grid or a ring, with per-copy variation:
 //
 //     "repeat": {
-//       "count": [400, 1, 250], "spacing": [0.5, 0, 0.5],    // along x, y, z; about the node's own
-//       place "jitter": [0.1, 0, 0.1],                             // up to so far away from there
+//       // along x, y, z, centered on the node's own position
+//       "count": [400, 1, 250], "spacing": [0.5, 0, 0.5],
+//       "jitter": [0.1, 0, 0.1],  // largest random displacement
 //       "seed": 3,
 //       "vary": {
 //         "transform.rotation": {"from": [0, 0, 0], "to": [360, 0, 0]},
@@ -25,31 +26,42 @@ namespace limn {
 //       }
 //     }
 //
-// What uses a prefab that is repeated may change single keys of its "repeat", or end it with null.
+// An entity that uses a repeated prefab may override single keys of its "repeat", or disable it
+// with null.
 //
-// With "radius" in place of spacing, the copies along x stand on a circle about +y and turn with
-// it: what faced -z faces its middle.
+// With "radius" instead of spacing, the copies along x are placed on a circle about +y and rotated
+// with it: a copy that faced -z faces the center.
 //
-// `vary` names fields of the entity's own components. Each copy has a number 0 .. 1, and the field
-// is that far between `from` and `to`, or is the item of `pick` there. Where the number comes from
-// is `by`:
+// `vary` names fields of the entity's own components. Each copy has a parameter 0 .. 1 that
+// interpolates the field between `from` and `to`, or selects an item of `pick`. `by` chooses the
+// parameter:
 //
-//     random    a random number; each element of a vector that is no color has its own (the
-//     default) x y z     from the first copy along that axis to the last radius    from the middle
-//     to the farthest copy angle     about +y, from +z toward +x index     from the first copy to
-//     the last
+//     random  a random number (the default); each element of a vector that is no color has its own
+//     x y z   from the first to the last copy along that axis
+//     radius  from the center to the farthest copy
+//     angle   about +y, from -z over -x, +z and +x
+//     index   from the first to the last copy
 //
-// `noise` adds a random number of that width, and `times` lets it run from 0 to 1 so often.
-// Rotations need angles in degrees.
+// `noise` adds a random number of that width; `times` repeats the range 0 .. 1 that many times.
+// Rotations are [yaw, pitch, roll] in degrees.
 
 struct RepeatGrid {
-    IVec3 count = {1, 1, 1};   ///< copies along x, y, z, >= 1
-    Vec3 spacing = {1, 1, 1};  ///< from copy to copy [m]
-    float radius = 0.0f;       ///< > 0: of the ring that the copies along x stand on [m]
-    bool centered = true;      ///< the grid's middle is the node's place, else its first copy
-    Vec3 jitter = {0, 0, 0};   ///< largest random displacement [m], >= 0
-    std::uint64_t seed = 1;    ///< of all that is random
+    IVec3 count = {1, 1, 1};
+    Vec3 spacing = {1, 1, 1};
+    float radius = 0.0f;
+    bool centered = true;
+    Vec3 jitter = {0, 0, 0};
+    std::uint64_t seed = 1;
 };
+
+LIMN_FIELDS(RepeatGrid) {
+    LIMN_FIELD(count, "copies along x, y and z", "", 1, 1e6);
+    LIMN_FIELD(spacing, "distance between copies", "m");
+    LIMN_FIELD(radius, "radius of a ring for the copies along x; 0 = none", "m", 0);
+    LIMN_FIELD(centered, "the node is the center of the grid, else its first copy");
+    LIMN_FIELD(jitter, "largest random displacement", "m", 0);
+    LIMN_FIELD(seed, "random seed");
+}
 
 enum class VaryBy : std::uint8_t { Random, X, Y, Z, Radius, Angle, Index };
 
@@ -61,11 +73,11 @@ struct Variation {
     VaryBy by = VaryBy::Random;
     float noise = 0.0f;        ///< 0 .. 1
     float times = 1.0f;        ///< > 0
-    std::vector<double> from;  ///< lane by lane; of rotations yaw, pitch, roll [deg]
-    std::vector<double> to;    ///< as many
-    std::vector<AnyComponent>
-        picks;  ///< components whose field is the item; then from and to are empty
-    std::uint32_t name_hash = 0;  ///< of the field's path: what its random numbers are keyed by
+    std::vector<double> from;  ///< per lane; of rotations yaw, pitch, roll [deg]
+    std::vector<double> to;    ///< same size as `from`
+    /// Components whose field is an item of "pick"; then from and to are empty.
+    std::vector<AnyComponent> picks;
+    std::uint32_t name_hash = 0;  ///< of the field's path; keys its random numbers
 };
 
 struct Repeat {
@@ -73,28 +85,15 @@ struct Repeat {
     std::vector<Variation> variations;
 };
 
-/// The copies of a repeat, at most kMaxRepeat along each axis.
+/// Number of copies, at most 1e6 along each axis.
 [[nodiscard]] std::uint64_t repeat_count(const Repeat& repeat);
 
-/// `components` are those of the entity, after all that a prefab gives.
+/// `components` are those of the entity, including those of its prefab.
 [[nodiscard]] Result<Repeat> read_repeat(
     const JsonValue& json, std::span<const AnyComponent> components, const JsonPlace& place,
-    const FindNames& names);
+    const NameResolver& names);
 
-/// Moves copy number `index` to its place and changes its fields. A Sway moves with the Transform.
+/// Moves copy `index` to its position and varies its fields. A Sway moves with the Transform.
 void apply_repeat(const Repeat& repeat, std::uint64_t index, std::span<AnyComponent> components);
-
-template <typename Visitor>
-void visit_fields(RepeatGrid& grid, Visitor&& visit) {
-    visit("count", grid.count, {.doc = "copies along x, y and z", .min = 1, .max = 1e6});
-    visit("spacing", grid.spacing, {.doc = "from copy to copy", .unit = "m"});
-    visit(
-        "radius", grid.radius,
-        {.doc = "of a ring for the copies along x; 0 = none", .unit = "m", .min = 0});
-    visit(
-        "centered", grid.centered, {.doc = "the middle is the node's place, else the first copy"});
-    visit("jitter", grid.jitter, {.doc = "largest random displacement", .unit = "m", .min = 0});
-    visit("seed", grid.seed, {.doc = "of all that is random"});
-}
 
 }  // namespace limn

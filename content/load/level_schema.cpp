@@ -3,6 +3,7 @@
 #include "content/load/level_repeat.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns.h"
+#include "ecs/components/input.h"
 #include "ecs/components/surface.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
@@ -57,10 +58,10 @@ JsonValue array_of(JsonValue items) {
     return of_type("array", {member("items", std::move(items))});
 }
 
-JsonValue array_of(JsonValue items, std::size_t least, std::size_t most) {
+JsonValue array_of(JsonValue items, std::size_t min, std::size_t max) {
     JsonValue schema = array_of(std::move(items));
-    schema.members.push_back(member("minItems", count(least)));
-    schema.members.push_back(member("maxItems", count(most)));
+    schema.members.push_back(member("minItems", count(min)));
+    schema.members.push_back(member("maxItems", count(max)));
     return schema;
 }
 
@@ -135,8 +136,8 @@ JsonValue schema_of_element(const FieldInfo& field) {
     if (lanes == 1) {
         return schema_of_number(field);
     }
-    const std::size_t least = field.meta.color && lanes == 4 ? 3 : lanes;
-    JsonValue numbers = array_of(schema_of_number(field), least, lanes);
+    const std::size_t min = field.meta.color && lanes == 4 ? 3 : lanes;
+    JsonValue numbers = array_of(schema_of_number(field), min, lanes);
     if (field.meta.color) {
         const char* const form =
             lanes == 4 ? "^#([0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" : "^#[0-9a-fA-F]{6}$";
@@ -221,11 +222,11 @@ JsonValue schema_of_repeat() {
     return closed_object(std::move(properties));
 }
 
-/// The components of an entity, each once; `more` are further properties.
+/// The components of an entity, each at most once; `more` are further properties.
 JsonValue schema_of_components(Members more, bool may_be_null) {
     for (const ComponentInfo* const info : all_components()) {
         if (info->name == "name" || info->name == "parent") {
-            continue;  // the keys "name" and "children" say these
+            continue;  // covered by the keys "name" and "children"
         }
         JsonValue schema = reference(info->name);
         more.push_back(member(
@@ -290,7 +291,8 @@ JsonValue level_schema() {
          member("meshes", map_of(any_of(schemas_of_kinds(mesh_kinds())))),
          member("prefabs", map_of(reference("node"))),
          member("entities", array_of(reference("node"))),
-         member("events", array_of(reference("event")))});
+         member("events", array_of(reference("event"))),
+         member("bindings", map_of(array_of(one_of_words(key_names()))))});
     schema.members.insert(
         schema.members.begin(),
         {member("$schema", text("https://json-schema.org/draft/2020-12/schema")),

@@ -11,8 +11,8 @@ namespace limn {
 
 namespace {
 
-/// Numbers of the level's entities become handles. In what an event spawns, `is_outside`, numbers
-/// of its own entities stay.
+/// Replaces indices of level entities by handles. In a prefab that an event spawns (`is_outside`),
+/// references to its own entities are kept.
 void set_entities(AnyComponent& component, const std::vector<Entity>& entities, bool is_outside) {
     const std::uint32_t generation =
         is_outside ? level_entity(0).generation : prefab_entity(0).generation;
@@ -28,7 +28,7 @@ void localize(
     bool is_outside) {
     for (PrefabEntity& entity : prefab.entities) {
         for (AnyComponent& component : entity.components) {
-            shift_assets(component.info(), component.data(), offsets);
+            offset_asset_ids(component.info(), component.data(), offsets);
             if (component.info().has_entities) {
                 set_entities(component, entities, is_outside);
             }
@@ -43,7 +43,7 @@ void localize(EventList& list, const AssetOffsets& offsets, const std::vector<En
                 action.entity = entities[action.entity.index];
             }
             if (!action.value.is_empty()) {
-                shift_assets(action.value.info(), action.value.data(), offsets);
+                offset_asset_ids(action.value.info(), action.value.data(), offsets);
                 set_entities(action.value, entities, false);
             }
             localize(action.prefab, offsets, entities, true);
@@ -51,7 +51,7 @@ void localize(EventList& list, const AssetOffsets& offsets, const std::vector<En
     }
 }
 
-/// All entities at once: Commands move each one time, however many components it gets.
+/// Creates all entities at once: Commands move each only once, however many components it gets.
 std::vector<Entity> create_entities(World& world, Prefab& prefab, const AssetOffsets& offsets) {
     const std::vector<Entity> entities = world.create_many(prefab.entities.size());
     localize(prefab, offsets, entities, false);
@@ -67,7 +67,7 @@ std::vector<Entity> create_entities(World& world, Prefab& prefab, const AssetOff
     return entities;
 }
 
-/// Whoever in the prefab follows the character `from` follows `to`.
+/// Replaces references to the character `from` in the prefab by `to`.
 void change_character(Prefab& prefab, Entity from, Entity to) {
     for (PrefabEntity& entity : prefab.entities) {
         for (AnyComponent& component : entity.components) {
@@ -80,7 +80,7 @@ void change_character(Prefab& prefab, Entity from, Entity to) {
     }
 }
 
-/// The first use brings the file's assets; the others are copies of its entities.
+/// The first use adds the assets of the file; further uses copy its entities.
 void spawn_scene(
     World& world, Assets& assets, GltfScene scene, const GltfUse& use,
     const std::vector<Entity>& entities) {
@@ -104,7 +104,7 @@ void spawn_scene(
 
 void set_resource(World& world, AnyComponent& resource, const AssetOffsets& offsets) {
     const ComponentInfo& info = resource.info();
-    shift_assets(info, resource.data(), offsets);
+    offset_asset_ids(info, resource.data(), offsets);
     void* target = world.find_resource(info.id);
     if (target == nullptr) {
         target = world.insert_default_resource(info.id);
@@ -125,6 +125,7 @@ std::vector<Entity> spawn_level(World& world, Level level) {
     for (AnyComponent& resource : level.resources) {
         set_resource(world, resource, offsets);
     }
+    world.insert_resource(std::move(level.bindings));
     std::vector<Entity> entities = create_entities(world, level.entities, offsets);
     for (std::size_t i = 0; i < level.scenes.size(); ++i) {
         spawn_scene(world, assets, std::move(level.scenes[i]), level.gltfs[i], entities);

@@ -9,14 +9,14 @@
 
 namespace limn {
 
-// Is this PNG whole? Looked at before libpng sees it, since libpng reports damage on stderr by
-// itself and takes a picture without its end. Checks the chain of chunks from IHDR to IEND, their
-// lengths and their checksums; not what is in them.
+// Checks the integrity of a PNG file before libpng reads it, since libpng prints errors to stderr
+// and accepts truncated files. Checks the chain of chunks from IHDR to IEND, their lengths and
+// checksums, not their contents.
 
 /// CRC-32 of PNG and zlib (polynomial 0xedb88320).
 [[nodiscard]] std::uint32_t crc32_of(std::span<const std::byte> bytes);
 
-/// Fails with "place: ..." when `bytes` is cut short, damaged or not a PNG at all.
+/// Fails with "place: ..." when `bytes` is truncated, corrupt or not a PNG.
 [[nodiscard]] Status check_png(std::span<const std::byte> bytes, const std::string& place);
 
 }  // namespace limn

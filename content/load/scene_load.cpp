@@ -48,7 +48,7 @@ void insert_missing(World& world) {
     }
 }
 
-/// The first camera that is active, else the first; null: none.
+/// The first active camera, else the first one, else null.
 Entity find_camera(World& world) {
     Entity camera;
     bool is_active = false;
@@ -62,16 +62,16 @@ Entity find_camera(World& world) {
 }
 
 Entity add_framing_camera(World& world, const Bounds& bounds) {
-    Camera camera{.fov_y = radians(35.0f)};  // a portrait lens: little distortion
+    Camera camera{.fov_y = radians(35.0f)};  // like a portrait lens: little distortion
     const float size = is_empty(bounds) ? 1.0f : glm::length(half_extent(bounds));
     camera.near = std::clamp(0.005f * size, 1e-4f, 0.1f);
     return world.create(
         Name{"framing camera"}, frame_bounds(bounds, camera.fov_y, kFramingAspect), camera);
 }
 
-/// Three lights as a photographer sets them, seen from the camera: a warm key from the upper right,
-/// where the Studio has its large soft box, a weak cool fill from the left, a rim from behind that
-/// parts the model from the dark.
+/// Three-point lighting relative to the camera: a warm key from the upper right, where the Studio
+/// has its large soft box, a weak cool fill from the left, a rim light from behind that separates
+/// the model from the background.
 void add_light_rig(World& world, const Quat& camera) {
     struct RigLight {
         const char* name;
@@ -97,7 +97,7 @@ bool has_lights(World& world) {
            || !world.query<const DirectionalLight>().empty();
 }
 
-/// Boxes of meshes: skinned ones are where their joints rest.
+/// Bounds of meshes, skinned ones in the rest pose.
 class RestBounds {
   public:
     RestBounds(const World& world, const Assets& assets) : world_(world), assets_(assets) {}
@@ -124,7 +124,7 @@ class RestBounds {
     }
 
   private:
-    /// A level may put together what does not belong together.
+    /// Whether all joint indices are valid; a level may combine unrelated assets.
     static bool fits(const MeshData& mesh, const SkinData& skin, const SkeletonData& skeleton) {
         const auto below = [](const std::vector<std::uint16_t>& joints, std::size_t count) {
             return std::all_of(
@@ -139,7 +139,7 @@ class RestBounds {
     std::map<std::array<std::uint32_t, 3>, Bounds> known_;
 };
 
-/// Around everything that is drawn where the Transforms are now: the WorldTransforms are not yet.
+/// Bounds of everything drawn, from Transforms since WorldTransforms are not computed yet.
 Bounds find_bounds(World& world) {
     const auto local = [&](Entity entity) {
         const Transform* const t = std::as_const(world).find<Transform>(entity);
@@ -168,7 +168,7 @@ Bounds find_bounds(World& world) {
     return bounds;
 }
 
-/// What every scene has, its camera among it.
+/// Adds the resources and the camera that every scene needs.
 void complete_scene(World& world, const SceneOptions& options, LoadedScene& scene) {
     insert_missing<Assets>(world);
     insert_missing<Environment>(world);
@@ -192,21 +192,18 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
 
 Result<LoadedScene>
 load_gltf_scene(World& world, const std::string& path, const SceneOptions& options) {
-    Result<GltfScene> gltf = load_gltf(path);
-    if (!gltf) {
-        return gltf.error();
-    }
+    GltfScene gltf = LIMN_TRY(load_gltf(path));
     LoadedScene scene;
-    scene.name = gltf->name;
+    scene.name = gltf.name;
     scene.path = path;
     insert_missing<Assets>(world);
-    (void)spawn_gltf(world, world.resource<Assets>(), *std::move(gltf));
-    // Dim enough that the rig models the shape; the neutral curve keeps the file's colors.
+    (void)spawn_gltf(world, world.resource<Assets>(), std::move(gltf));
+    // Dim enough that the light rig shows the shape; the neutral curve keeps the file's colors.
     world.insert_resource(Environment{.sky = SkyKind::Studio, .intensity = 0.6f});
     world.insert_resource(Exposure{.curve = ToneCurve::Neutral});
     complete_scene(world, options, scene);
     if (!has_lights(world)) {
-        // A camera of the file may be anywhere; the rig stands as if one looked at the model.
+        // The file's camera may be anywhere; the rig is placed for a camera that frames the model.
         add_light_rig(world, frame_bounds(scene.bounds, radians(35.0f), kFramingAspect).rotation);
     }
     return scene;
@@ -214,15 +211,12 @@ load_gltf_scene(World& world, const std::string& path, const SceneOptions& optio
 
 Result<LoadedScene>
 load_level_scene(World& world, const std::string& path, const SceneOptions& options) {
-    Result<Level> level = load_level(path);
-    if (!level) {
-        return level.error();
-    }
+    Level level = LIMN_TRY(load_level(path));
     LoadedScene scene;
-    scene.name = level->name;
-    scene.title = level->title;
+    scene.name = level.name;
+    scene.title = level.title;
     scene.path = path;
-    (void)spawn_level(world, *std::move(level));
+    (void)spawn_level(world, std::move(level));
     complete_scene(world, options, scene);
     return scene;
 }
@@ -239,11 +233,8 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
     if (is_path) {
         return load_level_scene(world, scene, options);
     }
-    const Result<std::string> path = find_level(scene);
-    if (!path) {
-        return path.error();
-    }
-    return load_level_scene(world, *path, options);
+    const std::string path = LIMN_TRY(find_level(scene));
+    return load_level_scene(world, path, options);
 }
 
 }  // namespace limn

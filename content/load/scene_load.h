@@ -12,25 +12,25 @@ namespace limn {
 
 class World;
 
-// Whatever `limn play SCENE` may name, into a world: a level by name, a level file, a glTF file. A
-// glTF without a level around it gets what it needs to be looked at: a camera that frames it
-// (unless it has one), three lights if it has none, and the Studio surroundings.
+// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a glTF file.
+// A bare glTF file gets what is needed to view it: a camera that frames it (unless it has one),
+// three lights if it has none, and the Studio environment.
 
 struct SceneOptions {
-    std::optional<std::uint64_t> seed;  ///< instead of the level's
+    std::optional<std::uint64_t> seed;  ///< overrides the level's
 };
 
 struct LoadedScene {
-    std::string name;       ///< "gallery": the file's, without folder and endings
-    std::string title;      ///< one line for people; may be empty
+    std::string name;       ///< "gallery": the file's, without folder and extension
+    std::string title;      ///< one line to display; may be empty
     std::string path;       ///< of the file
-    Bounds bounds;          ///< of what is drawn, world space, at the start; may be empty
-    Entity camera;          ///< the one to look through, never null
+    Bounds bounds;          ///< initial world-space bounds of everything drawn; may be empty
+    Entity camera;          ///< the camera to render from, never null
     double duration = 0.0;  ///< of the longest camera path [s]; 0: none
 };
 
-/// Fills `world`, whose resources Assets, Environment, Exposure, FrameTime, RandomSeed and
-/// EventList are there afterwards. Registers all components. The world is untouched if this fails.
+/// Fills `world`, which afterwards has the resources Assets, Environment, Rendering, Exposure,
+/// FrameTime, RandomSeed and EventList. Registers all components. On failure, `world` is unchanged.
 [[nodiscard]] Result<LoadedScene>
 load_scene(World& world, const std::string& scene, const SceneOptions& options = {});
 

@@ -13,16 +13,6 @@ namespace limn {
 
 namespace {
 
-/// Calls visit(index, name) for the assets of a kind.
-template <typename Visit>
-void for_each_name(const Assets& assets, std::string_view kind, const Visit& visit) {
-    visit_asset_list(assets, kind, [&](const auto& list) {
-        for (std::uint32_t i = 0; i < list.size(); ++i) {
-            visit(i, list[i].name);
-        }
-    });
-}
-
 std::vector<Entity> find_entities(const World& world, std::string_view name) {
     std::vector<Entity> entities;
     world.query<const Name>().each([&](Entity entity, const Name& candidate) {
@@ -45,11 +35,11 @@ JsonValue parse_value(std::string_view text) {
     return json ? *std::move(json) : json_of(text);
 }
 
-/// Sets the field in a copy, which takes the place of `object` if all is well. Whole structs may be
-/// set, too, and keep what the value does not name.
+/// Sets the field in a copy and assigns that to `object` on success. A struct can be set as a
+/// whole; its fields that the value does not name are kept.
 Status set_field(
     const ComponentInfo& info, void* object, std::string_view field_path, const JsonValue& value,
-    const JsonPlace& place, const FindNames& names) {
+    const JsonPlace& place, const NameResolver& names) {
     AnyComponent copy(info, object);
     const Result<FieldRef> field = field_at(info, copy.data(), field_path);
     if (!field) {
@@ -61,19 +51,15 @@ Status set_field(
     if (target.shape == FieldShape::List && field_path == target.name) {
         data = field_ptr(copy.data(), target);  // the list itself, which may be empty
     } else if (target.shape == FieldShape::List && !is_indexed) {
-        return fail(
-            "{}: found a list inside a list, expected the number of an element", place.file);
+        return fail("{}: found a list inside a list, expected the index of an element", place.file);
     } else if (is_indexed) {
         target.shape = FieldShape::One;
     }
-    const Status status = read_field(value, target, data, place, names);
-    if (!status) {
-        return status;
-    }
+    LIMN_TRY(read_field(value, target, data, place, names));
     for (const FieldInfo& changed : info.fields) {
         copy_field(changed, field_ptr(object, changed), field_ptr(copy.data(), changed));
     }
-    return status;
+    return Done{};
 }
 
 Status set_in_entities(
@@ -85,37 +71,32 @@ Status set_in_entities(
         if (component.is_empty()) {
             continue;
         }
-        const Status status =
-            set_field(info, component.data(), field_path, value, place, find_names_in(world));
-        if (!status) {
-            return status;
-        }
+        LIMN_TRY(
+            set_field(info, component.data(), field_path, value, place, make_name_resolver(world)));
         world.write(entity, info.id, component.data());
         is_set = true;
     }
     if (!is_set) {
-        return fail("{}: found no {} there, expected one", place.file, info.name);
+        return fail("{}: found no component {} on the entity, expected one", place.file, info.name);
     }
     return Done{};
 }
 
-/// Makes the resource, with its defaults but for that field, if the scene has none.
+/// Creates the resource with default values first if the scene has none.
 Status set_in_resource(
     World& world, const ComponentInfo& info, std::string_view field_path, const JsonValue& value,
     const JsonPlace& place) {
-    const FindNames names = find_names_in(world);
+    const NameResolver names = make_name_resolver(world);
     if (void* const object = world.find_resource(info.id)) {
         return set_field(info, object, field_path, value, place, names);
     }
     AnyComponent fresh(info);
-    const Status status = set_field(info, fresh.data(), field_path, value, place, names);
-    if (status) {
-        void* const made = world.insert_default_resource(info.id);
-        for (const FieldInfo& field : info.fields) {
-            copy_field(field, field_ptr(made, field), field_ptr(fresh.data(), field));
-        }
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, names));
+    void* const made = world.insert_default_resource(info.id);
+    for (const FieldInfo& field : info.fields) {
+        copy_field(field, field_ptr(made, field), field_ptr(fresh.data(), field));
     }
-    return status;
+    return Done{};
 }
 
 Status set_in_material(
@@ -125,13 +106,13 @@ Status set_in_material(
     for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
         Material& material = assets->materials[i];
         names.emplace_back(material.name);
-        // Names of materials from glTF may have dots in them.
+        // Names of glTF materials may contain dots.
         if (!rest.starts_with(material.name + '.')) {
             continue;
         }
         const std::string_view field = rest.substr(material.name.size() + 1);
         const Status status = set_field(
-            component_info<Material>(), &material, field, value, place, find_names_in(world));
+            component_info<Material>(), &material, field, value, place, make_name_resolver(world));
         ++assets->material_version;
         return status;
     }
@@ -141,8 +122,7 @@ Status set_in_material(
         in_quotes(name), did_you_mean(name, names));
 }
 
-/// `path` split at a dot such that what is before it is an entity's name and what is behind it
-/// begins with a component.
+/// Splits `path` at a dot such that an entity's name comes before it and a component after it.
 Status
 set_in_named(World& world, std::string_view path, const JsonValue& value, const JsonPlace& place) {
     for (std::size_t dot = path.find('.'); dot != std::string_view::npos;
@@ -161,12 +141,12 @@ set_in_named(World& world, std::string_view path, const JsonValue& value, const 
                 in_quotes(component), component_suggestion(component));
         }
         if (end + 1 >= rest.size()) {
-            return fail("{}: found no field behind {}, expected one", place.file, info->name);
+            return fail("{}: found no field after {}, expected one", place.file, info->name);
         }
         return set_in_entities(world, entities, *info, rest.substr(end + 1), value, place);
     }
     const std::string_view name = path.substr(0, path.find('.'));
-    std::vector<std::string_view> known = find_names_in(world).all("entity");
+    std::vector<std::string_view> known = make_name_resolver(world).all("entity");
     for (const ComponentInfo* const resource : all_resources()) {
         known.emplace_back(resource->name);
     }
@@ -197,17 +177,11 @@ Status set_value(World& world, std::string_view path, std::string_view value) {
     return set_in_named(world, path, json, place);
 }
 
-FindNames find_names_in(const World& world) {
-    FindNames names;
-    names.asset =
-        [&world](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
-        std::optional<std::uint32_t> found;
-        if (const Assets* const assets = world.find_resource<Assets>()) {
-            for_each_name(*assets, kind, [&](std::uint32_t index, const std::string& candidate) {
-                found = !found && candidate == name ? index : found;
-            });
-        }
-        return found;
+NameResolver make_name_resolver(const World& world) {
+    NameResolver names;
+    names.asset = [&world](std::string_view kind, std::string_view name) {
+        const Assets* const assets = world.find_resource<Assets>();
+        return assets != nullptr ? find_asset(*assets, kind, name) : std::nullopt;
     };
     names.entity = [&world](std::string_view name, SourcePosition) -> std::optional<Entity> {
         const std::vector<Entity> entities = find_entities(world, name);
@@ -218,22 +192,20 @@ FindNames find_names_in(const World& world) {
         if (kind == "entity") {
             world.query<const Name>().each([&](const Name& name) { all.emplace_back(name.text); });
         } else if (const Assets* const assets = world.find_resource<Assets>()) {
-            for_each_name(*assets, kind, [&](std::uint32_t, const std::string& name) {
-                all.emplace_back(name);
-            });
+            all = asset_names(*assets, kind);
         }
         return all;
     };
     return names;
 }
 
-GiveNames give_names_of(const World& world) {
-    GiveNames names;
+NameProvider make_name_provider(const World& world) {
+    NameProvider names;
     names.asset = [&world](std::string_view kind, std::uint32_t index) {
         std::string found;
         if (const Assets* const assets = world.find_resource<Assets>()) {
-            for_each_name(*assets, kind, [&](std::uint32_t i, const std::string& name) {
-                found = i == index ? name : found;
+            visit_asset_list(*assets, kind, [&](const auto& list) {
+                found = index < list.size() ? list[index].name : "";
             });
         }
         return found;

@@ -58,8 +58,8 @@ PatchFrame patch_frame(const BezierPatch& patch, float u, float v) {
     Vec3 du = patch_du(patch, u, v);
     Vec3 dv = patch_dv(patch, u, v);
 
-    // The sine of the angle between the two, and their lengths against the size of the patch, tell
-    // whether there is a plane. If not, step toward the middle until there is one.
+    // The tangent plane is degenerate if the sine of the angle between the two, or their lengths
+    // relative to the patch, are too small. If so, step toward the middle of the patch.
     Bounds box;
     for (const Curve& row : patch.p) {
         for (const Vec3& point : row) {
@@ -179,8 +179,8 @@ void find_leaves(const BezierPatch& patch, float tolerance, Leaf leaf, std::vect
     }
 }
 
-/// A boundary curve, the same for both patches that own it: bits of its 12 numbers in the smaller
-/// of the two directions.
+/// A boundary curve, equal for both patches that share it: its 12 numbers in the lexicographically
+/// smaller of the two directions.
 struct BoundaryKey {
     std::array<float, 12> numbers;
     bool reversed;
@@ -191,7 +191,7 @@ BoundaryKey boundary_key(const Curve& curve) {
     BoundaryKey backward{{}, true};
     for (std::size_t i = 0; i < 4; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
-            // + 0 turns -0 into 0, which mirrored patches have
+            // + 0 turns -0, which mirrored patches have, into 0
             forward.numbers[3 * i + static_cast<std::size_t>(axis)] = curve[i][axis] + 0.0f;
             backward.numbers[3 * i + static_cast<std::size_t>(axis)] = curve[3 - i][axis] + 0.0f;
         }
@@ -199,7 +199,7 @@ BoundaryKey boundary_key(const Curve& curve) {
     return backward.numbers < forward.numbers ? backward : forward;
 }
 
-/// The four boundaries of a patch: v = 0, u = 1, v = 1, u = 0, in growing u or v.
+/// The four boundaries of a patch: v = 0, u = 1, v = 1, u = 0, in increasing u or v.
 Curve boundary_curve(const BezierPatch& patch, int edge) {
     const auto& p = patch.p;
     switch (edge) {
@@ -229,7 +229,7 @@ class VertexGrid {
     std::vector<char> used_;
 };
 
-/// Gives both owners of a boundary the vertices that either has.
+/// Gives both patches at a boundary the vertices that either has.
 void share_boundaries(std::span<const BezierPatch> patches, int steps, VertexGrid& grid) {
     const auto on_edge = [&](std::uint32_t patch, int edge, int t) -> char& {
         switch (edge) {

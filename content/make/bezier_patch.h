@@ -22,7 +22,7 @@ namespace limn {
 // Sums are ordered so that a boundary curve read from its other end gives the same bits: patches
 // that share a boundary have no cracks.
 // After A. Watt, F. Policarpo, "Advanced Game Development with Programmable Graphics Hardware"
-// (2005), appendix 7.1 (its printed end tangent, expansion and partition of unity are mended here).
+// (2005), appendix 7.1 (with its printed end tangent, expansion and partition of unity corrected).
 
 /// 16 control points: p[i][j], i along u, j along v. The corners lie on the surface.
 struct BezierPatch {
@@ -34,7 +34,7 @@ struct BezierPatch {
 [[nodiscard]] Vec3 patch_dv(const BezierPatch& patch, float u, float v);
 [[nodiscard]] Vec3 patch_duv(const BezierPatch& patch, float u, float v);
 
-/// Where the surface is, and how it lies there.
+/// Position and tangent frame at a point of the surface.
 struct PatchFrame {
     Vec3 point;
     Vec3 normal;   ///< unit, du x dv
@@ -49,8 +49,8 @@ struct PatchFrame {
 /// 2 (low u, high v), 3 (high u, high v). child(s, t) = parent(s / 2, t / 2) for child 0.
 [[nodiscard]] std::array<BezierPatch, 4> split_patch(const BezierPatch& patch);
 
-/// How far the control points are from the bilinear patch through the corners [m]. The surface is
-/// nowhere farther from it than this.
+/// Largest distance of the control points from the bilinear patch through the corners [m], which
+/// bounds that of the surface.
 [[nodiscard]] float patch_flatness(const BezierPatch& patch);
 
 /// One vertex of a tessellation.
@@ -63,14 +63,14 @@ struct PatchSample {
 /// Triangles over patches, counter-clockwise seen from the side that du x dv points to.
 struct PatchTriangles {
     std::vector<PatchSample> samples;
-    std::vector<std::uint32_t> indices;  ///< three a triangle, into `samples`
+    std::vector<std::uint32_t> indices;  ///< three per triangle, into `samples`
 };
 
-/// `divisions` x `divisions` quads a patch, two triangles each. divisions = 2^d is uniform depth d.
+/// `divisions` x `divisions` quads per patch, two triangles each. divisions = 2^d: depth d.
 [[nodiscard]] PatchTriangles tessellate_uniform(std::size_t patch_count, int divisions);
 
 /// Quads as large as `tolerance` [m] > 0 allows (see patch_flatness), at most 2^max_depth along an
-/// edge of a patch. Where neighbors differ, the coarser leaf takes over the vertices of the finer
+/// edge of a patch. Where neighbors differ, the coarser leaf includes the vertices of the finer
 /// one, in the same patch and across patches that share a boundary: there are no T-junctions.
 [[nodiscard]] PatchTriangles
 tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int max_depth = 6);
@@ -79,8 +79,7 @@ tessellate_adaptive(std::span<const BezierPatch> patches, float tolerance, int m
 [[nodiscard]] MeshData
 make_patch_mesh(std::span<const BezierPatch> patches, const PatchTriangles& triangles);
 
-/// Levels of detail of one patch: level l is 4^l sub-patches, row by row, each the surface's own
-/// control polyhedron, so that a level is fetched and not computed.
+/// Precomputed LODs of one patch: level l is 4^l sub-patches, row by row.
 struct PatchLevels {
     std::vector<std::vector<BezierPatch>> level;
 };
@@ -88,8 +87,7 @@ struct PatchLevels {
 [[nodiscard]] PatchLevels make_patch_levels(const BezierPatch& patch, int count);
 
 /// The level 0 .. count-1 whose quads span about `pixels_per_quad` when the patch spans
-/// `projected_pixels`. `current` is kept until the wish leaves it by 10 %, so that it does not
-/// flicker.
+/// `projected_pixels`. A hysteresis of 10 % about `current` avoids flicker.
 [[nodiscard]] int
 choose_patch_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
 

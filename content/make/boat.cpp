@@ -1,6 +1,7 @@
 #include "content/make/boat.h"
 
 #include "content/make/surface_grid.h"
+#include "content/models/boat.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -11,37 +12,11 @@
 namespace limn {
 namespace {
 
-// All lengths are those of a boat of 6 m [m].
+using namespace boat;
 
-constexpr float kLength = 6.0f;
-constexpr float kHalfBeam = 1.0f;
-constexpr float kKeel = -0.38f;      // of the rabbet amidships
-constexpr float kLap = 0.022f;       // that a plank stands out over the one below
-constexpr float kRail = 0.035f;      // radius
-constexpr float kWell = 0.70f;       // half-width of the cockpit, of the boat's
-constexpr float kWellBegin = 0.10f;  // of the length, from astern
-constexpr float kWellEnd = 0.60f;
-constexpr float kSole = 0.06f;     // floor of the cockpit
-constexpr float kMastFoot = 1.9f;  // z
-constexpr float kMastTop = 6.0f;   // y
-constexpr float kBoomHeight = 1.0f;
-constexpr float kBoomLength = 4.0f;
-constexpr float kThroat = 3.7f;          // where the gaff meets the mast, y
-constexpr Vec2 kPeak = {-2.35f, 5.75f};  // its end: z and y
-constexpr float kBelly = 0.11f;          // depth of the sail, of its chord
-constexpr float kSailGap = 0.004f;       // between its sides
-constexpr float kDifference = 1e-3f;     // of parameters, for normals
+constexpr float kDifference = 1e-3f;  // step in u and v for normals
 
-constexpr Vec4 kPaint = {1, 1, 1, 1};  // the material's color shows
-constexpr Vec4 kBottom = {0.16f, 0.035f, 0.03f, 1};
-constexpr Vec4 kTrim = {0.30f, 0.17f, 0.09f, 1};
-constexpr Vec4 kShade = {0.55f, 0.52f, 0.50f, 1};
-
-float part(int i, int count) {
-    return static_cast<float>(i) / static_cast<float>(count);
-}
-
-/// A patch of the surface place(u, v), seen from the front u to the right and v downwards.
+/// A patch of the surface place(u, v); seen from the front, u runs to the right and v downwards.
 template <typename Place, typename Paint>
 void add_patch(
     MeshData& mesh, int columns, int rows, const Vec2& uv_scale, Place&& place, Paint&& paint) {
@@ -69,9 +44,9 @@ void add_patch(MeshData& mesh, int columns, int rows, const Vec2& uv, Place&& pl
     add_patch(mesh, columns, rows, uv, place, [&](const Vec3&) { return color; });
 }
 
-/// A tube from `a` to `b`, open at both ends, its end capped by a cone as long as it is thick.
-void add_spar(
-    MeshData& mesh, const Vec3& a, const Vec3& b, float radius_a, float radius_b, Vec4 color) {
+/// A tube from `a` to `b`, capped at both ends by cones as long as its radius.
+void add_spar(MeshData& mesh, const Spar& spar) {
+    const auto& [a, b, radius_a, radius_b, color] = spar;
     const Vec3 axis = glm::normalize(b - a);
     const Vec3 side =
         glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9f ? Vec3(0, 1, 0) : Vec3(0, 0, 1)));
@@ -79,23 +54,18 @@ void add_spar(
     const auto around = [=](float u) {
         return std::cos(2 * kPi * u) * side + std::sin(2 * kPi * u) * front;
     };
-    const float length = glm::distance(a, b);
-    add_patch(
-        mesh, 10, 1, {1, length},
-        [&](float u, float v) {
-            return glm::mix(b, a, v) + glm::mix(radius_b, radius_a, v) * around(u);
-        },
-        color);
+    const auto tube = [&](float u, float v) {
+        return glm::mix(spar.b, spar.a, v) + glm::mix(spar.radius_b, spar.radius_a, v) * around(u);
+    };
+    add_patch(mesh, 10, 1, {1, glm::distance(a, b)}, tube, color);
     for (const bool far : {true, false}) {
         const Vec3 end = far ? b : a;
         const Vec3 tip = end + (far ? radius_b : -radius_a) * axis;
-        add_patch(
-            mesh, 10, 1, {1, 0.1f},
-            [&](float u, float v) {
-                const float r = far ? radius_b * v : radius_a * (1 - v);
-                return glm::mix(far ? tip : end, far ? end : tip, v) + r * around(u);
-            },
-            color);
+        const auto cone = [&](float u, float v) {
+            const float r = far ? spar.radius_b * v : spar.radius_a * (1 - v);
+            return glm::mix(far ? tip : end, far ? end : tip, v) + r * around(u);
+        };
+        add_patch(mesh, 10, 1, {1, 0.1f}, cone, color);
     }
 }
 
@@ -149,7 +119,7 @@ void add_hull_side(MeshData& mesh, const BoatShape& shape, float side) {
     for (int k = 0; k < shape.strakes; ++k) {
         const float low = part(k, shape.strakes);
         const float high = part(k + 1, shape.strakes);
-        // Seen from outside, the bow of the port side is to the left, of the other to the right.
+        // Seen from outside, the bow is to the left on the port side, to the right on the other.
         const auto plank = [&](float u, float v) {
             const float t = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
             const float s = glm::mix(high, low, v);
@@ -182,7 +152,7 @@ MeshData make_hull(const BoatShape& shape) {
         return Vec3((1 - 2 * u) * edge.x, edge.y, edge.z);
     };
     add_patch(mesh, 8, 8, {1.4f, 0.6f}, transom, hull_paint);
-    // Stem and keel: a plank that stands out below, from the transom to the rail at the bow.
+    // Stem and keel: a protruding plank from the transom to the rail at the bow.
     for (const float side : {1.0f, -1.0f}) {
         const auto keel = [&](float u, float v) {
             const float along = std::clamp(side > 0 ? 1 - u : u, 0.0f, 1.0f);
@@ -199,29 +169,29 @@ MeshData make_hull(const BoatShape& shape) {
     }
     // The fin below, the rudder behind it and the tiller.
     for (const float side : {1.0f, -1.0f}) {
-        const auto blade = [side](Vec2 fore, Vec2 aft, float top, float bottom, float thick) {
-            return [=](float u, float v) {
+        for (const Blade& blade : kBlades) {
+            const auto surface = [&](float u, float v) {
                 const float along = side > 0 ? 1 - u : u;  // 0 aft, 1 ahead
-                const float z =
-                    glm::mix(glm::mix(aft.x, fore.x, along), glm::mix(aft.y, fore.y, along), v);
+                const float z = glm::mix(
+                    glm::mix(blade.aft.x, blade.fore.x, along),
+                    glm::mix(blade.aft.y, blade.fore.y, along), v);
                 const float profile = std::sqrt(std::clamp(along * (1 - along), 0.0f, 0.25f));
                 return Vec3(
-                    side * thick * (1.2f - 0.8f * along) * profile, glm::mix(top, bottom, v), z);
+                    side * blade.thickness * (1.2f - 0.8f * along) * profile,
+                    glm::mix(blade.top, blade.bottom, v), z);
             };
-        };
-        add_patch(
-            mesh, 8, 2, {1, 1}, blade({0.9f, 0.5f}, {-0.6f, -0.5f}, -0.3f, -1.05f, 0.12f), kBottom);
-        add_patch(
-            mesh, 6, 4, {0.4f, 1}, blade({-3.14f, -2.86f}, {-3.6f, -3.35f}, 0.55f, -0.7f, 0.08f),
-            [](const Vec3& p) { return p.y < 0.02f ? kBottom : kTrim; });
+            add_patch(mesh, blade.quads.x, blade.quads.y, blade.uv, surface, [](const Vec3& p) {
+                return p.y < 0.02f ? kBottom : kTrim;
+            });
+        }
     }
-    add_spar(mesh, {0, 0.62f, -3.35f}, {0, 0.78f, -2.1f}, 0.03f, 0.02f, kTrim);
+    add_spar(mesh, kTiller);
     return mesh;
 }
 
 // ---- the deck -----------------------------------------------------------------------------------
 
-/// Height of the deck at t, `across` the half-breadth -1 .. 1: a little below the rail, cambered.
+/// Point of the deck at t, `across` = -1 .. 1 half-breadths: slightly below the rail, cambered.
 Vec3 deck_place(float t, float across) {
     const Vec3 edge = side_place(std::clamp(t, 0.0f, 1.0f), 1);
     return {across * edge.x, edge.y - 0.015f + 0.06f * edge.x * (1 - across * across), edge.z};
@@ -231,20 +201,18 @@ MeshData make_deck(const BoatShape& shape) {
     MeshData mesh;
     const int n = shape.stations;
     // Seen from above with the bow up, +x is to the left.
-    const auto strip = [&](float begin, float end, float left, float right, int columns) {
-        const auto place = [=](float u, float v) {
-            return deck_place(glm::mix(end, begin, v), glm::mix(left, right, u));
+    for (const DeckStrip& strip : kDeck) {
+        const auto place = [&](float u, float v) {
+            return deck_place(
+                glm::mix(strip.end, strip.begin, v), glm::mix(strip.left, strip.right, u));
         };
-        const int rows = std::max(2, static_cast<int>(static_cast<float>(n) * (end - begin)));
-        const Vec2 uv = {std::abs(left - right), (end - begin) * kLength};
-        add_patch(mesh, columns, rows, uv, place, kPaint);
-    };
-    strip(kWellEnd, 1, 1, -1, 6);
-    strip(0, kWellBegin, 1, -1, 6);
-    strip(kWellBegin, kWellEnd, 1, kWell, 2);
-    strip(kWellBegin, kWellEnd, -kWell, -1, 2);
+        const float share = strip.end - strip.begin;
+        const int rows = std::max(2, static_cast<int>(static_cast<float>(n) * share));
+        const Vec2 uv = {std::abs(strip.left - strip.right), share * kLength};
+        add_patch(mesh, strip.columns, rows, uv, place, kPaint);
+    }
 
-    // The coaming: a board around the well that stands up, and the well's walls under it.
+    // The coaming, an upright board around the well, and the walls of the well below it.
     const auto rim = [](float t, float side, float height) {
         const Vec3 p = deck_place(t, side * kWell);
         return Vec3(p.x, height < 0 ? kSole : p.y + height, p.z);
@@ -305,17 +273,17 @@ MeshData make_deck(const BoatShape& shape) {
     return mesh;
 }
 
-// ---- what stands on it --------------------------------------------------------------------------
+// ---- spars and rig ------------------------------------------------------------------------------
 
 MeshData make_spars() {
     MeshData mesh;
-    add_spar(mesh, {0, 0.1f, kMastFoot}, {0, kMastTop, kMastFoot}, 0.06f, 0.04f, kPaint);
-    add_spar(
-        mesh, {0, 0.97f, 2.92f}, {0, kMastTop - 0.5f, kMastFoot + 0.05f}, 0.008f, 0.008f, kShade);
+    for (const Spar& spar : kMast) {
+        add_spar(mesh, spar);
+    }
     return mesh;
 }
 
-/// Of the sail: u from luff to leech, v from head to foot.
+/// Point of the sail: u from luff to leech, v from head to foot.
 Vec3 sail_place(float u, float v) {
     const Vec2 head = glm::mix(Vec2(-0.07f, kThroat), kPeak, u);
     const Vec2 foot = glm::mix(
@@ -335,24 +303,23 @@ Vec3 sail_place(float u, float v) {
 
 MeshData make_rig() {
     MeshData mesh;
-    const Vec4 spar = kTrim;
     for (const float side : {1.0f, -1.0f}) {
-        // Seen from port (+x), astern is to the right... and so is u.
+        // Seen from port (+x), u runs to the right, toward the stern.
         const auto cloth = [side](float u, float v) {
             const float along = side > 0 ? u : 1 - u;
             return sail_place(along, v) + Vec3(side * kSailGap, 0, 0);
         };
         add_patch(mesh, 14, 14, {1, 7}, cloth, kPaint);
     }
-    add_spar(
-        mesh, {0, kBoomHeight, -0.06f}, {0, kBoomHeight + 0.1f, -kBoomLength}, 0.035f, 0.03f, spar);
-    add_spar(mesh, {0, kThroat, -0.06f}, {0, kPeak.y + 0.06f, kPeak.x - 0.1f}, 0.03f, 0.022f, spar);
+    for (const Spar& spar : kBoomAndGaff) {
+        add_spar(mesh, spar);
+    }
     return mesh;
 }
 
 }  // namespace
 
-Vec3 mast_place(float length) {
+Vec3 mast_position(float length) {
     return {0, 0, kMastFoot * length / kLength};
 }
 

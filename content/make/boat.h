@@ -4,41 +4,38 @@
 
 namespace limn {
 
-// A wooden boat with one sail, as fishermen and children sail it: lapped planks, a deck around an
-// open cockpit, mast far ahead, a sail between gaff and boom. It faces +z, its waterline is y = 0.
-// Its parts are meshes of their own, so that each has its material and the rig can turn:
+// A small gaff-rigged wooden boat: lapped planks, a deck around an open cockpit, the mast far
+// forward. It faces +z, its waterline is y = 0. Its parts are separate meshes, so that each has its
+// own material and the rig can rotate:
 //
 //     hull    the planks and the transom, rail and keel; texture along the planks
-//     deck    what is trodden on; texture along the planks
-//     spars   the mast and its stay, standing
-//     rig     sail, boom and gaff about the mast, which is its origin's y axis; the sail's belly is
-//             toward +x, boom and gaff point to -z
+//     deck    deck and cockpit; texture along the planks
+//     spars   the mast and its stay
+//     rig     sail, boom and gaff; rotates about the mast, its local y axis; the sail bulges toward
+//             +x, boom and gaff point to -z
 //
-// Lengths below are those of a boat of 6 m: a beam of 2 m, 0.55 m of freeboard, 0.4 m deep, a mast
-// of 6 m at z = 1.9 (mast_place).
+// At a length of 6 m it has a beam of 2 m, a freeboard of 0.55 m, a draft of 0.4 m and a mast of 6
+// m at z = 1.9 (mast_position).
 
 enum class BoatPart : std::uint8_t { Hull, Deck, Spars, Rig };
 
 struct BoatShape {
     BoatPart part = BoatPart::Hull;
-    float length = 6.0f;  ///< [m], > 0
-    int strakes = 7;      ///< planks on each side, >= 2
-    int stations = 24;    ///< steps along it, >= 6
+    float length = 6.0f;
+    int strakes = 7;
+    int stations = 24;
 };
+
+LIMN_FIELDS(BoatShape) {
+    LIMN_FIELD(part, .doc = "part of the boat", .values = "hull deck spars rig");
+    LIMN_FIELD(length, "from transom to stem, about", "m", 0.1, 1000);
+    LIMN_FIELD(strakes, "planks on each side", "", 2, 64);
+    LIMN_FIELD(stations, "segments along the hull", "", 6, 512);
+}
 
 [[nodiscard]] MeshData make_boat(const BoatShape& shape);
 
-/// Where a boat of this length has its mast: the place of its rig [m].
-[[nodiscard]] Vec3 mast_place(float length);
-
-template <typename Visitor>
-void visit_fields(BoatShape& shape, Visitor&& visit) {
-    visit("part", shape.part, {.doc = "which of its meshes", .values = "hull deck spars rig"});
-    visit(
-        "length", shape.length,
-        {.doc = "from transom to stem, about", .unit = "m", .min = 0.1, .max = 1000});
-    visit("strakes", shape.strakes, {.doc = "planks on each side", .min = 2, .max = 64});
-    visit("stations", shape.stations, {.doc = "steps along it", .min = 6, .max = 512});
-}
+/// Position of the mast in a boat of this length, the origin of its rig [m].
+[[nodiscard]] Vec3 mast_position(float length);
 
 }  // namespace limn

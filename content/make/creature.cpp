@@ -5,6 +5,7 @@
 #include "content/make/creature_gait.h"
 #include "content/make/implicit_mesh.h"
 #include "content/make/simplify_mesh.h"
+#include "content/models/fox.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -18,44 +19,10 @@ namespace limn {
 
 namespace {
 
-constexpr float kHeight = 0.45f;  ///< of the creature that the numbers describe [m]
-constexpr std::size_t kMostInfluences = 4;
-constexpr float kLeastWeight = 0.01f;
+constexpr std::size_t kMaxInfluences = 4;
+constexpr float kMinWeight = 0.01f;
 
-struct JointInfo {
-    const char* name;
-    std::int32_t parent;
-    Vec3 place;  ///< [m]
-};
-
-constexpr JointInfo kJoints[kCreatureJoints] = {
-    {"hips", -1, {0, 0.425f, -0.2f}},
-    {"spine", 0, {0, 0.435f, -0.05f}},
-    {"chest", 1, {0, 0.43f, 0.1f}},
-    {"neck", 2, {0, 0.47f, 0.2f}},
-    {"head", 3, {0, 0.605f, 0.285f}},
-    {"jaw", 4, {0, 0.592f, 0.33f}},
-    {"tail", 0, {0, 0.425f, -0.285f}},
-    {"tail tip", 6, {0, 0.36f, -0.46f}},
-    {"left shoulder", 2, {0.06f, 0.385f, 0.155f}},
-    {"left elbow", 8, {0.066f, 0.255f, 0.085f}},
-    {"left wrist", 9, {0.066f, 0.125f, 0.125f}},
-    {"left paw", 10, {0.066f, 0.034f, 0.115f}},
-    {"right shoulder", 2, {-0.06f, 0.385f, 0.155f}},
-    {"right elbow", 12, {-0.066f, 0.255f, 0.085f}},
-    {"right wrist", 13, {-0.066f, 0.125f, 0.125f}},
-    {"right paw", 14, {-0.066f, 0.034f, 0.115f}},
-    {"left thigh", 0, {0.058f, 0.385f, -0.19f}},
-    {"left knee", 16, {0.072f, 0.25f, -0.115f}},
-    {"left hock", 17, {0.068f, 0.145f, -0.24f}},
-    {"left foot", 18, {0.068f, 0.034f, -0.215f}},
-    {"right thigh", 0, {-0.058f, 0.385f, -0.19f}},
-    {"right knee", 20, {-0.072f, 0.25f, -0.115f}},
-    {"right hock", 21, {-0.068f, 0.145f, -0.24f}},
-    {"right foot", 22, {-0.068f, 0.034f, -0.215f}},
-};
-
-/// The grid is the same on both sides of x = 0.
+/// Symmetric about x = 0.
 ImplicitGrid body_grid(const CreatureShape& shape) {
     const float half = std::ceil(0.2f / shape.detail) * shape.detail;
     return {{{-half, -0.03f, -0.78f}, {half, 0.83f, 0.56f}}, shape.detail};
@@ -63,12 +30,12 @@ ImplicitGrid body_grid(const CreatureShape& shape) {
 
 using Weights = std::array<float, kCreatureJoints>;
 
-/// How near each joint's flesh is, as shares.
+/// Weights by distance to the parts of each joint; sum to 1.
 Weights joint_shares(const Vec3& p) {
-    constexpr float kReach = 0.021f;  // of a joint beyond its own flesh [m]; by eye
+    constexpr float kReach = 0.021f;  // of a joint beyond its own parts [m]; by eye
     Weights shares;
     shares.fill(0.0f);
-    const std::array<float, kCreatureJoints> distances = creature_flesh(p);
+    const std::array<float, kCreatureJoints> distances = creature_part_distances(p);
     float nearest = distances[0];
     for (const float distance : distances) {
         nearest = std::min(nearest, distance);
@@ -123,7 +90,7 @@ void append_influences(SkinWeights& skin, const Weights& shares) {
         return shares[a] > shares[b];
     });
     std::size_t kept = 1;
-    while (kept < kMostInfluences && shares[order[kept]] > kLeastWeight) {
+    while (kept < kMaxInfluences && shares[order[kept]] > kMinWeight) {
         ++kept;
     }
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept));
@@ -140,11 +107,11 @@ void append_influences(SkinWeights& skin, const Weights& shares) {
 
 // ---- texture coordinates ------------------------------------------------------------------------
 
-/// A vertex of a chart: the same vertex of the body may be in several, and at both ends of one.
+/// A vertex of a chart: a vertex of the body may be in several charts, and at both ends of one.
 struct ChartVertex {
     std::uint32_t vertex;
     int chart;
-    int turn;  ///< how often around
+    int turn;  ///< wraps of u around the chart
 
     auto operator<=>(const ChartVertex&) const = default;
 };
@@ -164,7 +131,7 @@ void add_body(const ImplicitMesh& body, MeshData& mesh) {
             const std::uint32_t vertex = corners[k];
             Vec2 uv = creature_chart_uv(chart, body.positions[vertex]);
             first = k == 0 ? uv.x : first;
-            // The short way around from the first corner.
+            // Unwrap u relative to the first corner.
             const int turn = uv.x - first > 0.5f ? -1 : uv.x - first < -0.5f ? 1 : 0;
             const auto next = static_cast<std::uint32_t>(mesh.positions.size());
             const auto [found, is_new] = numbers.try_emplace({vertex, chart, turn}, next);
@@ -172,7 +139,7 @@ void add_body(const ImplicitMesh& body, MeshData& mesh) {
                 uv.x += static_cast<float>(turn);
                 mesh.positions.push_back(body.positions[vertex]);
                 mesh.normals.push_back(body.normals[vertex]);
-                mesh.uvs.push_back(place_in_atlas(chart, uv));
+                mesh.uvs.push_back(atlas_uv(chart, uv));
                 mesh.colors.emplace_back(
                     creature_color(body.positions[vertex], body.normals[vertex]), 1.0f);
                 append_influences(mesh.skin, shares[vertex]);
@@ -188,13 +155,13 @@ struct Eye {
     Vec3 center;
     Vec3 forward;
     Vec3 up;
-    Vec3 right;  ///< about it the lids turn
+    Vec3 right;  ///< axis of rotation of the lids
     float radius;
 };
 
 Eye make_eye(float side) {
     constexpr float kRadius = 0.0155f;
-    constexpr float kDepth = 0.0092f;  // of its middle below the face
+    constexpr float kDepth = 0.0092f;  // of its center below the face
     const Vec3 from = creature_joint(CreatureJoint::Head) + Vec3(0, 0.03f, 0.03f);
     const Vec3 direction = glm::normalize(Vec3(side * 0.78f, 0.16f, 0.72f));
     float way = 0.02f;
@@ -229,7 +196,7 @@ void append_grid_cell(
     mesh.indices.insert(mesh.indices.end(), {a, a + 1, b, a + 1, b + 1, b});
 }
 
-/// A ball whose pole looks forward: a pupil, an iris of amber.
+/// A sphere with its pole forward: a pupil and an amber iris.
 void add_eyeball(MeshData& mesh, const Eye& eye) {
     constexpr std::uint32_t kAround = 20;
     constexpr std::uint32_t kRings = 14;
@@ -238,7 +205,7 @@ void add_eyeball(MeshData& mesh, const Eye& eye) {
         const float polar = kPi * static_cast<float>(row) / kRings;
         const bool is_pole = row == 0 || row == kRings;
         for (std::uint32_t i = 0; i <= kAround; ++i) {
-            // The last column is the first, to the bit.
+            // The last column is bit-identical to the first.
             const float around = 2.0f * kPi * static_cast<float>(i % kAround) / kAround;
             const float sine = is_pole ? 0.0f : std::sin(polar);
             const Vec3 out = std::cos(polar) * eye.forward
@@ -255,7 +222,7 @@ void add_eyeball(MeshData& mesh, const Eye& eye) {
     }
 }
 
-/// Half a ball that turns about the corners of the eye; `side` +1: the upper lid, -1: the lower.
+/// A hemisphere that rotates about the corners of the eye; `side` +1: upper lid, -1: lower lid.
 void add_lid(MeshData& mesh, const Eye& eye, float side, MorphTarget& blink) {
     constexpr std::uint32_t kAcross = 12;
     constexpr std::uint32_t kAlong = 8;
@@ -268,7 +235,6 @@ void add_lid(MeshData& mesh, const Eye& eye, float side, MorphTarget& blink) {
     const float radius =
         (side > 0 ? 1.13f : 1.1f) * eye.radius;  // the upper one closes over the lower
     const Vec3 fur = creature_color(eye.center + 1.5f * eye.radius * eye.up, eye.up);
-    const Vec3 rim(0.03f, 0.02f, 0.016f);
     const auto append = [&](float turn, float across, float size, const Vec3& color, bool is_cap) {
         const Vec3 rest = at(open + turn, across);
         const Vec3 shut = at(closed + turn, across);
@@ -288,17 +254,17 @@ void add_lid(MeshData& mesh, const Eye& eye, float side, MorphTarget& blink) {
     for (std::uint32_t row = 0; row <= kAlong; ++row) {
         const float turn = kPi * static_cast<float>(row) / kAlong;
         for (std::uint32_t i = 0; i <= kAcross; ++i) {
-            append(turn, across_of(i), 1, row == 0 ? rim : fur, false);
+            append(turn, across_of(i), 1, row == 0 ? fox::kLidRim : fur, false);
         }
     }
-    // The flat side: from its middle to both halves of its rim.
+    // The flat side, a fan from its center to both halves of its rim.
     const auto flat = static_cast<std::uint32_t>(mesh.positions.size());
-    append(0, 0, 0, rim, true);
+    append(0, 0, 0, fox::kLidRim, true);
     for (std::uint32_t i = 0; i <= kAcross; ++i) {
-        append(0, across_of(i), 1, rim, true);
+        append(0, across_of(i), 1, fox::kLidRim, true);
     }
     for (std::uint32_t i = 0; i <= kAcross; ++i) {
-        append(kPi, across_of(i), 1, rim, true);
+        append(kPi, across_of(i), 1, fox::kLidRim, true);
     }
     const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         mesh.indices.insert(mesh.indices.end(), {a, side > 0 ? c : b, side > 0 ? b : c});
@@ -349,11 +315,11 @@ void scale_mesh(MeshData& mesh, float scale) {
 }  // namespace
 
 Vec3 creature_joint(CreatureJoint joint) {
-    return kJoints[static_cast<std::size_t>(joint)].place;
+    return fox::kJoints[static_cast<std::size_t>(joint)].place;
 }
 
 std::int32_t creature_parent(CreatureJoint joint) {
-    return kJoints[static_cast<std::size_t>(joint)].parent;
+    return fox::kJoints[static_cast<std::size_t>(joint)].parent;
 }
 
 MeshData make_creature(const CreatureShape& shape) {
@@ -377,18 +343,18 @@ MeshData make_creature(const CreatureShape& shape) {
     generate_tangents(mesh);
     generate_morph_normals(mesh);
     generate_morph_tangents(mesh);
-    scale_mesh(mesh, shape.height / kHeight);
+    scale_mesh(mesh, shape.height / fox::kHeight);
     update_bounds(mesh);
     return mesh;
 }
 
 MeshRig make_creature_rig(const CreatureShape& shape) {
-    const float scale = shape.height / kHeight;
+    const float scale = shape.height / fox::kHeight;
     MeshRig rig;
     for (std::size_t i = 0; i < kCreatureJoints; ++i) {
-        const JointInfo& joint = kJoints[i];
+        const fox::JointInfo& joint = fox::kJoints[i];
         const Vec3 parent =
-            joint.parent < 0 ? Vec3(0) : kJoints[static_cast<std::size_t>(joint.parent)].place;
+            joint.parent < 0 ? Vec3(0) : fox::kJoints[static_cast<std::size_t>(joint.parent)].place;
         rig.skeleton.joints.emplace_back(joint.name);
         rig.skeleton.parents.push_back(joint.parent);
         rig.skeleton.rest.translations.push_back(scale * (joint.place - parent));

@@ -7,18 +7,24 @@
 
 namespace limn {
 
-// An animal of the project's own: four slender legs, a pointed face, large ears, a brush of a tail.
-// Its body is one closed surface around 24 joints (implicit_mesh.h), colored by the vertex; eyes
-// and lids are closed surfaces of their own. It faces +z and stands on y = 0, all joints unturned.
+// A procedural fox-like animal: four slender legs, a pointed face, large ears, a bushy tail. Its
+// body is one closed surface around 24 joints (implicit_mesh.h) with vertex colors; eyes and lids
+// are separate closed surfaces. In the rest pose it faces +z and stands on y = 0.
 //
 // Morph targets: "blink" closes the lids, "breath" widens the chest. Clips: "idle", "walk", "run"
-// (creature_gait.h); they run on the spot, the ground under them goes toward -z.
+// (creature_gait.h), in place: relative to the animal, the ground moves toward -z.
 
 struct CreatureShape {
-    float height = 0.45f;   ///< of the back [m], > 0
-    float detail = 0.009f;  ///< size of the triangles of a creature of 0.45 m [m]
-    int triangles = 0;      ///< > 0: simplified to about so many
+    float height = 0.45f;
+    float detail = 0.009f;
+    int triangles = 0;
 };
+
+LIMN_FIELDS(CreatureShape) {
+    LIMN_FIELD(height, "of the back above ground", "m", 0.01, 100);
+    LIMN_FIELD(detail, "triangle size at a height of 0.45 m", "m", 0.004, 0.02);
+    LIMN_FIELD(triangles, "target of the simplification; 0 = none", "", 0, 1000000);
+}
 
 /// The joints, parents first; those of the left side (+x) before those of the right.
 enum class CreatureJoint : std::uint16_t {
@@ -51,16 +57,16 @@ enum class CreatureJoint : std::uint16_t {
 
 inline constexpr std::size_t kCreatureJoints = static_cast<std::size_t>(CreatureJoint::Count);
 
-/// Where a joint is at rest in a creature of 0.45 m [m].
+/// Rest position of a joint at a height of 0.45 m [m].
 [[nodiscard]] Vec3 creature_joint(CreatureJoint joint);
 
-/// The joint above it; -1 of the hips.
+/// The parent joint; -1 for the hips.
 [[nodiscard]] std::int32_t creature_parent(CreatureJoint joint);
 
-/// With skin weights of at most 4 joints a vertex and the two morph targets.
+/// With skin weights of at most 4 joints per vertex and the two morph targets.
 [[nodiscard]] MeshData make_creature(const CreatureShape& shape);
 
-/// What moves a mesh; the names of assets are left to whoever keeps them.
+/// Skeleton, skin and clips of a mesh; the caller names the assets.
 struct MeshRig {
     SkeletonData skeleton;
     SkinData skin;
@@ -68,19 +74,5 @@ struct MeshRig {
 };
 
 [[nodiscard]] MeshRig make_creature_rig(const CreatureShape& shape);
-
-template <typename Visitor>
-void visit_fields(CreatureShape& shape, Visitor&& visit) {
-    visit("height", shape.height, {.doc = "of the back", .unit = "m", .min = 0.01, .max = 100});
-    visit(
-        "detail", shape.detail,
-        {.doc = "size of the triangles of a creature of 0.45 m",
-         .unit = "m",
-         .min = 0.004,
-         .max = 0.02});
-    visit(
-        "triangles", shape.triangles,
-        {.doc = "if not 0: simplified to about so many", .min = 0, .max = 1000000});
-}
 
 }  // namespace limn

@@ -1,6 +1,6 @@
 #include "content/make/creature_gait.h"
 
-#include "content/make/creature.h"
+#include "content/models/fox.h"
 #include "ecs/base/rotation.h"
 
 #include <glm/common.hpp>
@@ -13,65 +13,15 @@ namespace limn {
 
 namespace {
 
-constexpr int kKeys = 48;  ///< of a cycle
+constexpr int kKeys = fox::kGaitKeys;
 
-// Angles are those of a line that hangs down and swings forward, toward +z [rad]; pitches turn
-// about +x and are positive when what looks forward looks down.
+// Angles are measured from straight down, positive toward +z [rad]; pitches rotate about +x,
+// positive from forward to down.
 
 /// In the plane of symmetry: z, y.
 using Point = Vec2;
 
-struct LegInfo {
-    CreatureJoint joints[4];  ///< upper, middle, last, foot
-    CreatureJoint parent;
-    float bend;      ///< +1: the knee points forward, -1: the elbow backward
-    float center;    ///< of its stand, along z [m]
-    float set_down;  ///< angle of the last bone at touchdown [rad]
-    float push_off;  ///< and when the foot leaves the ground
-    float fold;      ///< on top of that in the air
-};
-
 using enum CreatureJoint;
-
-constexpr LegInfo kLegInfos[kLegs] = {
-    {{LeftShoulder, LeftElbow, LeftWrist, LeftPaw}, Chest, -1, 0.142f, 0.15f, -0.55f, -0.95f},
-    {{RightShoulder, RightElbow, RightWrist, RightPaw}, Chest, -1, 0.142f, 0.15f, -0.55f, -0.95f},
-    {{LeftThigh, LeftKnee, LeftHock, LeftFoot}, Hips, 1, -0.19f, 0.5f, -0.4f, -0.35f},
-    {{RightThigh, RightKnee, RightHock, RightFoot}, Hips, 1, -0.19f, 0.5f, -0.4f, -0.35f},
-};
-
-/// Feet are set down and lifted at keys: between two, one that is half in the air would float.
-constexpr Gait kGaits[] = {
-    {"idle", 5.0f, 0, 1, {0, 0, 0, 0}, 0, 0.004f, 0.002f, 2, 0.25f, 0.01f, 0, 0.35f, 2},
-    {"walk",
-     0.95f,
-     0.4f,
-     32.0f / kKeys,
-     {0.25f, 0.75f, 0, 0.5f},
-     0.05f,
-     0.014f,
-     0.005f,
-     2,
-     0.1f,
-     0.02f,
-     0.12f,
-     0.16f,
-     1},
-    {"run",
-     0.44f,
-     1.1f,
-     13.0f / kKeys,
-     {20.0f / kKeys, 26.0f / kKeys, 0, 6.0f / kKeys},
-     0.1f,
-     0.042f,
-     0.02f,
-     1,
-     0.92f,
-     0.24f,
-     0.42f,
-     0.1f,
-     1},
-};
 
 Point in_plane(CreatureJoint joint) {
     const Vec3 place = creature_joint(joint);
@@ -96,12 +46,12 @@ float wave(float phase) {
     return std::sin(2.0f * kPi * phase);
 }
 
-/// 0 .. 1 of a cycle, from any number.
+/// `phase` wrapped to 0 .. 1.
 float wrapped(float phase) {
     return phase - std::floor(phase);
 }
 
-/// A joint where the trunk has it.
+/// A joint of the posed trunk.
 struct Placed {
     Point place;
     float pitch = 0.0f;
@@ -118,7 +68,7 @@ struct Trunk {
 };
 
 Trunk pose_trunk(const Gait& gait, float phase) {
-    // A run bends most while no foot is on the ground: legs gathered, then stretched.
+    // A run bends most in the suspension phase: legs gathered, then stretched.
     const float bend = gait.flex * std::cos(2.0f * kPi * (phase - 0.92f));
     const float up = gait.bob * std::cos(2.0f * kPi * gait.bobs * (phase - gait.top)) - gait.drop;
     Trunk trunk;
@@ -128,7 +78,7 @@ Trunk pose_trunk(const Gait& gait, float phase) {
     return trunk;
 }
 
-/// Where the foot is, and the angle of the last bone before smoothing.
+/// Position of the foot, and the angle of the last bone before smoothing.
 struct FootPath {
     Point place;
     float slope = 0.0f;
@@ -136,20 +86,20 @@ struct FootPath {
 };
 
 FootPath foot_at(const Gait& gait, Leg leg, float phase) {
-    const LegInfo& info = kLegInfos[static_cast<std::size_t>(leg)];
+    const fox::LegInfo& info = fox::kLegInfos[static_cast<std::size_t>(leg)];
     const float reach = 0.5f * gait.duty * gait.stride;
     const float height = in_plane(info.joints[3]).y;
     if (gait.duty >= 1.0f) {
         const Point rest = in_plane(info.joints[3]);
         return {rest, angle_of(rest - in_plane(info.joints[2])), 0};
     }
-    if (const float stand = stand_share(gait, leg, phase); stand >= 0.0f) {
+    if (const float stand = stance_progress(gait, leg, phase); stand >= 0.0f) {
         return {
             {info.center + reach * (1.0f - 2.0f * stand), height},
             glm::mix(info.set_down, info.push_off, stand),
             0};
     }
-    // In the air: from behind to the front, leaving and meeting the ground at its speed.
+    // In the air: from back to front, matching the speed of the ground at both ends.
     const float air = 1.0f - gait.duty;
     const float since = wrapped(phase - gait.touchdown[static_cast<std::size_t>(leg)]);
     const float s = (since - gait.duty) / air;
@@ -159,14 +109,14 @@ FootPath foot_at(const Gait& gait, Leg leg, float phase) {
     const float z = info.center - reach + slope * (s3 - 2.0f * s2 + s)
                     + 2.0f * reach * (3.0f * s2 - 2.0f * s3) + slope * (s3 - s2);
     FootPath path;
-    path.place = {z, height + 0.5f * gait.lift * foot_flight(s)};
+    path.place = {z, height + 0.5f * gait.lift * swing_height(s)};
     path.slope = glm::mix(info.push_off, info.set_down, glm::smoothstep(0.2f, 1.0f, s))
                  + info.fold * square(std::sin(kPi * std::pow(s, 0.8f)));
     path.pitch = 1.5f * std::sin(kPi * s) * (1.0f - s);
     return path;
 }
 
-/// The last bone's angles over a cycle without corners. The foot stays where it is.
+/// Smoothed angles of the last bone over a cycle. The foot path is unchanged.
 std::array<float, kKeys> smooth_slopes(const Gait& gait, Leg leg) {
     std::array<float, kKeys> slopes{};
     for (int key = 0; key < kKeys; ++key) {
@@ -188,8 +138,8 @@ float& of(Pitches& pitches, CreatureJoint joint) {
     return pitches[static_cast<std::size_t>(joint)];
 }
 
-/// Finds the pitches of a leg that puts its foot where the path has it.
-void solve_leg(const LegInfo& leg, const Trunk& trunk, FootPath foot, Pitches& pitches) {
+/// Solves the pitches of a leg for the given foot position.
+void solve_leg(const fox::LegInfo& leg, const Trunk& trunk, FootPath foot, Pitches& pitches) {
     const Placed& parent = leg.parent == Chest ? trunk.chest : trunk.hips;
     const Point top = after(parent, leg.parent, leg.joints[0], 0).place;
     Point rest[4];
@@ -200,7 +150,7 @@ void solve_leg(const LegInfo& leg, const Trunk& trunk, FootPath foot, Pitches& p
     const float middle = glm::distance(rest[1], rest[2]);
     const float last = glm::distance(rest[2], rest[3]);
 
-    // Too far for the two upper bones: the last one stretches toward the body, too.
+    // If out of reach of the two upper bones, the last one rotates toward the body.
     const float straight = angle_of(foot.place - top);
     const float longest = 0.995f * (upper + middle);
     Point ankle = foot.place - last * hanging(foot.slope);
@@ -220,7 +170,7 @@ void solve_leg(const LegInfo& leg, const Trunk& trunk, FootPath foot, Pitches& p
     of(pitches, leg.joints[3]) = foot.pitch;
 }
 
-/// Turns of the neck, the head and the tail about the vertical.
+/// Yaw of the neck, the head and the tail.
 float yaw_at(const Gait& gait, CreatureJoint joint, float phase) {
     switch (joint) {
     case Tail:
@@ -236,10 +186,10 @@ float yaw_at(const Gait& gait, CreatureJoint joint, float phase) {
 }
 
 float blink_at(const Gait& gait, float phase) {
-    const float when = (gait.stride > 0 ? 24.0f : 15.0f) / kKeys;  // at a key: it is short
+    const float when = (gait.stride > 0 ? 24.0f : 15.0f) / kKeys;  // at a key, since it is short
     const float width = 0.16f / gait.period;
-    const bool is_seen = gait.period > 0.6f;  // a run is too short for one
-    return is_seen ? std::max(1.0f - std::abs(phase - when) / width, 0.0f) : 0.0f;
+    const bool has_blink = gait.period > 0.6f;  // a run is too short for one
+    return has_blink ? std::max(1.0f - std::abs(phase - when) / width, 0.0f) : 0.0f;
 }
 
 /// The pitch of every joint relative to the world.
@@ -261,7 +211,7 @@ Pitches pitches_at(
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
         FootPath foot = foot_at(gait, static_cast<Leg>(leg), phase);
         foot.slope = slopes[leg][static_cast<std::size_t>(key % kKeys)];
-        solve_leg(kLegInfos[leg], trunk, foot, pitches);
+        solve_leg(fox::kLegInfos[leg], trunk, foot, pitches);
     }
     return pitches;
 }
@@ -269,15 +219,15 @@ Pitches pitches_at(
 }  // namespace
 
 std::span<const Gait> creature_gaits() {
-    return kGaits;
+    return fox::kGaits;
 }
 
-float stand_share(const Gait& gait, Leg leg, float phase) {
+float stance_progress(const Gait& gait, Leg leg, float phase) {
     const float since = wrapped(phase - gait.touchdown[static_cast<std::size_t>(leg)]);
     return since < gait.duty || gait.duty >= 1.0f ? since / gait.duty : -1.0f;
 }
 
-float foot_flight(float s) {
+float swing_height(float s) {
     const float x = 3.0f * kPi * s;
     return x <= kPi ? 1.0f - std::cos(x) : 1.0f - std::cos(0.5f * (kPi + x));
 }

@@ -57,7 +57,8 @@ class Samples {
         const Vec3 middle = 0.5f * (place(first) + place(end - 1));
         const float reach = 0.5f * glm::length(place(end - 1) - place(first)) + grid_.cell;
         const float around = distance(middle);
-        // The surface is not in here. Inside, distances may be too large; only the sign counts.
+        // The block does not contain the surface. Only blocks outside are skipped, since inside the
+        // distance may be too large.
         const bool is_far = around > 1.05f * reach;
         for (int z = first.z; z < end.z; ++z) {
             for (int y = first.y; y < end.y; ++y) {
@@ -74,7 +75,7 @@ class Samples {
     std::vector<float> values_;
 };
 
-/// Where the surface crosses the edges of a cell, on average; false: nowhere.
+/// Mean of the points where the surface crosses the edges of a cell; false if it does not.
 bool find_vertex(const Samples& samples, const IVec3& cell, Vec3& vertex) {
     std::array<float, 8> values{};
     int inside = 0;
@@ -144,7 +145,7 @@ void add_faces(
     }
 }
 
-/// Onto the surface along its normal.
+/// Projects `p` onto the surface along the gradient.
 Vec3 project(const SignedDistance& distance, Vec3 p, float cell) {
     for (int i = 0; i < 2; ++i) {
         const float step = 0.1f * cell;

@@ -8,17 +8,16 @@
 
 namespace limn {
 
-// The surface where a function of space is 0, as triangles: naive surface nets (S. F. F. Gibson,
-// "Constrained Elastic Surface Nets", 1998). Every cell that the surface crosses has one vertex;
-// then vertices slide along the surface toward the middle of their neighbors and back onto it, so
-// that triangles become even. Closed and without an edge of more than two triangles wherever the
-// surface is not thinner than a cell.
+// Triangulates the zero level set of a function: naive surface nets (S. F. F. Gibson, "Constrained
+// Elastic Surface Nets", 1998). Every cell that the surface crosses has one vertex; vertices are
+// then relaxed toward the centroid of their neighbors and projected back onto the surface, to even
+// out the triangles. Closed and 2-manifold wherever the surface is not thinner than a cell.
 
-/// Less than 0 inside; away from the surface at most as large as the distance to it.
+/// < 0 inside; outside it must not exceed the distance to the surface.
 using SignedDistance = std::function<float(const Vec3&)>;
 
 struct ImplicitGrid {
-    Bounds box;          ///< holds the whole surface [m]
+    Bounds box;          ///< contains the whole surface [m]
     float cell = 0.01f;  ///< [m], > 0
     int relaxations = 4;
 };
@@ -26,12 +25,12 @@ struct ImplicitGrid {
 struct ImplicitMesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;           ///< unit, outward
-    std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise from outside
+    std::vector<std::uint32_t> indices;  ///< three per triangle, counter-clockwise from outside
 };
 
 [[nodiscard]] ImplicitMesh mesh_surface(const SignedDistance& distance, const ImplicitGrid& grid);
 
-/// The gradient of `distance` at `p`, unit; by differences over `step` to both sides.
+/// Unit gradient of `distance` at `p`, by central differences over +-`step`.
 [[nodiscard]] Vec3 surface_normal(const SignedDistance& distance, const Vec3& p, float step);
 
 }  // namespace limn

@@ -7,7 +7,6 @@
 #include "content/make/sweep.h"
 #include "content/make/teapot.h"
 #include "content/make/terrain.h"
-#include "ecs/base/type_name.h"
 
 #include <type_traits>
 #include <vector>
@@ -44,17 +43,17 @@ std::span<const MeshKind> mesh_kinds() {
     static const std::vector<MeshKind> kinds = {
         mesh_kind<ArchShape, make_arch>("arch", "a pointed rib or frame on two legs, facing z"),
         mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
-        mesh_kind<BoxShape, make_box>("box", "a box, its edges rounded if asked"),
+        mesh_kind<BoxShape, make_box>("box", "a box, optionally with rounded edges"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
         creature_kind(),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
-        mesh_kind<LatheShape, make_lathe>("lathe", "a profile turned around +y"),
+        mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),
         mesh_kind<PlaneShape, make_plane>("plane", "a rectangle that faces +y"),
-        mesh_kind<SphereShape, make_sphere>("sphere", "a ball with longitude and latitude"),
-        mesh_kind<SweepShape, make_sweep>("sweep", "a profile drawn along a path of the level"),
+        mesh_kind<SphereShape, make_sphere>("sphere", "a sphere with longitude and latitude as uv"),
+        mesh_kind<SweepShape, make_sweep>("sweep", "a profile swept along a path of the level"),
         mesh_kind<TeapotShape, make_teapot>(
             "teapot", "Newell's teapot, standing on y = 0, its spout along +x"),
         mesh_kind<TerrainShape, make_terrain>("terrain", "hills and ridges as a height field"),
@@ -63,24 +62,6 @@ std::span<const MeshKind> mesh_kinds() {
         mesh_kind<WallShape, make_wall>("wall", "a wall with a pointed or round opening, facing z"),
     };
     return kinds;
-}
-
-const MeshKind* find_mesh_kind(std::string_view name) {
-    for (const MeshKind& kind : mesh_kinds()) {
-        if (kind.name == name) {
-            return &kind;
-        }
-    }
-    return nullptr;
-}
-
-std::string mesh_kind_suggestion(std::string_view name) {
-    std::vector<std::string> names;
-    for (const MeshKind& kind : mesh_kinds()) {
-        names.emplace_back(kind.name);
-    }
-    const std::string nearest = nearest_name(name, names);
-    return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
 }  // namespace limn

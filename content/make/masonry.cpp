@@ -25,22 +25,22 @@ void append_flat(
         });
 }
 
-/// A place on a way in the x-y plane, for what is swept along it.
+/// A point of a curve in the x-y plane along which a section is swept.
 struct WayPoint {
     Vec2 place;
-    Vec2 normal;       ///< to the left of the way, unit
-    float miter = 1;   ///< how much longer offsets are at a corner
-    float length = 0;  ///< from the begin of the way [m]
+    Vec2 normal;       ///< to the left of the curve, unit
+    float miter = 1;   ///< factor of offsets at a corner
+    float length = 0;  ///< arc length from its start [m]
 };
 
-/// From the left end of a half curve (mirrored) or its right one over the top: `right_half` runs
-/// from below to the top.
+/// The left half of a curve up to the top (mirrored), or the right one down from it; `right_half`
+/// runs from the bottom to the top.
 std::vector<WayPoint> half_way(std::span<const CurvePoint> right_half, bool is_left, float begin) {
     std::vector<WayPoint> way;
     for (const CurvePoint& point : right_half) {
         way.push_back({point.place, point.normal});
     }
-    // The two halves meet in a corner: offsets go straight up there.
+    // The two halves meet in a corner, where offsets go straight up.
     way.back().miter = 1.0f / way.back().normal.y;
     if (is_left) {
         for (WayPoint& point : way) {
@@ -58,7 +58,7 @@ std::vector<WayPoint> half_way(std::span<const CurvePoint> right_half, bool is_l
     return way;
 }
 
-/// A corner of what is swept: its offset along the way's normal, and along z.
+/// A corner of the swept section: its offset along the curve's normal, and along z.
 struct SectionPoint {
     float offset;
     float z;
@@ -70,13 +70,13 @@ Vec3 swept(const WayPoint& point, const SectionPoint& corner) {
     return {point.place + corner.offset * direction, corner.z};
 }
 
-/// One side of a section: flat across, along the way from corner `a` down to corner `b`.
+/// Sweeps one side of a section, from corner `a` to corner `b`.
 void append_side(
     MeshData& mesh, std::span<const WayPoint> way, const SectionPoint& a, const SectionPoint& b,
     float v) {
     const Vec2 step = Vec2(b.offset - a.offset, b.z - a.z);
     const float width = glm::length(step);
-    const Vec2 normal = Vec2(step.y, -step.x) / width;  // along the way's normal, and along z
+    const Vec2 normal = Vec2(step.y, -step.x) / width;  // along the curve's normal, and along z
     append_grid(mesh, static_cast<int>(way.size()) - 1, 1, {}, [&](int i, int j) {
         const WayPoint& point = way[static_cast<std::size_t>(i)];
         GridVertex vertex;
@@ -105,14 +105,14 @@ void append_polygon(
     }
 }
 
-/// The opening of a wall: its right half, from below to the top.
+/// Right half of the outline of a wall's opening, from the bottom to the top.
 std::vector<CurvePoint> opening_outline(const WallShape& shape, const Vec3& size) {
-    constexpr float kLeast = 0.01f;  // of the wall, beside and above the opening
-    const float span = std::min(shape.span, (1.0f - kLeast) * size.x);
+    constexpr float kMinMargin = 0.01f;  // beside and above the opening / wall size
+    const float span = std::min(shape.span, (1.0f - kMinMargin) * size.x);
     if (shape.round) {
-        const float radius = std::min(0.5f * span, (0.5f - kLeast) * size.y);
-        const float middle =
-            std::clamp(shape.spring, radius + kLeast * size.y, (1.0f - kLeast) * size.y - radius);
+        const float radius = std::min(0.5f * span, (0.5f - kMinMargin) * size.y);
+        const float middle = std::clamp(
+            shape.spring, radius + kMinMargin * size.y, (1.0f - kMinMargin) * size.y - radius);
         std::vector<CurvePoint> outline;
         const int steps = 2 * shape.segments;
         for (int i = 0; i <= steps; ++i) {
@@ -124,7 +124,7 @@ std::vector<CurvePoint> opening_outline(const WallShape& shape, const Vec3& size
         }
         return outline;
     }
-    const float highest = (1.0f - kLeast) * size.y;
+    const float highest = (1.0f - kMinMargin) * size.y;
     const float spring = std::min(shape.spring, 0.9f * highest);
     const float rise = std::min(shape.rise, highest - spring);
     const float sill = std::min(shape.sill, spring);
@@ -138,7 +138,7 @@ std::vector<CurvePoint> opening_outline(const WallShape& shape, const Vec3& size
     return outline;
 }
 
-/// What is left and right of an opening, on the front (facing = 1) or the back (-1) of a wall.
+/// The faces left and right of an opening, on the front (facing = 1) or the back (-1) of a wall.
 void append_beside_opening(
     MeshData& mesh, std::span<const CurvePoint> outline, float facing, float half_x, float half_z) {
     for (const float side : {-1.0f, 1.0f}) {
@@ -155,13 +155,13 @@ void append_beside_opening(
     }
 }
 
-/// The curve of a vault over half a span of 1 m: shares of what it spans, and heights.
+/// The curve of a vault for a half span of 1 m: x is relative to the half span, y the height [m].
 std::vector<CurvePoint> vault_curve(const VaultShape& shape) {
     return pointed_curve(2.0f, shape.rise, std::max(shape.radius, 0.5f), shape.segments);
 }
 
-/// Half of the web of a vault that is level along `level` and falls along `fall`, from the middle
-/// to one corner: its lower and its upper side.
+/// Lower and upper side of half a web of a vault, from the middle to one corner; the web is level
+/// along `level` and falls along `fall`.
 void append_web(
     MeshData& mesh, const VaultShape& shape, float half_level, float half_fall, const Vec3& level,
     const Vec3& fall) {
@@ -175,12 +175,12 @@ void append_web(
     }
     for (const float facing : {-1.0f, 1.0f}) {
         const float lift = facing > 0 ? shape.thickness : 0.0f;
-        // Seen from the front, columns run to the right: from the groin to the wall, or back.
+        // Seen from the front, columns run to the right: from the groin to the wall, or reversed.
         const bool outwards = facing * glm::dot(glm::cross(level, Vec3(0, 1, 0)), fall) > 0;
         append_grid(mesh, n, n, {false, true}, [&](int i, int j) {
             const CurvePoint at = down(j);
             const int column = outwards ? i : n - i;
-            // The groin, where both webs have the same height, has equal shares of both.
+            // At the groin both webs have the same height and equal shares.
             const float between = static_cast<float>(column) / static_cast<float>(n);
             const float share = column == n ? 1.0f : at.place.x + (1.0f - at.place.x) * between;
             GridVertex vertex;
@@ -196,7 +196,7 @@ void append_web(
     }
 }
 
-/// What is seen of a vault's thickness at one of its four walls.
+/// The visible thickness of a vault at one of its four walls.
 void append_vault_side(
     MeshData& mesh, const VaultShape& shape, float half_out, float half_along, const Vec3& out) {
     const std::vector<CurvePoint> curve = vault_curve(shape);
@@ -247,7 +247,7 @@ MeshData make_arch(const ArchShape& shape) {
     const float half = 0.5f * shape.depth;
     const float thickness = shape.thickness;
     const float cut = std::clamp(shape.chamfer, 0.0f, 0.95f * std::min(thickness, half));
-    std::vector<SectionPoint> section = {{thickness, half}};  // clockwise, seen along the way
+    std::vector<SectionPoint> section = {{thickness, half}};  // clockwise, looking along the curve
     if (cut > 0) {
         section.insert(
             section.end(), {{cut, half}, {0, half - cut}, {0, cut - half}, {cut, -half}});
@@ -291,8 +291,8 @@ MeshData make_wall(const WallShape& shape) {
     const float bottom_half = outline.front().place.x;
     const bool on_ground = bottom <= 0;
 
-    // Every row of the wall crosses the opening at two points, so that the triangles beside it
-    // need no other corners than those of its outline.
+    // Every row of the wall crosses the opening at two points, so that the triangles beside it need
+    // only the vertices of its outline.
     std::vector<float> floor = {-half_x, -bottom_half, bottom_half, half_x};
     floor.erase(std::unique(floor.begin(), floor.end()), floor.end());
     const float ridge[] = {-half_x, 0, half_x};

@@ -15,7 +15,7 @@ struct BlockPlace {
     float edge;  ///< distance to its ends, in blocks
 };
 
-/// `x` counts blocks, of which `columns` make a whole course. Joints are moved by up to a third of
+/// `x` is in units of blocks; a course has `columns` of them. Joints are moved by up to a third of
 /// a block, so blocks keep their order.
 BlockPlace find_block(float x, int columns, int row, float irregular, std::uint32_t seed) {
     const auto joint = [&](int k) {
@@ -32,7 +32,7 @@ float beside_line(float distance, float half, float soft) {
     return glm::smoothstep(half - soft, half + soft, std::abs(distance));
 }
 
-/// Distance to the hull of two circles on the x axis, about 0 (radius a) and h > |a - b| (b).
+/// Distance to the convex hull of two circles at x = 0 (radius a) and x = h > |a - b| (radius b).
 float capsule_distance(Vec2 p, float a, float b, float h) {
     p.y = std::abs(p.y);
     const float slope = (a - b) / h;
@@ -47,19 +47,19 @@ float capsule_distance(Vec2 p, float a, float b, float h) {
     return rest * p.y + slope * p.x - a;
 }
 
-/// Glass of one piece; what is left of the light at its lead.
+/// Color of one piece of glass, and its transmittance at the lead.
 struct Glass {
     Vec3 color = {0, 0, 0};
     float clear = 1;
-    int number = 0;  ///< of the piece, for its own tint
+    int number = 0;  ///< of the piece, seeds its tint
 };
 
-/// Where the parts of a rose window are, in units of its radius.
+/// Layout of a rose window, in units of its radius.
 struct RoseLayout {
     float half_sector;
     float bar;    ///< half the width of a bar
     float lead;   ///< half the width of the lead
-    float pixel;  ///< how soft edges are
+    float pixel;  ///< width of soft edges
     float hub;
     float petal_begin;
     float petal_end;
@@ -95,7 +95,7 @@ RoseLayout lay_out(const RoseWindowPattern& pattern) {
     return rose;
 }
 
-/// `p`: along the middle of the petal and beside it; `inside` > 0: depth in the petal.
+/// `p`: along the axis of the petal and across it; `inside` > 0: depth in the petal.
 Glass petal_glass(const RoseWindowPattern& pattern, const RoseLayout& rose, Vec2 p, float inside) {
     const float band = 0.035f;
     const float large = glm::length(p - Vec2(rose.petal_end - 0.01f, 0)) - 0.55f * rose.end_radius;
@@ -122,7 +122,7 @@ Glass petal_glass(const RoseWindowPattern& pattern, const RoseLayout& rose, Vec2
     return glass;
 }
 
-/// A round light of radius `radius`, `d` inside its outline, cut into `parts` around.
+/// A round pane of radius `radius`, divided into `parts` sectors around its center.
 Glass round_glass(
     const RoseLayout& rose, Vec2 p, float radius, int parts, const Vec3& outer, const Vec3& inner) {
     const float d = glm::length(p) - 0.45f * radius;
@@ -140,7 +140,7 @@ Glass round_glass(
     return glass;
 }
 
-/// The nearer of two outlines, and which it is.
+/// Distance to the nearest outline, and the part it belongs to.
 struct Nearest {
     float distance = 1e9f;
     int part = 0;
@@ -189,7 +189,7 @@ PatternMaps make_ashlar(const AshlarPattern& pattern) {
         const float grain = fbm(uv, 14 * rows, seed + 10, 4, 0.7f);
         const float cloud = fbm(uv, rows, seed + 20, 4);
         const float stain = fbm(uv, 2, seed + 25, 5);
-        // The chisel went across each block at its own slant.
+        // Chisel marks slant either way on each block.
         const int slant = own < 0.5f ? 1 : -1;
         const Vec2 strokes = uv * static_cast<float>(rows) * Vec2(7, 14);
         const float chisel =
@@ -217,7 +217,7 @@ PatternMaps make_rose_window(const RoseWindowPattern& pattern) {
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
         const Vec2 q = 2.0f * uv - 1.0f;
         const float radius = glm::length(q);
-        // The first petal points up; the image's rows grow downwards.
+        // The first petal points up; image rows run downwards.
         const float sectors = (std::atan2(q.x, -q.y) / (2.0f * rose.half_sector));
         const float petal = std::floor(sectors + 0.5f);
         const float gap = std::floor(sectors);
@@ -297,7 +297,7 @@ PatternMaps make_stained_glass(const StainedGlassPattern& pattern) {
             const float across_t = t - std::floor(t + 0.5f);
             glass.clear *= beside_line(0.7f * across_s, half, pixel)
                            * beside_line(0.7f * across_t, half, pixel);
-            // A pane that is cut by the lower edge goes on at the upper one.
+            // A pane that is cut by the lower edge continues at the upper one.
             const int column = static_cast<int>(std::floor(s));
             const int turns = column / n;
             const int row = static_cast<int>(std::floor(t)) + n * turns;
@@ -319,7 +319,7 @@ PatternMaps make_stars(const StarsPattern& pattern) {
         const float x = uv.x * count + (row % 2 != 0 ? 0.5f : 0.0f);
         const int column = static_cast<int>(std::floor(x)) % rows;
         const Vec2 q = Vec2(x, uv.y * count) - glm::floor(Vec2(x, uv.y * count)) - 0.5f;
-        // A point of a star ends at `outer`; the corner between two is at `inner`.
+        // Tips of a star are at `outer`, the corners between them at `inner`.
         const float outer =
             pattern.radius * (0.75f + 0.25f * lattice_random(column, row, seed + 3));
         const Vec2 inner = 0.42f * outer * Vec2(std::cos(half_sector), std::sin(half_sector));

@@ -82,8 +82,7 @@ CellSample cell_noise(const Vec2& p, std::uint32_t seed, float jitter, const IVe
             }
         }
     }
-    // The border with a neighbor is half way between the two points, at a right angle to their
-    // line.
+    // The border with a neighbor is the perpendicular bisector of the two points.
     for (int i = 0; i < count; ++i) {
         const Vec2 apart = points[i] - nearest;
         const float length2 = glm::dot(apart, apart);

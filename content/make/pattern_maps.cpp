@@ -74,7 +74,7 @@ PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const V
                 [static_cast<std::size_t>(row) * static_cast<std::size_t>(size)
                  + static_cast<std::size_t>(column)];
         };
-        // Rows grow downwards and green points up: the signs of the two slopes differ.
+        // Rows run downwards while green points up, so the signs of the two slopes differ.
         const float right = 0.5f * (height(x + 1, y) - height(x - 1, y));
         const float down = 0.5f * (height(x, y + 1) - height(x, y - 1));
         const Vec3 n = 0.5f + 0.5f * glm::normalize(Vec3(-right, down, 1.0f));

@@ -7,7 +7,7 @@
 
 namespace limn {
 
-// What the functions that make patterns have in common.
+// Helpers of the pattern generators.
 
 [[nodiscard]] inline float
 fbm(const Vec2& p, std::uint32_t seed, const IVec2& period, int octaves = 5, float gain = 0.5f) {
@@ -18,7 +18,7 @@ fbm(const Vec2& uv, int cells, std::uint32_t seed, int octaves = 5, float gain =
     return fbm(uv * static_cast<float>(cells), seed, IVec2(cells), octaves, gain);
 }
 
-/// Seeds of neighbors are used by octaves, so patterns keep well apart.
+/// Octaves use consecutive seeds, so the seeds of patterns are far apart.
 [[nodiscard]] inline std::uint32_t seed_of(const PatternSize& image) {
     return static_cast<std::uint32_t>(image.seed) * 1024u;
 }

@@ -1,10 +1,8 @@
 #include "content/make/patterns.h"
 
-#include "content/make/city_patterns.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
-#include "ecs/base/type_name.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +12,7 @@ namespace limn {
 
 namespace {
 
-/// A place in a grid of rectangles.
+/// A point in a grid of rectangles.
 struct CellPlace {
     int column;
     int row;
@@ -61,7 +59,7 @@ PatternMaps make_tiles(const TilesPattern& pattern) {
         const float grout = 0.5f * pattern.grout;
         const float glaze = glm::smoothstep(grout, grout + 0.02f, cell.edge);
         const float pillow = glm::smoothstep(grout, grout + 0.12f, cell.edge);
-        // Every tile is laid a little askew and its glaze is a little wavy.
+        // Every tile is slightly tilted and its glaze slightly wavy.
         const Vec2 tilt = {
             lattice_random(cell.column, cell.row, seed + 1) - 0.5f,
             lattice_random(cell.column, cell.row, seed + 2) - 0.5f};
@@ -147,8 +145,7 @@ PatternMaps make_wood(const WoodPattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     const float width = 1.0f / static_cast<float>(pattern.planks);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        // One joint a plank, somewhere; the board that begins there goes on over the edge of the
-        // image.
+        // One joint per plank at a random position; the board wraps around the edge of the image.
         const float across = uv.x * static_cast<float>(pattern.planks);
         const int plank = static_cast<int>(across);
         const float local = across - static_cast<float>(plank);
@@ -160,7 +157,7 @@ PatternMaps make_wood(const WoodPattern& pattern) {
         const std::uint32_t own = seed + 60u * static_cast<std::uint32_t>(plank);
 
         // Rings: the board is a slice through a bent trunk, so the ring number grows across it and
-        // the slow noise along it makes cathedrals.
+        // low-frequency noise along it makes cathedral grain.
         const float bend = fbm({across * 0.9f, uv.y * 2.0f}, own + 10, {0, 2}, 3);
         const float waver = fbm({across * 5.0f, uv.y * 8.0f}, own + 20, {0, 8}, 3);
         const float rings =
@@ -208,7 +205,7 @@ PatternMaps make_brushed_metal(const BrushedMetalPattern& pattern) {
 PatternMaps make_marble(const MarblePattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        // Veins are where bent noise crosses zero: few broad ones and a net of thin ones.
+        // Veins are zero crossings of domain-warped noise: few broad ones and a net of thin ones.
         const Vec2 bend = {fbm(uv, 3, seed + 10, 5), fbm(uv, 3, seed + 20, 5)};
         const Vec2 p = uv + 0.16f * bend;
         const float broad = std::abs(fbm(p, 2, seed + 30, 5));
@@ -276,8 +273,8 @@ PatternMaps make_fabric(const FabricPattern& pattern) {
     const int threads = even(pattern.threads);
     const float width = 1.0f / static_cast<float>(threads);
     return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
-        // Plain weave: in every other square the thread along v lies on top. A thread is a bow
-        // across its width and dives at the ends of its square.
+        // Plain weave: in every other square the thread along v lies on top. A thread is arched
+        // across its width and dips at the ends of its square.
         const CellPlace cell = place_in_grid(uv * static_cast<float>(threads), 1);
         const bool warp_on_top = (cell.column + cell.row) % 2 == 0;
         const Vec2 off = 2.0f * cell.local - 1.0f;
@@ -296,6 +293,59 @@ PatternMaps make_fabric(const FabricPattern& pattern) {
         t.height = width * (0.22f * top + 0.03f * fibers);
         t.roughness = 0.88f + 0.08f * fibers;
         t.occlusion = 0.5f + 0.5f * std::clamp(top, 0.0f, 1.0f);
+        return t;
+    });
+}
+
+PatternMaps make_windows(const WindowsPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const Vec2 cells = {pattern.columns, pattern.rows};
+    const float soft = 0.7f * std::max(cells.x, cells.y) / static_cast<float>(pattern.image.size);
+    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+        const Vec2 place = uv * cells;
+        const Vec2 cell = glm::min(glm::floor(place), cells - 1.0f);
+        const int column = static_cast<int>(cell.x);
+        const int row = static_cast<int>(cell.y);
+        // Groups of four windows tend to be lit or dark together.
+        const float stretch = lattice_random(column / 4, row, seed);
+        const float own = lattice_random(column, row, seed + 1);
+        const bool is_lit =
+            0.5f * (stretch + own) < 0.5f * (pattern.lit + pattern.lit * pattern.lit)
+            || own < 0.3f * pattern.lit;
+        const Vec2 from_middle = glm::abs(place - cell - 0.5f);
+        const Vec2 half = 0.5f - 0.5f * pattern.frame * Vec2(1.0f, 1.4f);
+        const Vec2 inside = 1.0f - glm::smoothstep(half - soft, half + soft, from_middle);
+        const float glass = inside.x * inside.y;
+        const float bright = 1.0f - pattern.variation * lattice_random(column, row, seed + 2);
+        // Lamps are at the ceiling; blinds cover part of the window.
+        const float height = 1.0f - (place.y - cell.y);
+        const float blind = 0.9f * lattice_random(column, row, seed + 3) - 0.3f;
+        const float light = height > 1.0f - blind ? 0.35f : 0.55f + 0.45f * height;
+        const bool accent = lattice_random(column / 4, row, seed + 4) < 0.25f;
+        PatternTexel t;
+        t.color =
+            is_lit ? (accent ? pattern.accent : pattern.color) * (glass * bright * light) : Vec3(0);
+        t.height = -0.004f * glass;
+        t.roughness = glm::mix(0.7f, 0.12f, glass);
+        return t;
+    });
+}
+
+PatternMaps make_asphalt(const AsphaltPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+        const float low = fbm(uv, 3, seed, 5, 0.55f);  // about -0.5 .. 0.5
+        const float grain = fbm(uv, 96, seed + 7, 2, 0.6f);
+        const float stains = fbm(uv, 8, seed + 13);
+        const float level = 0.9f * (pattern.wet - 0.5f);
+        const float puddle = glm::smoothstep(-0.06f, 0.10f, level - low);
+        PatternTexel t;
+        t.color = pattern.color * (1.0f + 0.5f * grain + 0.35f * stains) * (1.0f - 0.45f * puddle);
+        t.height = 0.0016f * grain * (1.0f - puddle);
+        t.roughness = glm::mix(
+            std::clamp(pattern.roughness + 0.2f * grain + 0.15f * stains, 0.2f, 1.0f), 0.06f,
+            puddle);
+        t.occlusion = 1.0f;
         return t;
     });
 }
@@ -326,36 +376,18 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
-            "rose_window", "a round window of stained glass; black where there is none"),
+            "rose_window", "a round window of stained glass; black outside of the glass"),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
         pattern_kind<StainedGlassPattern, make_stained_glass>(
-            "stained_glass", "leaded diamonds between two borders; black where there is lead"),
+            "stained_glass", "leaded diamonds between two borders; black at the lead"),
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
         pattern_kind<WindowsPattern, make_windows>(
-            "windows", "a tower's front at night; black where no light is on"),
+            "windows", "facade of a tower at night; black except for lit windows"),
         pattern_kind<WoodPattern, make_wood>("wood", "planks with rings, fibers and pores"),
     };
     return kinds;
-}
-
-const PatternKind* find_pattern_kind(std::string_view name) {
-    for (const PatternKind& kind : pattern_kinds()) {
-        if (kind.name == name) {
-            return &kind;
-        }
-    }
-    return nullptr;
-}
-
-std::string pattern_kind_suggestion(std::string_view name) {
-    std::vector<std::string> names;
-    for (const PatternKind& kind : pattern_kinds()) {
-        names.emplace_back(kind.name);
-    }
-    const std::string nearest = nearest_name(name, names);
-    return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 
 }  // namespace limn

@@ -11,19 +11,14 @@ namespace limn {
 
 namespace {
 
-/// Share of the way from 0 to `count`.
-float part(int i, int count) {
-    return static_cast<float>(i) / static_cast<float>(count);
-}
-
 /// A direction in the x-z plane.
 struct Turn {
     float sin;
     float cos;
 };
 
-/// The azimuths of `segments` + 1 columns from -z over -x, +z and +x back to -z. The last equals
-/// the first to the bit, so that the seam is closed.
+/// The azimuths of `segments` + 1 columns from -z over -x, +z and +x back to -z. The last is
+/// bit-identical to the first, so that the seam is closed.
 std::vector<Turn> turns(int segments) {
     LIMN_CHECK(segments >= 3);
     std::vector<Turn> all(static_cast<std::size_t>(segments) + 1);
@@ -44,19 +39,19 @@ struct LatheRing {
     float v;
 };
 
-/// What makes a round thing scalloped: its radius times 1 + depth cos(count azimuth).
+/// Lobes of a surface of revolution: the radius is multiplied by 1 + depth cos(count azimuth).
 struct Lobes {
     int count = 0;
     float depth = 0;
 };
 
-/// The factor of the radius, and how it changes with the azimuth.
+/// The factor of the radius, and its derivative by the azimuth.
 struct LobeSample {
     float factor = 1;
     float slope = 0;
 };
 
-/// For the columns of turns(segments); the same at both ends to the bit.
+/// For the columns of turns(segments); bit-identical at both ends.
 LobeSample lobe_at(const Lobes& lobes, int column, int segments) {
     if (lobes.count == 0) {
         return {};
@@ -68,7 +63,7 @@ LobeSample lobe_at(const Lobes& lobes, int column, int segments) {
         -lobes.depth * static_cast<float>(lobes.count) * std::sin(angle)};
 }
 
-/// Turns rings, listed from the top, around +y.
+/// Revolves rings, listed from the top, around +y.
 void append_lathe(
     MeshData& mesh, int segments, const std::vector<LatheRing>& rings, const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(2 * segments);
@@ -76,7 +71,7 @@ void append_lathe(
     const GridPoles poles = {rings.front().radius == 0.0f, rings.back().radius == 0.0f};
     append_grid(mesh, segments, rows, poles, [&](int i, int j) {
         const LatheRing& ring = rings[static_cast<std::size_t>(j)];
-        // At a pole, the azimuth in the middle of the triangle that ends there.
+        // At a pole, the middle azimuth of the triangle that ends there.
         const int shift = ring.radius > 0 ? 0 : (j == 0 ? 1 : -1);
         const int column = std::clamp(2 * i + shift, 0, 2 * segments);
         const Turn& turn = around[static_cast<std::size_t>(column)];
@@ -108,7 +103,7 @@ void append_disc(
     int divisions, const Lobes& lobes = {}) {
     const std::vector<Turn> around = turns(segments);
     append_grid(mesh, segments, divisions, {false, hole == 0.0f}, [&](int i, int j) {
-        // With columns to the right and rows toward the middle, the outline runs clockwise seen
+        // With columns to the right and rows toward the center, the outline runs clockwise seen
         // from the front; seen from above, turns() runs counter-clockwise.
         const int column = facing > 0 ? segments - i : i;
         const Turn& turn = around[static_cast<std::size_t>(column)];
@@ -125,8 +120,8 @@ void append_disc(
     });
 }
 
-/// The coordinates of the grid lines of a rounded side, from -half to half. Beyond the flat part
-/// they are placed so that the normals turn by equal angles.
+/// The coordinates of the grid lines of a rounded side, from -half to half. In the bevel they are
+/// spaced so that normals turn by equal angles.
 std::vector<float> rounded_lines(float half, float bevel, const BoxShape& shape) {
     const float inner = half - bevel;
     std::vector<float> upper;  // from the middle of the edge inwards
@@ -275,7 +270,7 @@ MeshData make_disc(const DiscShape& shape) {
 }
 
 MeshData make_lathe(const LatheShape& shape) {
-    std::vector<Vec2> points;  // from the top; equal neighbors have no direction
+    std::vector<Vec2> points;  // from the top, without repeated points
     for (auto p = shape.profile.rbegin(); p != shape.profile.rend(); ++p) {
         const Vec2 point = {std::max(p->x, 0.0f), p->y};
         if (points.empty() || point != points.back()) {
@@ -312,7 +307,7 @@ MeshData make_lathe(const LatheShape& shape) {
             run = {{points[i].x, points[i].y, after, v}};
         }
     }
-    // The columns of a lathe are every other one of twice as many turns, so caps fit to the bit.
+    // The columns of a lathe are every second one of twice as many turns, so caps match exactly.
     if (shape.caps && points.front().x > 0) {
         append_disc(mesh, points.front().x, 0, points.front().y, 1, shape.segments, 1, lobes);
     }

@@ -10,9 +10,9 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
-constexpr float kLargestError = 0.05f;  ///< of the size of the mesh
+constexpr float kLargestError = 0.05f;  ///< relative to the size of the mesh
 
-/// What is new at each place: `source` are the old places.
+/// Replaces `values` by values[source[i]] for all i.
 template <typename T>
 void gather(std::vector<T>& values, const std::vector<std::uint32_t>& source) {
     if (values.empty()) {
@@ -43,7 +43,8 @@ void gather_influences(SkinWeights& skin, const std::vector<std::uint32_t>& sour
 }
 
 void gather_morph(MorphTarget& morph, const std::vector<std::uint32_t>& number) {
-    std::vector<std::uint32_t> source;  // in the lists of the target; still growing by vertex
+    std::vector<std::uint32_t>
+        source;  // indices into the lists of the target, still sorted by vertex
     std::vector<std::uint32_t> vertices;
     for (std::uint32_t i = 0; i < morph.vertices.size(); ++i) {
         if (number[morph.vertices[i]] != kUnused) {

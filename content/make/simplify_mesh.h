@@ -6,9 +6,9 @@
 
 namespace limn {
 
-/// Collapses edges until about `triangles` are left, or until the shape would suffer by more than a
-/// twentieth of its size; vertices that are not used any more leave, with their joints and morph
-/// targets. What is left stays where it was, and closed where it was closed.
+/// Collapses edges until about `triangles` are left, or until the error would exceed 5 % of the
+/// size of the mesh. Unused vertices are removed, with their skin weights and morph targets; the
+/// others keep their positions, and closed surfaces stay closed.
 void simplify_mesh(MeshData& mesh, std::size_t triangles);
 
 }  // namespace limn

@@ -6,10 +6,15 @@
 
 namespace limn {
 
-// Parametric surfaces are grids of vertices. Seen from the front, column i grows to the right and
-// row j downwards, as the pixels of an image do; so an image lies on the surface upright and
-// unmirrored, and the bitangent, which points to the top of the image, is + cross(normal, tangent):
-// w = +1 everywhere.
+// Parametric surfaces are grids of vertices. Seen from the front, columns run to the right and rows
+// downwards, like the pixels of an image; so an image lies on the surface upright and unmirrored,
+// and the bitangent, which points to the top of the image, is + cross(normal, tangent): w = +1
+// everywhere.
+
+/// i / count.
+[[nodiscard]] inline float part(int i, int count) {
+    return static_cast<float>(i) / static_cast<float>(count);
+}
 
 struct GridVertex {
     Vec3 position;
@@ -18,7 +23,7 @@ struct GridVertex {
     Vec2 uv;
 };
 
-/// Which rows of the grid are a single point: their triangles without area are left out.
+/// Which end rows of the grid are a single point: their degenerate triangles are omitted.
 struct GridPoles {
     bool top = false;
     bool bottom = false;

@@ -12,13 +12,13 @@ namespace {
 
 constexpr int kMaxRows = 1 << 16;
 
-/// A point of the profile with its normal: two where there is an edge.
+/// A point of the profile with its normal; duplicated at a sharp edge.
 struct ProfileVertex {
     Vec2 place;
     Vec2 normal;
-    float along = 0;  ///< the profile [m]
+    float along = 0;  ///< arc length along the profile [m]
 };
-/// Without an edge inside.
+/// A part of the profile without sharp edges inside.
 using ProfileRun = std::vector<ProfileVertex>;
 
 struct SweepFrame {
@@ -39,7 +39,7 @@ std::vector<Vec2> profile_points(const SweepShape& shape) {
     }
     std::vector<Vec2> circle;
     for (int i = 0; i < shape.segments; ++i) {
-        // Clockwise seen along the path: it faces outwards.
+        // Clockwise looking along the path, so that it faces outwards.
         const float angle =
             -2.0f * kPi * static_cast<float>(i) / static_cast<float>(shape.segments);
         circle.push_back(shape.radius * Vec2(std::cos(angle), std::sin(angle)));
@@ -51,7 +51,7 @@ bool is_closed(const SweepShape& shape) {
     return shape.closed || shape.radius > 0.0f;
 }
 
-/// The profile in runs without edges.
+/// Splits the profile at sharp edges.
 std::vector<ProfileRun> cut_profile(const SweepShape& shape, const std::vector<Vec2>& points) {
     const std::size_t count = points.size();
     const std::size_t edges = is_closed(shape) ? count : count - 1;
@@ -59,10 +59,10 @@ std::vector<ProfileRun> cut_profile(const SweepShape& shape, const std::vector<V
     for (std::size_t i = 0; i < edges; ++i) {
         normals.push_back(left_of(points[(i + 1) % count] - points[i]));
     }
-    // Smooth between edges `before` and `after`, or not.
-    const float least = std::cos(shape.radius > 0.0f ? kPi : shape.crease);
+    // Whether the corner between two edges with these normals is smooth.
+    const float min_cosine = std::cos(shape.radius > 0.0f ? kPi : shape.crease);
     const auto smooth = [&](const Vec2& before, const Vec2& after) {
-        return glm::dot(before, after) >= least;
+        return glm::dot(before, after) >= min_cosine;
     };
     const auto mean = [](const Vec2& a, const Vec2& b) {
         const Vec2 sum = a + b;
@@ -90,7 +90,7 @@ std::vector<ProfileRun> cut_profile(const SweepShape& shape, const std::vector<V
     return runs;
 }
 
-/// The way from `from` to `to` [m].
+/// Frames along the path between the distances `from` and `to` [m].
 std::vector<SweepFrame>
 find_frames(const SweepShape& shape, const PathData& path, float from, float to) {
     const float wanted = std::ceil((to - from) / std::max(shape.step, 1e-3f));
@@ -99,13 +99,13 @@ find_frames(const SweepShape& shape, const PathData& path, float from, float to)
     for (int i = 0; i <= rows; ++i) {
         const float share = static_cast<float>(i) / static_cast<float>(rows);
         const float distance = i == rows ? to : from + share * (to - from);
-        const PathFrame frame = find_path_frame(path, distance);
+        const PathFrame frame = path_frame_at(path, distance);
         frames.push_back({frame.position, glm::cross(frame.ahead, frame.up), frame.up, distance});
         if (shape.upright || i == 0) {
             continue;
         }
-        // As little turned as can be (W. Wang et al., "Computation of Rotation Minimizing Frames",
-        // 2008): mirrored from row to row, and back upon the new direction.
+        // Double reflection (W. Wang et al., "Computation of Rotation Minimizing Frames", 2008):
+        // reflect from row to row, then onto the new direction.
         const SweepFrame& last = frames[frames.size() - 2];
         const Vec3 last_ahead = glm::cross(last.up, last.right);
         const Vec3 way = frame.position - last.position;
@@ -121,7 +121,7 @@ find_frames(const SweepShape& shape, const PathData& path, float from, float to)
     return frames;
 }
 
-/// A flat end: a fan about the middle of the profile.
+/// A flat end cap: a fan about the centroid of the profile.
 void append_cap(
     MeshData& mesh, const std::vector<Vec2>& points, const SweepFrame& frame, bool is_front) {
     const Vec3 ahead = glm::cross(frame.up, frame.right);
@@ -146,7 +146,7 @@ void append_cap(
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t a = first + 1 + i;
         const std::uint32_t b = first + 1 + (i + 1) % count;
-        // Profiles turn clockwise seen along the path.
+        // Profiles run clockwise looking along the path.
         mesh.indices.insert(mesh.indices.end(), {first, is_front ? a : b, is_front ? b : a});
     }
 }

@@ -11,12 +11,11 @@ namespace {
 
 // ---- the data ----------------------------------------------------------------------------------
 
-/// A profile to turn: control points (radius, height) from below to above, outside to the right of
-/// the way; and the handle factor of the quarter circle that each of them runs on. Listed from
-/// above.
+/// A profile to revolve: control points (radius, height) from bottom to top, the outside to the
+/// right; and the handle factor of the quarter circle of each point. Listed from the top.
 struct TurnedProfile {
     TeapotPart part;
-    bool starts_chart;  ///< the texture begins anew, and does not go on from the one above
+    bool starts_chart;  ///< the texture restarts instead of continuing from the one above
     std::array<Vec2, 4> points;
     std::array<float, 4> circle = {0.56f, 0.56f, 0.56f, 0.56f};
 };
@@ -34,8 +33,8 @@ constexpr TurnedProfile kProfiles[] = {
      {0.56f, 0.56f, 0.5625f, 0.56f}},
     {TeapotPart::Lid, false, {Vec2(1.3f, 2.4f), {1.3f, 2.55f}, {0.4f, 2.55f}, {0.2f, 2.7f}}}};
 
-/// Half a duct, the one at z >= 0: four cross sections along its length, each from the outer side
-/// of the bend over the flank to the inner side.
+/// The half of a duct at z >= 0: four cross sections along its length, each from the outer side of
+/// the bend over the flank to the inner side.
 struct Duct {
     TeapotPart part;
     bool starts_chart;
@@ -78,8 +77,7 @@ constexpr float kHeight = 3.15f;
 
 // ---- texture coordinates -----------------------------------------------------------------------
 
-/// Length of a cubic, by its control polygon of eight pieces: good to a percent, which is all that
-/// a texture needs.
+/// Length of a cubic as a polyline of eight segments: accurate to a percent, enough for texturing.
 template <typename T>
 float curve_length(const std::array<T, 4>& curve) {
     float length = 0;
@@ -91,7 +89,7 @@ float curve_length(const std::array<T, 4>& curve) {
     return length;
 }
 
-/// Texture per length of the data along v: makes texels about square where the pot is widest.
+/// Texture coordinate per unit length along v: about square texels where the pot is widest.
 float texture_density(TeapotPart part) {
     switch (part) {
     case TeapotPart::Handle:
@@ -105,7 +103,7 @@ float texture_density(TeapotPart part) {
 
 // ---- patches -----------------------------------------------------------------------------------
 
-/// Quarter `quarter` of a turned profile: u runs counter-clockwise seen from above, v up.
+/// Quarter `quarter` of a revolved profile: u runs counter-clockwise seen from above, v up.
 BezierPatch turn_profile(const TurnedProfile& profile, int quarter) {
     BezierPatch patch;
     for (std::size_t j = 0; j < 4; ++j) {
@@ -140,8 +138,7 @@ BezierPatch lay_duct(const Duct& duct, bool mirrored) {
 std::vector<TeapotPatch> teapot_patches(bool bottom) {
     std::vector<TeapotPatch> patches;
 
-    // Texture rows grow downwards: a patch begins (v = 0, its lower end) where the next one will
-    // end.
+    // Texture rows run downwards: a patch starts (v = 0, its lower end) where the next one ends.
     float above = 0;
     float below = 0;
     const auto next_row = [&](bool starts_chart, float length) {

@@ -7,14 +7,14 @@
 
 namespace limn {
 
-// The teapot of Martin Newell (1975): 32 bicubic patches. Rim, body, lid and bottom are turned
+// The teapot of Martin Newell (1975): 32 bicubic patches. Rim, body, lid and bottom are revolved
 // about the vertical axis, with quarter circles whose handle factor is 0.56 (0.41 % off a circle;
 // the knob of the lid has 0.5625 in the public data); handle and spout are ducts, mirrored left and
 // right. The original had no bottom: its 4 patches are the later addition, on by default so that
 // the pot may be seen from below.
 //
 // Here +y is up, the spout points along +x, and u x v points outwards everywhere. Handle and spout
-// end inside the body; nothing is stitched there.
+// end inside the body and are not stitched to it.
 
 enum class TeapotPart : std::uint8_t { Rim, Body, Lid, Bottom, Handle, Spout };
 
@@ -27,34 +27,27 @@ struct TeapotPatch {
 };
 
 struct TeapotShape {
-    int divisions = 10;  ///< quads along each side of a patch, >= 1
-    float tolerance =
-        0.0f;  ///< > 0: as few quads as keep the shape to this [m], instead of `divisions`
-    float height = 1.0f;  ///< with the lid [m], > 0
-    bool bottom = true;   ///< closed from below: 32 patches, else 28
+    int divisions = 10;
+    float tolerance = 0.0f;
+    float height = 1.0f;
+    bool bottom = true;
 };
+
+LIMN_FIELDS(TeapotShape) {
+    LIMN_FIELD(divisions, "quads along each side of the 32 patches", "", 1, 128);
+    LIMN_FIELD(
+        tolerance, "if not 0: adaptive tessellation with this error, instead of divisions", "m", 0,
+        10);
+    LIMN_FIELD(height, "with the lid", "m", 1e-4, 1e5);
+    LIMN_FIELD(bottom, "closed from below");
+}
 
 /// 28 patches, or 32 with the bottom: rim 4, body 8, lid 8, handle 4, spout 4, bottom 4.
 [[nodiscard]] std::vector<TeapotPatch> teapot_patches(bool bottom);
 
-/// Stands on y = 0. Uniform: divisions^2 quads a patch, two triangles each; those at the middle of
-/// lid and bottom, where a side of a patch is a point, have no area but do have normals. The
+/// Stands on y = 0. Uniform: divisions^2 quads per patch, two triangles each; those at the middle
+/// of lid and bottom, where a side of a patch is a point, have no area but do have normals. The
 /// texture goes four times around the body and once around handle and spout.
 [[nodiscard]] MeshData make_teapot(const TeapotShape& shape);
-
-template <typename Visitor>
-void visit_fields(TeapotShape& shape, Visitor&& visit) {
-    visit(
-        "divisions", shape.divisions,
-        {.doc = "quads along each side of the 32 patches", .min = 1, .max = 128});
-    visit(
-        "tolerance", shape.tolerance,
-        {.doc = "if not 0: as few quads as keep the shape to this",
-         .unit = "m",
-         .min = 0,
-         .max = 10});
-    visit("height", shape.height, {.doc = "with the lid", .unit = "m", .min = 1e-4, .max = 1e5});
-    visit("bottom", shape.bottom, {.doc = "closed from below"});
-}
 
 }  // namespace limn

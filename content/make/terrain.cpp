@@ -22,7 +22,7 @@ float eroded_hills(Vec2 p, std::uint32_t seed, const TerrainShape& shape) {
         slope += 0.5f * n.slope;
         sum += amplitude * n.value / (1.0f + shape.erosion * glm::dot(slope, slope));
         amplitude *= 0.5f;
-        // Doubled and turned (by the angle of the 3-4-5 triangle) so that octaves do not line up.
+        // Doubled and rotated (by the angle of the 3-4-5 triangle) so that octaves do not align.
         p = 2.0f * Vec2(0.8f * p.x - 0.6f * p.y, 0.6f * p.x + 0.8f * p.y);
     }
     return 0.5f + 0.6f * sum;
@@ -33,7 +33,7 @@ float landscape(const TerrainShape& shape, float x, float z) {
     const Vec2 p = Vec2(x, z) / shape.feature_size;
     const Vec2 bend = {gradient_noise(0.7f * p, seed + 40), gradient_noise(0.7f * p, seed + 41)};
     const Vec2 bent = p + shape.warp * bend;
-    // Where hills end and mountains begin: the more ridges, the more of the land they take.
+    // Transition from hills to mountains: `ridges` sets the share of mountains.
     const float region = 0.5f + 0.7f * gradient_noise(0.6f * p + 31.5f, seed + 42);
     const float mountains =
         shape.ridges >= 1 ? 1.0f : glm::smoothstep(0.9f, 1.5f, region + 1.2f * shape.ridges);
@@ -44,7 +44,7 @@ float landscape(const TerrainShape& shape, float x, float z) {
     return shape.height * glm::mix(hills, crests, mountains);
 }
 
-/// The height of the clearing: the mean of the land around it.
+/// The height of the clearing: the mean of the terrain around it.
 float clearing_height(const TerrainShape& shape) {
     constexpr int kSamples = 16;
     float sum = 0;
@@ -56,7 +56,7 @@ float clearing_height(const TerrainShape& shape) {
     return sum / kSamples;
 }
 
-/// Share of its height that land has so near the coast, the ellipse in its rectangle.
+/// Factor of the height near the coast, which is the ellipse inscribed in the rectangle.
 float risen(const TerrainShape& shape, float x, float z) {
     const Vec2 half = 0.5f * shape.size;
     const float inland = 1.0f - glm::length(Vec2(x, z) / half);
@@ -64,7 +64,7 @@ float risen(const TerrainShape& shape, float x, float z) {
     return glm::smoothstep(0.0f, whole, inland);
 }
 
-/// `level` is clearing_height(), or anything without a clearing.
+/// `level` is clearing_height(); ignored without a clearing.
 float height_at(const TerrainShape& shape, float level, float x, float z) {
     const float share = shape.shore > 0 ? risen(shape, x, z) : 1.0f;
     if (shape.clearing <= 0) {
@@ -75,7 +75,7 @@ float height_at(const TerrainShape& shape, float level, float x, float z) {
     return share * (wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level);
 }
 
-/// What grows or lies at a height, where the ground is so level: 1 = flat.
+/// Ground color at a position; `level` is the y of the normal, 1 = flat.
 Vec4 ground_color(const TerrainShape& shape, const Vec3& at, float level) {
     constexpr Vec3 kRock = {0.21f, 0.17f, 0.14f};
     constexpr Vec3 kDarkRock = {0.11f, 0.095f, 0.085f};

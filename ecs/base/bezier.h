@@ -13,10 +13,10 @@
 
 namespace limn {
 
-// Cubic Bezier curves of numbers and vectors: points, length, joins.
+// Cubic Bezier curves of scalars and vectors: evaluation, arc length, continuity.
 // After A. Watt, F. Policarpo, "Advanced Game Development with Programmable Graphics Hardware"
 // (2005), chapter 7 and its appendix 1 (whose end tangent, expansion and partition of unity are
-// misprinted, and mended here).
+// misprinted, and corrected here).
 
 template <typename T>
 using Bezier = std::array<T, 4>;
@@ -27,8 +27,8 @@ using Bezier = std::array<T, 4>;
     return {s * s * s, 3.0f * u * (s * s), 3.0f * s * (u * u), u * u * u};
 }
 
-/// The cubic with control points `p` at `u` in 0 .. 1. Exact at both ends and where all points are
-/// one; the sum is about the middle of the ends, so that neither direction is preferred.
+/// The cubic with control points `p` at `u` in 0 .. 1. Exact at both ends and where all control
+/// points coincide; summed relative to the midpoint of the ends, so that it is symmetric.
 template <typename T>
 [[nodiscard]] T bezier_point(const Bezier<T>& p, float u) {
     if (u <= 0.0f || u >= 1.0f) {
@@ -41,23 +41,23 @@ template <typename T>
               + (b.y * (p[1] - middle) + b.z * (p[2] - middle)));
 }
 
-/// dQ/du of the same cubic; exactly 0 where all points are one.
+/// dQ/du of the same cubic; exactly 0 where all control points coincide.
 template <typename T>
 [[nodiscard]] T bezier_derivative(const Bezier<T>& p, float u) {
     const float s = 1.0f - u;
     return 3.0f * ((s * s * (p[1] - p[0]) + u * u * (p[3] - p[2])) + 2.0f * s * u * (p[2] - p[1]));
 }
 
-/// How far along its way a curve is at each hundredth of u, by chords, which are shorter than the
-/// arc by a share that falls with the square of their number (anim.arclength).
+/// Cumulative arc length of a curve at each hundredth of u, approximated by chords; the relative
+/// error falls with the square of their number (anim.arclength).
 struct ChordTable {
     static constexpr int kSteps = 100;
-    std::array<float, kSteps + 1> length = {};  ///< of the way to u = i / kSteps; never falls
+    std::array<float, kSteps + 1> length = {};  ///< from 0 to u = i / kSteps; non-decreasing
 
     [[nodiscard]] float total() const { return length[kSteps]; }
 
-    /// The u at which `share` in 0 .. 1 of the way is done; `share` itself on a curve that is a
-    /// point.
+    /// The u at fraction `share` in 0 .. 1 of the total length; `share` itself on a curve of
+    /// length 0.
     [[nodiscard]] float parameter_at(float share) const {
         if (!(total() > 0.0f)) {
             return std::clamp(share, 0.0f, 1.0f);
@@ -92,12 +92,12 @@ template <typename T>
 
 enum class BezierJoin : std::uint8_t {
     None,       ///< the second does not begin where the first ends
-    Position,   ///< they meet; the motion has a corner, or a control point lies on the key
-    Direction,  ///< and go the same way there, with a step in speed (G1)
-    Speed,      ///< and at the same speed (C1)
+    Position,   ///< C0: they meet at a corner, or a control point coincides with the key
+    Direction,  ///< G1: same tangent direction, with a step in speed
+    Speed,      ///< C1: same tangent
 };
 
-/// How well two curves join; lengths and directions may differ by a share of `tolerance`.
+/// Continuity of two curves; lengths and directions may differ by the relative `tolerance`.
 [[nodiscard]] inline BezierJoin
 find_join(const Bezier<Vec3>& first, const Bezier<Vec3>& second, float tolerance = 1e-4f) {
     const Vec3 in = first[3] - first[2];
@@ -119,21 +119,21 @@ find_join(const Bezier<Vec3>& first, const Bezier<Vec3>& second, float tolerance
                                                                      : BezierJoin::Direction;
 }
 
-/// The key where two curves meet and the control points before and after it: what an editor moves
-/// so that the join stays smooth (anim.bezier-edit).
+/// The key where two curves meet and the control points before and after it, which an editor moves
+/// together so that the join stays smooth (anim.bezier-edit).
 struct BezierKnot {
     Vec3 before;
     Vec3 key;
     Vec3 after;
 };
 
-/// The key at share `t` of the line between its control points, kept off both by a hundredth.
+/// Moves the key to fraction `t` of the line between its control points, clamped to 0.01 .. 0.99.
 [[nodiscard]] inline BezierKnot slide_knot(const BezierKnot& knot, float t) {
     const float u = std::clamp(t, 0.01f, 0.99f);
     return {knot.before, knot.before * (1.0f - u) + knot.after * u, knot.after};
 }
-/// The line turned about the key.
-[[nodiscard]] inline BezierKnot turn_knot(const BezierKnot& knot, const Quat& rotation) {
+/// Rotates both control points about the key.
+[[nodiscard]] inline BezierKnot rotate_knot(const BezierKnot& knot, const Quat& rotation) {
     return {
         knot.key + rotation * (knot.before - knot.key), knot.key,
         knot.key + rotation * (knot.after - knot.key)};
@@ -142,7 +142,7 @@ struct BezierKnot {
     return {knot.before + by, knot.key + by, knot.after + by};
 }
 
-/// The parabola over the base q[0] .. q[3] that the top q[1] .. q[2] pulls, by three linear
+/// Parabolic blend of the base line q[0] .. q[3] toward the top line q[1] .. q[2], by three linear
 /// interpolations (anim.parabolic-blend).
 template <typename T>
 [[nodiscard]] T parabolic_blend(const std::array<T, 4>& q, float u) {
@@ -152,7 +152,7 @@ template <typename T>
     return base * (1.0f - weight) + top * weight;
 }
 
-/// The corners for which parabolic_blend() is the cubic `p` (W. Boehm, 1982).
+/// The corners for which parabolic_blend() equals the cubic `p` (W. Boehm, 1982).
 template <typename T>
 [[nodiscard]] std::array<T, 4> quadrangle_of(const Bezier<T>& p) {
     return {p[0], 0.5f * (3.0f * p[1] - p[3]), 0.5f * (3.0f * p[2] - p[0]), p[3]};

@@ -12,7 +12,7 @@
 
 namespace limn {
 
-// Binary files: values one behind the other, little-endian, without alignment.
+// Binary files: consecutive values, little-endian, without alignment.
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -31,7 +31,7 @@ class ByteWriter {
         value(static_cast<std::uint32_t>(text.size()));
         bytes(text.data(), text.size());
     }
-    /// Overwrites what stands at `offset`.
+    /// Overwrites the value at `offset`.
     template <typename T>
     void patch(std::size_t offset, T value) {
         static_assert(std::is_arithmetic_v<T>);
@@ -52,7 +52,7 @@ class ByteWriter {
     std::vector<std::byte> bytes_;
 };
 
-/// Reads what may be cut off or wrong: past the end it gives zeros and says so.
+/// Reads untrusted bytes: past the end it returns zeros and failed() becomes true.
 class ByteReader {
   public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -61,7 +61,7 @@ class ByteReader {
     [[nodiscard]] std::size_t left() const { return bytes_.size() - position_; }
     [[nodiscard]] std::size_t position() const { return position_; }
 
-    /// The next `size` bytes; empty if there are not so many.
+    /// The next `size` bytes; empty if fewer are left.
     std::span<const std::byte> bytes(std::size_t size) {
         if (failed_ || size > left()) {
             failed_ = true;
@@ -71,7 +71,7 @@ class ByteReader {
         position_ += size;
         return taken;
     }
-    /// False: nothing was copied.
+    /// Returns false, and copies nothing, if fewer bytes are left.
     bool copy(void* destination, std::size_t size) {
         const std::span<const std::byte> taken = bytes(size);
         if (failed_) {
@@ -93,11 +93,11 @@ class ByteReader {
         const std::span<const std::byte> taken = bytes(value<std::uint32_t>());
         return {reinterpret_cast<const char*>(taken.data()), taken.size()};
     }
-    /// How many elements of at least `least_size` bytes follow: fails where the file is too short
-    /// for them, before anybody allocates.
-    std::uint32_t count(std::size_t least_size) {
+    /// Reads a count of elements of at least `min_size` bytes each; fails if the remaining bytes
+    /// cannot hold them, before the caller allocates.
+    std::uint32_t count(std::size_t min_size) {
         const auto count = value<std::uint32_t>();
-        if (failed_ || (least_size > 0 && count > left() / least_size)) {
+        if (failed_ || (min_size > 0 && count > left() / min_size)) {
             failed_ = true;
             return 0;
         }

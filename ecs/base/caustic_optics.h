@@ -11,76 +11,76 @@
 
 namespace limn {
 
-// Bright patterns where a surface gathers light on planes (Shah, Konttinen and Pattanaik 2007 have
-// the modern form): every vertex of the surface sends one ray, is moved to where that lands, and
-// is drawn there as bright as the light it brings. The functions that water needs are in
-// render/shaders/lib/caustic_landing.glsl, too.
+// Caustics on planes by vertex projection (see Shah, Konttinen and Pattanaik 2007 for the modern
+// form): every vertex of the surface casts one ray, is moved to the hit point, and is drawn there
+// with the light it carries. render/shaders/lib/caustic_landing.glsl has the functions that water
+// needs.
 
-/// Of points x with dot(normal, x) = offset.
+/// The points x with dot(normal, x) = offset.
 struct Plane {
     Vec3 normal = {0, 1, 0};  ///< unit
     float offset = 0;         ///< [m]
 };
 
-inline constexpr float kFarPlane = 10000.0f;  ///< way of rays that meet no plane [m]
+inline constexpr float kFarPlane = 10000.0f;  ///< distance for rays that hit no plane [m]
 
-/// Way along `ray` to the plane; kFarPlane where that lies behind or the ray runs along it.
-[[nodiscard]] inline float way_to_plane(const Vec3& from, const Vec3& ray, const Plane& plane) {
+/// Distance along `ray` to the plane; kFarPlane if it lies behind or the ray is parallel to it.
+[[nodiscard]] inline float distance_to_plane(const Vec3& from, const Vec3& ray, const Plane& plane) {
     const float along = glm::dot(plane.normal, ray);
     if (std::abs(along) <= 1e-9f) {
         return kFarPlane;
     }
-    const float way = (plane.offset - glm::dot(plane.normal, from)) / along;
-    return way >= 0 ? way : kFarPlane;
+    const float distance = (plane.offset - glm::dot(plane.normal, from)) / along;
+    return distance >= 0 ? distance : kFarPlane;
 }
 
-/// Where `ray` meets the first of the planes; kFarPlane away if none.
+/// Where `ray` hits the nearest of the planes; at distance kFarPlane if none.
 [[nodiscard]] inline Vec3
-land_on_planes(const Vec3& from, const Vec3& ray, std::span<const Plane> planes) {
-    float way = kFarPlane;
+hit_nearest_plane(const Vec3& from, const Vec3& ray, std::span<const Plane> planes) {
+    float distance = kFarPlane;
     for (const Plane& plane : planes) {
-        way = std::min(way, way_to_plane(from, ray, plane));
+        distance = std::min(distance, distance_to_plane(from, ray, plane));
     }
-    return from + way * ray;
+    return from + distance * ray;
 }
 
-/// Light of a vertex of a pool's surface by its height: 0 at the least, 1 at the greatest.
-///   per_height  1 / (greatest - least); that of still water must be finite: pool_scale()
-[[nodiscard]] inline float pool_light(float height, float least, float per_height) {
-    const float c = (height - least) * per_height;
+/// Brightness of a vertex of a pool's surface by its height: 0 at `lowest`, 1 at the highest.
+///   per_height  1 / (highest - lowest), finite for still water too: pool_scale()
+[[nodiscard]] inline float pool_light(float height, float lowest, float per_height) {
+    const float c = (height - lowest) * per_height;
     return c * c * c;
 }
-/// The same as the book's text has it, in meters.
-[[nodiscard]] inline float pool_light_squared(float height, float least, float per_height) {
-    const float c = height - least;
+/// The squared variant in the book's text, with heights in meters.
+[[nodiscard]] inline float pool_light_squared(float height, float lowest, float per_height) {
+    const float c = height - lowest;
     return c * c * per_height;
 }
-[[nodiscard]] inline float pool_scale(float least, float greatest) {
-    return 1.0f / std::max(greatest - least, 1e-4f);
+[[nodiscard]] inline float pool_scale(float lowest, float highest) {
+    return 1.0f / std::max(highest - lowest, 1e-4f);
 }
 
-/// Light per area where a patch of surface lands, over that on the patch.
-[[nodiscard]] inline float area_light(float area_before, float area_after) {
+/// Ratio of the irradiance where a surface patch lands to that on the patch itself.
+[[nodiscard]] inline float irradiance_ratio(float area_before, float area_after) {
     return area_before / std::max(area_after, 1e-12f);
 }
 
-/// A vertex that mirrors light onto a plane.
+/// A vertex that reflects light onto a plane.
 struct MirroredVertex {
     Vec3 position = {0, 0, 0};
     float light = 0;
 };
-struct MirrorLook {
-    float power_plane = 3;     ///< of the cosine at the plane; the book's text: 1
-    float power_surface = 3;   ///< of the cosine at the surface; the book's text: 4
-    float farthest = 1000;     ///< rays go no farther [m]
-    float highest = INFINITY;  ///< above the plane nothing is lit that lands higher [m]
+struct MirrorFalloff {
+    float plane_exponent = 3;     ///< exponent of the cosine at the plane; the book's text: 1
+    float surface_exponent = 3;   ///< exponent of the cosine at the surface; the book's text: 4
+    float max_distance = 1000;     ///< maximum ray length [m]
+    float max_height = INFINITY;  ///< hits higher above the plane are not lit [m]
 };
 
-/// Where a vertex of a mirror sends the light of a lamp at `light`. One that faces away stays where
-/// it is and is black; so is one whose ray leaves the plane.
+/// Projects a vertex of a mirror to where it reflects the point light at `light`. A vertex that
+/// faces away stays in place and is black; one whose ray points away from the plane is black too.
 [[nodiscard]] inline MirroredVertex mirror_vertex(
     const Vec3& vertex, const Vec3& normal, const Vec3& light, const Plane& plane,
-    const MirrorLook& look = {}) {
+    const MirrorFalloff& look = {}) {
     const Vec3 in = glm::normalize(vertex - light);
     const float facing = -glm::dot(in, normal);
     if (facing < 0) {
@@ -89,15 +89,15 @@ struct MirrorLook {
     const Vec3 out = in + 2.0f * facing * normal;
     const float toward = -glm::dot(plane.normal, out);
     const float height = glm::dot(plane.normal, vertex) - plane.offset;
-    const float way = toward > 1e-9f ? height / toward : height > 0 ? 0.0f : look.farthest;
-    MirroredVertex moved = {vertex + std::clamp(way, 0.0f, look.farthest) * out, 0};
+    const float distance = toward > 1e-9f ? height / toward : height > 0 ? 0.0f : look.max_distance;
+    MirroredVertex moved = {vertex + std::clamp(distance, 0.0f, look.max_distance) * out, 0};
     const float above = glm::dot(plane.normal, moved.position) - plane.offset;
-    if (way > look.farthest || above > look.highest) {
+    if (distance > look.max_distance || above > look.max_height) {
         moved.position -= above * plane.normal;
     }
-    if (above <= look.highest) {
-        moved.light = std::pow(std::max(toward, 0.0f), look.power_plane)
-                      * std::pow(facing, look.power_surface);
+    if (above <= look.max_height) {
+        moved.light = std::pow(std::max(toward, 0.0f), look.plane_exponent)
+                      * std::pow(facing, look.surface_exponent);
     }
     return moved;
 }

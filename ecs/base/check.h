@@ -8,9 +8,9 @@ check_failed(const char* file, int line, const char* condition, const char* note
 
 }  // namespace limn
 
-// A programmer's mistake stops here with file and line, in all builds but the shipped one
-// (LIMN_SHIPPED). For entries of functions, not for elements of arrays. What comes from outside
-// (files, GPUs, users) is a Result instead.
+// Stops at a programming error with file and line, in all builds except LIMN_SHIPPED. For
+// preconditions on function entry, not per array element. Errors from outside (files, GPUs,
+// users) are a Result instead.
 #if defined(LIMN_SHIPPED)
 #define LIMN_CHECK(condition) static_cast<void>(sizeof(!(condition)))
 #define LIMN_CHECK_NOTE(condition, note) static_cast<void>(sizeof(!(condition)))

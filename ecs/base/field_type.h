@@ -4,15 +4,15 @@
 
 namespace limn {
 
-// What a field of a component can be, as reflection (ecs/reflect.h) knows it. The library has no
-// vectors of its own: whoever has tells it, beside the type,
+// The field types that reflection (ecs/reflect.h) supports. The library has no vector types of its
+// own; to use yours, specialize next to the type
 //
 //     template <> inline constexpr FieldType field_type_of<Vec3> = FieldType::Vec3;
 //
-// and promises the layout that the enumerator describes. The engine's are in ecs/base/math.h.
+// It must have the layout documented at the enumerator. The engine's are in ecs/base/math.h.
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"  // gcc 12 takes scoped enumerators for rivals of types
+#pragma GCC diagnostic ignored "-Wshadow"  // gcc 12 warns that scoped enumerators shadow types
 enum class FieldType : std::uint8_t {
     Bool,
     Int,   ///< signed, `size` bytes
@@ -25,18 +25,18 @@ enum class FieldType : std::uint8_t {
     Quat,   ///< 4 floats: x y z w
     IVec2,  ///< 2 std::int32_t
     IVec3,
-    Mat3,    ///< 9 floats, column by column
-    Mat4,    ///< 16 floats, column by column
+    Mat3,    ///< 9 floats, column-major
+    Mat4,    ///< 16 floats, column-major
     Affine,  ///< 12 floats, rows of the upper 3x4 matrix
     String,  ///< std::string
     Enum,    ///< unsigned integer of `size` bytes, below values.size()
     Entity,
-    Asset,   ///< std::uint32_t index; `asset` says of what
-    Struct,  ///< `fields`
+    Asset,   ///< std::uint32_t index; FieldInfo::asset names the kind
+    Struct,  ///< its members are in FieldInfo::fields
 };
 #pragma GCC diagnostic pop
 
-/// What T is where its type alone says it; Struct: look closer.
+/// The FieldType that T alone determines; Struct if it does not.
 template <typename T>
 inline constexpr FieldType field_type_of = FieldType::Struct;
 

@@ -8,11 +8,11 @@
 
 namespace limn {
 
-// Gradient noise on the integer lattice: a function of place and seed alone, the same on every
-// machine (no libm beyond sqrt and floor) and, but for rounding, in render/shaders/lib/noise.glsl.
-// Every lattice point has a unit vector, chosen by an integer hash; its ramps are blended with
-// 6t^5 - 15t^4 + 10t^3, so that the noise is twice differentiable. It is 0 at lattice points and
-// has mean 0; divided by half the root of the number of dimensions, the most it can be, it stays
+// Gradient noise on the integer lattice: a pure function of position and seed, identical on every
+// machine (no libm beyond sqrt and floor) and, up to rounding, in render/shaders/lib/noise.glsl.
+// Every lattice point has a unit gradient, chosen by an integer hash; the linear ramps are blended
+// with 6t^5 - 15t^4 + 10t^3, so that the noise is twice differentiable. It is 0 at lattice points
+// and has mean 0; divided by its maximum, half the root of the number of dimensions, it stays
 // within -1 .. 1. After K. Perlin, "Improving Noise" (2002).
 
 /// 32 well-mixed bits for a point of the integer lattice.
@@ -25,12 +25,12 @@ namespace limn {
     return h ^ (h >> 16);
 }
 
-/// The same as a number in 0 .. 1, 1 exclusive.
+/// The same hash as a number in [0, 1).
 [[nodiscard]] inline float lattice_random(int x, int y, std::uint32_t seed) {
     return static_cast<float>(lattice_hash(x, y, seed) >> 8) * 0x1p-24f;
 }
 
-/// 0 .. 1 for 0 .. 1, flat at both ends; its derivative is 30 t^2 (t - 1)^2.
+/// Maps 0 .. 1 to 0 .. 1, flat at both ends; its derivative is 30 t^2 (t - 1)^2.
 template <typename T>
 [[nodiscard]] T quintic_fade(const T& t) {
     return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
@@ -46,13 +46,13 @@ template <typename T>
     return 2.0f * (low + quintic_fade(t) * (slope(1) * (t - 1.0f) - low));
 }
 
-/// Value and gradient of a noise.
+/// Value and gradient of the noise.
 struct NoiseSample {
     float value;
     Vec2 slope;
 };
 
-/// `period` > 0 makes it repeat after so many lattice cells, so that an image tiles; 0 = never.
+/// `period` > 0 makes the noise tile with that many lattice cells; 0 = not periodic.
 [[nodiscard]] inline NoiseSample
 gradient_noise_slope(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) {
     constexpr float kLong = 0.92387953f;
@@ -123,7 +123,7 @@ gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) 
     const Vec3 cell = {std::floor(p.x), std::floor(p.y), std::floor(p.z)};
     const Vec3 t = p - cell;
     const Vec3 w = quintic_fade(t);
-    // Toward the middles of a cube's twelve edges, four of them twice.
+    // Gradients toward the midpoints of a cube's twelve edges, four of them listed twice.
     const auto ramp = [&](int dx, int dy, std::uint32_t plane, float z) {
         const float x = t.x - static_cast<float>(dx);
         const float y = t.y - static_cast<float>(dy);
@@ -143,12 +143,12 @@ gradient_noise(const Vec2& p, std::uint32_t seed, const IVec2& period = {0, 0}) 
         return low + w.y * (high - low);
     };
     const float front = plane(0);
-    constexpr float kScale = 0.81649658f;  // sqrt(1/2) for the vectors, 2 / sqrt(3) for the range
+    constexpr float kScale = 0.81649658f;  // sqrt(1/2) normalizes gradients, 2 / sqrt(3) the range
     return kScale * (front + w.z * (plane(1) - front));
 }
 
 /// Noise in 0 .. 1 (shade.noise) of one, two or three coordinates; octave i has frequency 2^i and
-/// amplitude 2^-i. 0.5 where a float has no fraction any more, and for NaN.
+/// amplitude 2^-i. 0.5 where |coordinate| is too large for fractional bits, and for NaN.
 template <typename Place>
 [[nodiscard]] float noise(const Place& place, std::uint32_t seed = 0, int octaves = 1) {
     const auto has_fraction = [](const Place& p) {

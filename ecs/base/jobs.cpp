@@ -20,7 +20,7 @@
 #include <sanitizer/tsan_interface.h>
 extern "C" const char* __tsan_default_suppressions();
 extern "C" const char* __tsan_default_suppressions() {
-    return "called_from_lib:libtbb.so\n";  // what it does among its own threads
+    return "called_from_lib:libtbb.so\n";  // its internal synchronization
 }
 #endif
 
@@ -28,9 +28,9 @@ namespace limn {
 
 namespace {
 
-constexpr int kMostThreads = 256;
+constexpr int kMaxThreads = 256;
 
-/// The threads. Made on first use, made anew when their number changes.
+/// The thread pool. Created on first use and recreated when the thread count changes.
 struct Workers {
     int count;
     tbb::global_control limit;
@@ -44,7 +44,7 @@ struct Workers {
 
 std::unique_ptr<Workers>& workers_slot() {
     static std::unique_ptr<Workers> slot =
-        std::make_unique<Workers>(std::clamp(tbb::info::default_concurrency(), 1, kMostThreads));
+        std::make_unique<Workers>(std::clamp(tbb::info::default_concurrency(), 1, kMaxThreads));
     return slot;
 }
 
@@ -55,14 +55,14 @@ Workers& workers() {
 // ---- shuffling, for tests
 // ------------------------------------------------------------------------
 
-std::atomic<std::uint64_t> task_shuffle = 0;  // 0: none
-std::atomic<std::uint64_t> shuffles = 0;      // drawn since set_task_shuffle
+std::atomic<std::uint64_t> task_shuffle = 0;  // seed; 0: off
+std::atomic<std::uint64_t> shuffles = 0;      // done since set_task_shuffle
 
 bool is_shuffled() {
     return task_shuffle.load(std::memory_order_relaxed) != 0;
 }
 
-/// Puts them into an order that depends on the seed and on how many were shuffled before.
+/// Permutes `indices` depending on the seed and on the number of previous shuffles.
 void shuffle(std::vector<std::size_t>& indices) {
     std::uint64_t state = hash_combine(
         task_shuffle.load(std::memory_order_relaxed),
@@ -79,10 +79,10 @@ namespace detail {
 
 namespace {
 
-// The distribution's libtbb is not instrumented, so the thread sanitizer cannot see how it hands
-// tasks from thread to thread. CMake exempts this file, and these two tell the sanitizer what is
-// ordered: everything before a release(place) comes before everything after a later acquire(place).
-// Where tasks are not ordered, nothing is told.
+// The distribution's libtbb is not instrumented, so the thread sanitizer cannot see how it passes
+// tasks between threads. CMake exempts this file, and these two annotate the happens-before
+// relations: everything before a release(place) happens before everything after a later
+// acquire(place). Unordered tasks are not annotated.
 void release([[maybe_unused]] void* place) {
 #if defined(LIMN_THREAD_SANITIZER)
     __tsan_release(place);
@@ -96,7 +96,7 @@ void acquire([[maybe_unused]] void* place) {
 
 }  // namespace
 
-/// What the ranges of one parallel_for share.
+/// State shared by the ranges of one parallel_for.
 struct IndexedRun {
     IndexedCall call;
     void* context;
@@ -114,7 +114,7 @@ struct IndexedBody {
     }
 };
 
-/// Calls in another order.
+/// Forwards calls in a permuted order.
 struct Permuted {
     IndexedCall call;
     void* context;
@@ -136,8 +136,7 @@ void run_in_order(std::size_t count, IndexedCall call, void* context) {
     }
     IndexedRun run{call, context};
     release(&run);
-    // Isolated: a system that waits for its ranges must not start another system on its stack
-    // meanwhile.
+    // Isolated: a system that waits for its ranges must not run another system on its stack.
     pool.arena.execute([&] {
         tbb::this_task_arena::isolate(
             [&] { tbb::parallel_for(std::size_t{0}, count, IndexedBody{&run}); });
@@ -157,13 +156,13 @@ void run_indexed(std::size_t count, IndexedCall call, void* context) {
     run_in_order(count, Permuted::run, &permuted);
 }
 
-/// What the tasks of one graph share.
+/// State shared by the tasks of one graph.
 struct TaskRun {
     const TaskGraph& graph;
     IndexedCall call;
     void* context;
     tbb::task_group& group;
-    std::unique_ptr<std::atomic<std::uint32_t>[]> waiting;  ///< for so many predecessors
+    std::unique_ptr<std::atomic<std::uint32_t>[]> waiting;  ///< unfinished predecessors per task
     std::atomic<std::size_t> finished = 0;
 };
 
@@ -173,8 +172,8 @@ struct TaskBody {
 
     void operator()() const { work_from(*run, task); }
 
-    /// Runs a task and then, itself, the first of those that it made ready: a chain costs no
-    /// hand-over.
+    /// Runs a task and then, on the same thread, the first task that it made ready: a chain costs
+    /// no scheduling.
     static void work_from(TaskRun& shared, std::size_t task) {
         constexpr std::size_t kNone = ~std::size_t{0};
         acquire(&shared);
@@ -182,7 +181,7 @@ struct TaskBody {
             acquire(&shared.waiting[task]);
             shared.call(shared.context, task);
             std::size_t next = kNone;
-            const auto tell = [&shared, &next](std::size_t successor) {
+            const auto notify = [&shared, &next](std::size_t successor) {
                 release(&shared.waiting[successor]);
                 if (shared.waiting[successor].fetch_sub(1, std::memory_order_acq_rel) == 1) {
                     if (next == kNone) {
@@ -196,9 +195,9 @@ struct TaskBody {
             if (is_shuffled()) {
                 std::vector<std::size_t> order(successors.begin(), successors.end());
                 shuffle(order);
-                std::for_each(order.begin(), order.end(), tell);
+                std::for_each(order.begin(), order.end(), notify);
             } else {
-                std::for_each(successors.begin(), successors.end(), tell);
+                std::for_each(successors.begin(), successors.end(), notify);
             }
             release(&shared.finished);
             shared.finished.fetch_add(1, std::memory_order_release);
@@ -207,7 +206,7 @@ struct TaskBody {
     }
 };
 
-/// One task after the other, each any of those that are ready.
+/// Runs tasks one at a time, choosing randomly among the ready ones.
 void run_tasks_shuffled(const TaskGraph& graph, IndexedCall call, void* context) {
     std::vector<std::uint32_t> waiting(graph.size());
     std::vector<std::size_t> ready;
@@ -284,10 +283,10 @@ void set_task_shuffle(std::uint64_t seed) {
 }
 
 void set_thread_count(int count) {
-    const int threads = std::clamp(count, 1, kMostThreads);
+    const int threads = std::clamp(count, 1, kMaxThreads);
     std::unique_ptr<Workers>& slot = workers_slot();
     if (slot->count != threads) {
-        slot.reset();  // a limit in force would hold the new one down
+        slot.reset();  // the old limit would still cap the new one
         slot = std::make_unique<Workers>(threads);
     }
 }

@@ -8,25 +8,25 @@
 
 namespace limn {
 
-// Work on several cores, over oneTBB. How work is cut never depends on the number of threads: range
-// k of a parallel_for is [k * grain, (k + 1) * grain) for one thread and for sixty-four. A body
-// that writes only what belongs to its range therefore gives the same bits everywhere; a sum is
-// made by one partial result a range, added in the order of the ranges. Which thread runs a range,
-// and when, is left open.
+// Multithreading over oneTBB. How work is split never depends on the number of threads: range k of
+// a parallel_for is [k * grain, (k + 1) * grain) for one thread and for sixty-four. A body that
+// writes only to its range therefore gives bit-identical results everywhere; for a sum, keep one
+// partial result per range and add them in range order. Which thread runs a range, and when, is
+// unspecified.
 
-/// How many threads work, the caller among them; 1 .. 256. At start: as many as the machine has.
-/// Not to be called from inside a job.
+/// Number of threads, including the caller; 1 .. 256. Default: the machine's hardware threads.
+/// Must not be called from inside a job.
 void set_thread_count(int count);
 [[nodiscard]] int thread_count();
 
-/// For tests of that promise: ranges and tasks that are ready start in an order drawn from `seed`,
-/// on one thread too. 0, at start: from the first to the last. Not to be called from inside a job.
+/// For tests of that guarantee: starts ready ranges and tasks in a pseudo-random order from `seed`,
+/// on one thread too. 0, the default: first to last. Must not be called from inside a job.
 void set_task_shuffle(std::uint64_t seed);
 
-/// Tasks and what each must wait for. Task i may only be waited for by tasks after it: j > i.
+/// A dependency graph of tasks. A task may only depend on tasks that were added before it.
 class TaskGraph {
   public:
-    /// The index of a new task that waits for the tasks in `predecessors`, all of smaller index.
+    /// Adds a task that waits for the tasks in `predecessors`; returns its index.
     std::size_t add(const std::vector<std::size_t>& predecessors);
     [[nodiscard]] std::size_t size() const { return tasks_.size(); }
     [[nodiscard]] const std::vector<std::uint32_t>& successors(std::size_t task) const {
@@ -57,8 +57,8 @@ void* context_of(Body& body) {
 
 }  // namespace detail
 
-/// Calls body(begin, end) for the ranges of `grain` > 0 indices that make up 0 .. count, the last
-/// one possibly shorter, and returns when all are done. May be called from inside a job.
+/// Splits 0 .. count into ranges of `grain` indices, the last one possibly shorter, calls
+/// body(begin, end) for each, and returns when all are done. May be called from inside a job.
 template <typename Body>
 void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
     if (count == 0) {

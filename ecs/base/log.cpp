@@ -14,7 +14,7 @@ void write_to_stderr(LogLevel level, std::string_view message) {
 }
 
 std::atomic<LogSink> current_sink{write_to_stderr};
-std::atomic<LogLevel> least_level{LogLevel::Info};
+std::atomic<LogLevel> min_level{LogLevel::Info};
 std::atomic<std::uint64_t> error_count{0};
 
 }  // namespace
@@ -24,14 +24,14 @@ void set_log_sink(LogSink sink) {
 }
 
 void set_log_level(LogLevel level) {
-    least_level.store(level);
+    min_level.store(level);
 }
 
 void log_message(LogLevel level, std::string_view message) {
     if (level == LogLevel::Error) {
         error_count.fetch_add(1, std::memory_order_relaxed);
     }
-    if (level >= least_level.load()) {
+    if (level >= min_level.load()) {
         current_sink.load()(level, message);
     }
 }

@@ -7,23 +7,23 @@
 
 namespace limn {
 
-// Messages for people. Errors that somebody can handle are Results; the log is for what has no
-// caller left to ask. They go to stderr, or to where the application says.
+// Messages for people. Errors that a caller can handle are Results; the log is for the rest.
+// Messages go to stderr unless the application sets another sink.
 
 enum class LogLevel : std::uint8_t { Debug, Info, Warn, Error };
 
-/// Takes one message, without a line end. Called from any thread, also from several at once.
+/// Takes one message, without a line end. Must be thread-safe.
 using LogSink = void (*)(LogLevel level, std::string_view message);
 
-/// Where messages go from now on; nullptr: to stderr, as "error: message", as at start.
+/// Redirects messages to `sink`; nullptr restores the default, stderr as "error: message".
 void set_log_sink(LogSink sink);
 
-/// Messages below `level` are dropped; Info at start.
+/// Drops messages below `level`; the default is Info.
 void set_log_level(LogLevel level);
 
 void log_message(LogLevel level, std::string_view message);
 
-/// How many messages of level Error were logged since the program began: tests assert on it.
+/// How many messages of level Error were logged since program start; tests assert on it.
 [[nodiscard]] std::uint64_t logged_error_count();
 
 template <typename... Args>

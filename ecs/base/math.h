@@ -43,7 +43,7 @@ template <typename T>
     return x * x;
 }
 
-/// x / |x|, or `fallback` where x is zero, tiny or not finite.
+/// x / |x|, or `fallback` if x is zero, tiny or not finite.
 [[nodiscard]] inline Vec3 normalize_or(const Vec3& x, const Vec3& fallback) {
     const float length2 = glm::dot(x, x);
     return length2 > 1e-30f && std::isfinite(length2) ? x / std::sqrt(length2) : fallback;
@@ -88,7 +88,7 @@ affine_from(const Vec3& position, const Quat& rotation, const Vec3& scale) {
     return {glm::dot(a.row[0], p1), glm::dot(a.row[1], p1), glm::dot(a.row[2], p1)};
 }
 
-/// A direction: without translation.
+/// Transforms a direction: without translation.
 [[nodiscard]] inline Vec3 transform_vector(const Affine& a, const Vec3& v) {
     const Vec4 v0(v, 0.0f);
     return {glm::dot(a.row[0], v0), glm::dot(a.row[1], v0), glm::dot(a.row[2], v0)};
@@ -128,7 +128,7 @@ inline void grow(Bounds& b, const Bounds& other) {
     b.max = glm::max(b.max, other.max);
 }
 
-// What reflection takes them for.
+// Field types for reflection.
 template <>
 inline constexpr FieldType field_type_of<Vec2> = FieldType::Vec2;
 template <>

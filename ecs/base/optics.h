@@ -9,18 +9,18 @@
 
 namespace limn {
 
-// Light where two clear media meet: which ways it goes on and how it is shared. The same functions
-// are in render/shaders/lib/optics.glsl. `to_light` points away from the surface, back to where the
-// light comes from, `eta` is the refractive index on that side over the one beyond (air to water 1
-// / 1.33), and `index` is the inverse, the one beyond over the one on this side (1.33).
+// Reflection and refraction at the boundary of two clear media. The same functions are in
+// render/shaders/lib/optics.glsl. `to_light` points from the surface toward the light; `eta` is the
+// refractive index on that side over the index on the far side (air to water: 1 / 1.33); `index`
+// is the inverse ratio (1.33).
 
-/// Where light leaves that is mirrored, R = 2 (N.L) N - L.
+/// Direction of the reflected ray, R = 2 (N.L) N - L.
 [[nodiscard]] inline Vec3 reflect_ray(const Vec3& normal, const Vec3& to_light) {
     return 2.0f * glm::dot(normal, to_light) * normal - to_light;
 }
 
-/// Where light leaves that goes through (Snell), or 0 where all of it is mirrored. A unit normal
-/// may point to either side.
+/// Direction of the refracted ray (Snell), or 0 on total internal reflection. The unit normal may
+/// point to either side.
 [[nodiscard]] inline Vec3 refract_ray(const Vec3& normal, const Vec3& to_light, float eta) {
     const float cosine = glm::dot(normal, to_light);
     const Vec3 facing = cosine < 0 ? -normal : normal;
@@ -29,8 +29,7 @@ namespace limn {
     return radicand < 0 ? Vec3(0) : (eta * cos_in - std::sqrt(radicand)) * facing - eta * to_light;
 }
 
-/// Share 0 .. 1 of unpolarized light that is mirrored; `cos_in` = |N.L|. Exact for clear media
-/// (Fresnel).
+/// Fresnel reflectance 0 .. 1 for unpolarized light; `cos_in` = |N.L|. Exact for clear media.
 [[nodiscard]] inline float fresnel(float cos_in, float index) {
     const float c = std::clamp(cos_in, 0.0f, 1.0f);
     const float inverse2 = 1.0f / (index * index);
@@ -38,22 +37,22 @@ namespace limn {
     if (radicand < 0) {
         return 1.0f;
     }
-    constexpr float kTiny = 1e-20f;  // light that grazes what is no boundary: index 1
-    const float beyond = std::sqrt(radicand);
-    const float s = (c - index * beyond) / std::max(c + index * beyond, kTiny);
-    const float p = (index * c - beyond) / std::max(index * c + beyond, kTiny);
+    constexpr float kTiny = 1e-20f;  // avoids 0 / 0 at grazing incidence with index 1
+    const float cos_out = std::sqrt(radicand);
+    const float s = (c - index * cos_out) / std::max(c + index * cos_out, kTiny);
+    const float p = (index * c - cos_out) / std::max(index * c + cos_out, kTiny);
     return 0.5f * (s * s + p * p);
 }
 
-/// Within 0.06 of fresnel() from air into water (Schlick 1994).
+/// Schlick's approximation (1994), within 0.06 of fresnel() from air into water.
 [[nodiscard]] inline float fresnel_schlick(float cos_in, float index) {
-    const float head_on = square((index - 1.0f) / (index + 1.0f));
+    const float f0 = square((index - 1.0f) / (index + 1.0f));
     const float m = 1.0f - std::clamp(cos_in, 0.0f, 1.0f);
-    return head_on + (1.0f - head_on) * (m * m) * (m * m) * m;
+    return f0 + (1.0f - f0) * (m * m) * (m * m) * m;
 }
 
-/// Into water alone, by the angle: even up to 45 degrees, then a parabola up to 1 (T'so and Barsky
-/// 1987). Too bright by as much as 0.27.
+/// For air into water only: constant up to 45 degrees, then a parabola in the angle up to 1 (T'so
+/// and Barsky 1987). Too bright by up to 0.27.
 [[nodiscard]] inline float fresnel_tso_barsky(float cos_in) {
     const float angle = std::acos(std::clamp(cos_in, 0.0f, 1.0f));
     const float u = std::max(0.0f, angle * (4.0f / kPi) - 1.0f);  // 392 / (25 pi^2) (pi/4)^2 = 0.98

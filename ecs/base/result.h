@@ -8,8 +8,8 @@
 
 namespace limn {
 
-// What may fail because of the world outside returns a Result: the value, or one line that says
-// file, place, what was found and what was expected. It cannot be dropped unread.
+// Functions that can fail for external reasons return a Result: the value, or a one-line error
+// with file, position, what was found and what was expected. It cannot be ignored.
 //
 //     Result<Image> image = load_image(path);
 //     if (!image) return image.error();
@@ -60,8 +60,19 @@ class [[nodiscard]] Result {
     std::variant<T, Error> state_;
 };
 
-/// For what either works or fails and has no value: `return Done{};`
+/// For operations that succeed without a value: `return Done{};`
 struct Done {};
 using Status = Result<Done>;
 
 }  // namespace limn
+
+/// The value of a Result or Status; where it failed, returns its error from the calling function:
+/// `const Image image = LIMN_TRY(load_image(path));`
+#define LIMN_TRY(...)                                                                              \
+    ({                                                                                             \
+        auto&& limn_tried = (__VA_ARGS__);                                                         \
+        if (!limn_tried) {                                                                         \
+            return limn_tried.error();                                                             \
+        }                                                                                          \
+        *std::move(limn_tried);                                                                    \
+    })

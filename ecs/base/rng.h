@@ -9,10 +9,10 @@
 
 namespace limn {
 
-// Random numbers without state: Philox4x32-10 (Salmon et al., "Parallel Random Numbers: As Easy as
-// 1, 2, 3", SC 2011) turns a counter and a key into four words. Who draws (seed, entity, system,
-// frame) is the counter and the key, so that the numbers depend on neither the order of work nor
-// the number of threads:
+// Stateless random numbers: Philox4x32-10 (Salmon et al., "Parallel Random Numbers: As Easy as
+// 1, 2, 3", SC 2011) turns a counter and a key into four words. Counter and key are made from seed,
+// entity, system and frame, so that the numbers depend on neither the execution order nor the
+// number of threads:
 //
 //     Random random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
 //     const float speed = random.uniform(1.0f, 2.0f);
@@ -36,11 +36,12 @@ using PhiloxKey = std::array<std::uint32_t, 2>;
     return counter;
 }
 
-/// A sequence of up to 2^34 numbers. Two sequences that differ in seed, subject, system or frame
-/// share none.
+/// A sequence of up to 2^34 numbers. Sequences that differ in seed, subject, system or frame are
+/// disjoint.
 class Random {
   public:
-    /// `subject`: who draws, mostly Entity::bits(). `system`: name_hash of the drawing system.
+    /// `subject`: what the numbers are for, usually Entity::bits(). `system`: name_hash of the
+    /// system that draws them.
     constexpr Random(
         std::uint64_t seed, std::uint64_t subject, std::uint32_t system, std::uint64_t frame)
         : counter_{
@@ -50,7 +51,7 @@ class Random {
         key_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
     }
 
-    /// Every value alike.
+    /// 32 uniformly distributed bits.
     constexpr std::uint32_t word() {
         if (left_ == 0) {
             words_ = philox4x32(counter_, key_);
@@ -63,11 +64,10 @@ class Random {
     /// 0 <= x < 1, a multiple of 2^-24.
     constexpr float uniform() { return static_cast<float>(word() >> 8) * 0x1p-24f; }
 
-    /// low <= x < high, but for rounding.
+    /// low <= x < high, up to rounding.
     constexpr float uniform(float low, float high) { return low + (high - low) * uniform(); }
 
-    /// 0 .. count - 1, count > 0. Off from equal shares by less than count / 2^32 (Lemire 2019, no
-    /// rejection).
+    /// 0 .. count - 1, count > 0. Bias below count / 2^32 (Lemire 2019, without rejection).
     constexpr std::uint32_t below(std::uint32_t count) {
         return static_cast<std::uint32_t>((std::uint64_t{word()} * count) >> 32);
     }
@@ -79,7 +79,7 @@ class Random {
         return std::sqrt(-2.0f * std::log(u)) * std::cos(angle);
     }
 
-    /// A point on the unit sphere, every area alike (Archimedes). Takes two words.
+    /// A point on the unit sphere, uniform by area (Archimedes). Takes two words.
     Vec3 direction() {
         const float y = uniform(-1.0f, 1.0f);
         const float angle = 2.0f * kPi * uniform();
@@ -87,7 +87,7 @@ class Random {
         return {radius * std::cos(angle), y, radius * std::sin(angle)};
     }
 
-    /// A point in the unit disc, every area alike. Takes two words.
+    /// A point in the unit disc, uniform by area. Takes two words.
     Vec2 in_disc() {
         const float radius = std::sqrt(uniform());
         const float angle = 2.0f * kPi * uniform();

@@ -8,18 +8,18 @@ namespace limn {
 
 namespace {
 
-/// Powers of ten from which on numbers are written with an exponent, and below which.
+/// Powers of ten from which up, and from which down, numbers are written with an exponent.
 constexpr int kFirstLarge = 16;
 constexpr int kLastSmall = -5;
 
 template <typename Number>
-void append_whole(std::string& text, Number number) {
+void append_integer(std::string& text, Number number) {
     char digits[24];
     const std::to_chars_result end = std::to_chars(digits, digits + sizeof digits, number);
     text.append(digits, end.ptr);
 }
 
-/// The fewest digits that are read back as `number`, as 0.001, 1500 or 1.5e-07.
+/// The fewest digits that round-trip, as 0.001, 1500 or 1.5e-07.
 template <typename Number>
 void append_shortest(std::string& text, Number number) {
     if (!std::isfinite(number)) {
@@ -73,10 +73,10 @@ void TextPart::append_to(std::string& text) const {
         text += letter_;
         break;
     case Kind::Signed:
-        append_whole(text, signed_);
+        append_integer(text, signed_);
         break;
     case Kind::Unsigned:
-        append_whole(text, unsigned_);
+        append_integer(text, unsigned_);
         break;
     case Kind::Float:
         append_shortest(text, float_);
@@ -87,7 +87,7 @@ void TextPart::append_to(std::string& text) const {
     }
 }
 
-std::string replace_places(std::string_view pattern, std::span<const TextPart> parts) {
+std::string replace_placeholders(std::string_view pattern, std::span<const TextPart> parts) {
     std::string text;
     text.reserve(pattern.size() + 16 * parts.size());
     for (const TextPart& part : parts) {

@@ -12,14 +12,13 @@
 
 namespace limn {
 
-// Sentences with values in them, for errors and the log:
+// Text formatting for errors and the log:
 //
 //     return fail("{}: found {}, expected {}", path, value, limit);
 //
-// Each {} is replaced by the next argument: text, bool, a whole number, or a float or double in as
-// few digits as tell it apart from its neighbors. There is nothing to adjust between the braces, so
-// that a braces pair is all one has to know; tables are made with the functions at the end. How
-// many {} there are is checked by the compiler.
+// Each {} is replaced by the next argument: text, bool, an integer, or a float or double in the
+// fewest digits that round-trip. There are no format specifiers; tables are made with the functions
+// at the end. The number of {} is checked at compile time.
 
 /// One argument of format_text.
 class TextPart {
@@ -27,7 +26,7 @@ class TextPart {
     TextPart(std::string_view text) : kind_(Kind::Text), text_(text) {}
     TextPart(const char* text) : TextPart(std::string_view(text)) {}
     TextPart(const std::string& text) : TextPart(std::string_view(text)) {}
-    TextPart(const void*) = delete;  // or any pointer would pass for a bool
+    TextPart(const void*) = delete;  // otherwise pointers would convert to bool
     TextPart(bool value) : TextPart(std::string_view(value ? "true" : "false")) {}
     TextPart(char letter) : kind_(Kind::Letter), letter_(letter) {}
     template <std::signed_integral T>
@@ -52,25 +51,26 @@ class TextPart {
     };
 };
 
-/// A text with as many {} as there are Args; another number does not compile.
+/// A text with exactly as many {} as there are Args, checked at compile time.
 template <typename... Args>
 struct TextPattern {
     std::string_view text;
 
     template <std::convertible_to<std::string_view> Text>
     consteval TextPattern(const Text& pattern) : text(pattern) {
-        std::size_t places = 0;
+        std::size_t placeholders = 0;
         for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-            places += text[i] == '{' && text[i + 1] == '}' ? 1 : 0;
+            placeholders += text[i] == '{' && text[i + 1] == '}' ? 1 : 0;
         }
-        if (places != sizeof...(Args)) {
+        if (placeholders != sizeof...(Args)) {
             throw "there must be one {} for each argument";
         }
     }
 };
 
-/// `pattern` with its {} replaced by `parts`, of which there are as many.
-[[nodiscard]] std::string replace_places(std::string_view pattern, std::span<const TextPart> parts);
+/// `pattern` with each {} replaced by one of `parts`; their numbers must match.
+[[nodiscard]] std::string
+replace_placeholders(std::string_view pattern, std::span<const TextPart> parts);
 
 template <typename... Args>
 [[nodiscard]] std::string
@@ -79,24 +79,24 @@ format_text(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... a
         return std::string(pattern.text);
     } else {
         const TextPart parts[] = {TextPart(args)...};
-        return replace_places(pattern.text, parts);
+        return replace_placeholders(pattern.text, parts);
     }
 }
 
-/// The error with that text: `return fail("{}: no such file", path);`
+/// An Error with formatted text: `return fail("{}: no such file", path);`
 template <typename... Args>
 [[nodiscard]] Error fail(TextPattern<std::type_identity_t<Args>...> pattern, const Args&... args) {
     return Error{format_text<Args...>(pattern, args...)};
 }
 
-/// With `digits` behind the point: "0.250".
+/// With `digits` after the decimal point: "0.250".
 [[nodiscard]] std::string fixed_text(double number, int digits);
 
-/// Filled up with spaces, before or behind, to `width` characters; longer text stays as it is.
+/// Padded with spaces, on the left or right, to `width` characters; longer text is unchanged.
 [[nodiscard]] std::string align_right(const TextPart& part, std::size_t width);
 [[nodiscard]] std::string align_left(const TextPart& part, std::size_t width);
 
-/// All of them with `separator` between.
+/// Concatenates `parts` with `separator` in between.
 template <typename Range>
 [[nodiscard]] std::string join_text(const Range& parts, std::string_view separator) {
     std::string text;

@@ -16,7 +16,7 @@ constexpr const char* signature_of_value() {
     return __PRETTY_FUNCTION__;
 }
 
-/// What stands behind `key` in "... [with key = limn::Water]" (gcc) or "... [key = limn::Water]"
+/// The text after `key` in "... [with Type = limn::Water]" (gcc) or "... [Type = limn::Water]"
 /// (clang).
 constexpr std::string_view argument_of(std::string_view signature, std::string_view key) {
     signature.remove_prefix(signature.rfind(key) + key.size());
@@ -41,33 +41,31 @@ constexpr std::string_view value_name() {
     return detail::argument_of(detail::signature_of_value<Value>(), "Value = ");
 }
 
-/// Without the namespaces before it: "PointLight". Template arguments stay.
+/// The name without namespaces: "PointLight". Template arguments stay.
 constexpr std::string_view short_name(std::string_view name) {
     const std::size_t arguments = name.find('<');
     const std::size_t scope = name.substr(0, arguments).rfind("::");
     return scope == std::string_view::npos ? name : name.substr(scope + 2);
 }
 
-/// "PointLight" -> "point_light", "HDRImage" -> "hdr_image"; what is no letter or digit becomes
-/// '_'.
+/// "PointLight" -> "point_light", "HDRImage" -> "hdr_image"; other characters become '_'.
 [[nodiscard]] std::string snake_case(std::string_view name);
 
-/// The one of `names` that `name` most likely meant, by edit distance; empty if none is near.
+/// The closest match for `name` among `names`, by edit distance; empty if none is close.
 template <typename Names>
 [[nodiscard]] std::string nearest_name(std::string_view name, const Names& names);
 
-/// How many characters must be inserted, removed, replaced or swapped with their neighbor to turn a
-/// into b.
+/// How many insertions, deletions, substitutions or adjacent swaps turn a into b.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 template <typename Names>
 std::string nearest_name(std::string_view name, const Names& names) {
     std::string nearest;
-    std::size_t least = name.size() / 3 + 2;  // beyond that it is another word, not a slip
+    std::size_t best = name.size() / 3 + 2;  // larger distances are different words, not typos
     for (const auto& candidate : names) {
         const std::size_t distance = edit_distance(name, candidate);
-        if (distance < least) {
-            least = distance;
+        if (distance < best) {
+            best = distance;
             nearest = candidate;
         }
     }

@@ -19,10 +19,8 @@
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
-#include "ecs/components/racer.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
-#include "ecs/components/sailing.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/speed_lines.h"
@@ -30,14 +28,12 @@
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
-#include "ecs/components/walker.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_look.h"
 #include "ecs/components/water_noise.h"
 #include "ecs/components/water_ripples.h"
 #include "ecs/components/water_spray.h"
-#include "ecs/components/water_stones.h"
 #include "ecs/components/water_wake.h"
 #include "ecs/components/water_walls.h"
 #include "ecs/components/water_waves.h"
@@ -66,8 +62,6 @@ void register_all_components() {
     register_component<Deformed>();
     register_component<JointAttachment>();
     register_component<PathFollower>();
-    register_component<Racer>();
-    register_component<SpeedView>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();
@@ -93,18 +87,14 @@ void register_all_components() {
     register_component<WaterTouch>();
     register_component<WaterWall>();
     register_component<WakeEmitter>();
+    register_component<WakeState>();
     register_component<NoiseSurface>();
     register_component<SpraySource>();
     register_component<SprayObstacle>();
     register_component<Caustics>();
     register_component<MirrorCaustic>();
     register_component<Floating>();
-    register_component<Sailboat>();
-    register_component<Boom>();
-    register_component<Walker>();
-    register_component<Footing>();
-    register_component<StoneThrower>();
-    register_component<ThrownStone>();
+    register_component<FloatingState>();
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();
@@ -123,7 +113,10 @@ void register_all_components() {
     register_resource<Glare>();
     register_resource<LensRain>();
     register_resource<Weather>();
+    register_resource<WeatherState>();
     register_resource<MotionBlur>();
+
+    register_engine_actions();
 }
 
 }  // namespace limn

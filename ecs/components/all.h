@@ -2,7 +2,7 @@
 
 namespace limn {
 
-/// Makes every component and resource of the engine known by its name. Twice is no mistake.
+/// Registers every component and resource of the engine by name. Idempotent.
 void register_all_components();
 
 }  // namespace limn

@@ -6,61 +6,48 @@
 
 namespace limn {
 
-/// A view along the entity's local -z, +y up (as glTF).
+/// Camera that looks along the entity's local -z, +y up (as in glTF).
 struct Camera {
-    float fov_y = radians(50.0f);  ///< full vertical angle [rad], 0 < fov_y < pi
-    float near = 0.05f;  ///< [m], > 0; there is no far plane: depth is reversed, 0 at infinity
-    bool active =
-        true;  ///< the first active camera in world order is rendered, unless one is named
+    float fov_y = radians(50.0f);
+    float near = 0.05f;  ///< near plane [m], > 0; no far plane: reversed depth, 0 at infinity
+    bool active = true;  ///< the first active camera in world order is rendered, unless another is
+                         ///< selected by name
 };
 
-/// Third-person camera: the entity circles `target` (engine.camera-orbit, engine.camera-lag).
+LIMN_FIELDS(Camera) {
+    LIMN_FIELD(fov_y, "full vertical field of view", "rad", 0.01, 3.1);
+    LIMN_FIELD(near, "distance of the near plane", "m", 1e-4, 100);
+    LIMN_FIELD(active, "eligible for rendering; the first active camera is used");
+}
+
+/// Third-person camera: the entity orbits `target` (engine.camera-orbit, engine.camera-lag).
 struct OrbitCamera {
-    Entity target;            ///< held where it is when the target is gone
-    Vec3 offset = {0, 0, 0};  ///< of the point looked at, in the target's space [m]
-    float azimuth = 0.0f;     ///< about the target's +y, from +z toward +x [rad]
-    float elevation = 0.3f;   ///< [rad], -pi/2 .. pi/2, exclusive
-    float distance = 5.0f;    ///< [m], > 0
-    float follow = 0.9f;      ///< share of the way gone in 1/60 s, 0 .. 1; 1 = rigid
+    Entity target;  ///< the camera stays where it is when the target no longer exists
+    Vec3 offset = {0, 0, 0};
+    float azimuth = 0.0f;
+    float elevation = 0.3f;
+    float distance = 5.0f;
+    float follow = 0.9f;
 };
 
-/// First-person camera moved by input.
+LIMN_FIELDS(OrbitCamera) {
+    LIMN_FIELD(target, "entity that the camera orbits, by name");
+    LIMN_FIELD(offset, "offset of the look-at point, in the target's space", "m");
+    LIMN_FIELD(azimuth, "orbit angle about +y, from +z toward +x", "rad");
+    LIMN_FIELD(elevation, "orbit angle above the horizon", "rad", -1.55, 1.55);
+    LIMN_FIELD(distance, "distance to the look-at point", "m", 0.01, 10000);
+    LIMN_FIELD(follow, "fraction of the remaining distance covered in 1/60 s; 1 = rigid", "", 0, 1);
+}
+
+/// Free-flying first-person camera, controlled by Input.
 struct FlyCamera {
-    float speed = 3.0f;          ///< [m/s]
-    float sensitivity = 0.003f;  ///< [rad] a pixel
+    float speed = 3.0f;
+    float sensitivity = 0.003f;
 };
 
-template <typename Visitor>
-void visit_fields(Camera& camera, Visitor&& visit) {
-    visit(
-        "fov_y", camera.fov_y,
-        {.doc = "full vertical angle", .unit = "rad", .min = 0.01, .max = 3.1});
-    visit("near", camera.near, {.doc = "near plane", .unit = "m", .min = 1e-4, .max = 100});
-    visit("active", camera.active, {.doc = "may be the one that is rendered"});
-}
-
-template <typename Visitor>
-void visit_fields(OrbitCamera& orbit, Visitor&& visit) {
-    visit("target", orbit.target, {.doc = "entity it circles, by name"});
-    visit("offset", orbit.offset, {.doc = "of the point looked at", .unit = "m"});
-    visit("azimuth", orbit.azimuth, {.doc = "about +y, from +z toward +x", .unit = "rad"});
-    visit(
-        "elevation", orbit.elevation,
-        {.doc = "above the horizon", .unit = "rad", .min = -1.55, .max = 1.55});
-    visit(
-        "distance", orbit.distance,
-        {.doc = "to the point looked at", .unit = "m", .min = 0.01, .max = 10000});
-    visit(
-        "follow", orbit.follow,
-        {.doc = "share of the way gone in 1/60 s; 1 = rigid", .min = 0, .max = 1});
-}
-
-template <typename Visitor>
-void visit_fields(FlyCamera& fly, Visitor&& visit) {
-    visit("speed", fly.speed, {.doc = "of motion", .unit = "m/s", .min = 0, .max = 1000});
-    visit(
-        "sensitivity", fly.sensitivity,
-        {.doc = "rotation for a pixel of mouse motion", .unit = "rad", .min = 0, .max = 1});
+LIMN_FIELDS(FlyCamera) {
+    LIMN_FIELD(speed, "movement speed", "m/s", 0, 1000);
+    LIMN_FIELD(sensitivity, "rotation per pixel of mouse motion", "rad", 0, 1);
 }
 
 }  // namespace limn

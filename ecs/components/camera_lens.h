@@ -6,69 +6,51 @@
 
 namespace limn {
 
-/// How light that is out of focus is spread.
+/// How the depth-of-field blur is computed.
 enum class FocusMethod : std::uint8_t {
-    Gather,  ///< near and far apart, with discs in the shape of the aperture
-    Mip,     ///< every pixel from the mip level as coarse as its own circle (post.dof-mip)
+    Gather,  ///< gathers near and far fields separately, with aperture-shaped kernels
+    Mip,     ///< samples the mip level that matches each pixel's circle of confusion (post.dof-mip)
 };
 
-/// A thin lens in front of the Camera beside it, which keeps its field of view: its focal length
-/// follows from that, from the sensor and from the focus (render/thin_lens.h). Without one, the
-/// camera is a pinhole and all is sharp.
+/// Thin lens of the Camera on the same entity. The camera keeps its field of view; the focal length
+/// follows from it, the sensor height and the focus distance (render/thin_lens.h). Without a Lens,
+/// the camera is a pinhole and everything is in focus.
 struct Lens {
-    float f_number = 2.8f;         ///< focal length / diameter of the aperture, > 0
-    float focus_distance = 3.0f;   ///< from the camera, along its axis [m], > 0
-    float sensor_height = 0.024f;  ///< [m], > 0
-    int blades = 0;                ///< sides of the aperture, 3 or more; less: it is round
-    float blade_rotation = 0.0f;   ///< of its first corner, from the right to the top [rad]
-    float largest_blur = 0.1f;  ///< widest disc that Gather and Mip draw, of the picture's height
+    float f_number = 2.8f;
+    float focus_distance = 3.0f;
+    float sensor_height = 0.024f;
+    int blades = 0;
+    float blade_rotation = 0.0f;
+    float max_blur = 0.1f;
     FocusMethod method = FocusMethod::Gather;
 };
 
-/// Keeps the Lens beside it focused on an entity.
-struct Autofocus {
-    Entity target{};          ///< null or gone: the focus stays where it is
-    Vec3 offset = {0, 0, 0};  ///< of the point that is to be sharp, in the target's space [m]
-    float response = 0.2f;    ///< time in which 63 % of the way is gone [s], >= 0; 0 = at once
-    bool active = true;       ///< turned off by a hand on the ring (Input::lens)
-};
-
-template <typename Visitor>
-void visit_fields(Lens& lens, Visitor&& visit) {
-    visit(
-        "f_number", lens.f_number,
-        {.doc = "focal length / diameter of the aperture", .min = 0.01, .max = 1e6});
-    visit(
-        "focus_distance", lens.focus_distance,
-        {.doc = "what is sharp, along the view axis", .unit = "m", .min = 1e-3, .max = 1e6});
-    visit(
-        "sensor_height", lens.sensor_height,
-        {.doc = "height of the film", .unit = "m", .min = 1e-4, .max = 10});
-    visit(
-        "blades", lens.blades,
-        {.doc = "sides of the aperture; less than 3: it is round", .min = 0, .max = 16});
-    visit(
-        "blade_rotation", lens.blade_rotation,
-        {.doc = "of the first corner, from the right to the top", .unit = "rad"});
-    visit(
-        "largest_blur", lens.largest_blur,
-        {.doc = "widest disc drawn, of the picture's height", .min = 0, .max = 0.25});
-    visit(
-        "method", lens.method,
-        {.doc = "how light that is out of focus is spread", .values = "gather mip"});
+LIMN_FIELDS(Lens) {
+    LIMN_FIELD(f_number, "focal length / aperture diameter", "", 0.01, 1e6);
+    LIMN_FIELD(focus_distance, "distance of the focal plane along the view axis", "m", 1e-3, 1e6);
+    LIMN_FIELD(sensor_height, "sensor height", "m", 1e-4, 10);
+    LIMN_FIELD(blades, "number of aperture blades; fewer than 3: round", "", 0, 16);
+    LIMN_FIELD(blade_rotation, "angle of the first aperture corner, from right toward up", "rad");
+    LIMN_FIELD(
+        max_blur, .doc = "largest blur diameter, as a fraction of the image height", .min = 0,
+        .max = 0.25, .renamed = "largest_blur");
+    LIMN_FIELD(method, .doc = "how the depth-of-field blur is computed", .values = "gather mip");
 }
 
-template <typename Visitor>
-void visit_fields(Autofocus& autofocus, Visitor&& visit) {
-    visit("target", autofocus.target, {.doc = "entity that is to be sharp, by name"});
-    visit("offset", autofocus.offset, {.doc = "of the point, in the target's space", .unit = "m"});
-    visit(
-        "response", autofocus.response,
-        {.doc = "time in which 63 % of the way is gone; 0 = at once",
-         .unit = "s",
-         .min = 0,
-         .max = 60});
-    visit("active", autofocus.active, {.doc = "turned off by whoever pulls focus by hand"});
+/// Keeps the Lens on the same entity focused on `target`.
+struct Autofocus {
+    Entity target{};  ///< if null or destroyed, the focus distance stays
+    Vec3 offset = {0, 0, 0};
+    float response = 0.2f;
+    bool active = true;
+};
+
+LIMN_FIELDS(Autofocus) {
+    LIMN_FIELD(target, "entity to focus on, by name");
+    LIMN_FIELD(offset, "offset of the point in focus, in the target's space", "m");
+    LIMN_FIELD(
+        response, "time constant: 63 % of the change after this time; 0 = immediate", "s", 0, 60);
+    LIMN_FIELD(active, "cleared by manual focusing");
 }
 
 }  // namespace limn

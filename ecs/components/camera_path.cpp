@@ -19,7 +19,7 @@ struct Segment {
     Vec3 after;
 };
 
-/// A cubic a segment: p(u) = from + u (velocity_from + ...), as Hermite basis.
+/// One cubic segment in Hermite form.
 struct Curve {
     Vec3 from;
     Vec3 to;
@@ -41,14 +41,13 @@ Vec3 velocity_on(const Curve& c, float u) {
            + (3.0f * u2 - 2.0f * u) * c.velocity_to;
 }
 
-/// The segment's cubic with centripetal knots: the square root of the distance between two points
-/// is the parameter between them.
+/// The segment's cubic with centripetal knots: knot spacing is the square root of the distance.
 Curve centripetal(const Segment& s) {
     const float middle = std::sqrt(glm::length(s.to - s.from));
     if (middle < kStill) {
         return {s.from, s.from, Vec3(0), Vec3(0)};
     }
-    // A neighbor at the same place gives no direction: the curve leaves straight.
+    // A neighbor at the same place gives no direction: the curve starts straight.
     const auto knot = [middle](const Vec3& a, const Vec3& b) {
         const float d = std::sqrt(glm::length(b - a));
         return d < kStill ? middle : d;
@@ -65,7 +64,7 @@ Curve centripetal(const Segment& s) {
     return c;
 }
 
-/// Length of the curve up to `u`: Gauss and Legendre's rule with five points on each of four parts.
+/// Arc length up to `u`, by five-point Gauss-Legendre quadrature on each of four parts.
 float length_until(const Curve& c, float u) {
     constexpr float kPoints[] = {
         0.0f, 0.5384693101f, -0.5384693101f, 0.9061798459f, -0.9061798459f};
@@ -83,14 +82,14 @@ float length_until(const Curve& c, float u) {
     return length;
 }
 
-/// The u at which the curve is `share` of its length long: bisection, then Newton's method.
+/// The u at the fraction `share` of the arc length: bisection, then Newton's method.
 float parameter_at(const Curve& c, float share) {
-    const float wanted = std::clamp(share, 0.0f, 1.0f) * length_until(c, 1.0f);
+    const float target = std::clamp(share, 0.0f, 1.0f) * length_until(c, 1.0f);
     float low = 0.0f;
     float high = 1.0f;
     for (int i = 0; i < 6; ++i) {
         const float middle = 0.5f * (low + high);
-        (length_until(c, middle) < wanted ? low : high) = middle;
+        (length_until(c, middle) < target ? low : high) = middle;
     }
     float u = 0.5f * (low + high);
     for (int i = 0; i < 3; ++i) {
@@ -98,7 +97,7 @@ float parameter_at(const Curve& c, float share) {
         if (speed < kStill) {
             break;
         }
-        u = std::clamp(u - (length_until(c, u) - wanted) / speed, low, high);
+        u = std::clamp(u - (length_until(c, u) - target) / speed, low, high);
     }
     return u;
 }
@@ -112,12 +111,12 @@ T hermite(const T& a, const T& b, const T& slope_a, const T& slope_b, float u) {
            + (3.0f * u2 - 2.0f * u3) * b + (u3 - u2) * slope_b;
 }
 
-/// Slope at a point between two stretches with these mean speeds that keeps the cubics monotone.
+/// Slope between two segments with these mean speeds that keeps the cubics monotone.
 float monotone_slope(float before, float after) {
     return before > 0.0f && after > 0.0f ? 2.0f * before * after / (before + after) : 0.0f;
 }
 
-/// The keys around a time. A loop has neighbors at its ends too; else the end keys are their own.
+/// The keys around a time. A loop wraps at its ends; otherwise the end keys are repeated.
 class KeyWindow {
   public:
     KeyWindow(const CameraPath& path, double time) : path_(path) {
@@ -139,7 +138,7 @@ class KeyWindow {
                         : 1.0f;
     }
 
-    /// Share of the time between from() and to(), 0 .. 1.
+    /// Fraction of the time between from() and to(), 0 .. 1.
     [[nodiscard]] float u() const { return u_; }
     [[nodiscard]] const CameraKey& from() const { return key(index_); }
     [[nodiscard]] const CameraKey& to() const { return key(index_ + 1); }
@@ -156,7 +155,7 @@ class KeyWindow {
     }
 
   private:
-    /// Beyond the ends: the same place of the loop, or the end again.
+    /// Beyond the ends: wrapped in a loop, otherwise clamped.
     [[nodiscard]] const CameraKey& key(std::ptrdiff_t i) const {
         const std::ptrdiff_t segments = static_cast<std::ptrdiff_t>(path_.keys.size()) - 1;
         if (path_.loop) {
@@ -196,13 +195,13 @@ Vec3 position_at(const KeyWindow& keys) {
     };
     const float speed = length / duration;
     const float start = keys.step(-1) > 0.0 ? monotone_slope(mean_speed(-1), speed)
-                                            : speed;  // of the way, at from()
+                                            : speed;  // along the curve, at from()
     const float end = keys.step(1) > 0.0 ? monotone_slope(speed, mean_speed(1)) : speed;
     const float share = hermite(0.0f, 1.0f, start / speed, end / speed, keys.u());
     return position_on(curve, parameter_at(curve, share));
 }
 
-/// Of look_at and roll: a cubic in time through the keys, slopes from the neighbors on both sides.
+/// For look_at and roll: a cubic in time through the keys, with central-difference slopes.
 template <typename Member>
 auto smooth_at(const KeyWindow& keys, Member CameraKey::*member) {
     const float duration = static_cast<float>(keys.step(0));
@@ -254,7 +253,7 @@ double camera_duration(const CameraPath& path) {
 
 Quat look_along(const Vec3& direction, float roll) {
     const Vec3 ahead = normalize_or(direction, Vec3(0, 0, -1));
-    // Where up is ahead, what was ahead is up: the camera was tipped from -z.
+    // Looking straight up or down: as if the camera was tilted from -z.
     const bool is_vertical = std::abs(ahead.y) > 1.0f - 1e-6f;
     const Vec3 up = is_vertical ? Vec3(0, 0, ahead.y > 0.0f ? 1 : -1) : Vec3(0, 1, 0);
     const Vec3 right = glm::normalize(glm::cross(ahead, up));
@@ -265,7 +264,7 @@ Quat look_along(const Vec3& direction, float roll) {
 Quat upright_rotation(const Quat& rotation) {
     const Vec3 ahead = rotation * Vec3(0, 0, -1);
     if (glm::length(glm::cross(ahead, Vec3(0, 1, 0))) < 1e-4f) {
-        return rotation;  // straight up or down: no side is level, keep the one there is
+        return rotation;  // straight up or down: roll is undefined, keep it
     }
     return look_along(ahead);
 }

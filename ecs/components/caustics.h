@@ -7,76 +7,47 @@
 
 namespace limn {
 
-/// How the light that waves gather is found.
+/// How caustics are computed.
 enum class CausticMethod : std::uint8_t {
-    Simulated,  ///< rays bent by the true surface, as bright as they are dense
-    Pool,       ///< after the book: onto five planes, as bright as the water is high where they
-                ///< come from
+    Simulated,  ///< photons refracted by the actual surface; brightness is their density
+    Pool,       ///< after the book: rays onto five planes; brightness is the water height at their
+                ///< origin
 };
 
-/// Beside a Water: the first and brightest of the directional lights is gathered and scattered by
-/// its waves on what lies below, and what stands in it throws shadows there. Without it light is
-/// bent and absorbed on its way down as by flat water. On request its waves throw it up onto walls
-/// and ceilings, too; of other mirrors than water, see MirrorCaustic.
+/// With a Water: its waves focus the brightest directional light (the first of equals) onto
+/// surfaces below, where objects in the water also cast shadows. Without it, light is refracted and
+/// absorbed on its way down as by flat water. Optionally, reflected caustics appear on walls and
+/// ceilings; for reflectors other than water see MirrorCaustic.
 struct Caustics {
     CausticMethod method = CausticMethod::Simulated;
-    std::int32_t resolution = 512;  ///< texels of a side of the map, a power of two
-    std::int32_t spacing = 2;       ///< texels from ray to ray
-    float strength = 1;             ///< 1: as it is; 0: as flat water; a straight line between
-    float reach = 20;               ///< depth down to which light is followed [m]
-    float window = 40;          ///< of water without end: side of the square about the camera [m]
-    std::int32_t cascades = 1;  ///< of water without end: maps, each with a window four times as
-                                ///< wide as the one before
-    std::int32_t shaft_steps = 0;  ///< looks along each ray of sight of a camera in the water, for
-                                   ///< shafts of light; 0: none are seen
-    float mirror_reach = 0;  ///< height up to which light that the water mirrors is followed [m];
-                             ///< 0: none is
-    std::int32_t mirror_resolution = 256;  ///< texels of a side of its map, a power of two
+    std::int32_t resolution = 512;
+    std::int32_t spacing = 2;
+    float strength = 1;
+    float reach = 20;
+    float window = 40;
+    std::int32_t cascades = 1;
+    std::int32_t shaft_steps = 0;
+    float mirror_reach = 0;
+    std::int32_t mirror_resolution = 256;
 };
 
-template <typename Visitor>
-void visit_fields(Caustics& caustics, Visitor&& visit) {
-    visit(
-        "method", caustics.method,
-        {.doc = "by the true surface, or onto five planes by the height",
-         .values = "simulated pool"});
-    visit(
-        "resolution", caustics.resolution,
-        {.doc = "texels of a side of the map, a power of two", .min = 64, .max = 1024});
-    visit("spacing", caustics.spacing, {.doc = "texels from ray to ray", .min = 1, .max = 8});
-    visit(
-        "strength", caustics.strength,
-        {.doc = "1: as it is; 0: as flat water", .min = 0, .max = 4});
-    visit(
-        "reach", caustics.reach,
-        {.doc = "depth down to which light is followed", .unit = "m", .min = 0.01, .max = 1000});
-    visit(
-        "window", caustics.window,
-        {.doc = "of water without end: side of the square about the camera",
-         .unit = "m",
-         .min = 0.1,
-         .max = 10000});
-    visit(
-        "cascades", caustics.cascades,
-        {.doc = "of water without end: maps, each window four times as wide as the one before",
-         .min = 1,
-         .max = 3});
-    visit(
-        "shaft_steps", caustics.shaft_steps,
-        {.doc = "looks along a ray of sight under water, for shafts of light; 0: none",
-         .min = 0,
-         .max = 64});
-    visit(
-        "mirror_reach", caustics.mirror_reach,
-        {.doc = "height up to which mirrored light is followed; 0: none is",
-         .unit = "m",
-         .min = 0,
-         .max = 1000});
-    visit(
-        "mirror_resolution", caustics.mirror_resolution,
-        {.doc = "texels of a side of the map of mirrored light, a power of two",
-         .min = 32,
-         .max = 1024});
+LIMN_FIELDS(Caustics) {
+    LIMN_FIELD(
+        method, .doc = "photons from the actual surface, or five planes lit by its height",
+        .values = "simulated pool");
+    LIMN_FIELD(resolution, "side length of the map in texels, a power of two", "", 64, 1024);
+    LIMN_FIELD(spacing, "distance between rays in texels", "", 1, 8);
+    LIMN_FIELD(strength, "1: physical, 0: flat water", "", 0, 4);
+    LIMN_FIELD(reach, "depth down to which light is traced", "m", 0.01, 1000);
+    LIMN_FIELD(window, "unbounded water: side of the square about the camera", "m", 0.1, 10000);
+    LIMN_FIELD(cascades, "unbounded water: number of maps, each window four times wider", "", 1, 3);
+    LIMN_FIELD(
+        shaft_steps, "ray-march samples per view ray under water, for light shafts; 0: off", "", 0,
+        64);
+    LIMN_FIELD(mirror_reach, "height up to which reflected light is traced; 0: off", "m", 0, 1000);
+    LIMN_FIELD(
+        mirror_resolution, "side length of the map of reflected light in texels, a power of two",
+        "", 32, 1024);
 }
 
 }  // namespace limn

@@ -5,79 +5,61 @@
 
 namespace limn {
 
-/// When a probe looks around again (env.update-policy).
+/// When a probe is captured again (env.update-policy).
 enum class ProbeUpdate : std::uint8_t {
-    Once,      ///< at the start
+    Once,      ///< only at the start
     Period,    ///< every `period` frames
-    Movement,  ///< when it has moved by more than `threshold` since it did
+    Movement,  ///< when it has moved by more than `threshold` since the last capture
     Either,    ///< whichever comes first
 };
 
-/// Shows surfaces about the entity what is around it: the scene as seen from there, without the
-/// entity itself and what is below it. Metal on a moving object needs one on that object; a room
-/// one in its middle. It counts fully within `radius` or `box` and fades out beyond; where several
-/// reach, the smaller one comes first.
+/// Environment probe: a cube map of the scene from the entity's position, without the entity and
+/// its descendants, for reflections on nearby surfaces. Place one on each moving metal object and
+/// one in the middle of a room. Its influence is full within `radius` or `box` and fades out
+/// beyond; where several overlap, smaller ones take precedence.
 struct EnvProbe {
-    float radius = 2.0f;          ///< where it counts fully [m], > 0; not used with a box
-    Vec3 box = {0, 0, 0};         ///< half sides of the room it stands for, along its own axes [m];
-                                  ///< 0: none, all it sees is far away
-    Vec3 box_center = {0, 0, 0};  ///< in the entity's space, unscaled [m]
-    float fade = 0.25f;           ///< width of the rim beyond, as a share of radius or box, > 0
-    int resolution = 128;         ///< of a cube face [px], a power of two
-    float near = 0.05f;           ///< near plane of its pictures [m]
+    float radius = 2.0f;
+    Vec3 box = {0, 0, 0};  ///< half extents of the parallax-correction box along local axes [m]; 0:
+                           ///< none, the environment is infinitely far away
+    Vec3 box_center = {0, 0, 0};
+    float fade = 0.25f;
+    int resolution = 128;
+    float near = 0.05f;
     ProbeUpdate update = ProbeUpdate::Either;
-    int period = 30;            ///< [frames], >= 1
-    float threshold = 0.1f;     ///< [m], >= 0
-    bool face_by_face = false;  ///< one face a frame instead of six, after the first time
+    int period = 30;
+    float threshold = 0.1f;
+    bool face_by_face = false;
 };
 
-/// What update_env_probes keeps.
-struct EnvProbeState {
-    Vec3 seen_from = {0, 0, 0};  ///< where it was when it last looked around
-    std::uint32_t waited = 0;    ///< frames since then
-    std::uint64_t faces = 0;     ///< due since the start; number i is face i mod 6
-};
-
-template <typename Visitor>
-void visit_fields(EnvProbe& probe, Visitor&& visit) {
-    visit(
-        "radius", probe.radius,
-        {.doc = "where it counts fully; not used with a box",
-         .unit = "m",
-         .min = 0.001,
-         .max = 1e5});
-    visit(
-        "box", probe.box,
-        {.doc = "half sides of the room it stands for; 0 = all is far away",
-         .unit = "m",
-         .min = 0,
-         .max = 1e5});
-    visit(
-        "box_center", probe.box_center, {.doc = "of the box, in the entity's space", .unit = "m"});
-    visit(
-        "fade", probe.fade,
-        {.doc = "width of the rim where it fades out, as a share of radius or box",
-         .min = 0.001,
-         .max = 10});
-    visit(
-        "resolution", probe.resolution,
-        {.doc = "of a cube face, a power of two", .unit = "px", .min = 16, .max = 1024});
-    visit("near", probe.near, {.doc = "near plane", .unit = "m", .min = 1e-4, .max = 100});
-    visit(
-        "update", probe.update,
-        {.doc = "when it looks around again", .values = "once period movement either"});
-    visit("period", probe.period, {.doc = "of period", .unit = "frames", .min = 1, .max = 1e6});
-    visit("threshold", probe.threshold, {.doc = "of movement", .unit = "m", .min = 0, .max = 1e5});
-    visit(
-        "face_by_face", probe.face_by_face,
-        {.doc = "one face a frame instead of six, after the first time"});
+LIMN_FIELDS(EnvProbe) {
+    LIMN_FIELD(radius, "radius of full influence; unused with a box", "m", 0.001, 1e5);
+    LIMN_FIELD(box, "half extents of the parallax-correction box; 0: infinitely far", "m", 0, 1e5);
+    LIMN_FIELD(box_center, "center of the box in the entity's local space", "m");
+    LIMN_FIELD(fade, "width of the fade-out zone as a fraction of radius or box", "", 0.001, 10);
+    LIMN_FIELD(resolution, "resolution of a cube map face, a power of two", "px", 16, 1024);
+    LIMN_FIELD(near, "near plane of the capture", "m", 1e-4, 100);
+    LIMN_FIELD(
+        update, .doc = "when the probe is captured again", .values = "once period movement either");
+    LIMN_FIELD(period, "frames between captures with update period", "frames", 1, 1e6);
+    LIMN_FIELD(threshold, "distance that triggers a capture with update movement", "m", 0, 1e5);
+    LIMN_FIELD(face_by_face, "after the first capture, one face per frame instead of six");
 }
 
-template <typename Visitor>
-void visit_fields(EnvProbeState& state, Visitor&& visit) {
-    visit("seen_from", state.seen_from, {.doc = "where it last looked around", .unit = "m"});
-    visit("waited", state.waited, {.doc = "since then", .unit = "frames"});
-    visit("faces", state.faces, {.doc = "due since the start"});
+/// Internal state of update_env_probes.
+struct EnvProbeState {
+    Vec3 capture_position = {0, 0, 0};
+    std::uint32_t frames_since_capture = 0;
+    std::uint64_t faces = 0;
+};
+
+LIMN_FIELDS(EnvProbeState) {
+    LIMN_FIELD(
+        capture_position, .doc = "position of the last capture", .unit = "m",
+        .renamed = "seen_from");
+    LIMN_FIELD(
+        frames_since_capture, .doc = "frames since the last capture", .unit = "frames",
+        .renamed = "waited");
+    LIMN_FIELD(faces, "cube map faces scheduled since the start");
 }
 
 }  // namespace limn

@@ -6,66 +6,52 @@
 
 namespace limn {
 
-/// How the surroundings are lit and drawn where no surface is. A resource: one a level.
+/// Kind of sky: background and image-based lighting of the scene.
 enum class SkyKind : std::uint8_t {
     Gradient,  ///< horizon to zenith, ground below, a sun disc along the first directional light
-    Studio,    ///< dark room with soft boxes, made for looking at objects
-    Uniform,   ///< one radiance from everywhere: white furnace, tests
-    Panorama,  ///< a picture of all of it, of linear light
+    Studio,    ///< dark room with soft boxes, for viewing objects
+    Uniform,   ///< constant radiance: white furnace, tests
+    Panorama,  ///< panorama image with linear radiance
 };
 inline constexpr int kSkyKinds = 4;
 
-/// How the picture of a Panorama shows directions (render/panorama.h).
+/// Projection of a Panorama (render/panorama.h).
 enum class PanoramaMapping : std::uint8_t {
-    Equirectangular,  ///< longitude and latitude, twice as wide as high
+    Equirectangular,  ///< longitude and latitude, aspect ratio 2:1
     Cylindrical,      ///< a stitched strip
-    Angular,          ///< a disc about straight up
+    Angular,          ///< a disc centered on the zenith
 };
 
+/// Resource: the environment of a level.
 struct Environment {
     SkyKind sky = SkyKind::Gradient;
-    Vec3 zenith = {0.20f, 0.38f, 0.85f};   ///< radiance, linear; the radiance of Uniform
-    Vec3 horizon = {0.75f, 0.82f, 0.90f};  ///< radiance, linear
-    Vec3 ground = {0.16f, 0.14f, 0.12f};   ///< radiance, linear
-    float intensity = 1.0f;                ///< multiplies all of it, >= 0
-    bool visible = true;                   ///< drawn as background; its light counts either way
-    ImageId panorama = {};                 ///< of Panorama; none is black
+    Vec3 zenith = {0.20f, 0.38f, 0.85f};
+    Vec3 horizon = {0.75f, 0.82f, 0.90f};
+    Vec3 ground = {0.16f, 0.14f, 0.12f};
+    float intensity = 1.0f;
+    bool visible = true;
+    ImageId panorama = {};  ///< for Panorama; none: black
     PanoramaMapping mapping = PanoramaMapping::Equirectangular;
-    float rotation = 0.0f;              ///< of the panorama about the vertical [rad]
-    float half_angle = radians(45.0f);  ///< Cylindrical: horizon to upper edge [rad]
+    float rotation = 0.0f;
+    float half_angle = radians(45.0f);
 };
 
-template <typename Visitor>
-void visit_fields(Environment& environment, Visitor&& visit) {
-    visit(
-        "sky", environment.sky,
-        {.doc = "what surrounds the scene", .values = "gradient studio uniform panorama"});
-    visit(
-        "zenith", environment.zenith,
-        {.doc = "radiance from above, or of uniform", .min = 0, .max = 1e5, .color = true});
-    visit(
-        "horizon", environment.horizon,
-        {.doc = "radiance from the horizon", .min = 0, .max = 1e5, .color = true});
-    visit(
-        "ground", environment.ground,
-        {.doc = "radiance from below", .min = 0, .max = 1e5, .color = true});
-    visit(
-        "intensity", environment.intensity, {.doc = "multiplies all of it", .min = 0, .max = 1e5});
-    visit("visible", environment.visible, {.doc = "drawn as background"});
-    visit("panorama", environment.panorama, {.doc = "an image of the level, by name"});
-    visit(
-        "mapping", environment.mapping,
-        {.doc = "how the panorama shows directions",
-         .values = "equirectangular cylindrical angular"});
-    visit(
-        "rotation", environment.rotation,
-        {.doc = "of the panorama about the vertical, counter-clockwise from above", .unit = "rad"});
-    visit(
-        "half_angle", environment.half_angle,
-        {.doc = "of a cylindrical panorama, from the horizon to its upper edge",
-         .unit = "rad",
-         .min = 0.01,
-         .max = 1.55});
+LIMN_FIELDS(Environment) {
+    LIMN_FIELD(sky, .doc = "kind of sky", .values = "gradient studio uniform panorama");
+    LIMN_FIELD(
+        zenith, .doc = "radiance at the zenith, or of uniform", .min = 0, .max = 1e5,
+        .color = true);
+    LIMN_FIELD(horizon, .doc = "radiance at the horizon", .min = 0, .max = 1e5, .color = true);
+    LIMN_FIELD(ground, .doc = "radiance from below", .min = 0, .max = 1e5, .color = true);
+    LIMN_FIELD(intensity, "factor on all radiances", "", 0, 1e5);
+    LIMN_FIELD(visible, "drawn as background; lights the scene either way");
+    LIMN_FIELD(panorama, "an image of the level, by name");
+    LIMN_FIELD(
+        mapping, .doc = "projection of the panorama",
+        .values = "equirectangular cylindrical angular");
+    LIMN_FIELD(rotation, "rotation of the panorama, counter-clockwise seen from above", "rad");
+    LIMN_FIELD(
+        half_angle, "elevation of the upper edge of a cylindrical panorama", "rad", 0.01, 1.55);
 }
 
 }  // namespace limn

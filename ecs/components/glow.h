@@ -7,49 +7,37 @@
 
 namespace limn {
 
-/// What glows, and how.
+/// Kind of bloom.
 enum class GlowKind : std::uint8_t {
-    Lens,  ///< everything by its light, as glass scatters it: no light is made or lost
-    Mask,  ///< what surfaces emit themselves, blurred by 7 x 7 pixels of half the size and added
+    Lens,  ///< scattering in the lens: affects all light and conserves energy
+    Mask,  ///< only emissive surfaces: blurred at half resolution by 7 x 7 pixels and added
 };
 
-/// Resource: light that spreads about what is bright. Absent, or of strength 0: none. Of a lens
-/// there is no threshold: every pixel gives the same share.
+/// Resource: bloom around bright pixels. None if absent or of strength 0. Lens bloom has no
+/// threshold: every pixel scatters the same fraction.
 struct Glow {
     GlowKind kind = GlowKind::Lens;
-    float strength = 0.08f;  ///< share of the light that is scattered; of a mask, added; 0 .. 1
-    float radius = 0.15f;    ///< of a lens: standard deviation of the widest part, of the height
-    float falloff = 2.4f;    ///< of a lens: light falls with this power of the distance, 1 .. 4
-    float firefly = 100.0f;  ///< of a lens: luminance from which on lone pixels glow no more; 0 =
-                             ///< no such limit
-    int passes = 1;          ///< of a mask: how often it is blurred, 1 .. 16
+    float strength = 0.08f;
+    float radius = 0.15f;
+    float falloff = 2.4f;
+    float firefly = 100.0f;
+    int passes = 1;
 
     bool operator==(const Glow&) const = default;
 };
 
-template <typename Visitor>
-void visit_fields(Glow& glow, Visitor&& visit) {
-    visit(
-        "kind", glow.kind,
-        {.doc = "everything by its light, or what surfaces emit", .values = "lens mask"});
-    visit(
-        "strength", glow.strength,
-        {.doc = "share of the light that is scattered; of a mask, added", .min = 0, .max = 1});
-    visit(
-        "radius", glow.radius,
-        {.doc = "of a lens: of the widest scattering, as a share of the picture's height",
-         .min = 0.001,
-         .max = 1});
-    visit(
-        "falloff", glow.falloff,
-        {.doc = "of a lens: light falls with this power of the distance", .min = 1, .max = 4});
-    visit(
-        "firefly", glow.firefly,
-        {.doc = "of a lens: luminance from which on lone pixels glow no more; 0 = no such limit",
-         .min = 0,
-         .max = 65504});
-    visit(
-        "passes", glow.passes, {.doc = "of a mask: how often it is blurred", .min = 1, .max = 16});
+LIMN_FIELDS(Glow) {
+    LIMN_FIELD(
+        kind, .doc = "scattering of all light in the lens, or only emissive surfaces",
+        .values = "lens mask");
+    LIMN_FIELD(
+        strength, "fraction of the light that is scattered (lens) or added (mask)", "", 0, 1);
+    LIMN_FIELD(
+        radius, "lens: standard deviation of the widest kernel / image height", "", 0.001, 1);
+    LIMN_FIELD(falloff, "lens: exponent of the fall-off with distance", "", 1, 4);
+    LIMN_FIELD(
+        firefly, "lens: firefly clamp, luminance limit of isolated pixels; 0 = off", "", 0, 65504);
+    LIMN_FIELD(passes, "mask: number of blur passes", "", 1, 16);
 }
 
 }  // namespace limn

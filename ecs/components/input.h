@@ -1,40 +1,113 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/entity.h"
 #include "ecs/reflect.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace limn {
 
-/// Resource: what the player does in this step, the same whether it comes from a window, a level's
-/// timed events or a replay.
-struct Input {
-    Vec3 move = {0, 0, 0};     ///< wanted motion: x right, y up, z forward, each -1 .. 1
-    Vec2 look = {0, 0};        ///< mouse motion [pixels]: x right, y down
-    float zoom = 0.0f;         ///< wheel steps, > 0 = nearer
-    bool fast = false;         ///< move faster
-    Vec3 lens = {0, 0, 0};     ///< wanted turn: focus farther, aperture wider, shutter open longer,
-                               ///< each -1 .. 1
-    Vec3 weather = {0, 0, 0};  ///< wanted change: wind veers, gets stronger, more rain; -1 .. 1
-    bool click = false;        ///< on what the pointer is on; whoever takes it makes it false
-    Vec3 eye = {0, 0, 0};      ///< where the pointer is looked through from [m]
-    Vec3 pointing = {0, 0, 0};  ///< from there through the pointer; 0: at nothing
+class World;
+
+// Input as named actions ("steer_left"). Systems read their values; which keys they have is up to
+// the level, or else the defaults that are registered with them.
+
+struct ActionValue {
+    std::string action;
+    float value = 0.0f;
 };
 
-template <typename Visitor>
-void visit_fields(Input& input, Visitor&& visit) {
-    visit("move", input.move, {.doc = "wanted motion: right, up, forward", .min = -1, .max = 1});
-    visit("look", input.look, {.doc = "mouse motion", .unit = "pixels"});
-    visit("zoom", input.zoom, {.doc = "wheel steps, > 0 = nearer"});
-    visit("fast", input.fast, {.doc = "move faster"});
-    visit(
-        "lens", input.lens,
-        {.doc = "wanted turn: focus farther, aperture wider, shutter longer", .min = -1, .max = 1});
-    visit(
-        "weather", input.weather,
-        {.doc = "wanted change: wind veers, gets stronger, more rain", .min = -1, .max = 1});
-    visit("click", input.click, {.doc = "on what the pointer is on; a stone thrown takes it"});
-    visit("eye", input.eye, {.doc = "where the pointer is looked through from", .unit = "m"});
-    visit("pointing", input.pointing, {.doc = "from there through the pointer; 0: at nothing"});
+LIMN_FIELDS(ActionValue) {
+    LIMN_FIELD(action, "name of the action");
+    LIMN_FIELD(value, "1 while its key is held", "", -1, 1);
 }
+
+/// Resource: player input of this step, independent of its source: a window, a level's timed events
+/// or a replay.
+struct Input {
+    std::vector<ActionValue> actions{};  ///< those not listed are 0
+    Vec2 look = {0, 0};                  ///< mouse motion [pixels]: x right, y down
+    float zoom = 0.0f;
+    bool click = false;  ///< click at the pointer; reset to false by the system that handles it
+    Vec3 eye = {0, 0, 0};
+    Vec3 pointing = {0, 0, 0};
+};
+
+LIMN_FIELDS(Input) {
+    LIMN_FIELD(actions, "actions in use");
+    LIMN_FIELD(look, "mouse motion", "pixels");
+    LIMN_FIELD(zoom, "wheel steps, > 0 = closer");
+    LIMN_FIELD(click, "click at the pointer; reset when handled");
+    LIMN_FIELD(eye, "origin of the pointer ray", "m");
+    LIMN_FIELD(pointing, "direction of the pointer ray; 0: none");
+}
+
+[[nodiscard]] float action_value(const Input& input, std::string_view action);
+/// Value of `more` minus that of `less`.
+[[nodiscard]] float action_axis(const Input& input, std::string_view more, std::string_view less);
+void set_action(Input& input, std::string_view action, float value = 1.0f);
+
+/// What moves a camera or a person: values of `move` are right, up and forward.
+struct MoveInput {
+    Vec3 move = {0, 0, 0};
+    Vec2 look = {0, 0};
+    float zoom = 0.0f;
+    bool fast = false;
+};
+
+/// Those of the actions move_left, move_right, move_down, move_up, move_back, move_forward and
+/// move_fast.
+[[nodiscard]] MoveInput camera_input(const Input& input);
+
+// ---- which actions there are --------------------------------------------------------------------
+
+struct ActionInfo {
+    std::string name;
+    std::string doc;  ///< for the help; neighbors with the same share a line
+    std::vector<std::string> keys;
+};
+
+/// Actions with one purpose.
+struct ActionGroup {
+    std::string title;
+    std::vector<ActionInfo> actions;
+    /// Whether something in the world responds to them while `camera` is active.
+    bool (*is_used)(const World& world, Entity camera) = nullptr;
+    bool drives = false;  ///< move something, so that the player's own camera stays
+    bool turns = false;   ///< likewise by Input::look
+};
+
+/// Makes the group known; a second one with the same title is ignored.
+void register_actions(ActionGroup group);
+/// Those of the engine: camera, lens, weather. Called by register_all_components.
+void register_engine_actions();
+[[nodiscard]] std::span<const ActionGroup> action_groups();
+/// The names of all actions.
+[[nodiscard]] std::vector<std::string_view> action_names();
+
+/// Resource: the keys of a level, in place of the default ones.
+struct Bindings {
+    struct Binding {
+        std::string action;
+        std::vector<std::string> keys;
+    };
+    std::vector<Binding> bindings;
+};
+
+template <>
+struct ComponentTraits<Bindings> : DefaultTraits {
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+};
+
+[[nodiscard]] std::span<const std::string> keys_of(const ActionInfo& action, const Bindings* level);
+
+/// Names of the keys that can be bound: "A", "7", "[", "Left", "Shift" ... Those that the program
+/// itself uses are not among them.
+[[nodiscard]] const std::vector<std::string_view>& key_names();
 
 }  // namespace limn

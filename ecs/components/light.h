@@ -5,11 +5,11 @@
 
 namespace limn {
 
-// Lights shine from where their entity's WorldTransform is; spot and directional lights shine along
-// its local -z (as KHR_lights_punctual). Color is linear Rec. 709; intensity multiplies it: candela
-// [lm/sr] for point and spot lights, lux [lm/m^2] for directional ones.
+// Lights are placed by the WorldTransform of their entity; spot and directional lights point along
+// its local -z (as in KHR_lights_punctual). Color is linear Rec. 709; intensity multiplies it:
+// candela [lm/sr] for point and spot lights, lux [lm/m^2] for directional ones.
 
-/// How a light fades with the distance d from it; every option reaches 0 at `radius` unless it is
+/// Fall-off with the distance d from the light; every option reaches 0 at `radius`, unless that is
 /// 0.
 enum class Falloff : std::uint8_t {
     InverseSquare,  ///< 1/d^2, windowed by (1 - (d/r)^4)^2 clamped (Karis 2013): physical, the
@@ -19,127 +19,100 @@ enum class Falloff : std::uint8_t {
     None,           ///< constant within the radius
 };
 
-/// What fades a point or spot light.
+/// Distance attenuation of a point or spot light.
 struct Attenuation {
     Falloff falloff = Falloff::InverseSquare;
-    float constant = 1.0f;    ///< c of Polynomial, >= 0
-    float linear = 0.0f;      ///< l of Polynomial [1/m], >= 0
-    float quadratic = 0.0f;   ///< q of Polynomial [1/m^2], >= 0
-    float multiplier = 1.0f;  ///< m of Smooth, >= 1: widens the bright part
+    float constant = 1.0f;
+    float linear = 0.0f;
+    float quadratic = 0.0f;
+    float multiplier = 1.0f;
 };
 
+LIMN_FIELDS(Attenuation) {
+    LIMN_FIELD(
+        falloff, .doc = "fall-off with distance",
+        .values = "inverse_square polynomial smooth none");
+    LIMN_FIELD(constant, "c of polynomial", "", 0);
+    LIMN_FIELD(linear, "l of polynomial", "1/m", 0);
+    LIMN_FIELD(quadratic, "q of polynomial", "1/m^2", 0);
+    LIMN_FIELD(multiplier, "m of smooth: widens the bright part", "", 1, 100);
+}
+
 struct PointLight {
-    Vec3 color = {1, 1, 1};   ///< linear, >= 0
-    float intensity = 10.0f;  ///< [cd], >= 0
-    float radius = 10.0f;     ///< where it has faded to nothing [m]; 0: never fades to nothing
+    Vec3 color = {1, 1, 1};
+    float intensity = 10.0f;
+    float radius = 10.0f;
     Attenuation attenuation = {};
     bool enabled = true;
 };
+
+LIMN_FIELDS(PointLight) {
+    LIMN_FIELD(color, .doc = "linear Rec. 709", .min = 0, .color = true);
+    LIMN_FIELD(intensity, "luminous intensity", "cd", 0, 1e6);
+    LIMN_FIELD(radius, "distance at which it has faded to 0; 0 = unbounded", "m", 0, 1e5);
+    LIMN_FIELD(attenuation, "distance attenuation");
+    LIMN_FIELD(enabled, "whether the light is on");
+}
 
 /// The profile of a spot light between its two cones (light.spot-falloff).
 enum class SpotProfile : std::uint8_t { LinearCosine, Smoothstep, LinearAngle };
 
 struct SpotLight {
     Vec3 color = {1, 1, 1};
-    float intensity = 20.0f;  ///< [cd]
-    float radius = 15.0f;     ///< [m]
+    float intensity = 20.0f;
+    float radius = 15.0f;
     Attenuation attenuation = {};
-    float inner_angle = radians(20.0f);  ///< half angle of full light [rad], 0 .. outer_angle
-    float outer_angle = radians(30.0f);  ///< half angle where it ends [rad], inner_angle .. pi/2
+    float inner_angle = radians(20.0f);
+    float outer_angle = radians(30.0f);
     SpotProfile profile = SpotProfile::Smoothstep;
     bool enabled = true;
 };
 
+LIMN_FIELDS(SpotLight) {
+    LIMN_FIELD(color, .doc = "linear Rec. 709", .min = 0, .color = true);
+    LIMN_FIELD(intensity, "luminous intensity", "cd", 0, 1e6);
+    LIMN_FIELD(radius, "distance at which it has faded to 0; 0 = unbounded", "m", 0, 1e5);
+    LIMN_FIELD(attenuation, "distance attenuation");
+    LIMN_FIELD(inner_angle, "half angle of full intensity", "rad", 0, 1.5708);
+    LIMN_FIELD(outer_angle, "half angle at which it reaches 0", "rad", 0, 1.5708);
+    LIMN_FIELD(
+        profile, .doc = "fall-off between the inner and outer cone",
+        .values = "linear_cosine smoothstep linear_angle");
+    LIMN_FIELD(enabled, "whether the light is on");
+}
+
 struct DirectionalLight {
     Vec3 color = {1, 1, 1};
-    float illuminance = 3.0f;  ///< on a surface that faces it [lx]
+    float illuminance = 3.0f;
     bool enabled = true;
 };
 
-/// What a pulse follows.
+LIMN_FIELDS(DirectionalLight) {
+    LIMN_FIELD(color, .doc = "linear Rec. 709", .min = 0, .color = true);
+    LIMN_FIELD(illuminance, "illuminance on a surface perpendicular to the light", "lx", 0, 1e6);
+    LIMN_FIELD(enabled, "whether the light is on");
+}
+
+/// Waveform of a LightPulse.
 enum class PulseShape : std::uint8_t {
     Sine,   ///< sin(frequency t + phase)
-    Noise,  ///< flickers like a flame, about as fast; other phases flicker otherwise
+    Noise,  ///< flickers like a flame, at a similar rate; each phase gives another sequence
 };
 
-/// Modulates the intensity of the light beside it (the `function` of engine.light-object):
+/// Modulates the intensity of the light on the same entity (the `function` of engine.light-object):
 /// intensity x (1 + amplitude shape(t)), never below 0.
 struct LightPulse {
     PulseShape shape = PulseShape::Sine;
-    float amplitude = 0.5f;  ///< 0 .. 1
-    float frequency = 4.0f;  ///< [rad/s]
-    float phase = 0.0f;      ///< [rad]
+    float amplitude = 0.5f;
+    float frequency = 4.0f;
+    float phase = 0.0f;
 };
 
-template <typename Visitor>
-void visit_fields(Attenuation& attenuation, Visitor&& visit) {
-    visit(
-        "falloff", attenuation.falloff,
-        {.doc = "how the light fades with distance",
-         .values = "inverse_square polynomial smooth none"});
-    visit("constant", attenuation.constant, {.doc = "c of polynomial", .min = 0});
-    visit("linear", attenuation.linear, {.doc = "l of polynomial", .unit = "1/m", .min = 0});
-    visit(
-        "quadratic", attenuation.quadratic, {.doc = "q of polynomial", .unit = "1/m^2", .min = 0});
-    visit(
-        "multiplier", attenuation.multiplier,
-        {.doc = "m of smooth: widens the bright part", .min = 1, .max = 100});
-}
-
-template <typename Visitor>
-void visit_fields(PointLight& light, Visitor&& visit) {
-    visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
-    visit(
-        "intensity", light.intensity,
-        {.doc = "luminous intensity", .unit = "cd", .min = 0, .max = 1e6});
-    visit(
-        "radius", light.radius,
-        {.doc = "where it has faded to nothing; 0 = never", .unit = "m", .min = 0, .max = 1e5});
-    visit("attenuation", light.attenuation, {.doc = "how it fades with distance"});
-    visit("enabled", light.enabled, {.doc = "shines at all"});
-}
-
-template <typename Visitor>
-void visit_fields(SpotLight& light, Visitor&& visit) {
-    visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
-    visit(
-        "intensity", light.intensity,
-        {.doc = "luminous intensity", .unit = "cd", .min = 0, .max = 1e6});
-    visit(
-        "radius", light.radius,
-        {.doc = "where it has faded to nothing; 0 = never", .unit = "m", .min = 0, .max = 1e5});
-    visit("attenuation", light.attenuation, {.doc = "how it fades with distance"});
-    visit(
-        "inner_angle", light.inner_angle,
-        {.doc = "half angle of full light", .unit = "rad", .min = 0, .max = 1.5708});
-    visit(
-        "outer_angle", light.outer_angle,
-        {.doc = "half angle where it ends", .unit = "rad", .min = 0, .max = 1.5708});
-    visit(
-        "profile", light.profile,
-        {.doc = "between the two cones", .values = "linear_cosine smoothstep linear_angle"});
-    visit("enabled", light.enabled, {.doc = "shines at all"});
-}
-
-template <typename Visitor>
-void visit_fields(DirectionalLight& light, Visitor&& visit) {
-    visit("color", light.color, {.doc = "linear Rec. 709", .min = 0, .color = true});
-    visit(
-        "illuminance", light.illuminance,
-        {.doc = "on a surface that faces it", .unit = "lx", .min = 0, .max = 1e6});
-    visit("enabled", light.enabled, {.doc = "shines at all"});
-}
-
-template <typename Visitor>
-void visit_fields(LightPulse& pulse, Visitor&& visit) {
-    visit("shape", pulse.shape, {.doc = "what it follows", .values = "sine noise"});
-    visit(
-        "amplitude", pulse.amplitude,
-        {.doc = "share of the intensity that comes and goes", .min = 0, .max = 1});
-    visit(
-        "frequency", pulse.frequency,
-        {.doc = "angular frequency", .unit = "rad/s", .min = 0, .max = 1000});
-    visit("phase", pulse.phase, {.doc = "phase at time 0", .unit = "rad"});
+LIMN_FIELDS(LightPulse) {
+    LIMN_FIELD(shape, .doc = "waveform", .values = "sine noise");
+    LIMN_FIELD(amplitude, "modulated fraction of the intensity", "", 0, 1);
+    LIMN_FIELD(frequency, "angular frequency", "rad/s", 0, 1000);
+    LIMN_FIELD(phase, "phase at time 0", "rad");
 }
 
 }  // namespace limn

@@ -5,40 +5,37 @@
 
 namespace limn {
 
-/// Beside a MeshInstance: its surface mirrors the sun, or where there is none the first lamp, onto
-/// a plane, as a ring does on a table. The mesh is drawn once more, its vertices where they send
-/// the light; the finer it is, the finer the pattern.
+/// With a MeshInstance: reflective caustics on a plane, like those of a ring on a table, lit by the
+/// sun or, if there is none, the first lamp. The mesh is drawn again with its vertices moved to
+/// where they reflect the light; a finer mesh gives a finer pattern.
 struct MirrorCaustic {
-    Vec3 normal = {0, 1, 0};  ///< of the plane, toward the mirror
-    float offset = 0;         ///< of the plane: dot(normal, x) [m]
-    Vec3 color = {1, 1, 1};   ///< of the light that the plane sends on
-    float strength = 1;       ///< light times this is added, >= 0
-    float power_plane = 3;    ///< of the cosine at the plane
-    float power_surface = 3;  ///< of the cosine at the mirror
-    float farthest = 1000;    ///< rays go no farther [m]
-    float highest = 1e6f;     ///< what lands higher above the plane is black [m]
+    Vec3 normal = {0, 1, 0};
+    float offset = 0;
+    Vec3 color = {1, 1, 1};
+    float strength = 1;
+    float plane_exponent = 3;
+    float surface_exponent = 3;
+    float max_distance = 1000;
+    float max_height = 1e6f;
 };
 
-template <typename Visitor>
-void visit_fields(MirrorCaustic& mirror, Visitor&& visit) {
-    visit("normal", mirror.normal, {.doc = "of the plane, toward the mirror"});
-    visit("offset", mirror.offset, {.doc = "of the plane along its normal", .unit = "m"});
-    visit(
-        "color", mirror.color,
-        {.doc = "of the light that the plane sends on", .min = 0, .max = 1000});
-    visit("strength", mirror.strength, {.doc = "light times this is added", .min = 0, .max = 1000});
-    visit(
-        "power_plane", mirror.power_plane,
-        {.doc = "of the cosine at the plane", .min = 0, .max = 100});
-    visit(
-        "power_surface", mirror.power_surface,
-        {.doc = "of the cosine at the mirror", .min = 0, .max = 100});
-    visit(
-        "farthest", mirror.farthest,
-        {.doc = "rays go no farther", .unit = "m", .min = 0.001, .max = 1e6});
-    visit(
-        "highest", mirror.highest,
-        {.doc = "what lands higher above the plane is black", .unit = "m", .min = 0, .max = 1e6});
+LIMN_FIELDS(MirrorCaustic) {
+    LIMN_FIELD(normal, "normal of the plane, toward the reflector");
+    LIMN_FIELD(offset, "offset of the plane along its normal", "m");
+    LIMN_FIELD(color, "diffuse color of the plane", "", 0, 1000);
+    LIMN_FIELD(strength, "factor on the added light", "", 0, 1000);
+    LIMN_FIELD(
+        plane_exponent, .doc = "exponent of the cosine at the plane", .min = 0, .max = 100,
+        .renamed = "power_plane");
+    LIMN_FIELD(
+        surface_exponent, .doc = "exponent of the cosine at the reflector", .min = 0, .max = 100,
+        .renamed = "power_surface");
+    LIMN_FIELD(
+        max_distance, .doc = "largest ray length", .unit = "m", .min = 0.001, .max = 1e6,
+        .renamed = "farthest");
+    LIMN_FIELD(
+        max_height, .doc = "surfaces higher above the plane contribute no light", .unit = "m",
+        .min = 0, .max = 1e6, .renamed = "highest");
 }
 
 }  // namespace limn

@@ -6,14 +6,13 @@
 
 namespace limn {
 
-/// What a level, a glTF node or the inspector calls the entity.
+/// Name of the entity in levels, glTF nodes and the inspector.
 struct Name {
     std::string text;
 };
 
-template <typename Visitor>
-void visit_fields(Name& name, Visitor&& visit) {
-    visit("text", name.text, {.doc = "what the entity is called"});
+LIMN_FIELDS(Name) {
+    LIMN_FIELD(text, "name of the entity");
 }
 
 }  // namespace limn

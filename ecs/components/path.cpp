@@ -19,9 +19,8 @@ Vec3 second_derivative(const Bezier<Vec3>& p, float u) {
     return 6.0f * ((1.0f - u) * (p[2] - 2.0f * p[1] + p[0]) + u * (p[3] - 2.0f * p[2] + p[1]));
 }
 
-/// Control points of a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011): it makes
-/// no loops between knots however unevenly they stand. Where a neighbor is missing, the way begins
-/// or ends straight.
+/// Control points of a centripetal Catmull-Rom spline (Yuksel, Schaefer and Keyser 2011), which has
+/// no loops between knots however uneven their spacing. Open ends are straight.
 void smooth_knot(PathKnot& knot, const PathKnot* last, const PathKnot* next) {
     const Vec3 in = last != nullptr ? knot.position - last->position : Vec3(0);
     const Vec3 out = next != nullptr ? next->position - knot.position : Vec3(0);
@@ -102,12 +101,12 @@ Result<PathData> make_path(const PathShape& shape) {
     }
     path.rolls.push_back(shape.closed ? knots[0].roll : knots.back().roll);
     if (!(length > 0.0) || !std::isfinite(length)) {
-        return fail("found knots in one place, expected a way between them");
+        return fail("all knots coincide, expected a path of nonzero length");
     }
     return path;
 }
 
-PathFrame find_path_frame(const PathData& path, double distance) {
+PathFrame path_frame_at(const PathData& path, double distance) {
     if (path.segments.empty()) {
         return {};
     }
@@ -115,7 +114,7 @@ PathFrame find_path_frame(const PathData& path, double distance) {
     const Bezier<Vec3>& points = path.segments[place.segment];
     PathFrame frame;
     frame.position = bezier_point(points, place.u);
-    // A control point on its knot leaves no slope there; the next difference is its limit.
+    // Where a control point coincides with its knot, the derivative is 0; use the next difference.
     const Vec3 slope = bezier_derivative(points, place.u);
     frame.ahead = normalize_or(
         glm::length(slope) > 1e-6f * glm::length(points[3] - points[0]) ? slope
@@ -143,10 +142,11 @@ float path_curvature(const PathData& path, double distance) {
         return 0.0f;
     }
     const Vec3 turn = glm::cross(slope, second_derivative(points, place.u));
-    return glm::dot(turn, find_path_frame(path, distance).up) / (speed * speed * speed);
+    return glm::dot(turn, path_frame_at(path, distance).up) / (speed * speed * speed);
 }
 
-Transform stand_on_path(const PathFrame& frame, const Vec3& offset, bool level, const Vec3& scale) {
+Transform
+transform_on_path(const PathFrame& frame, const Vec3& offset, bool level, const Vec3& scale) {
     const Vec3 right = glm::cross(frame.ahead, frame.up);
     const Vec3 position =
         frame.position + right * offset.x + frame.up * offset.y + frame.ahead * offset.z;
@@ -154,7 +154,7 @@ Transform stand_on_path(const PathFrame& frame, const Vec3& offset, bool level, 
     const bool upright = level && glm::length(flat) > 0.0f;
     const Vec3 z = upright ? glm::normalize(flat) : frame.ahead;
     const Vec3 y = upright ? Vec3(0, 1, 0) : frame.up;
-    // +z ahead and +y up leave +x to the left, as in glTF.
+    // +z ahead and +y up put +x to the left, as in glTF.
     return {position, glm::quat_cast(Mat3(glm::cross(y, z), y, z)), scale};
 }
 

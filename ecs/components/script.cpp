@@ -14,7 +14,7 @@ bool is_due(const ScriptEvent& event, std::uint64_t frame, float step) {
     if (event.times == 1) {
         return frame == first;
     }
-    // Rounded once: the steps between two times are always as many.
+    // Rounded once, so that the number of steps between occurrences is constant.
     const auto period =
         std::max<std::uint64_t>(static_cast<std::uint64_t>(std::llround(event.every / length)), 1);
     return (frame - first) % period == 0 && (frame - first) / period < event.times;

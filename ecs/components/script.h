@@ -8,10 +8,9 @@
 
 namespace limn {
 
-// What a level does by the clock: a lamp that is switched on after two seconds, a stone that falls
-// into the pool every half second. Events are content, as levels are, and do not change while they
-// happen: which are due follows from the number of the step alone, so that a world restored from a
-// snapshot goes on as the one it was taken from.
+// Timed events of a level: a lamp that is switched on after two seconds, a stone that drops into
+// the pool every half second. Events are immutable content, like levels: which ones are due follows
+// from the step number only, so that a world restored from a snapshot continues like the original.
 
 /// One field of a component or resource.
 struct FieldEdit {
@@ -20,36 +19,35 @@ struct FieldEdit {
 };
 
 enum class EventAction : std::uint8_t {
-    Set,      ///< fields get the values of `value`; a component that is missing is added first
-    Impulse,  ///< numbers grow by those of `value`, within their ranges; rotations are turned
-              ///< further
-    Spawn,    ///< one copy of `prefab`
-    Destroy,  ///< `entity` and everything below it
+    Set,      ///< assigns the fields of `value`; a missing component is added first
+    Impulse,  ///< adds the fields of `value`, clamped to their ranges; rotations are multiplied
+    Spawn,    ///< creates an instance of `prefab`
+    Destroy,  ///< destroys `entity` and its descendants
 };
 
-/// One thing that happens. What is aimed at an entity that is gone does not.
+/// One action of an event. Skipped if its entity no longer exists.
 struct ScriptAction {
     EventAction action = EventAction::Set;
     bool is_resource = false;      ///< `value` is a resource, else a component of `entity`
-    Entity entity;                 ///< of all but Spawn
-    AnyComponent value;            ///< of Set and Impulse
-    std::vector<FieldEdit> edits;  ///< which fields of `value` count
-    Prefab prefab;                 ///< of Spawn
+    Entity entity;                 ///< for all actions but Spawn
+    AnyComponent value;            ///< for Set and Impulse
+    std::vector<FieldEdit> edits;  ///< the fields of `value` to apply
+    Prefab prefab;                 ///< for Spawn
 };
 
 struct ScriptEvent {
-    double time = 0.0;        ///< since the level began [s]: in the step that begins nearest to it
-    double every = 0.0;       ///< from one time to the next [s], at least one step
-    std::uint32_t times = 1;  ///< how often
+    double time = 0.0;        ///< since the start of the level [s]; rounded to the nearest step
+    double every = 0.0;       ///< period of repetitions [s], at least one step
+    std::uint32_t times = 1;  ///< number of times it occurs
     std::vector<ScriptAction> actions;
 };
 
-/// Resource: all events of a level, those of one step happen in this order.
+/// Resource: all events of a level. Those of one step are executed in this order.
 struct EventList {
     std::vector<ScriptEvent> events;
 };
 
-/// Whether the event happens in step number `frame` of length `step` [s].
+/// Whether the event occurs in step number `frame`, with steps of length `step` [s].
 [[nodiscard]] bool is_due(const ScriptEvent& event, std::uint64_t frame, float step);
 
 }  // namespace limn

@@ -5,67 +5,51 @@
 
 namespace limn {
 
-/// How the shadows of a light are found (shadow.selection).
+/// Shadowing technique of a light (shadow.selection).
 enum class ShadowMethod : std::uint8_t {
-    Auto,         ///< volumes for a light with a ShadowVolume beside it, else maps
-    Map,          ///< shadow maps: one view of a spot, six of a point light, cascades of a sun
-    Perspective,  ///< one map of the scene as the camera's perspective distorts it; Map where the
-                  ///< light is among what the camera sees
-    Volume,       ///< stencil volumes: exact to the pixel, hard, closed meshes only
-    Hybrid,       ///< a map, and volumes at its edges alone
+    Auto,         ///< volumes if the light has a ShadowVolume, else maps
+    Map,          ///< shadow maps: one for a spot light, six for a point light, cascades for a sun
+    Perspective,  ///< one perspective shadow map (in post-projective space); Map where the light is
+                  ///< inside the view
+    Volume,       ///< stencil volumes: pixel-exact and hard, closed meshes only
+    Hybrid,       ///< a map, with volumes only at shadow edges
 };
 
-/// How the edge of a map's shadow is drawn.
+/// Filtering of a shadow map.
 enum class ShadowFilter : std::uint8_t {
-    Hard,              ///< one comparison: texels show
-    Bilinear,          ///< 2x2 comparisons, weighted (shadow.pcf)
-    Soft,              ///< sixteen of those (shadow.soft-pcf): as wide everywhere
-    ContactHardening,  ///< as wide as the light's size makes it (shadow.penumbra); of Perspective:
-                       ///< Soft
+    Hard,              ///< one comparison: texels are visible
+    Bilinear,          ///< 2x2 weighted comparisons (shadow.pcf)
+    Soft,              ///< sixteen bilinear taps (shadow.soft-pcf): constant penumbra width
+    ContactHardening,  ///< penumbra width from the light's size (shadow.penumbra); with
+                       ///< Perspective: Soft
 };
 
-/// The light beside it casts shadows.
+/// Makes the light on the same entity cast shadows.
 struct Shadow {
     ShadowMethod method = ShadowMethod::Auto;
     ShadowFilter filter = ShadowFilter::Bilinear;
-    int resolution = 512;      ///< side of a map [texels], 16 .. 4096
-    float source_size = 0.1f;  ///< diameter of what shines [m], of a sun its angle [rad]; >= 0
-    int cascades = 3;          ///< maps of a sun, one behind the other, 1 .. 4
-    float distance = 40.0f;    ///< up to where a sun casts shadows [m from the camera], > 0
-    float bias = 1.0f;         ///< 1 needs no tuning; 0 shows why there is one
+    int resolution = 512;
+    float source_size = 0.1f;
+    int cascades = 3;
+    float distance = 40.0f;
+    float bias = 1.0f;
 };
+
+LIMN_FIELDS(Shadow) {
+    LIMN_FIELD(
+        method, .doc = "shadowing technique", .values = "auto map perspective volume hybrid");
+    LIMN_FIELD(
+        filter, .doc = "shadow map filtering", .values = "hard bilinear soft contact_hardening");
+    LIMN_FIELD(resolution, "side length of a shadow map", "texels", 16, 4096);
+    LIMN_FIELD(
+        source_size, "diameter of the light source; for a directional light, an angle [rad]", "m",
+        0, 100);
+    LIMN_FIELD(cascades, "shadow map cascades of a directional light", "", 1, 4);
+    LIMN_FIELD(distance, "shadow distance of a directional light, from the camera", "m", 0.1, 1e5);
+    LIMN_FIELD(bias, "factor on the automatic bias; 1 needs no tuning, 0 = none", "", 0, 8);
+}
 
 /// Tag: the mesh instance casts no shadow.
 struct NoShadow {};
-
-template <typename Visitor>
-void visit_fields(Shadow& shadow, Visitor&& visit) {
-    visit(
-        "method", shadow.method,
-        {.doc = "how its shadows are found", .values = "auto map perspective volume hybrid"});
-    visit(
-        "filter", shadow.filter,
-        {.doc = "how the edge of a map's shadow is drawn",
-         .values = "hard bilinear soft contact_hardening"});
-    visit(
-        "resolution", shadow.resolution,
-        {.doc = "side of a map", .unit = "texels", .min = 16, .max = 4096});
-    visit(
-        "source_size", shadow.source_size,
-        {.doc = "diameter of what shines; of a directional light an angle [rad]",
-         .unit = "m",
-         .min = 0,
-         .max = 100});
-    visit(
-        "cascades", shadow.cascades,
-        {.doc = "maps of a directional light, one behind the other", .min = 1, .max = 4});
-    visit(
-        "distance", shadow.distance,
-        {.doc = "up to where a directional light casts shadows",
-         .unit = "m",
-         .min = 0.1,
-         .max = 1e5});
-    visit("bias", shadow.bias, {.doc = "1 needs no tuning; 0 shows why", .min = 0, .max = 8});
-}
 
 }  // namespace limn

@@ -5,61 +5,46 @@
 
 namespace limn {
 
-/// What a light's shadow volumes are made of.
+/// Geometry of a light's shadow volumes.
 enum class VolumeKind : std::uint8_t {
-    PerEdge,      ///< one volume a caster; if one of them is not closed, the light gets a map
-    Mixed,        ///< that, and prisms of what is not closed
+    PerEdge,  ///< one silhouette volume per caster; if any mesh is not closed, the light uses a map
+    Mixed,    ///< the same, with per-triangle prisms for meshes that are not closed
     PerTriangle,  ///< a prism for every triangle: four times the fill
 };
 
-/// From which end volumes are counted.
+/// Stencil counting method.
 enum class StencilMode : std::uint8_t {
-    Auto,   ///< z-pass for volumes that cannot hold the eye, z-fail for the others
-    ZPass,  ///< from the eye: cheap, wrong by one for each volume that the eye is in
-    ZFail,  ///< from the far end: always right
+    Auto,   ///< z-pass for volumes that cannot contain the camera, z-fail for the others
+    ZPass,  ///< counts from the camera: cheap, off by one for each volume containing the camera
+    ZFail,  ///< counts from the far end: always correct
 };
 
-/// How far volumes go (shadow.extrusion-distance).
+/// Extrusion distance of volumes (shadow.extrusion-distance).
 enum class Extrusion : std::uint8_t {
-    Infinite,  ///< to the end of the world
+    Infinite,  ///< to infinity
     Constant,  ///< by `distance`
-    Radius,    ///< to the light's radius: light leaks in behind the cap
-    Plane,     ///< until no part of the cap is nearer than the radius; prisms only
+    Radius,    ///< to the light's radius: light leaks behind the cap
+    Plane,     ///< until the whole cap lies beyond the radius; prisms only
 };
 
-/// How the light beside it counts its volumes, for Shadow with the method volume or hybrid. Without
-/// this component the defaults hold.
+/// Settings of the light's shadow volumes, for a Shadow with the method volume or hybrid. If
+/// absent, the defaults apply.
 struct ShadowVolume {
     VolumeKind kind = VolumeKind::PerEdge;
     StencilMode mode = StencilMode::Auto;
     Extrusion extrusion = Extrusion::Infinite;
-    float distance = 100.0f;  ///< of Extrusion::Constant [m], > 0
-    float cap_bias = 0.002f;  ///< the near cap lies this far beneath the caster's surface [m], >= 0
+    float distance = 100.0f;
+    float cap_bias = 0.002f;
 };
 
-template <typename Visitor>
-void visit_fields(ShadowVolume& volume, Visitor&& visit) {
-    visit(
-        "kind", volume.kind,
-        {.doc = "what the volumes are made of", .values = "per_edge mixed per_triangle"});
-    visit(
-        "mode", volume.mode,
-        {.doc = "from which end volumes are counted", .values = "auto z_pass z_fail"});
-    visit(
-        "extrusion", volume.extrusion,
-        {.doc = "how far the volumes go", .values = "infinite constant radius plane"});
-    visit(
-        "distance", volume.distance,
-        {.doc = "length of the volumes with the extrusion constant",
-         .unit = "m",
-         .min = 0.01,
-         .max = 1e5});
-    visit(
-        "cap_bias", volume.cap_bias,
-        {.doc = "how far the near cap lies beneath the caster's surface",
-         .unit = "m",
-         .min = 0,
-         .max = 1});
+LIMN_FIELDS(ShadowVolume) {
+    LIMN_FIELD(kind, .doc = "geometry of the volumes", .values = "per_edge mixed per_triangle");
+    LIMN_FIELD(mode, .doc = "stencil counting method", .values = "auto z_pass z_fail");
+    LIMN_FIELD(
+        extrusion, .doc = "extrusion distance of the volumes",
+        .values = "infinite constant radius plane");
+    LIMN_FIELD(distance, "length of the volumes with extrusion constant", "m", 0.01, 1e5);
+    LIMN_FIELD(cap_bias, "depth of the near cap below the caster's surface", "m", 0, 1);
 }
 
 }  // namespace limn

@@ -31,13 +31,13 @@ bool has_length(const Quat& q) {
     return glm::dot(q, q) > 1e-12f;
 }
 
-/// What is blended on an arc must be somewhere on it; cubic rows hold slopes as well.
+/// Rotations must not be 0 to be normalized; cubic rows are exempt, since they also hold tangents.
 bool are_rotations(const ClipSheet& sheet) {
     return sheet.interpolation == Interpolation::Cubic
            || std::all_of(sheet.rotations.begin(), sheet.rotations.end(), has_length);
 }
 
-/// Checks the values of `subjects` - joints or weights of which there are `count`.
+/// Checks the values of `subjects`: indices of joints or morph weights, each less than `count`.
 template <typename T>
 Status check_rows(
     const std::string& place, const char* what, const ClipSheet& sheet,
@@ -51,15 +51,15 @@ Status check_rows(
     std::vector<bool> is_named(count, false);
     for (const std::uint16_t subject : subjects) {
         if (subject >= count) {
-            return fail("{}: {} of number {}, expected less than {}", place, what, subject, count);
+            return fail("{}: {} of index {}, expected less than {}", place, what, subject, count);
         }
         if (is_named[subject]) {
-            return fail("{}: {} of number {} twice", place, what, subject);
+            return fail("{}: {} of index {} twice", place, what, subject);
         }
         is_named[subject] = true;
     }
     if (!are_finite(values)) {
-        return fail("{}: {} that are no numbers", place, what);
+        return fail("{}: {} that are not finite", place, what);
     }
     return Done{};
 }
@@ -70,7 +70,7 @@ Status check_times(const std::string& place, const std::vector<float>& times) {
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (!std::isfinite(times[i])) {
-            return fail("{}: the time of key {} is no number", place, i);
+            return fail("{}: the time of key {} is not finite", place, i);
         }
         if (i > 0 && times[i] <= times[i - 1]) {
             return fail(
@@ -90,7 +90,7 @@ Status check_skeleton(const SkeletonData& skeleton) {
     }
     if (skeleton.parents.size() != count || skeleton.rest.translations.size() != count
         || skeleton.rest.rotations.size() != count || skeleton.rest.scales.size() != count) {
-        return fail("skeleton {}: lists of different lengths for {} joints", name, count);
+        return fail("skeleton {}: arrays of different lengths for {} joints", name, count);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const std::int32_t parent = skeleton.parents[i];
@@ -101,7 +101,9 @@ Status check_skeleton(const SkeletonData& skeleton) {
         }
         if (!is_finite(skeleton.rest.translations[i]) || !is_finite(skeleton.rest.rotations[i])
             || !is_finite(skeleton.rest.scales[i]) || !has_length(skeleton.rest.rotations[i])) {
-            return fail("skeleton {}: joint {} ({}) rests nowhere", name, i, skeleton.joints[i]);
+            return fail(
+                "skeleton {}: joint {} ({}) has an invalid rest transform", name, i,
+                skeleton.joints[i]);
         }
     }
     return Done{};
@@ -144,8 +146,8 @@ Status check_skin(const SkinData& skin, std::size_t joints) {
         }
         const float volume = glm::determinant(Mat3(to_mat4(skin.joint_from_mesh[i])));
         const Vec4* row = skin.joint_from_mesh[i].row;
-        const bool is_somewhere = std::isfinite(row[0].w + row[1].w + row[2].w);
-        if (!std::isfinite(volume) || !is_somewhere || std::abs(volume) < 1e-24f) {
+        const bool has_finite_origin = std::isfinite(row[0].w + row[1].w + row[2].w);
+        if (!std::isfinite(volume) || !has_finite_origin || std::abs(volume) < 1e-24f) {
             return fail("skin {}: the matrix of joint {} has no inverse", skin.name, i);
         }
     }

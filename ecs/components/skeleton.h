@@ -11,10 +11,9 @@
 
 namespace limn {
 
-// Characters: a tree of joints, clips that move it, meshes that follow it. A character is one
-// entity; its joints are rows of arrays, not entities. What is to hang on a joint - a mesh, a
-// light, a camera - is an entity with JointAttachment. Skeletons, clips and skins are kept once, in
-// the Assets resource.
+// Skeletal animation: a joint hierarchy, clips that animate it, and skinned meshes. A character is
+// one entity; its joints are array elements, not entities. A mesh, light or camera is attached to a
+// joint by JointAttachment. Skeletons, clips and skins are stored in the Assets resource.
 
 struct SkeletonId {
     std::uint32_t index = 0xffffffffu;
@@ -35,7 +34,7 @@ inline constexpr const char* asset_kind<ClipId> = "clip";
 template <>
 inline constexpr const char* asset_kind<SkinId> = "skin";
 
-/// Joints relative to their parents, one entry a joint in each array: matrix = T R S.
+/// Joint transforms relative to their parents, one array entry per joint: matrix = T R S.
 struct LocalPose {
     std::vector<Vec3> translations;  ///< [m]
     std::vector<Quat> rotations;     ///< unit
@@ -44,30 +43,30 @@ struct LocalPose {
     [[nodiscard]] std::size_t size() const { return rotations.size(); }
 };
 
-/// Parents come before their children, so that one pass over the joints finds all matrices
+/// Joints are sorted parents first, so that one pass computes all matrices
 /// (char.skeleton-hierarchy).
 struct SkeletonData {
     std::string name;
     std::vector<std::string> joints;    ///< names
-    std::vector<std::int32_t> parents;  ///< an earlier joint; -1 of the first, the root
+    std::vector<std::int32_t> parents;  ///< index of an earlier joint; -1 for the first, the root
     LocalPose rest;
 };
 
-/// How values between two keys follow from them, as glTF has it.
+/// Interpolation between two keys, as in glTF.
 enum class Interpolation : std::uint8_t {
-    Step,    ///< the value of the key before
-    Linear,  ///< straight; rotations on the great arc (anim.slerp)
-    Cubic,   ///< Hermite; three values a key: slope before it, itself, slope after it [1/s]
+    Step,    ///< the value of the previous key
+    Linear,  ///< linear; spherical for rotations (anim.slerp)
+    Cubic,   ///< Hermite; three values per key: in-tangent, value, out-tangent [1/s]
 };
 
-/// Keys at the same times for any number of joints: the rows of one sheet lie next to each other, a
-/// row a key, so that a pose is blended from two rows (char.clip-layout). A row of `rotations` has
-/// rotating.size() entries, thrice as many if cubic; the same with the others.
+/// Keys at common times for any number of joints: one contiguous row per key, so that a pose is
+/// interpolated from two rows (char.clip-layout). A row of `rotations` has rotating.size() entries,
+/// three times as many if cubic; likewise for the others.
 struct ClipSheet {
     Interpolation interpolation = Interpolation::Linear;
-    std::vector<float> times;                ///< [s], growing
+    std::vector<float> times;                ///< [s], strictly increasing
     std::vector<std::uint16_t> rotating;     ///< joints, each once
-    std::vector<Quat> rotations;             ///< unit, each near the key before it
+    std::vector<Quat> rotations;             ///< unit, in the hemisphere of the previous key
     std::vector<std::uint16_t> translating;  ///< joints
     std::vector<Vec3> translations;          ///< [m]
     std::vector<std::uint16_t> scaling;      ///< joints
@@ -76,54 +75,52 @@ struct ClipSheet {
     std::vector<float> weights;
 };
 
-/// What moves a skeleton. A joint that no sheet names rests.
+/// Animation clip of a skeleton. Joints without keys keep their rest pose.
 struct ClipData {
     std::string name;
-    float duration = 0.0f;  ///< the last of all keys [s]
+    float duration = 0.0f;  ///< time of the last key [s]
     std::vector<ClipSheet> sheets;
 };
 
-/// Joints that a mesh follows: its joint indices are places in these lists. From the mesh's space
-/// at rest into a joint's: the inverse of where the joint was when the mesh was bound to it.
+/// Skin of a mesh: its joint indices refer to these lists.
 struct SkinData {
     std::string name;
     std::vector<std::uint16_t> joints;    ///< of the skeleton
-    std::vector<Affine> joint_from_mesh;  ///< one a joint
+    std::vector<Affine> joint_from_mesh;  ///< inverse bind matrix of each joint
 };
 
-/// Beside a mesh: which joints move its vertices and by how much. Those of vertex i are entries
-/// first[i] .. first[i + 1], any number of them; a vertex without any stays where it is.
+/// Joint influences of a mesh's vertices. Vertex i has the entries first[i] .. first[i + 1], any
+/// number of them; a vertex without influences is not moved.
 struct SkinWeights {
-    std::vector<std::uint32_t> first;   ///< one a vertex and one past the last; empty: no skin
-    std::vector<std::uint16_t> joints;  ///< places in SkinData::joints
-    std::vector<float> weights;         ///< > 0; those of a vertex sum to 1
+    std::vector<std::uint32_t> first;   ///< one per vertex and one past the last; empty: no skin
+    std::vector<std::uint16_t> joints;  ///< indices into SkinData::joints
+    std::vector<float> weights;         ///< > 0; sum to 1 per vertex
 
     [[nodiscard]] bool empty() const { return first.empty(); }
 };
 
-/// A shape that a mesh can take on, as differences from it at those vertices that move
-/// (char.morph-target).
+/// A morph target: sparse differences from the base mesh (char.morph-target).
 struct MorphTarget {
     std::string name;
-    std::vector<std::uint32_t> vertices;  ///< that move, growing
-    std::vector<Vec3> positions;          ///< one a vertex of `vertices` [m]
+    std::vector<std::uint32_t> vertices;  ///< indices of affected vertices, increasing
+    std::vector<Vec3> positions;          ///< one per entry of `vertices` [m]
     std::vector<Vec3> normals;            ///< the same, or empty
     std::vector<Vec3> tangents;           ///< the same, or empty
 };
 
-/// One line of what is wrong: lengths that differ, a parent that is no earlier joint, a second
+/// Fails with one line: arrays of different length, a parent that is not an earlier joint, a second
 /// root, numbers that are not finite, a rotation of length 0.
 [[nodiscard]] Status check_skeleton(const SkeletonData& skeleton);
 
-/// As above: no keys, times that do not grow (with the place of the key), rows of the wrong length,
-/// joints beyond `joints`, morph weights beyond `morphs`, one named twice, numbers that are not
+/// Likewise: no keys, times that do not increase (with the index of the key), rows of the wrong
+/// length, joints beyond `joints`, morph weights beyond `morphs`, duplicates, numbers that are not
 /// finite.
 [[nodiscard]] Status check_clip(const ClipData& clip, std::size_t joints, std::size_t morphs);
 
-/// As above: an empty list, a joint beyond `joints`, a matrix that is not finite or has no inverse.
+/// Likewise: an empty list, a joint beyond `joints`, a matrix that is not finite or has no inverse.
 [[nodiscard]] Status check_skin(const SkinData& skin, std::size_t joints);
 
-/// Numbers that the clip stores: m (1 + 7 n) for m keys of n joints that turn and move.
+/// Number of floats in the clip: m (1 + 7 n) for m keys of n joints that rotate and translate.
 [[nodiscard]] std::size_t clip_size(const ClipData& clip);
 
 }  // namespace limn

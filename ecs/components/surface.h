@@ -13,8 +13,8 @@
 
 namespace limn {
 
-// What is drawn: meshes, images and materials are kept once, in the Assets resource, and named by
-// index. Loaders and makers append to it; the renderer uploads what is new. Indices never change.
+// Meshes, images and materials. They are stored in the Assets resource and referenced by index.
+// Loaders and generators append to it; the renderer uploads new entries. Indices never change.
 
 /// Index into Assets; kNoAsset = none.
 inline constexpr std::uint32_t kNoAsset = 0xffffffffu;
@@ -37,7 +37,8 @@ inline constexpr const char* asset_kind<ImageId> = "image";
 template <>
 inline constexpr const char* asset_kind<MaterialId> = "material";
 
-/// Triangles. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be empty.
+/// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
+/// empty.
 struct MeshData {
     std::string name;
     std::vector<Vec3> positions;  ///< [m]
@@ -46,12 +47,12 @@ struct MeshData {
         tangents;            ///< unit xyz along +u; bitangent = w cross(normal, tangent), w = +-1
     std::vector<Vec2> uvs;   ///< (0, 0) is the first texel of the image (top left of a glTF image)
     std::vector<Vec2> uvs1;  ///< second set, or empty
-    std::vector<Vec4> colors;  ///< linear RGBA factor a vertex, or empty
+    std::vector<Vec4> colors;  ///< linear RGBA factor per vertex, or empty
     std::vector<std::uint32_t>
-        indices;                      ///< three a triangle, counter-clockwise seen from the front
-    SkinWeights skin;                 ///< empty: no joints move it
-    std::vector<MorphTarget> morphs;  ///< shapes it can take on, in the file's order
-    Bounds bounds;                    ///< at rest
+        indices;                      ///< three per triangle, counter-clockwise seen from the front
+    SkinWeights skin;                 ///< empty: not skinned
+    std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
+    Bounds bounds;                    ///< of the undeformed mesh
 };
 
 enum class PixelFormat : std::uint8_t { Rgba8, Rgba16F, Rgba32F };
@@ -62,32 +63,45 @@ struct ImageData {
     int width = 0;   ///< pixels, > 0
     int height = 0;  ///< pixels, > 0
     PixelFormat format = PixelFormat::Rgba8;
-    bool srgb = false;                 ///< Rgba8 only: color that the GPU decodes to linear
+    bool srgb = false;                 ///< Rgba8 only: sRGB color that the GPU decodes to linear
     std::vector<std::uint8_t> pixels;  ///< width * height * (4, 8 or 16) bytes
 };
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
 
-/// One use of an image by a material. uv' = rotate(scale * uv) + offset (KHR_texture_transform).
+/// Texture reference of a material. uv' = rotate(scale * uv) + offset (KHR_texture_transform).
 struct TextureSlot {
     ImageId image;
     Wrap wrap_u = Wrap::Repeat;
     Wrap wrap_v = Wrap::Repeat;
-    bool nearest = false;     ///< no filtering when magnified
-    std::uint8_t uv_set = 0;  ///< 0 or 1
+    bool nearest = false;
+    std::uint8_t uv_set = 0;
     Vec2 offset = {0, 0};
     Vec2 scale = {1, 1};
-    float rotation = 0.0f;  ///< [rad], counter-clockwise as glTF defines it
+    float rotation = 0.0f;
 };
 
+LIMN_FIELDS(TextureSlot) {
+    LIMN_FIELD(image, "an image of the level, by name");
+    LIMN_FIELD(
+        wrap_u, .doc = "addressing beyond the left and right edge",
+        .values = "repeat mirror clamp");
+    LIMN_FIELD(
+        wrap_v, .doc = "addressing beyond the top and bottom edge",
+        .values = "repeat mirror clamp");
+    LIMN_FIELD(nearest, "no filtering when magnified");
+    LIMN_FIELD(uv_set, "texture coordinate set", "", 0, 1);
+    LIMN_FIELD(offset, "offset of the texture coordinates");
+    LIMN_FIELD(scale, "scale of the texture coordinates");
+    LIMN_FIELD(rotation, "rotation of the texture coordinates, counter-clockwise", "rad");
+}
+
 enum class ShadingModel : std::uint8_t {
-    Pbr,    ///< metal-rough of glTF: GGX with multi-scatter compensation, Lambert diffuse
+    Pbr,    ///< glTF metallic-roughness: GGX with multi-scatter compensation, Lambert diffuse
     Blinn,  ///< ka, kd, ks, n with the half vector (light.halfway-vector)
-    Phong,  ///< the same with the mirrored vector (light.phong-model)
-    Unlit,  ///< base color as it is, or what it mirrors: (1 - m) color + m surroundings, m =
-            ///< metalness
-    Skin,   ///< Blinn, and a glow toward the rim that soft skin has on every side of a light
-            ///< (char.skin-shade)
+    Phong,  ///< the same with the reflection vector (light.phong-model)
+    Unlit,  ///< (1 - m) base color + m reflected environment, m = metalness
+    Skin,   ///< Blinn plus a rim glow from all sides that imitates soft skin (char.skin-shade)
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -97,26 +111,54 @@ struct Material {
     ShadingModel shading = ShadingModel::Pbr;
     AlphaMode alpha_mode = AlphaMode::Opaque;
     bool double_sided = false;
-    float alpha_cutoff = 0.5f;                ///< Mask only
-    Vec4 base_color = {0.8f, 0.8f, 0.8f, 1};  ///< linear RGB, opacity; kd but of Pbr
-    float metalness = 0.0f;                   ///< share that is metal, or mirrors, 0 .. 1
-    float roughness = 0.5f;                   ///< perceptual, 0 .. 1
-    Vec3 emission = {0, 0, 0};                ///< radiance, linear [W/(sr m^2)], >= 0
-    Vec3 specular = {0.04f, 0.04f, 0.04f};    ///< ks of Blinn, Phong and Skin
-    float shininess = 50.0f;                  ///< n of Blinn, Phong and Skin, > 0
-    Vec3 skin_color = {0.6f, 0.2f, 0.1f};     ///< of Skin's rim, linear RGB, of the base color
-    bool wide_rim = false;                    ///< Skin: 1 - (n.v)^2 instead of (1 - n.v)^2
+    float alpha_cutoff = 0.5f;
+    Vec4 base_color = {0.8f, 0.8f, 0.8f, 1};
+    float metalness = 0.0f;
+    float roughness = 0.5f;
+    Vec3 emission = {0, 0, 0};
+    Vec3 specular = {0.04f, 0.04f, 0.04f};
+    float shininess = 50.0f;
+    Vec3 skin_color = {0.6f, 0.2f, 0.1f};
+    bool wide_rim = false;
     float normal_scale = 1.0f;
-    float occlusion_strength = 1.0f;       ///< 0 .. 1
-    TextureSlot base_color_texture = {};   ///< sRGB, alpha = opacity
-    TextureSlot metal_rough_texture = {};  ///< g = roughness, b = metalness
-    TextureSlot normal_texture = {};       ///< tangent space, green up
-    TextureSlot occlusion_texture = {};    ///< r
-    TextureSlot emission_texture = {};     ///< sRGB
+    float occlusion_strength = 1.0f;
+    TextureSlot base_color_texture = {};
+    TextureSlot metal_rough_texture = {};
+    TextureSlot normal_texture = {};
+    TextureSlot occlusion_texture = {};
+    TextureSlot emission_texture = {};
 };
 
-/// Tells one Assets from every other of this run, even from one that lives where it did: the
-/// renderer keeps what it uploaded by it. Moves with the value; a copy is another.
+LIMN_FIELDS(Material) {
+    LIMN_FIELD(shading, .doc = "shading model", .values = "pbr blinn phong unlit skin");
+    LIMN_FIELD(alpha_mode, .doc = "how alpha is used", .values = "opaque mask blend");
+    LIMN_FIELD(double_sided, "back faces are drawn too");
+    LIMN_FIELD(alpha_cutoff, "with mask: lower alpha is discarded", "", 0, 1);
+    LIMN_FIELD(base_color, .doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true);
+    LIMN_FIELD(metalness, "0 dielectric, 1 metal; mirror fraction of unlit", "", 0, 1);
+    LIMN_FIELD(roughness, "perceptual roughness", "", 0, 1);
+    LIMN_FIELD(
+        emission, .doc = "emitted radiance", .unit = "W/(sr m^2)", .min = 0, .max = 1e6,
+        .color = true);
+    LIMN_FIELD(
+        specular, .doc = "specular color ks of blinn, phong and skin", .min = 0, .max = 1,
+        .color = true);
+    LIMN_FIELD(shininess, "specular exponent n of blinn, phong and skin", "", 1, 10000);
+    LIMN_FIELD(
+        skin_color, .doc = "rim color of skin, multiplied by the base color", .min = 0, .max = 1,
+        .color = true);
+    LIMN_FIELD(wide_rim, "skin: wide rim, 1 - (n.v)^2 instead of (1 - n.v)^2");
+    LIMN_FIELD(normal_scale, "strength of the normal map", "", 0, 10);
+    LIMN_FIELD(occlusion_strength, "strength of the occlusion map", "", 0, 1);
+    LIMN_FIELD(base_color_texture, "sRGB base color, alpha = opacity");
+    LIMN_FIELD(metal_rough_texture, "green = roughness, blue = metalness");
+    LIMN_FIELD(normal_texture, "tangent-space normals, green up");
+    LIMN_FIELD(occlusion_texture, "ambient occlusion in red");
+    LIMN_FIELD(emission_texture, "sRGB emission");
+}
+
+/// Unique ID of an Assets object within this run, even if another one reuses its address: the
+/// renderer keys uploaded resources by it. Moves with the value; a copy gets a new ID.
 class AssetsIdentity {
   public:
     AssetsIdentity() = default;
@@ -130,7 +172,7 @@ class AssetsIdentity {
         std::swap(value_, other.value_);
         return *this;
     }
-    /// Never 0; no two living values are equal.
+    /// Never 0; unique among living objects.
     [[nodiscard]] std::uint64_t value() const { return value_; }
 
   private:
@@ -141,7 +183,7 @@ class AssetsIdentity {
     std::uint64_t value_ = next();
 };
 
-/// Resource: everything loaded or made. Append only.
+/// Resource: all loaded or generated assets. Append only.
 struct Assets {
     std::vector<MeshData> meshes;
     std::vector<ImageData> images;
@@ -150,7 +192,7 @@ struct Assets {
     std::vector<SkinData> skins;
     std::vector<ClipData> clips;
     std::vector<PathData> paths;
-    std::uint64_t material_version = 1;  ///< raise after editing a material in place
+    std::uint64_t material_version = 1;  ///< increment after editing a material in place
     AssetsIdentity identity;
 };
 
@@ -160,102 +202,28 @@ struct MeshInstance {
     MaterialId material;
 };
 
-/// Beside a MeshInstance: moves every vertex along its normal (shade.inflate). Where vertices of
-/// one place have different normals the mesh comes apart there. Lights with shadow volumes that
-/// reach it get maps.
+LIMN_FIELDS(MeshInstance) {
+    LIMN_FIELD(mesh, "a mesh of the level, by name");
+    LIMN_FIELD(material, "a material of the level, by name");
+}
+
+/// With a MeshInstance: displaces every vertex along its normal (shade.inflate). Hard edges, where
+/// vertices share a position but not a normal, split open. Lights with shadow volumes that reach it
+/// use maps.
 struct Inflate {
-    float distance = 0.02f;  ///< in the mesh's own space [m]; negative: thinner
+    float distance = 0.02f;
 };
 
-/// What an inflated mesh stays within; `box` of no mesh stays empty.
+LIMN_FIELDS(Inflate) {
+    LIMN_FIELD(
+        distance, "displacement of every vertex along its normal; negative: thinner", "m", -1000,
+        1000);
+}
+
+/// Bounds of an inflated mesh; an empty `box` stays empty.
 [[nodiscard]] inline Bounds inflated(const Bounds& box, const Inflate& inflate) {
     const Vec3 more = is_empty(box) ? Vec3(0) : Vec3(std::abs(inflate.distance));
     return {box.min - more, box.max + more};
-}
-
-template <typename Visitor>
-void visit_fields(Inflate& inflate, Visitor&& visit) {
-    visit(
-        "distance", inflate.distance,
-        {.doc = "by which every vertex moves along its normal",
-         .unit = "m",
-         .min = -1000,
-         .max = 1000});
-}
-
-template <typename Visitor>
-void visit_fields(MeshInstance& instance, Visitor&& visit) {
-    visit("mesh", instance.mesh, {.doc = "a mesh of the level, by name"});
-    visit("material", instance.material, {.doc = "a material of the level, by name"});
-}
-
-template <typename Visitor>
-void visit_fields(TextureSlot& slot, Visitor&& visit) {
-    visit("image", slot.image, {.doc = "an image of the level, by name"});
-    visit(
-        "wrap_u", slot.wrap_u,
-        {.doc = "beyond the left and right edge", .values = "repeat mirror clamp"});
-    visit(
-        "wrap_v", slot.wrap_v,
-        {.doc = "beyond the upper and lower edge", .values = "repeat mirror clamp"});
-    visit("nearest", slot.nearest, {.doc = "no filtering when magnified"});
-    visit("uv_set", slot.uv_set, {.doc = "which texture coordinates", .min = 0, .max = 1});
-    visit("offset", slot.offset, {.doc = "of the texture coordinates"});
-    visit("scale", slot.scale, {.doc = "of the texture coordinates"});
-    visit(
-        "rotation", slot.rotation,
-        {.doc = "of the texture coordinates, counter-clockwise", .unit = "rad"});
-}
-
-template <typename Visitor>
-void visit_fields(Material& material, Visitor&& visit) {
-    visit(
-        "shading", material.shading,
-        {.doc = "shading model", .values = "pbr blinn phong unlit skin"});
-    visit(
-        "alpha_mode", material.alpha_mode,
-        {.doc = "what alpha means", .values = "opaque mask blend"});
-    visit("double_sided", material.double_sided, {.doc = "drawn from behind too"});
-    visit(
-        "alpha_cutoff", material.alpha_cutoff,
-        {.doc = "of mask: below is a hole", .min = 0, .max = 1});
-    visit(
-        "base_color", material.base_color,
-        {.doc = "linear RGB and opacity", .min = 0, .max = 1, .color = true});
-    visit(
-        "metalness", material.metalness,
-        {.doc = "0 dielectric, 1 metal; of unlit the share that mirrors", .min = 0, .max = 1});
-    visit("roughness", material.roughness, {.doc = "perceptual roughness", .min = 0, .max = 1});
-    visit(
-        "emission", material.emission,
-        {.doc = "radiance it gives off",
-         .unit = "W/(sr m^2)",
-         .min = 0,
-         .max = 1e6,
-         .color = true});
-    visit(
-        "specular", material.specular,
-        {.doc = "ks of blinn, phong and skin", .min = 0, .max = 1, .color = true});
-    visit(
-        "shininess", material.shininess,
-        {.doc = "n of blinn, phong and skin", .min = 1, .max = 10000});
-    visit(
-        "skin_color", material.skin_color,
-        {.doc = "of the rim of skin, times the base color", .min = 0, .max = 1, .color = true});
-    visit("wide_rim", material.wide_rim, {.doc = "skin: the rim reaches far into the face"});
-    visit(
-        "normal_scale", material.normal_scale,
-        {.doc = "strength of the normal map", .min = 0, .max = 10});
-    visit(
-        "occlusion_strength", material.occlusion_strength,
-        {.doc = "strength of the occlusion map", .min = 0, .max = 1});
-    visit("base_color_texture", material.base_color_texture, {.doc = "sRGB, alpha = opacity"});
-    visit(
-        "metal_rough_texture", material.metal_rough_texture,
-        {.doc = "green = roughness, blue = metalness"});
-    visit("normal_texture", material.normal_texture, {.doc = "tangent space, green up"});
-    visit("occlusion_texture", material.occlusion_texture, {.doc = "red"});
-    visit("emission_texture", material.emission_texture, {.doc = "sRGB"});
 }
 
 }  // namespace limn

@@ -4,29 +4,23 @@
 
 namespace limn {
 
-/// Water that moves two ways under a grating, drawn into an image before each picture
-/// (tex.combine): whatever is made of that image shows it. Textures repeat; where the grating's
-/// alpha is 0 it hides the water.
+/// Two scrolling copies of a water texture under a grating, rendered into an image before each
+/// frame (tex.combine); materials that use that image show it. Textures repeat; the grating covers
+/// the water where its alpha is 0.
 struct TextureCombine {
     ImageId water = {};
     ImageId grating = {};
-    ImageId target = {};          ///< another one; keeps its size and format
-    Vec2 speed = {0.05f, 0.05f};  ///< of one copy along u, of the other along v [1/s]
-    float gain = 0.5f;  ///< of the sum of both: 1 as the book has it, which may be as much as 2
+    ImageId target = {};  ///< rendered to; keeps its size and format
+    Vec2 speed = {0.05f, 0.05f};
+    float gain = 0.5f;
 };
 
-template <typename Visitor>
-void visit_fields(TextureCombine& combine, Visitor&& visit) {
-    visit("water", combine.water, {.doc = "moves two ways"});
-    visit("grating", combine.grating, {.doc = "lies over it where its alpha is 0"});
-    visit("target", combine.target, {.doc = "image that becomes both"});
-    visit(
-        "speed", combine.speed,
-        {.doc = "of one copy along u, of the other along v",
-         .unit = "1/s",
-         .min = -100,
-         .max = 100});
-    visit("gain", combine.gain, {.doc = "of the two copies' sum", .min = 0, .max = 2});
+LIMN_FIELDS(TextureCombine) {
+    LIMN_FIELD(water, "water texture, scrolled in two directions");
+    LIMN_FIELD(grating, "texture that covers the water where its alpha is 0");
+    LIMN_FIELD(target, "image to render to");
+    LIMN_FIELD(speed, "speed of one copy along u and of the other along v", "1/s", -100, 100);
+    LIMN_FIELD(gain, "factor on the sum of both copies", "", 0, 2);
 }
 
 }  // namespace limn

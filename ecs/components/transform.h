@@ -5,25 +5,32 @@
 
 namespace limn {
 
-/// Where an entity is, relative to its parent or, without one, to the world.
+/// Placement of an entity relative to its parent, or to the world if it has none.
 struct Transform {
-    Vec3 position = {0, 0, 0};     ///< [m]
-    Quat rotation = {1, 0, 0, 0};  ///< unit
-    Vec3 scale = {1, 1, 1};        ///< not 0
+    Vec3 position = {0, 0, 0};
+    Quat rotation = {1, 0, 0, 0};
+    Vec3 scale = {1, 1, 1};
 };
 
-/// world_from_local after the last step of the simulation; written by update_transforms alone.
+LIMN_FIELDS(Transform) {
+    LIMN_FIELD(position, "relative to the parent", "m");
+    LIMN_FIELD(rotation, "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees");
+    LIMN_FIELD(scale, "scale along each local axis, not 0");
+}
+
+/// world_from_local after the last simulation step; only update_transforms writes it.
 struct WorldTransform {
     Affine world;
 };
 
 /// world_from_local one simulation step earlier, equal to WorldTransform in the step of the spawn
-/// and after a Teleport: rendering interpolates between the two and takes the velocity from them.
+/// and after a Teleport. Rendering interpolates between the two and derives velocities from them.
 struct PreviousWorldTransform {
     Affine world = {{Vec4(0), Vec4(0), Vec4(0)}};  ///< all 0: no step has been taken yet
 };
 
-/// A copy of a prefab stands elsewhere and has no past: add_world_transforms gives it both anew.
+/// Not copied with a prefab, since an instance has another place and no history:
+/// add_world_transforms adds both.
 template <>
 struct ComponentTraits<WorldTransform> : DefaultTraits {
     static constexpr bool in_prefabs = false;
@@ -33,46 +40,35 @@ struct ComponentTraits<PreviousWorldTransform> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
 
-/// Tag: the entity jumped; its next step has no velocity. Removed by update_transforms.
+/// Tag: the entity was moved discontinuously, so the next step yields no velocity. Removed by
+/// update_transforms.
 struct Teleport {};
 
-/// Turns the entity about a fixed axis in its own space.
+/// Rotates the entity about a fixed axis in its local space.
 struct Spin {
     Vec3 axis = {0, 1, 0};
-    float speed = 0.5f;  ///< [rad/s]
+    float speed = 0.5f;
 };
 
-/// Moves the entity on a closed path about where it was placed: offset_i = amplitude_i
-/// sin(frequency_i t + phase_i).
+LIMN_FIELDS(Spin) {
+    LIMN_FIELD(axis, "rotation axis in local space");
+    LIMN_FIELD(speed, "angular speed", "rad/s", -100, 100);
+}
+
+/// Oscillates the entity about a rest position: offset_i = amplitude_i sin(frequency_i t +
+/// phase_i).
 struct Sway {
-    Vec3 center = {0, 0, 0};         ///< rest position, relative to the parent [m]
-    Vec3 amplitude = {0, 0.25f, 0};  ///< [m]
-    Vec3 frequency = {1, 1, 1};      ///< [rad/s]
-    Vec3 phase = {0, 0, 0};          ///< [rad]
+    Vec3 center = {0, 0, 0};
+    Vec3 amplitude = {0, 0.25f, 0};
+    Vec3 frequency = {1, 1, 1};
+    Vec3 phase = {0, 0, 0};
 };
 
-template <typename Visitor>
-void visit_fields(Transform& transform, Visitor&& visit) {
-    visit("position", transform.position, {.doc = "relative to the parent", .unit = "m"});
-    visit(
-        "rotation", transform.rotation,
-        {.doc = "unit quaternion x y z w, or Euler angles [yaw, pitch, roll] in degrees"});
-    visit("scale", transform.scale, {.doc = "along each local axis, not 0"});
-}
-
-template <typename Visitor>
-void visit_fields(Spin& spin, Visitor&& visit) {
-    visit("axis", spin.axis, {.doc = "axis of the rotation in local space"});
-    visit("speed", spin.speed, {.doc = "angular speed", .unit = "rad/s", .min = -100, .max = 100});
-}
-
-template <typename Visitor>
-void visit_fields(Sway& sway, Visitor&& visit) {
-    visit("center", sway.center, {.doc = "rest position", .unit = "m"});
-    visit("amplitude", sway.amplitude, {.doc = "reach along each axis", .unit = "m"});
-    visit(
-        "frequency", sway.frequency, {.doc = "angular frequency along each axis", .unit = "rad/s"});
-    visit("phase", sway.phase, {.doc = "phase along each axis", .unit = "rad"});
+LIMN_FIELDS(Sway) {
+    LIMN_FIELD(center, "rest position, relative to the parent", "m");
+    LIMN_FIELD(amplitude, "amplitude along each axis", "m");
+    LIMN_FIELD(frequency, "angular frequency along each axis", "rad/s");
+    LIMN_FIELD(phase, "phase along each axis", "rad");
 }
 
 }  // namespace limn

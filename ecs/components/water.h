@@ -5,42 +5,31 @@
 
 namespace limn {
 
-// A body of water: ocean, pool or puddle. Its rest surface is the plane y = 0 of the entity, of
-// which position and heading count; what moves it - a spectrum (ocean.h), waves of closed form
-// (water_waves.h), ripples (water_ripples.h) - stands beside it and adds up: the point at rest at
-// (x, 0, z) is displaced by the sum of theirs.
+// A body of water: ocean, pool or puddle. Its rest surface is the plane y = 0 of the entity; only
+// the entity's position and heading count. Spectral waves (ocean.h), closed-form waves
+// (water_waves.h) and ripples (water_ripples.h) are further components of the same entity: the rest
+// point (x, 0, z) is displaced by the sum of their displacements.
 
 struct Water {
-    Vec2 size = {0, 0};  ///< of the rectangle about the entity, along x and z [m]; 0: without end
-    float depth = 0;     ///< of the bottom below the surface [m]; 0: deep
+    Vec2 size = {0, 0};
+    float depth = 0;
     float refractive_index = 1.333f;
-    Vec3 absorption = {0.35f, 0.065f, 0.035f};   ///< of pure water and a little dust [1/m]
-    Vec3 scattering = {0.004f, 0.009f, 0.010f};  ///< back to the eye [1/m]
+    Vec3 absorption = {0.35f, 0.065f, 0.035f};
+    Vec3 scattering = {0.004f, 0.009f, 0.010f};
 };
 
-/// Whether (x, z), in the water's own space, is over the water.
+LIMN_FIELDS(Water) {
+    LIMN_FIELD(size, "extent along local x and z; 0: unbounded", "m", 0, 1e6);
+    LIMN_FIELD(depth, "depth of the bottom; 0: infinitely deep", "m", 0, 12000);
+    LIMN_FIELD(refractive_index, "index of refraction; water 1.333", "", 1.0001, 4);
+    LIMN_FIELD(absorption, "absorption coefficient", "1/m", 0, 1000);
+    LIMN_FIELD(scattering, "backscattering coefficient", "1/m", 0, 1000);
+}
+
+/// Whether (x, z), in the water's local space, is within its rectangle.
 [[nodiscard]] inline bool is_inside(const Water& water, const Vec2& at) {
     return (water.size.x <= 0 || std::abs(at.x) <= 0.5f * water.size.x)
            && (water.size.y <= 0 || std::abs(at.y) <= 0.5f * water.size.y);
-}
-
-template <typename Visitor>
-void visit_fields(Water& water, Visitor&& visit) {
-    visit(
-        "size", water.size,
-        {.doc = "along its x and z; 0: without end", .unit = "m", .min = 0, .max = 1e6});
-    visit(
-        "depth", water.depth,
-        {.doc = "of the bottom; 0: deep", .unit = "m", .min = 0, .max = 12000});
-    visit(
-        "refractive_index", water.refractive_index,
-        {.doc = "water 1.333", .min = 1.0001, .max = 4});
-    visit(
-        "absorption", water.absorption,
-        {.doc = "light that is lost on a meter of way", .unit = "1/m", .min = 0, .max = 1000});
-    visit(
-        "scattering", water.scattering,
-        {.doc = "light that comes back from a meter", .unit = "1/m", .min = 0, .max = 1000});
 }
 
 }  // namespace limn

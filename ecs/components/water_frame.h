@@ -5,25 +5,25 @@
 
 namespace limn {
 
-/// Where a body of water lies: its own space has the rest surface at y = 0 and is turned about the
-/// vertical alone.
+/// Local frame of a body of water: the rest surface is at y = 0, and the only rotation is about the
+/// vertical axis.
 struct WaterFrame {
     Vec3 origin = {0, 0, 0};  ///< [m]
-    Vec2 along_x = {1, 0};    ///< the water's x axis as (x, z) of the world, unit
+    Vec2 along_x = {1, 0};    ///< the water's x axis as world (x, z), unit
 
-    /// (x, z) of the water's own space, height above rest between them.
-    [[nodiscard]] Vec3 local(const Vec3& world) const { return turned_in(world - origin); }
-    [[nodiscard]] Vec3 world(const Vec3& local) const { return origin + turned_out(local); }
-    /// The same of directions.
-    [[nodiscard]] Vec3 turned_in(const Vec3& v) const {
+    /// Position in the water's local space; y is the height above rest.
+    [[nodiscard]] Vec3 local(const Vec3& world) const { return direction_to_local(world - origin); }
+    [[nodiscard]] Vec3 world(const Vec3& local) const { return origin + direction_to_world(local); }
+    /// The same for directions.
+    [[nodiscard]] Vec3 direction_to_local(const Vec3& v) const {
         return {along_x.x * v.x + along_x.y * v.z, v.y, along_x.x * v.z - along_x.y * v.x};
     }
-    [[nodiscard]] Vec3 turned_out(const Vec3& v) const {
+    [[nodiscard]] Vec3 direction_to_world(const Vec3& v) const {
         return {along_x.x * v.x - along_x.y * v.z, v.y, along_x.y * v.x + along_x.x * v.z};
     }
 };
 
-/// Of a Water at this place. One that stands upright has no heading: 0.
+/// Frame of a Water with this world matrix. If its x axis is vertical, the heading is 0.
 [[nodiscard]] inline WaterFrame water_frame(const Affine& world) {
     const Vec2 x(world.row[0].x, world.row[2].x);
     const float length = std::sqrt(x.x * x.x + x.y * x.y);

@@ -7,66 +7,54 @@
 
 namespace limn {
 
-/// How much light the surface mirrors, seen from above (ecs/base/optics.h). From below, where there
-/// is total reflection, it is always exact.
+/// Fresnel reflectance of the surface seen from above (ecs/base/optics.h). From below, with total
+/// internal reflection, it is always exact.
 enum class WaterFresnel : std::uint8_t {
     Exact,    ///< the Fresnel equations
-    Schlick,  ///< within 0.06 of them
-    Angle,    ///< after the book: even up to 45 degrees, then a parabola; too bright by up to 0.27
+    Schlick,  ///< within 0.06 of exact
+    Angle,    ///< after the book: constant up to 45 degrees, then a parabola; up to 0.27 too bright
 };
 
-/// What the surface mirrors, seen from above.
+/// Source of reflections, seen from above.
 enum class WaterReflection : std::uint8_t {
-    Picture,      ///< what the picture itself shows, else the surroundings
-    Environment,  ///< the surroundings alone
-    Planar,       ///< the scene drawn once more, from a camera mirrored in the surface at rest
+    ScreenSpace,  ///< screen space, with the environment as fallback
+    Environment,  ///< the environment only
+    Planar,       ///< the scene rendered again by a camera mirrored at the rest surface
 };
 
-/// What is seen through the surface from above.
+/// Source of refraction, seen from above.
 enum class WaterRefraction : std::uint8_t {
-    Traced,   ///< what the picture shows where bent rays go
-    Shifted,  ///< after the book: the picture, shifted as normals lean
-    Floor,    ///< after the book: floor_map where bent rays meet the bottom, lit from above
+    Traced,   ///< refracted rays traced in screen space
+    Shifted,  ///< after the book: the scene image offset by the surface normal
+    Floor,    ///< after the book: floor_map where refracted rays hit the bottom, lit from above
 };
 
-/// Beside a Water: ways to draw it that are not the usual ones.
+/// With a Water: alternatives to the default shading.
 struct WaterLook {
     WaterFresnel fresnel = WaterFresnel::Exact;
-    WaterReflection reflection = WaterReflection::Picture;
+    WaterReflection reflection = WaterReflection::ScreenSpace;
     WaterRefraction refraction = WaterRefraction::Traced;
-    float distortion = 1;    ///< of Planar and Shifted: by waves, 1: as they bend it; 0: as if flat
-    float map_scale = 0.5f;  ///< of Planar: side of its picture over that of the whole
-    ImageId floor_map{};     ///< of Floor, where depth > 0; all waters share one
-    float floor_tile = 2;    ///< side of a copy of it [m]
+    float distortion = 1;
+    float map_scale = 0.5f;
+    ImageId floor_map{};  ///< for Floor, where depth > 0; all waters share one
+    float floor_tile = 2;
 };
 
-template <typename Visitor>
-void visit_fields(WaterLook& look, Visitor&& visit) {
-    visit(
-        "fresnel", look.fresnel,
-        {.doc = "how much it mirrors: exactly, or by a cheap form",
-         .values = "exact schlick angle"});
-    visit(
-        "reflection", look.reflection,
-        {.doc = "what it mirrors: the picture, the surroundings alone, or the scene drawn again",
-         .values = "picture environment planar"});
-    visit(
-        "refraction", look.refraction,
-        {.doc =
-             "what is seen through it: along bent rays, the picture shifted, or a map of the floor",
-         .values = "traced shifted floor"});
-    visit(
-        "distortion", look.distortion,
-        {.doc = "of planar reflections and shifts by waves, 1: as they bend them",
-         .min = 0,
-         .max = 4});
-    visit(
-        "map_scale", look.map_scale,
-        {.doc = "side of a planar reflection over that of the picture", .min = 0.1, .max = 1});
-    visit("floor_map", look.floor_map, {.doc = "color of the bottom"});
-    visit(
-        "floor_tile", look.floor_tile,
-        {.doc = "side of a copy of the floor's map", .unit = "m", .min = 0.01, .max = 1e4});
+LIMN_FIELDS(WaterLook) {
+    LIMN_FIELD(
+        fresnel, .doc = "Fresnel reflectance: exact, or an approximation",
+        .values = "exact schlick angle");
+    LIMN_FIELD(
+        reflection, .doc = "source of reflections: screen space, environment, or a mirrored camera",
+        .values = "screen_space environment planar", .renamed = "picture=screen_space");
+    LIMN_FIELD(
+        refraction, .doc = "source of refraction: screen-space rays, offset image, or floor map",
+        .values = "traced shifted floor");
+    LIMN_FIELD(distortion, "wave distortion of planar and shifted; 1: physical, 0: flat", "", 0, 4);
+    LIMN_FIELD(
+        map_scale, "resolution of planar as a fraction of the frame's, per side", "", 0.1, 1);
+    LIMN_FIELD(floor_map, "color map of the bottom");
+    LIMN_FIELD(floor_tile, "side length of a tile of the floor map", "m", 0.01, 1e4);
 }
 
 }  // namespace limn

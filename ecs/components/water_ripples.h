@@ -9,103 +9,160 @@
 
 namespace limn {
 
-// Ripples of a body of water: a height field that obeys the wave equation, moved by impulses and by
-// what touches the water.
+// Ripples of a body of water: a height field that obeys the wave equation, driven by impulses and
+// by objects in the water.
 
 enum class RippleBorder : std::uint8_t {
-    Reflecting,  ///< walls: the water stays in
-    Absorbing,   ///< open: waves leave, none come back
+    Reflecting,  ///< walls
+    Absorbing,   ///< open water: waves leave without reflection
 };
 
-/// Beside a Water: simulates ripples on a grid over its rectangle, or over `window`.
+/// With a Water: simulates ripples on a grid over its rectangle, or over `window`.
 struct WaterRipples {
-    float cell = 0.05f;  ///< side of a square of the grid [m]; grows where there would be too many
-    float speed = 1.2f;  ///< of the waves [m/s]; at most half of a cell a sub-step
-    float damping = 0.4f;  ///< waves fade by exp(-damping t) [1/s]
+    float cell = 0.05f;  ///< cell size of the grid [m]; raised if there would be too many cells
+    float speed = 1.2f;  ///< wave speed [m/s]; at most half a cell per substep
+    float damping = 0.4f;
     RippleBorder border = RippleBorder::Reflecting;
-    Vec2 window = {0, 0};       ///< of water without end: what part about the entity ripples [m]
-    float rain = 0;             ///< drops that fall on it [1/(m^2 s)]
-    float rain_height = 0.01f;  ///< of the crest that a drop throws up [m]
+    Vec2 window = {0, 0};
+    float rain = 0;
+    float rain_height = 0.01f;
 };
 
-/// Something falls in, or is pulled out: pushes the water down in a disc and up around it, so that
-/// none is made or lost.
+LIMN_FIELDS(WaterRipples) {
+    LIMN_FIELD(cell, "cell size of the grid", "m", 0.002, 100);
+    LIMN_FIELD(speed, "wave speed", "m/s", 0, 1000);
+    LIMN_FIELD(damping, "decay rate of waves", "1/s", 0, 100);
+    LIMN_FIELD(border, .doc = "reflecting walls, or open water", .values = "reflecting absorbing");
+    LIMN_FIELD(window, "simulated area of unbounded water", "m", 0, 10000);
+    LIMN_FIELD(rain, "rain drops per area and time", "1/(m^2 s)", 0, 10000);
+    LIMN_FIELD(rain_height, "crest height raised by a drop", "m", 0, 1);
+}
+
+/// An impact, or its reverse: pushes the water down in a disc and up around it, conserving volume.
 struct RippleImpulse {
-    Vec2 center = {0, 0};   ///< in the water's own space, x and z [m]
-    float radius = 0.2f;    ///< of the whole disturbance [m], > 0
-    float height = -0.05f;  ///< of the middle [m]; negative: down
+    Vec2 center = {0, 0};
+    float radius = 0.2f;
+    float height = -0.05f;
 };
 
-/// Two cells, by their places in the arrays: a neighbor's share in what happens to the first.
+LIMN_FIELDS(RippleImpulse) {
+    LIMN_FIELD(center, "center, x and z in the water's local space", "m");
+    LIMN_FIELD(radius, "radius of the whole disturbance", "m", 0, 1000);
+    LIMN_FIELD(height, "height at the center; negative: down", "m", -100, 100);
+}
+
+/// Weighted contribution of a neighbor to a cell, both given as array indices.
 struct RippleLink {
     std::uint32_t at = 0;
     std::uint32_t other = 0;
     float weight = 0;
 };
 
-/// Beside a WaterRipples, made and stepped by the systems. Rows run along x, one after another
-/// along z; around the grid lies a border of one cell, which is no water.
+/// With a WaterRipples: the simulation state, created and stepped by the systems. Rows run along x
+/// and are stacked along z, with a border of one cell, which is not water, around the grid.
 struct RippleState {
-    IVec2 cells = {0, 0};       ///< of the grid, without its border
-    std::int32_t stride = 0;    ///< floats from row to row
-    float cell = 0;             ///< side of a square [m]
-    std::int32_t substeps = 0;  ///< in a step
-    float substep = 0;          ///< [s]
+    IVec2 cells = {0, 0};
+    std::int32_t stride = 0;
+    float cell = 0;
+    std::int32_t substeps = 0;
+    float substep = 0;
     std::vector<float> height;  ///< above rest, (cells.y + 2) * stride [m]
-    std::vector<float> before;  ///< one sub-step earlier
-    std::vector<float> body;    ///< what bodies under water make of it; empty where there are none
-    std::vector<RippleImpulse> impulses;  ///< of the next step; others add to it
-    double level = 0;                     ///< mean height that bodies and walls make [m]
-    std::uint32_t steps = 0;              ///< since it was made
-    std::uint32_t dropped = 0;            ///< impulses that were too many, since it was made
-    std::int32_t wet = 0;                 ///< cells that are no wall
+    std::vector<float> previous;
+    std::vector<float> body;  ///< height due to submerged bodies [m]; empty if there are none
+    std::vector<RippleImpulse> impulses;  ///< queue for the next step; others append
+    double level = 0;
+    std::uint32_t steps = 0;
+    std::uint32_t dropped = 0;
+    std::int32_t wet = 0;
 
-    // What stands in it; all empty where nothing does.
+    // Walls in the water; all empty if there are none.
     std::vector<PlacedWall> walls;
-    RippleBorder wall_border = RippleBorder::Reflecting;  ///< that `faces` are made for
-    std::vector<std::uint8_t> dry;   ///< 1 of a cell that is wall, a byte for each height
-    std::vector<RippleLink> faces;   ///< what walls change of the Laplacian, row by row
-    std::vector<std::uint32_t> row;  ///< the first of `faces` of each row, and their number
-    std::vector<RippleLink> rims;    ///< cells of walls repeat what is before them
-    double walled = 0;               ///< what walls have displaced since it was made [m^3]
+    RippleBorder wall_border = RippleBorder::Reflecting;
+    std::vector<std::uint8_t> dry;       ///< 1 in wall cells; one byte per height
+    std::vector<RippleLink> faces;       ///< corrections of the Laplacian at walls, row by row
+    std::vector<std::uint32_t> row;      ///< start of each row in `faces`, then their number
+    std::vector<RippleLink> wall_cells;  ///< wall cells that copy the water next to them
+    double wall_volume = 0;
 
-    /// Place of cell (x, z) in the arrays; -1 and `cells` are the border.
+    /// Array index of cell (x, z); -1 and `cells` are the border.
     [[nodiscard]] std::size_t at(int x, int z) const {
         return static_cast<std::size_t>(z + 1) * static_cast<std::size_t>(stride)
                + static_cast<std::size_t>(x + 1);
     }
-    /// Of the grid, which the water's own origin is the middle of [m].
+    /// Extent of the grid, which is centered on the water's local origin [m].
     [[nodiscard]] Vec2 size() const { return cell * Vec2(cells); }
 };
+
+LIMN_FIELDS(RippleState) {
+    LIMN_FIELD(cells, "grid size, without its border");
+    LIMN_FIELD(stride, "stride of rows in floats");
+    LIMN_FIELD(cell, "cell size", "m");
+    LIMN_FIELD(substeps, "substeps per step");
+    LIMN_FIELD(substep, "length of a substep", "s");
+    LIMN_FIELD(height, "heights above rest", "m");
+    LIMN_FIELD(
+        previous, .doc = "heights of the previous substep", .unit = "m", .renamed = "before");
+    LIMN_FIELD(body, "height due to submerged bodies", "m");
+    LIMN_FIELD(impulses, "impulses for the next step");
+    LIMN_FIELD(level, "mean height due to bodies and walls", "m");
+    LIMN_FIELD(steps, "steps since creation");
+    LIMN_FIELD(dropped, "impulses dropped over budget");
+    LIMN_FIELD(wet, "number of cells outside walls");
+    LIMN_FIELD(walls, "walls in the water");
+    LIMN_FIELD(
+        wall_border, .doc = "border for which the wall corrections were built",
+        .values = "reflecting absorbing");
+    LIMN_FIELD(dry, "1 in wall cells");
+    LIMN_FIELD(wall_volume, .doc = "volume displaced by walls", .unit = "m^3", .renamed = "walled");
+}
 
 enum class TouchShape : std::uint8_t {
     Ball,
     Box,
-    Mesh,  ///< what its mesh is, joint by joint where a pose moves it; of `half` it
-           ///< has nothing, but what is Floating beside it floats as a box of that
+    Mesh,  ///< ellipsoids fitted to the mesh, per joint if it is skinned; `half` is used only as
+           ///< the box of a Floating on the same entity
 };
 
-/// An entity that pushes water aside where it is in it.
+/// An entity that displaces water where it is submerged.
 struct WaterTouch {
     TouchShape shape = TouchShape::Ball;
-    Vec3 half = {0.25f, 0.25f, 0.25f};  ///< half extents in its own space; of a ball x [m]
-    Vec3 offset = {0, 0, 0};            ///< of its middle in its own space [m]
+    Vec3 half = {0.25f, 0.25f, 0.25f};
+    Vec3 offset = {0, 0, 0};
 };
 
-/// An ellipsoid of a mesh that touches the water, in the mesh's space at rest.
+LIMN_FIELDS(WaterTouch) {
+    LIMN_FIELD(shape, .doc = "shape that displaces water", .values = "ball box mesh");
+    LIMN_FIELD(half, "half extents in local space; a ball uses x", "m", 0.001, 10000);
+    LIMN_FIELD(offset, "offset of its center in local space", "m");
+}
+
+/// One ellipsoid that approximates part of a mesh, in the undeformed mesh's space.
 struct TouchPart {
-    std::int32_t joint = -1;  ///< of the skin, that moves it; -1: none
-    Vec3 center = {0, 0, 0};  ///< [m]
-    Vec3 half = {0, 0, 0};    ///< [m]
+    std::int32_t joint = -1;
+    Vec3 center = {0, 0, 0};
+    Vec3 half = {0, 0, 0};
 };
 
-/// Beside a WaterTouch of a mesh: follows from it.
+LIMN_FIELDS(TouchPart) {
+    LIMN_FIELD(joint, "joint of the skin that moves it; -1: none");
+    LIMN_FIELD(center, "center in the undeformed mesh's space", "m");
+    LIMN_FIELD(half, "half extents of the ellipsoid", "m");
+}
+
+/// With a WaterTouch of shape Mesh: derived from the mesh.
 struct TouchParts {
     std::vector<TouchPart> parts;
-    float fill = 1;          ///< volume of the mesh over that of the ellipsoids
-    std::int32_t mesh = -1;  ///< whose they are: its index
-    std::int32_t skin = -1;  ///< by which: its index, -1: none
+    float fill = 1;
+    std::int32_t mesh = -1;
+    std::int32_t skin = -1;
 };
+
+LIMN_FIELDS(TouchParts) {
+    LIMN_FIELD(parts, "ellipsoids");
+    LIMN_FIELD(fill, "volume of the mesh divided by that of the ellipsoids");
+    LIMN_FIELD(mesh, "index of the mesh they were made from", "", -1);
+    LIMN_FIELD(skin, "index of its skin; -1: none", "", -1);
+}
 
 template <>
 struct ComponentTraits<TouchParts> : DefaultTraits {
@@ -114,94 +171,10 @@ struct ComponentTraits<TouchParts> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
 
-/// A pool of a prefab begins at rest.
+/// Instances of a prefab start at rest.
 template <>
 struct ComponentTraits<RippleState> : DefaultTraits {
     static constexpr bool in_prefabs = false;
 };
-
-template <typename Visitor>
-void visit_fields(WaterRipples& ripples, Visitor&& visit) {
-    visit(
-        "cell", ripples.cell,
-        {.doc = "side of a square of the grid", .unit = "m", .min = 0.002, .max = 100});
-    visit("speed", ripples.speed, {.doc = "of the waves", .unit = "m/s", .min = 0, .max = 1000});
-    visit(
-        "damping", ripples.damping,
-        {.doc = "how fast they fade", .unit = "1/s", .min = 0, .max = 100});
-    visit(
-        "border", ripples.border,
-        {.doc = "walls, or open water", .values = "reflecting absorbing"});
-    visit(
-        "window", ripples.window,
-        {.doc = "part that ripples of water without end", .unit = "m", .min = 0, .max = 10000});
-    visit(
-        "rain", ripples.rain,
-        {.doc = "drops that fall on it", .unit = "1/(m^2 s)", .min = 0, .max = 10000});
-    visit(
-        "rain_height", ripples.rain_height,
-        {.doc = "of the crest of a drop", .unit = "m", .min = 0, .max = 1});
-}
-
-template <typename Visitor>
-void visit_fields(RippleImpulse& impulse, Visitor&& visit) {
-    visit("center", impulse.center, {.doc = "x and z in the water's own space", .unit = "m"});
-    visit(
-        "radius", impulse.radius,
-        {.doc = "of the whole disturbance", .unit = "m", .min = 0, .max = 1000});
-    visit(
-        "height", impulse.height,
-        {.doc = "of the middle; negative: down", .unit = "m", .min = -100, .max = 100});
-}
-
-template <typename Visitor>
-void visit_fields(RippleState& state, Visitor&& visit) {
-    visit("cells", state.cells, {.doc = "of the grid"});
-    visit("stride", state.stride, {.doc = "floats from row to row"});
-    visit("cell", state.cell, {.doc = "side of a square", .unit = "m"});
-    visit("substeps", state.substeps, {.doc = "in a step"});
-    visit("substep", state.substep, {.doc = "how long each is", .unit = "s"});
-    visit("height", state.height, {.doc = "above rest", .unit = "m"});
-    visit("before", state.before, {.doc = "one sub-step earlier", .unit = "m"});
-    visit("body", state.body, {.doc = "what bodies under water make of it", .unit = "m"});
-    visit("impulses", state.impulses, {.doc = "of the next step"});
-    visit("level", state.level, {.doc = "mean height that bodies and walls make", .unit = "m"});
-    visit("steps", state.steps, {.doc = "since it was made"});
-    visit("dropped", state.dropped, {.doc = "impulses that were too many"});
-    visit("wet", state.wet, {.doc = "cells that are no wall"});
-    visit("walls", state.walls, {.doc = "that stand in it"});
-    visit(
-        "wall_border", state.wall_border,
-        {.doc = "that the faces are made for", .values = "reflecting absorbing"});
-    visit("dry", state.dry, {.doc = "1 of cells that are wall"});
-    visit("walled", state.walled, {.doc = "what walls have displaced", .unit = "m^3"});
-}
-
-template <typename Visitor>
-void visit_fields(TouchPart& part, Visitor&& visit) {
-    visit("joint", part.joint, {.doc = "of the skin, that moves it; -1: none"});
-    visit("center", part.center, {.doc = "in the mesh's space at rest", .unit = "m"});
-    visit("half", part.half, {.doc = "half extents of the ellipsoid", .unit = "m"});
-}
-
-template <typename Visitor>
-void visit_fields(TouchParts& parts, Visitor&& visit) {
-    visit("parts", parts.parts, {.doc = "the ellipsoids"});
-    visit("fill", parts.fill, {.doc = "volume of the mesh over theirs"});
-    visit("mesh", parts.mesh, {.doc = "whose they are: its index", .min = -1});
-    visit("skin", parts.skin, {.doc = "by which: its index, -1: none", .min = -1});
-}
-
-template <typename Visitor>
-void visit_fields(WaterTouch& touch, Visitor&& visit) {
-    visit("shape", touch.shape, {.doc = "what pushes the water aside", .values = "ball box mesh"});
-    visit(
-        "half", touch.half,
-        {.doc = "half extents in its own space; of a ball x",
-         .unit = "m",
-         .min = 0.001,
-         .max = 10000});
-    visit("offset", touch.offset, {.doc = "of its middle in its own space", .unit = "m"});
-}
 
 }  // namespace limn

@@ -8,71 +8,58 @@
 
 namespace limn {
 
-// Where water sprays: drops to be, as data. The systems say each step where new ones begin and how
-// fast; who draws and moves them takes them from here.
+// Spray emission. Each step the systems write the start positions and velocities of new drops;
+// whoever moves and draws drops reads them here.
 
-/// Beside a Water with WaterWaves: drops fly from crests that are about to break.
+/// With a Water that has WaterWaves: emits drops from breaking crests.
 struct SpraySource {
-    float steepness = 0.1f;  ///< height over length beyond which a wave breaks; 1/pi: the cusps
-    float rate = 300.0f;     ///< drops of each wave that breaks [1/s]
-    float spread = 0.2f;     ///< of their speed, standard deviation over the mean
-    float angle = 0.3f;      ///< of their directions, to all sides [rad]
-    Vec2 window = {60, 60};  ///< of water without end: about its entity [m]
+    float steepness = 0.1f;
+    float rate = 300.0f;
+    float spread = 0.2f;
+    float angle = 0.3f;
+    Vec2 window = {60, 60};
 };
 
-/// An entity that waves run against: a point of a wall.
+LIMN_FIELDS(SpraySource) {
+    LIMN_FIELD(steepness, "height / length above which a wave breaks", "", 0, 1);
+    LIMN_FIELD(rate, "drops per breaking wave and second", "1/s", 0, 1e6);
+    LIMN_FIELD(spread, "variation of speeds: standard deviation / mean", "", 0, 1);
+    LIMN_FIELD(angle, "largest deviation of directions", "rad", 0, 1.5);
+    LIMN_FIELD(window, "emitting area of unbounded water", "m", 0, 1e5);
+}
+
+/// A point of a wall that waves hit.
 struct SprayObstacle {
-    Vec3 normal = {0, 0, 1};    ///< of the wall in its own space
-    float rate = 400.0f;        ///< drops while a crest is at it [1/s]
-    float spread = 0.2f;        ///< of their speed
-    float angle = 0.43633231f;  ///< half angle of their cone [rad]; 25 degrees
+    Vec3 normal = {0, 0, 1};
+    float rate = 400.0f;
+    float spread = 0.2f;
+    float angle = 0.43633231f;
 };
 
-/// A drop that begins now.
+LIMN_FIELDS(SprayObstacle) {
+    LIMN_FIELD(normal, "wall normal in local space");
+    LIMN_FIELD(rate, "drops per second while a crest hits it", "1/s", 0, 1e6);
+    LIMN_FIELD(spread, "variation of speeds: standard deviation / mean", "", 0, 1);
+    LIMN_FIELD(angle, "half angle of the cone of directions", "rad", 0, 1.5);
+}
+
+/// A drop emitted in this step.
 struct SprayDrop {
-    Vec3 position = {0, 0, 0};  ///< in the world [m]
+    Vec3 position = {0, 0, 0};  ///< world space [m]
     Vec3 velocity = {0, 0, 0};  ///< [m/s]
 };
 
-/// Beside a SpraySource or a SprayObstacle, made anew each step.
+/// With a SpraySource or a SprayObstacle, rebuilt each step.
 struct SprayDrops {
     std::vector<SprayDrop> drops{};
 };
 
-/// Follows from the waves and the number of the step.
+/// Derived from the waves and the frame number.
 template <>
 struct ComponentTraits<SprayDrops> : DefaultTraits {
     static constexpr bool saved = false;
     static constexpr bool hashed = false;
     static constexpr bool in_prefabs = false;
 };
-
-template <typename Visitor>
-void visit_fields(SpraySource& source, Visitor&& visit) {
-    visit(
-        "steepness", source.steepness,
-        {.doc = "height over length beyond which a wave breaks", .min = 0, .max = 1});
-    visit(
-        "rate", source.rate,
-        {.doc = "drops of a wave that breaks", .unit = "1/s", .min = 0, .max = 1e6});
-    visit("spread", source.spread, {.doc = "of their speed", .min = 0, .max = 1});
-    visit(
-        "angle", source.angle, {.doc = "of their directions", .unit = "rad", .min = 0, .max = 1.5});
-    visit(
-        "window", source.window,
-        {.doc = "part of water without end", .unit = "m", .min = 0, .max = 1e5});
-}
-
-template <typename Visitor>
-void visit_fields(SprayObstacle& obstacle, Visitor&& visit) {
-    visit("normal", obstacle.normal, {.doc = "of the wall in its own space"});
-    visit(
-        "rate", obstacle.rate,
-        {.doc = "drops while a crest is at it", .unit = "1/s", .min = 0, .max = 1e6});
-    visit("spread", obstacle.spread, {.doc = "of their speed", .min = 0, .max = 1});
-    visit(
-        "angle", obstacle.angle,
-        {.doc = "half angle of their cone", .unit = "rad", .min = 0, .max = 1.5});
-}
 
 }  // namespace limn

@@ -10,45 +10,45 @@ namespace limn {
 
 enum class WallShape : std::uint8_t {
     Box,
-    Cylinder,  ///< about its own y axis
+    Cylinder,  ///< about its local y axis
     Ball,      ///< or an ellipsoid
 };
 
-/// An entity that stands in the water: a column, a step, an island. Where it cuts the rest surface
-/// there is no water, and ripples run back from it. Where it moves to, water makes room.
+/// A solid obstacle in the water: a column, a step, an island. Its section with the rest surface
+/// contains no water and reflects ripples. As it moves, it displaces water.
 struct WaterWall {
     WallShape shape = WallShape::Box;
-    Vec3 half = {0.5f, 0.5f, 0.5f};  ///< half extents in its own space [m]
-    Vec3 offset = {0, 0, 0};         ///< of its middle in its own space [m]
+    Vec3 half = {0.5f, 0.5f, 0.5f};
+    Vec3 offset = {0, 0, 0};
 };
 
-/// A wall as a body of water has it.
+LIMN_FIELDS(WaterWall) {
+    LIMN_FIELD(shape, .doc = "shape of the obstacle", .values = "box cylinder ball");
+    LIMN_FIELD(half, "half extents in local space", "m", 0.001, 10000);
+    LIMN_FIELD(offset, "offset of its center in local space", "m");
+}
+
+/// A wall in the local space of a body of water.
 struct PlacedWall {
     WallShape shape = WallShape::Box;
     Affine shape_from_water;  ///< the shape fills -1 .. 1
-    Vec2 center = {0, 0};     ///< in the water's own space, x and z [m]
-    Vec2 reach = {0, 0};      ///< as far as it is from there along x and z [m]
-    float volume = 0;         ///< below the rest surface and above the bottom [m^3]
+    Vec2 center = {0, 0};     ///< in the water's local space, x and z [m]
+    Vec2 reach = {0, 0};      ///< half extents along the water's x and z [m]
+    float volume = 0;         ///< between the rest surface and the bottom [m^3]
 };
 
 template <typename Visitor>
-void visit_fields(WaterWall& wall, Visitor&& visit) {
-    visit("shape", wall.shape, {.doc = "what keeps the water out", .values = "box cylinder ball"});
-    visit(
-        "half", wall.half,
-        {.doc = "half extents in its own space", .unit = "m", .min = 0.001, .max = 10000});
-    visit("offset", wall.offset, {.doc = "of its middle in its own space", .unit = "m"});
-}
-
-template <typename Visitor>
 void visit_fields(PlacedWall& wall, Visitor&& visit) {
-    visit("shape", wall.shape, {.doc = "of the wall", .values = "box cylinder ball"});
-    visit("x", wall.shape_from_water.row[0], {.doc = "of the shape, from the water's own space"});
-    visit("y", wall.shape_from_water.row[1], {.doc = "the same"});
-    visit("z", wall.shape_from_water.row[2], {.doc = "the same"});
-    visit("center", wall.center, {.doc = "x and z in the water's own space", .unit = "m"});
-    visit("reach", wall.reach, {.doc = "from there along x and z", .unit = "m"});
-    visit("volume", wall.volume, {.doc = "under water", .unit = "m^3"});
+    visit("shape", wall.shape, {.doc = "shape of the wall", .values = "box cylinder ball"});
+    visit(
+        "x", wall.shape_from_water.row[0],
+        {.doc = "row x of the matrix from the water's space to -1 .. 1"});
+    visit("y", wall.shape_from_water.row[1], {.doc = "row y of that matrix"});
+    visit("z", wall.shape_from_water.row[2], {.doc = "row z of that matrix"});
+    visit(
+        "center", wall.center, {.doc = "center, x and z in the water's local space", .unit = "m"});
+    visit("reach", wall.reach, {.doc = "half extents along the water's x and z", .unit = "m"});
+    visit("volume", wall.volume, {.doc = "submerged volume", .unit = "m^3"});
 }
 
 }  // namespace limn

@@ -7,30 +7,45 @@
 
 namespace limn {
 
-/// Resource: wind and rain of the whole level. Sails feel the wind; every Ocean has its waves from
-/// it, every WaterRipples its drops, and the lens, if there is LensRain, gets wet.
+/// Resource: wind and rain of the whole level. The wind drives sails and every Ocean; the rain
+/// feeds every WaterRipples and, if present, LensRain. The player's changes are in WeatherState.
 struct Weather {
-    float wind_speed = 7.0f;      ///< 10 m above the water [m/s], 0 .. 60
-    float wind_direction = 0.0f;  ///< where to, from +x toward +z [rad]
-    float rain = 0.0f;            ///< 0 = none .. 1 = a downpour
+    float wind_speed = 7.0f;
+    float wind_direction = 0.0f;
+    float rain = 0.0f;
 
-    /// [m/s]
+    /// Wind velocity [m/s].
     [[nodiscard]] Vec3 wind() const {
         return wind_speed * Vec3(std::cos(wind_direction), 0, std::sin(wind_direction));
     }
 };
 
-inline constexpr float kStrongestWind = 20.0f;  ///< that keys reach [m/s]
-
-template <typename Visitor>
-void visit_fields(Weather& weather, Visitor&& visit) {
-    visit(
-        "wind_speed", weather.wind_speed,
-        {.doc = "10 m above the water", .unit = "m/s", .min = 0, .max = 60});
-    visit(
-        "wind_direction", weather.wind_direction,
-        {.doc = "where to, from +x toward +z", .unit = "rad", .min = -7, .max = 7});
-    visit("rain", weather.rain, {.doc = "0 = none, 1 = a downpour", .min = 0, .max = 1});
+LIMN_FIELDS(Weather) {
+    LIMN_FIELD(wind_speed, "wind speed 10 m above the water", "m/s", 0, 60);
+    LIMN_FIELD(wind_direction, "direction the wind blows toward, from +x toward +z", "rad", -7, 7);
+    LIMN_FIELD(rain, "rain; 0 = none, 1 = downpour", "", 0, 1);
 }
+
+/// Resource: what Input has added to Weather.
+struct WeatherState {
+    float wind_speed = 0;
+    float wind_direction = 0;
+    float rain = 0;
+};
+
+LIMN_FIELDS(WeatherState) {
+    LIMN_FIELD(wind_speed, "change of the wind speed by the player", "m/s");
+    LIMN_FIELD(wind_direction, "change of the wind direction by the player", "rad");
+    LIMN_FIELD(rain, "change of the rain by the player", "", -1, 1);
+}
+
+/// Settings and changes together.
+[[nodiscard]] inline Weather current_weather(const Weather& weather, const WeatherState& state) {
+    return {
+        weather.wind_speed + state.wind_speed, weather.wind_direction + state.wind_direction,
+        weather.rain + state.rain};
+}
+
+inline constexpr float kMaxWindSpeed = 20.0f;  ///< limit for the player [m/s]
 
 }  // namespace limn

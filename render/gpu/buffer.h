@@ -6,12 +6,12 @@
 
 namespace limn::gpu {
 
-// Memory of the GPU that the CPU fills now and then. For what changes every frame use RingBuffer.
+// GPU memory that the CPU fills occasionally. For data that changes every frame use RingBuffer.
 
 enum class BufferUse : std::uint8_t {
-    Static,   ///< filled once, when made
+    Static,   ///< filled once, at creation
     Dynamic,  ///< write() may change it
-    GpuOnly,  ///< written by shaders and copies alone
+    GpuOnly,  ///< written only by shaders and copies
 };
 
 class Buffer {
@@ -19,7 +19,7 @@ class Buffer {
     Buffer() = default;
     /// `size` > 0 bytes, undefined unless `data` (at least `size` bytes) is given.
     Buffer(std::string_view label, std::size_t size, BufferUse use, const void* data = nullptr);
-    /// A Static buffer that holds `items`; one byte long if there are none.
+    /// A Static buffer that holds `items`; one unused byte if there are none.
     template <typename T>
     [[nodiscard]] static Buffer of(std::string_view label, std::span<const T> items) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -27,7 +27,7 @@ class Buffer {
                              : Buffer(label, items.size_bytes(), BufferUse::Static, items.data());
     }
 
-    /// Replaces bytes from `offset` on; only of a Dynamic buffer, only within it.
+    /// Replaces bytes from `offset` on, within bounds; Dynamic buffers only.
     void write(std::size_t offset, std::span<const std::byte> bytes);
     template <typename T>
     void write(std::size_t offset, std::span<const T> items) {
@@ -35,7 +35,7 @@ class Buffer {
         write(offset, std::as_bytes(items));
     }
 
-    /// Copies bytes back, waiting for the GPU: for tests and tools.
+    /// Reads bytes back, waiting for the GPU: for tests and tools.
     void read(std::size_t offset, std::span<std::byte> bytes) const;
     template <typename T>
     [[nodiscard]] T read_value(std::size_t offset) const {

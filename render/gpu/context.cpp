@@ -15,7 +15,7 @@
 namespace limn::gpu {
 namespace {
 
-/// A display that may give a context, in the order of trying.
+/// A display that may provide a context.
 struct Candidate {
     EGLenum platform = EGL_NONE;
     void* native = nullptr;
@@ -96,7 +96,7 @@ Result<std::vector<Candidate>> choose_candidates(std::vector<Candidate> all) {
     return all;
 }
 
-/// A config with OpenGL and, as nothing is presented, any surface type.
+/// A config for OpenGL with any surface type, as nothing is presented.
 EGLConfig find_config(EGLDisplay display) {
     constexpr std::array<EGLint, 5> kWanted = {
         EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
@@ -125,7 +125,7 @@ EGLContext create_egl_context(EGLDisplay display, EGLConfig config, bool debug, 
 }  // namespace
 
 Result<std::unique_ptr<Context>> create_headless_context(const ContextDesc& desc) {
-    // Asking EGL before it is known to be there would make epoxy abort.
+    // Calling EGL where libEGL is missing would make epoxy abort.
     if (!epoxy_has_egl()) {
         return fail(
             "OpenGL: no libEGL.so.1 found, expected EGL 1.5 (Debian: libegl1, libegl-mesa0)");

@@ -8,7 +8,7 @@
 namespace limn::gpu {
 
 // An OpenGL 4.5 core context without a window, through EGL: first every device that EGL lists
-// (hardware before software), then Mesa's surfaceless platform. Windows make their own context
+// (hardware before software), then Mesa's surfaceless platform. Windows create their own context
 // (content/app); both kinds end in Device::from_current_context().
 //
 // LIMN_GL_DEVICE chooses: an index into EGL's list, "gpu" (fail rather than draw on the CPU),
@@ -29,7 +29,7 @@ struct ContextDesc {
         nullptr;  ///< a context whose buffers, textures and programs this one sees
 };
 
-/// Makes the context and makes it current on this thread.
+/// Creates the context and makes it current on this thread.
 [[nodiscard]] Result<std::unique_ptr<Context>>
 create_headless_context(const ContextDesc& desc = {});
 
@@ -40,7 +40,7 @@ class Context {
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    /// Makes it the current one of this thread; a context is current on one thread at a time.
+    /// Makes it current on this thread; a context is current on one thread at a time.
     [[nodiscard]] Status make_current();
     /// No context is current on this thread afterwards.
     void release_current();

@@ -16,7 +16,7 @@ struct DebugOutput::State {
     std::atomic<bool> muted = false;
     std::mutex mutex;  // drivers may report from their own threads
     std::vector<std::string> kept;
-    // Who took the messages before; gets them back.
+    // The previously installed callback, restored by the destructor.
     void* previous_callback = nullptr;
     void* previous_user = nullptr;
 };

@@ -7,17 +7,16 @@
 
 namespace limn::gpu {
 
-// What OpenGL complains about (KHR_debug). Errors, undefined behavior and anything of high severity
-// are counted, kept and logged; the rest (performance hints, notes) is dropped. Shader compilers
-// report through Result instead, so their messages are ignored here.
+// OpenGL's debug messages (KHR_debug). Errors, undefined behavior and anything of high severity are
+// counted, kept and logged; the rest (performance hints, notes) is dropped. Shader compilers report
+// through Result instead, so their messages are ignored here.
 //
 // In a debug context the message comes from within the faulty call: break on `log_error` to see the
 // stack.
 
 class DebugOutput {
   public:
-    /// Installs itself in the context that is current and takes its messages until destroyed; then
-    /// whoever had them before gets them again.
+    /// Installs its callback in the current context; the destructor restores the previous one.
     explicit DebugOutput(bool synchronous);
     ~DebugOutput();
     DebugOutput(const DebugOutput&) = delete;
@@ -25,9 +24,9 @@ class DebugOutput {
 
     /// Errors since the start.
     [[nodiscard]] std::uint64_t error_count() const;
-    /// The messages kept since the last call (64 at most), which it forgets.
+    /// Returns and clears the messages kept since the last call, at most 64.
     std::vector<std::string> take_errors();
-    /// While muted errors are counted and kept, not logged: for tests that provoke one.
+    /// While muted, errors are counted and kept but not logged: for tests that provoke one.
     void set_muted(bool muted);
 
     struct State;

@@ -26,7 +26,7 @@ Device::Device(const DeviceCaps& caps)
     glEnable(GL_PROGRAM_POINT_SIZE);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    forget_state();
+    invalidate_state();
 }
 
 Device::~Device() = default;
@@ -42,7 +42,7 @@ bool Device::change(T& current, const T& wanted) {
     return true;
 }
 
-void Device::forget_state() {
+void Device::invalidate_state() {
     state_known_ = false;
     program_ = nullptr;
     program_id_ = kUnknown;
@@ -59,20 +59,20 @@ void Device::forget_state() {
     images_.fill({.texture = kUnknown});
     uniforms_.fill({.buffer = kUnknown});
     storage_.fill({.buffer = kUnknown});
-    deaths_seen_ = object_deaths();
+    seen_deletions_ = deletion_count();
 }
 
-void Device::forget_dead_objects() {
-    // A dead name is unbound by OpenGL and may come back as another object. Programs and
-    // framebuffers that die while bound are followed the same way.
-    if (deaths_seen_ != object_deaths()) {
+void Device::invalidate_deleted_objects() {
+    // OpenGL unbinds deleted names and may reuse them for other objects. Programs and framebuffers
+    // deleted while bound are handled the same way.
+    if (seen_deletions_ != deletion_count()) {
         const bool state_known = state_known_;
         const std::array<int, 4> viewport = viewport_;
         const std::array<int, 4> scissor = scissor_;
         const int scissor_on = scissor_on_;
         const std::array<float, 2> depth_bounds = depth_bounds_;
         const int depth_bounds_on = depth_bounds_on_;
-        forget_state();
+        invalidate_state();
         state_known_ = state_known;
         viewport_ = viewport;
         scissor_ = scissor;
@@ -170,7 +170,7 @@ void Device::apply(const PipelineState& state) {
 }
 
 void Device::use(const Program& program) {
-    forget_dead_objects();
+    invalidate_deleted_objects();
     program_ = &program;
     if (change(program_id_, program.id())) {
         glUseProgram(program.id());
@@ -184,7 +184,7 @@ void Device::use(const Pipeline& pipeline) {
 }
 
 void Device::bind_framebuffer(const Framebuffer& framebuffer) {
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(framebuffer_, framebuffer.id())) {
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
     }
@@ -238,7 +238,7 @@ void Device::disable_depth_bounds() {
 }
 
 void Device::bind_vertex_array(const VertexArray& vertices) {
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(vertex_array_, vertices.id())) {
         glBindVertexArray(vertices.id());
     }
@@ -246,7 +246,7 @@ void Device::bind_vertex_array(const VertexArray& vertices) {
 
 void Device::bind_texture(unsigned unit, const Texture& texture, const Sampler* sampler) {
     LIMN_CHECK(unit < kUnits);
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(textures_[unit], texture.id())) {
         glBindTextureUnit(unit, texture.id());
     }
@@ -257,7 +257,7 @@ void Device::bind_texture(unsigned unit, const Texture& texture, const Sampler* 
 
 void Device::bind_texture_name(unsigned unit, GLuint texture, const Sampler* sampler) {
     LIMN_CHECK(unit < kUnits);
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(textures_[unit], texture)) {
         glBindTextureUnit(unit, texture);
     }
@@ -269,7 +269,7 @@ void Device::bind_texture_name(unsigned unit, GLuint texture, const Sampler* sam
 void Device::bind_image(
     unsigned unit, const Texture& texture, GLenum access, int level, int layer) {
     LIMN_CHECK(unit < images_.size());
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(images_[unit], {texture.id(), access, level, layer})) {
         glBindImageTexture(
             unit, texture.id(), level, static_cast<GLboolean>(layer < 0), std::max(layer, 0),
@@ -281,7 +281,7 @@ void Device::bind_buffer(
     GLenum target, std::array<BufferBinding, kUnits>& bound, unsigned binding,
     const BufferBinding& wanted) {
     LIMN_CHECK(binding < kUnits);
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(bound[binding], wanted)) {
         glBindBufferRange(
             target, binding, wanted.buffer, static_cast<GLintptr>(wanted.offset),
@@ -306,7 +306,7 @@ void Device::bind_storage(unsigned binding, GLuint buffer, std::size_t offset, s
 }
 
 void Device::bind_indirect(GLuint buffer) {
-    forget_dead_objects();
+    invalidate_deleted_objects();
     if (change(indirect_, buffer)) {
         glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer);
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer);
@@ -372,8 +372,8 @@ std::string Device::missing_bindings(const Program& program) const {
     for (const ProgramBinding& b : program.bindings()) {
         const auto unit = static_cast<std::size_t>(b.binding);
         const char* what = nullptr;
-        // What is unknown (set behind our back, or forgotten) gets the benefit of the doubt only
-        // for units beyond those we follow.
+        // Unknown bindings (after invalidate_state()) count as missing; units beyond those tracked
+        // count as bound.
         const auto empty = [&](GLuint bound) { return bound == 0 || bound == kUnknown; };
         switch (b.kind) {
         case BindingKind::UniformBlock:

@@ -18,22 +18,21 @@ class Buffer;
 class ShaderLibrary;
 struct ProgramDesc;
 
-// The OpenGL context that is current, from our side: what it can do, what it complained about, its
-// shaders, and the state that is set. State goes through here so that setting what is already set
-// costs a comparison instead of a driver call. Code that calls OpenGL behind its back (ImGui) is
-// followed by forget_state().
+// The current OpenGL context: its capabilities, debug messages, shaders and a cache of its state.
+// All state is set through here, so that a redundant change costs a comparison instead of a driver
+// call. After code that calls OpenGL directly (ImGui), call invalidate_state().
 //
 //     Result<std::unique_ptr<Device>> device = Device::from_current_context();
 //     (*device)->use(pass.draw);                       // program and fixed-function state
 //     (*device)->bind_texture(4, color);
 //     (*device)->draw_fullscreen();
 
-/// What a frame cost in calls; reset by Device::reset_stats().
+/// OpenGL calls of a frame; reset by Device::reset_stats().
 struct DeviceStats {
-    int draws = 0;          ///< draw calls; one for a whole multi-draw
-    int dispatches = 0;     ///< compute
+    int draws = 0;          ///< draw calls; a multi-draw counts once
+    int dispatches = 0;     ///< compute dispatches
     int state_changes = 0;  ///< state, program and binding calls that reached OpenGL
-    int state_skipped = 0;  ///< those that were already so
+    int state_skipped = 0;  ///< redundant ones that were dropped
 };
 
 class Device {
@@ -50,18 +49,18 @@ class Device {
     [[nodiscard]] DebugOutput& debug_output() { return debug_output_; }
     [[nodiscard]] ShaderLibrary& shaders() { return *shaders_; }
 
-    // ---- state; every call is dropped when it changes nothing ----
+    // ---- state; redundant calls are dropped ----
     void apply(const PipelineState& state);
     void use(const Program& program);
     /// Program and state together.
     void use(const Pipeline& pipeline);
-    void bind_framebuffer(const Framebuffer& framebuffer);  ///< sets the viewport to all of it
+    void bind_framebuffer(const Framebuffer& framebuffer);  ///< and sets the viewport to cover it
     void bind_window(int width, int height);                ///< the window's own framebuffer
     void set_viewport(int x, int y, int width, int height);
     void set_scissor(int x, int y, int width, int height);
     void disable_scissor();
-    /// Only pixels whose depth, as it is in the buffer, lies within are drawn; nothing where the
-    /// device has no such test.
+    /// Draws only pixels whose depth in the buffer lies within the bounds (EXT_depth_bounds_test);
+    /// no effect where the device lacks this test.
     void set_depth_bounds(float low, float high);
     void disable_depth_bounds();
     void bind_vertex_array(const VertexArray& vertices);
@@ -76,30 +75,30 @@ class Device {
     void bind_uniforms(unsigned binding, GLuint buffer, std::size_t offset, std::size_t size);
     void bind_storage(unsigned binding, const Buffer& buffer);
     void bind_storage(unsigned binding, GLuint buffer, std::size_t offset, std::size_t size);
-    /// Where indirect draws and dispatches read their arguments.
+    /// The buffer with the arguments of indirect draws and dispatches.
     void bind_indirect(GLuint buffer);
 
-    // ---- work; counted, and in debug contexts checked for bindings that are missing ----
+    // ---- work; counted, and in debug contexts checked for missing bindings ----
     void draw(GLenum mode, int first, int count, int instances = 1, unsigned base_instance = 0);
     void draw_indexed(
         GLenum mode, int count, GLenum type, std::size_t offset, int base_vertex = 0,
         int instances = 1, unsigned base_instance = 0);
     /// `count` DrawElementsIndirectCommand, tight, from byte `offset` of the bound indirect buffer.
     void draw_indexed_indirect(GLenum mode, GLenum type, std::size_t offset, int count);
-    /// Triangles of vertex ids 0 .. count - 1 and no attributes.
+    /// Triangles without attributes, from gl_VertexID 0 .. count - 1.
     void draw_ids(int count);
-    /// One triangle over the whole viewport, by its ids.
+    /// One triangle that covers the viewport, from gl_VertexID alone.
     void draw_fullscreen();
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
-    /// Groups that cover `width` x `height` items with groups of `group` x `group`.
+    /// As many groups of `group` x `group` as cover `width` x `height` items.
     void dispatch_over(int width, int height, int group);
 
-    /// What `program` expects and nobody bound: "texture unit 4 (scene_color)", or "" if all is
-    /// there.
+    /// The bindings that `program` expects and that are not set: "nothing bound at texture unit 4
+    /// (scene_color)", or "" if all are set.
     [[nodiscard]] std::string missing_bindings(const Program& program) const;
 
-    /// Somebody else called OpenGL: nothing is known to be set any more.
-    void forget_state();
+    /// Invalidates the state cache: call it after other code has called OpenGL.
+    void invalidate_state();
 
     [[nodiscard]] const DeviceStats& stats() const { return stats_; }
     void reset_stats() { stats_ = {}; }
@@ -129,7 +128,7 @@ class Device {
     void bind_buffer(
         GLenum target, std::array<BufferBinding, kUnits>& bound, unsigned binding,
         const BufferBinding& wanted);
-    void forget_dead_objects();
+    void invalidate_deleted_objects();
     void check_draw() const;
 
     DeviceCaps caps_;
@@ -140,7 +139,7 @@ class Device {
     std::uint64_t blit_serial_ = 0;
     DeviceStats stats_;
 
-    // What is set; kUnknown marks what must be set again.
+    // The state cache; kUnknown marks what must be set again.
     static constexpr GLuint kUnknown = ~0u;
     PipelineState state_;
     bool state_known_ = false;
@@ -159,10 +158,10 @@ class Device {
     std::array<ImageBinding, 8> images_ = {};
     std::array<BufferBinding, kUnits> uniforms_ = {};
     std::array<BufferBinding, kUnits> storage_ = {};
-    std::uint64_t deaths_seen_ = 0;
+    std::uint64_t seen_deletions_ = 0;
 };
 
-/// Loads the program and joins it with `state`.
+/// Loads the program and combines it with `state`.
 [[nodiscard]] Result<Pipeline>
 create_pipeline(Device& device, const ProgramDesc& desc, const PipelineState& state = {});
 

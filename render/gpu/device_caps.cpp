@@ -67,18 +67,19 @@ DeviceCaps read_device_caps() {
 std::vector<ProfileError>
 check_requirements(const DeviceCaps& caps, const PassRequirements& needs) {
     std::vector<ProfileError> errors;
-    const auto compare = [&](const char* what, int asked, int there) {
-        if (asked <= there) {
+    const auto compare = [&](const char* what, int required, int available) {
+        if (required <= available) {
             return;
         }
-        if (there == 0) {
+        if (available == 0) {
             errors.push_back(
                 {ProfileErrorKind::Capability,
-                 fmt::format("capability: {} {} asked for, this device has none", asked, what)});
+                 fmt::format("capability: {} {} required, this device has none", required, what)});
         } else {
             errors.push_back(
                 {ProfileErrorKind::Capacity,
-                 fmt::format("capacity: {} {} asked for, this device has {}", asked, what, there)});
+                 fmt::format(
+                     "capacity: {} {} required, this device has {}", required, what, available)});
         }
     };
     compare("vertex textures", needs.vertex_textures, caps.max_vertex_textures);

@@ -9,9 +9,9 @@
 
 namespace limn::gpu {
 
-// What the device can do, read once, and whether a pass fits it (shade.profile). Three classes of
-// error, all found before anything is drawn: a capability is absent, the context lacks something
-// mandatory, or a capacity is exceeded.
+// Capabilities of the device, queried once, and whether a pass fits them (shade.profile). Three
+// classes of error, all found before anything is drawn: a capability is absent, the context lacks
+// something mandatory, or a capacity is exceeded.
 
 struct DeviceCaps {
     std::string vendor;
@@ -19,16 +19,16 @@ struct DeviceCaps {
     std::string version;
     int gl_major = 0;
     int gl_minor = 0;
-    bool software = false;  ///< the CPU draws: llvmpipe, softpipe, SwiftShader
+    bool software = false;  ///< rendered by the CPU: llvmpipe, softpipe, SwiftShader
     bool debug = false;     ///< a debug context
 
-    int max_texture_size = 0;  ///< [px] of a side
+    int max_texture_size = 0;  ///< of a side [px]
     int max_texture_3d_size = 0;
     int max_cube_size = 0;
     int max_texture_layers = 0;
     int max_samples = 0;
-    int max_color_attachments = 0;  ///< that one pass can write
-    int max_vertex_textures = 0;    ///< texture units of a stage
+    int max_color_attachments = 0;  ///< per pass
+    int max_vertex_textures = 0;    ///< texture units of the stage
     int max_fragment_textures = 0;
     int max_compute_textures = 0;
     int max_combined_textures = 0;  ///< texture units of all stages together
@@ -47,10 +47,10 @@ struct DeviceCaps {
     bool depth_bounds = false;  ///< GL_EXT_depth_bounds_test
 };
 
-/// Of the context that is current.
+/// Queries the current context.
 [[nodiscard]] DeviceCaps read_device_caps();
 
-/// What a pass needs; 0 where it does not care.
+/// Minimum limits that a pass requires; 0 = no requirement.
 struct PassRequirements {
     int vertex_textures = 0;
     int fragment_textures = 0;
@@ -70,15 +70,15 @@ struct PassRequirements {
 enum class ProfileErrorKind {
     Capability,  ///< the feature is absent: its limit is 0
     Context,     ///< something mandatory is missing, e.g. a vertex stage that writes no position
-    Capacity,    ///< the feature is there, its limit exceeded
+    Capacity,    ///< the feature exists, but its limit is exceeded
 };
 
 struct ProfileError {
     ProfileErrorKind kind;
-    std::string message;  ///< "capacity: 40 fragment textures asked for, 32 there are"
+    std::string message;  ///< "capacity: 40 fragment textures required, this device has 32"
 };
 
-/// Everything in `needs` that `caps` cannot give; empty if it fits.
+/// Every requirement in `needs` that `caps` does not meet; empty if all are met.
 [[nodiscard]] std::vector<ProfileError>
 check_requirements(const DeviceCaps& caps, const PassRequirements& needs);
 

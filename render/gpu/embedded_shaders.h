@@ -2,7 +2,7 @@
 
 namespace limn::gpu {
 
-/// A shader or include file as it was when the program was built.
+/// A shader or include file, embedded when the program was built.
 struct EmbeddedShader {
     const char* path;  ///< from render/shaders, e.g. "lib/view.glsl"
     const char* text;

@@ -31,7 +31,7 @@ void attach(GLuint framebuffer, GLenum point, const Attachment& attachment) {
 Framebuffer::Framebuffer(
     std::string_view label, std::span<const Attachment> colors, const Attachment& depth_stencil)
     : object_(create_framebuffer_name(), label) {
-    constexpr std::size_t kMaxColors = 8;  // what every OpenGL has
+    constexpr std::size_t kMaxColors = 8;  // the minimum of GL_MAX_COLOR_ATTACHMENTS
     LIMN_CHECK(colors.size() <= kMaxColors);
     LIMN_CHECK(!colors.empty() || depth_stencil.texture != nullptr);
 

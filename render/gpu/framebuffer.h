@@ -8,15 +8,15 @@ namespace limn::gpu {
 
 class Texture;
 
-/// One level of a texture to draw into; `layer` < 0 means all layers (or the only one).
+/// One mip level of a texture to draw into; `layer` < 0 means all layers (or the only one).
 struct Attachment {
     const Texture* texture = nullptr;
     int level = 0;
     int layer = -1;
 };
 
-/// Targets of a pass. The frame graph makes these itself: passes never need one. The textures must
-/// outlive it; all have the same size and sample count.
+/// Render targets of a pass. The frame graph creates these; passes never need one. The textures
+/// must outlive it and have the same size and sample count.
 class Framebuffer {
   public:
     Framebuffer() = default;

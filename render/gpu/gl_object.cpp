@@ -46,7 +46,7 @@ std::int64_t gpu_memory_bytes() {
     return memory_bytes.load();
 }
 
-std::uint64_t object_deaths() {
+std::uint64_t deletion_count() {
     return deaths.load(std::memory_order_relaxed);
 }
 
@@ -56,7 +56,7 @@ void created_object(ObjectKind kind, GLuint id, std::string_view label) {
     LIMN_CHECK(id != 0);
     live_counts[static_cast<std::size_t>(kind)].fetch_add(1);
     if (!label.empty()) {
-        constexpr std::size_t kMinimumMaxLabel = 255;  // what every OpenGL takes
+        constexpr std::size_t kMinimumMaxLabel = 255;  // GL_MAX_LABEL_LENGTH is at least 256
         const std::size_t length = std::min(label.size(), kMinimumMaxLabel);
         glObjectLabel(label_namespace(kind), id, static_cast<GLsizei>(length), label.data());
     }

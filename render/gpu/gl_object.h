@@ -9,9 +9,8 @@
 
 namespace limn::gpu {
 
-// What every OpenGL object of ours shares: one owner, a label that debuggers and error messages
-// show, and a place in the count of living objects. Objects die on the thread, and before the
-// context, that made them.
+// Common to all OpenGL objects here: a single owner, a label for debuggers and error messages, and
+// a count of live objects. Destroy objects on the thread that created them, before their context.
 
 enum class ObjectKind : std::uint8_t {
     Buffer,
@@ -24,19 +23,19 @@ enum class ObjectKind : std::uint8_t {
     Count,
 };
 
-/// Owns one OpenGL name; moves, never copies. Empty (0) by default.
+/// Move-only owner of one OpenGL name. Empty (0) by default.
 template <ObjectKind kind>
 class GlObject;
 
-/// Objects of a kind alive in this process: 0 after everything was destroyed.
+/// Live objects of a kind in this process: 0 after everything was destroyed.
 [[nodiscard]] std::int64_t live_objects(ObjectKind kind);
 
-/// Bytes of buffers and textures alive in this process, as asked for (drivers pad).
+/// Bytes of live buffers and textures in this process, as requested (drivers pad).
 [[nodiscard]] std::int64_t gpu_memory_bytes();
 
-/// Bumped by every destruction: OpenGL unbinds dying names and hands them out again, so whoever
-/// remembers bindings forgets them when this has changed.
-[[nodiscard]] std::uint64_t object_deaths();
+/// Incremented by every deletion. OpenGL unbinds deleted names and reuses them, so cached bindings
+/// are invalid once this has changed.
+[[nodiscard]] std::uint64_t deletion_count();
 
 namespace detail {
 void created_object(ObjectKind kind, GLuint id, std::string_view label);
@@ -49,7 +48,7 @@ template <ObjectKind kind>
 class GlObject {
   public:
     GlObject() = default;
-    /// Takes over `id`, which must not be 0.
+    /// Takes ownership of `id`, which must not be 0.
     GlObject(GLuint id, std::string_view label) : id_(id), serial_(detail::next_serial()) {
         detail::created_object(kind, id, label);
     }
@@ -70,7 +69,7 @@ class GlObject {
     ~GlObject() { destroy(); }
 
     [[nodiscard]] GLuint id() const { return id_; }
-    /// Unique over the run of the program, unlike the name, which OpenGL reuses.
+    /// Unique within the process, unlike the name, which OpenGL reuses.
     [[nodiscard]] std::uint64_t serial() const { return serial_; }
     explicit operator bool() const { return id_ != 0; }
 

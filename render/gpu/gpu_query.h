@@ -6,18 +6,18 @@
 
 namespace limn::gpu {
 
-/// One counter of the GPU: GL_TIMESTAMP, GL_TIME_ELAPSED, GL_SAMPLES_PASSED,
+/// One GPU query object: GL_TIMESTAMP, GL_TIME_ELAPSED, GL_SAMPLES_PASSED,
 /// GL_PRIMITIVES_GENERATED ...
 class GpuQuery {
   public:
     GpuQuery() = default;
     GpuQuery(std::string_view label, GLenum target);
 
-    void begin();  ///< not for GL_TIMESTAMP; one query of a target at a time
+    void begin();  ///< not for GL_TIMESTAMP; one active query per target
     void end();
-    void timestamp();  ///< of GL_TIMESTAMP: when everything before it is done
+    void timestamp();  ///< GL_TIMESTAMP only: the time when all previous commands are done
 
-    /// The result once the GPU has it; never waits. Nothing before begin() or timestamp().
+    /// The result if it is available; never waits. Empty before end() or timestamp().
     [[nodiscard]] std::optional<std::uint64_t> poll() const;
     /// The result, waiting for the GPU.
     [[nodiscard]] std::uint64_t wait() const;

@@ -40,7 +40,7 @@ std::span<const GpuTimer::Mark> GpuTimer::take(bool wait) {
     if (!frame.pending) {
         return {};
     }
-    // Timestamps arrive in order: the last one speaks for all.
+    // Timestamps become available in order: if the last one is, all are.
     if (!wait && !frame.queries[frame.tags.size() - 1].poll()) {
         return {};
     }

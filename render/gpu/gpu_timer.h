@@ -8,25 +8,25 @@
 
 namespace limn::gpu {
 
-// Timestamps of frames, read some frames later so that nothing waits. A frame marks as many points
-// as it likes; its times arrive through take() when the GPU has passed them all.
+// GPU timestamps of frames, read back some frames later so that nothing stalls. A frame may mark
+// any number of points; take() returns their times once the GPU has passed them all.
 
 class GpuTimer {
   public:
-    /// Frames that may be under way; a frame beyond them is not timed rather than waited for.
+    /// Frames that may be in flight; a frame beyond them is not timed, which avoids a stall.
     static constexpr int kFrames = 4;
 
     void begin_frame();
-    /// The next timestamp of this frame; `tag` comes back with it.
+    /// The next timestamp of this frame; take() returns `tag` with it.
     void mark(std::uint32_t tag);
     void end_frame();
 
     struct Mark {
         std::uint32_t tag;
-        std::uint64_t time_ns;  ///< since some fixed moment
+        std::uint64_t time_ns;  ///< since an arbitrary epoch
     };
-    /// The oldest frame whose times have arrived, or nothing; `wait` waits for it. Valid until the
-    /// next call.
+    /// The oldest frame whose times are available, or empty; `wait` blocks until they are. Valid
+    /// until the next call.
     [[nodiscard]] std::span<const Mark> take(bool wait = false);
 
   private:

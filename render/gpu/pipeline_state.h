@@ -6,8 +6,8 @@
 
 namespace limn::gpu {
 
-// The fixed-function state of a draw, as one plain value. Device::apply() sets what differs from
-// the value before. The default draws opaque triangles with reversed depth.
+// The fixed-function state of a draw, as one plain value. Device::apply() sets only what differs
+// from the current state. The default draws opaque triangles with reversed depth.
 
 struct DepthState {
     bool test = true;

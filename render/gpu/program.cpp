@@ -24,7 +24,7 @@ int resource_count(GLuint program, GLenum interface) {
     return count;
 }
 
-/// The BindingKind of a uniform's type; false for plain values.
+/// The BindingKind of an opaque uniform type; false for plain values.
 bool opaque_kind(GLenum type, BindingKind& kind) {
     switch (type) {
     case GL_SAMPLER_1D:
@@ -83,27 +83,28 @@ const char* kind_name(BindingKind kind) {
 
 void read_blocks(
     GLuint program, GLenum interface, BindingKind kind, std::vector<ProgramBinding>& bindings) {
-    constexpr std::array<GLenum, 2> kAsked = {GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE};
+    constexpr std::array<GLenum, 2> kProperties = {GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE};
     const int count = resource_count(program, interface);
     for (int i = 0; i < count; ++i) {
         const auto index = static_cast<GLuint>(i);
         std::array<GLint, 2> values = {};
         glGetProgramResourceiv(
-            program, interface, index, 2, kAsked.data(), 2, nullptr, values.data());
+            program, interface, index, 2, kProperties.data(), 2, nullptr, values.data());
         bindings.push_back({kind, resource_name(program, interface, index), values[0], values[1]});
     }
 }
 
-/// Attributes that come from vertices: gl_VertexID and its like have no location.
+/// Vertex attributes; built-ins such as gl_VertexID have no location.
 std::vector<ProgramInput> read_inputs(GLuint program) {
-    constexpr std::array<GLenum, 3> kAsked = {GL_LOCATION, GL_TYPE, GL_REFERENCED_BY_VERTEX_SHADER};
+    constexpr std::array<GLenum, 3> kProperties = {
+        GL_LOCATION, GL_TYPE, GL_REFERENCED_BY_VERTEX_SHADER};
     std::vector<ProgramInput> inputs;
     const int count = resource_count(program, GL_PROGRAM_INPUT);
     for (int i = 0; i < count; ++i) {
         const auto index = static_cast<GLuint>(i);
         std::array<GLint, 3> values = {};
         glGetProgramResourceiv(
-            program, GL_PROGRAM_INPUT, index, 3, kAsked.data(), 3, nullptr, values.data());
+            program, GL_PROGRAM_INPUT, index, 3, kProperties.data(), 3, nullptr, values.data());
         if (values[0] >= 0 && values[2] != 0) {
             inputs.push_back(
                 {resource_name(program, GL_PROGRAM_INPUT, index), values[0],
@@ -128,14 +129,16 @@ Program::Program(GLuint id, std::string_view label)
     read_blocks(id, GL_UNIFORM_BLOCK, BindingKind::UniformBlock, bindings_);
     read_blocks(id, GL_SHADER_STORAGE_BLOCK, BindingKind::StorageBlock, bindings_);
 
-    constexpr std::array<GLenum, 4> kAsked = {GL_BLOCK_INDEX, GL_TYPE, GL_LOCATION, GL_ARRAY_SIZE};
+    constexpr std::array<GLenum, 4> kProperties = {
+        GL_BLOCK_INDEX, GL_TYPE, GL_LOCATION, GL_ARRAY_SIZE};
     const int count = resource_count(id, GL_UNIFORM);
     for (int i = 0; i < count; ++i) {
         const auto index = static_cast<GLuint>(i);
         std::array<GLint, 4> values = {};
-        glGetProgramResourceiv(id, GL_UNIFORM, index, 4, kAsked.data(), 4, nullptr, values.data());
+        glGetProgramResourceiv(
+            id, GL_UNIFORM, index, 4, kProperties.data(), 4, nullptr, values.data());
         if (values[0] >= 0 || values[2] < 0) {
-            continue;  // lives in a block
+            continue;  // member of a block
         }
         std::string name = resource_name(id, GL_UNIFORM, index);
         const auto type = static_cast<GLenum>(values[1]);
@@ -160,8 +163,8 @@ Status Program::expect_inputs(std::span<const VertexAttribute> format) const {
             });
         if (found == format.end()) {
             return fail(
-                "{}: context: attribute {} at location {} found, expected one that the vertices "
-                "have",
+                "{}: context: attribute {} at location {} found, expected one that the vertex "
+                "format has",
                 label_, input.name, input.location);
         }
         if (found->integer != is_integer(input.type)) {
@@ -284,7 +287,7 @@ void Program::copy_uniforms_from(const Program& old) const {
             glProgramUniform1uiv(id(), uniform.location, 1, unsigneds.data());
             break;
         default:
-            break;  // textures and images: their units are written in the shader
+            break;  // textures and images: their units are set in the shader
         }
     }
 }

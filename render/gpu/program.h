@@ -12,12 +12,12 @@
 
 namespace limn::gpu {
 
-// A linked program and what the shader compiler says it uses. Programs come from ShaderLibrary;
-// bindings are written in the shaders (layout(binding = n)), so C++ rarely needs a name.
+// A linked program and its interface by reflection. Programs come from ShaderLibrary; bindings are
+// written in the shaders (layout(binding = n)), so C++ rarely needs a name.
 
 enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture, Image };
 
-/// Something a program expects to be bound before it draws.
+/// A resource that a program expects to be bound before it draws.
 struct ProgramBinding {
     BindingKind kind;
     std::string name;       ///< of the block or the sampler; arrays as "name[0]"
@@ -36,25 +36,24 @@ struct ProgramInput {
 class Program {
   public:
     Program() = default;
-    /// Takes over a linked OpenGL program and reads its interface.
+    /// Takes ownership of a linked OpenGL program and reads its interface.
     Program(GLuint id, std::string_view label);
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
     [[nodiscard]] const std::vector<ProgramBinding>& bindings() const { return bindings_; }
-    /// By location.
+    /// Sorted by location.
     [[nodiscard]] const std::vector<ProgramInput>& inputs() const { return inputs_; }
-    /// Fails if it reads an attribute that vertices of this format have not, or as another kind of
-    /// number.
+    /// Fails if it reads an attribute that `format` lacks, or an integer as a float or vice versa.
     [[nodiscard]] Status expect_inputs(std::span<const VertexAttribute> format) const;
     /// Fails unless the program has this binding (and a block at least fits in `size` bytes): call
     /// it once after loading for layouts that C++ shares with the shader.
     [[nodiscard]] Status
     expect(BindingKind kind, std::string_view name, int binding, int size = 0) const;
 
-    /// Location of a plain uniform, -1 if the program has none of that name.
+    /// Location of a plain uniform, -1 if there is none of that name.
     [[nodiscard]] int find_uniform(std::string_view name) const;
     /// Set a plain uniform, which keeps its value until set again, across draws and reloads.
-    /// Unknown names do nothing: the compiler may have dropped them.
+    /// Unknown names are ignored: the compiler may have dropped them.
     void set(std::string_view name, float value) const;
     void set(std::string_view name, int value) const;
     void set(std::string_view name, unsigned value) const;
@@ -85,8 +84,8 @@ class Program {
     std::vector<Uniform> uniforms_;  // sorted by name
 };
 
-/// A program with the state it draws with; the program belongs to the ShaderLibrary and stays where
-/// it is when it is reloaded.
+/// A program with the state it draws with. The ShaderLibrary owns the program; its address is
+/// stable across reloads.
 struct Pipeline {
     const Program* program = nullptr;
     PipelineState state = {};

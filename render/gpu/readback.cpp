@@ -23,7 +23,7 @@ GLenum client_format(const FormatInfo& info, bool integer) {
     }
 }
 
-/// Bottom row first becomes top row first.
+/// Flips bottom row first to top row first.
 template <typename T>
 void flip_rows(std::vector<T>& pixels, std::size_t row, std::size_t rows) {
     for (std::size_t y = 0; y < rows / 2; ++y) {
@@ -98,7 +98,7 @@ void AsyncReadback::request(const Texture& texture) {
     } else {
         buffer = Buffer("async readback", bytes, BufferUse::GpuOnly);
     }
-    spare_.clear();  // other sizes are of a window that was resized
+    spare_.clear();  // other sizes are left over from before a resize
 
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -10,8 +10,8 @@
 
 namespace limn::gpu {
 
-// Textures back to the CPU. The first pixel is the top left one, as in image files; OpenGL starts
-// at the bottom.
+// Reads textures back to the CPU. The first pixel is the top left one, as in image files; OpenGL
+// starts at the bottom.
 
 struct FloatImage {
     int width = 0;
@@ -35,9 +35,9 @@ struct ByteImage {
     }
 };
 
-/// Waits for the GPU. Normalized formats become 0 .. 1, integers the same number, depth-stencil its
-/// depth. `layer` is a face of a cube, a layer of an array or a slice of a volume. Not for
-/// multisampled textures.
+/// Waits for the GPU. Normalized formats become 0 .. 1, integers keep their value, depth-stencil
+/// gives its depth. `layer` is a face of a cube, a layer of an array or a slice of a volume. Not
+/// for multisampled textures.
 [[nodiscard]] FloatImage read_floats(const Texture& texture, int level = 0, int layer = 0);
 
 /// The same as bytes, of normalized formats: 1.0 becomes 255. sRGB formats give their encoded
@@ -48,7 +48,7 @@ struct ByteImage {
 class AsyncReadback {
   public:
     void request(const Texture& texture);
-    /// The oldest image that has arrived, bytes in the order they were requested.
+    /// The oldest requested image once it is available, in the order of the requests.
     [[nodiscard]] std::optional<ByteImage> poll();
     [[nodiscard]] std::size_t pending() const { return pending_.size(); }
 

@@ -77,7 +77,7 @@ RingSlice RingBuffer::allocate(std::size_t size, std::size_t alignment) {
         std::uint64_t place = round_up(head_ - lap, step);
         std::uint64_t start = lap + place;
         if (place + needed > capacity_) {
-            start = lap + capacity_;  // the rest is too short: begin the next lap
+            start = lap + capacity_;  // too little left at the end: wrap around
             place = 0;
         }
         if (needed <= capacity_ && start + needed - tail_ <= capacity_) {
@@ -87,7 +87,7 @@ RingSlice RingBuffer::allocate(std::size_t size, std::size_t alignment) {
         }
         if (attempt == 0) {
             free_done_frames(
-                kFramesInFlight);  // never waits: more frames than that are not in flight
+                kFramesInFlight);  // never waits: no more frames than that are in flight
         } else {
             grow(needed + step);
         }
@@ -103,7 +103,7 @@ void RingBuffer::grow(std::size_t needed) {
     current_ = map_new(larger);
     capacity_ = larger;
     ++growths_;
-    // The new buffer is empty: frames in flight used the old one, and free nothing here.
+    // The new buffer is empty: frames in flight used the old one and have nothing to free here.
     head_ = 0;
     tail_ = 0;
     frame_begin_ = 0;

@@ -14,10 +14,10 @@ namespace limn::gpu {
 struct DeviceCaps;
 
 // Memory that the CPU writes and the GPU reads in the same frame: uniforms, instances, indirect
-// draws. One buffer, mapped for good; frames follow each other around it, and a fence a frame says
-// when its part is free again. When a frame needs more than is free, a buffer of twice the size
-// takes over at once and the old one dies when the GPU is done with it: nothing waits. At most
-// kFramesInFlight frames are under way; begin_frame() waits for the oldest beyond that, so that the
+// draws. One persistently mapped buffer, used as a ring; one fence per frame tells when its range
+// is free again. When a frame needs more than is free, a buffer of twice the size replaces it at
+// once and the old one is deleted when the GPU is done with it, without a stall. At most
+// kFramesInFlight frames are in flight; begin_frame() waits for the oldest beyond that, so that the
 // CPU never runs far ahead.
 
 /// Bytes for this frame. Write through `data` (write-combined memory: write in order, never read).
@@ -25,25 +25,25 @@ struct RingSlice {
     std::byte* data = nullptr;
     GLuint buffer = 0;
     std::size_t offset = 0;  ///< within the buffer [bytes]
-    std::size_t size = 0;    ///< as asked for [bytes]
+    std::size_t size = 0;    ///< as requested [bytes]
 };
 
 class RingBuffer {
   public:
     static constexpr int kFramesInFlight = 3;
 
-    /// Starts with `bytes` for all frames in flight together.
+    /// `bytes`: initial capacity, shared by all frames in flight.
     RingBuffer(const DeviceCaps& caps, std::string_view label, std::size_t bytes);
     ~RingBuffer();
     RingBuffer(const RingBuffer&) = delete;
     RingBuffer& operator=(const RingBuffer&) = delete;
 
-    /// Between the frames, around everything that uses slices.
+    /// Call these around everything in a frame that uses slices.
     void begin_frame();
     void end_frame();
 
-    /// `size` bytes at a multiple of what bindings need and of `alignment` (any number, such as the
-    /// stride of a vertex). Valid until end_frame().
+    /// `size` bytes, aligned as bindings require and to a multiple of `alignment` (any number, such
+    /// as the stride of a vertex). Valid until end_frame().
     [[nodiscard]] RingSlice allocate(std::size_t size, std::size_t alignment = 0);
     template <typename T>
     [[nodiscard]] RingSlice push(std::span<const T> items) {
@@ -70,7 +70,7 @@ class RingBuffer {
     };
     struct Frame {
         Fence fence;
-        std::uint64_t end = 0;        // head_ when it ended
+        std::uint64_t end = 0;        // head_ at its end
         std::vector<Mapped> retired;  // buffers it outgrew
     };
 
@@ -82,7 +82,7 @@ class RingBuffer {
     std::size_t alignment_ = 256;
     std::size_t capacity_ = 0;
     Mapped current_;
-    // Positions count up for ever; the place in the buffer is the remainder by capacity_.
+    // Positions only increase; the offset in the buffer is the position modulo capacity_.
     std::uint64_t head_ = 0;
     std::uint64_t tail_ = 0;  // everything before it is free
     std::uint64_t frame_begin_ = 0;

@@ -52,7 +52,7 @@ std::string program_log(GLuint program) {
     return log;
 }
 
-/// `text` without comments, so that a word in one does not count.
+/// `text` without comments, so that words in comments are not found.
 std::string strip_comments(std::string_view text) {
     std::string code;
     while (!text.empty()) {
@@ -82,7 +82,7 @@ std::string describe(const ProgramDesc& desc) {
     return text;
 }
 
-/// Too many textures of one stage are a capability or capacity error, with the device's own limit.
+/// Too many textures in one stage are a capability or capacity error, by the device's limits.
 Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Program& program) {
     constexpr std::array<std::pair<GLenum, int PassRequirements::*>, 3> kStages = {{
         {GL_REFERENCED_BY_VERTEX_SHADER, &PassRequirements::vertex_textures},
@@ -140,7 +140,7 @@ ReloadReport ShaderLibrary::reload_all() {
 
 ReloadReport ShaderLibrary::reload(bool all) {
     ReloadReport report;
-    // Programs share most of their files: ask for each once.
+    // Programs share most of their files: query each once.
     std::map<std::string, std::uint64_t> versions;
     const auto changed = [&](const ShaderFileVersion& file) {
         const auto [found, fresh] = versions.try_emplace(file.path, 0);
@@ -173,7 +173,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         {GL_FRAGMENT_SHADER, &desc.fragment},
         {GL_COMPUTE_SHADER, &desc.compute},
     }};
-    // All files first: what fails to compile must be watched too, or its repair would go unseen.
+    // All files first: files that fail to compile must be watched too, or a fix would go unnoticed.
     std::vector<std::pair<GLenum, ShaderSource>> sources;
     watched.clear();
     Status assembled = Done{};

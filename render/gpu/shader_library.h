@@ -12,13 +12,13 @@ namespace limn::gpu {
 class Device;
 struct DeviceCaps;
 
-// Every program of a device, compiled once and reloaded when a file it is made of changes.
+// All programs of a device, each compiled once and reloaded when one of its files changes.
 //
 //     Result<const Program*> program =
 //         device.shaders().load({.vertex = "water.vert", .fragment = "water.frag"});
 
-/// Which files make a program, and with what definitions. Give either `compute` or `vertex` (with
-/// the others).
+/// The source files of a program and its preprocessor definitions. Set either `compute` or `vertex`
+/// (with the others).
 struct ProgramDesc {
     std::string vertex = {};
     std::string geometry = {};
@@ -42,14 +42,14 @@ class ShaderLibrary {
     ShaderLibrary& operator=(const ShaderLibrary&) = delete;
 
     /// The program, compiled now if it is new; the same one for equal descriptions. The pointer is
-    /// good as long as the library. Fails with the shader compiler's message, by file and line, or
+    /// valid as long as the library. Fails with the shader compiler's message, by file and line, or
     /// a profile error.
     [[nodiscard]] Result<const Program*> load(const ProgramDesc& desc);
 
-    /// Compiles again what was made from files that changed since. A program whose new text fails
-    /// keeps working as it was. Costs a stat() a file.
+    /// Recompiles programs whose files have changed. One that fails to compile keeps its old
+    /// version. Costs one stat() per file.
     ReloadReport reload_changed();
-    /// Compiles everything again.
+    /// Recompiles everything.
     ReloadReport reload_all();
 
     [[nodiscard]] std::size_t program_count() const { return entries_.size(); }

@@ -24,7 +24,7 @@ std::string_view trim(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
-/// If `line` is the directive `#name rest`, true and `rest`.
+/// Whether `line` is the directive `#name rest`; stores `rest`.
 bool is_directive(std::string_view line, std::string_view name, std::string_view& rest) {
     line = trim(line);
     if (line.empty() || line.front() != '#') {
@@ -61,7 +61,7 @@ std::optional<std::string_view> find_embedded(std::string_view path) {
     return std::nullopt;
 }
 
-/// Pastes files together.
+/// Expands includes and definitions.
 class Assembler {
   public:
     Assembler(
@@ -78,7 +78,7 @@ class Assembler {
     }
 
   private:
-    /// `place` begins the message if the file is missing.
+    /// `place` prefixes the error message if the file is missing.
     Status add_file(std::string_view path, const std::string& place) {
         if (seen_ != nullptr) {
             seen_->push_back({std::string(path), files_.version(path)});
@@ -127,14 +127,14 @@ class Assembler {
     Status add_lines(std::string_view body, int line, std::size_t number) {
         // Depth of #if blocks inside a C++ part; 0 when not in one.
         int cpp_depth = 0;
-        // What `#ifdef __cplusplus` opened and is still open: depth of plain #if inside each.
+        // For each open `__cplusplus` block whose GLSL part is read: depth of plain #if inside it.
         std::vector<int> guards;
         for (; !body.empty(); ++line) {
             const std::string_view current = take_line(body);
             if (skip_cpp(current, cpp_depth, guards)) {
                 continue;
             }
-            // The extension is for editors (drivers do not know it), the pragma for C++.
+            // The extension is for editors (drivers reject it), the pragma for C++.
             std::string_view rest;
             const bool drop = (is_directive(current, "pragma", rest) && rest == "once")
                               || (is_directive(current, "extension", rest)
@@ -149,7 +149,7 @@ class Assembler {
                 }
             } else if (number != 0 && is_directive(current, "version", rest)) {
                 return fail(
-                    "{}:{}: #version found in an included file, expected it in the shader alone",
+                    "{}:{}: #version found in an included file, expected it only in the shader",
                     source_.files[number], line);
             } else {
                 emit(current, number, line);
@@ -158,8 +158,8 @@ class Assembler {
         return Done{};
     }
 
-    /// Whether the line belongs to C++ (or is a directive that says so). Only `#ifdef __cplusplus`,
-    /// `#ifndef __cplusplus` and their #else and #endif are understood; everything else is left to
+    /// Whether the line is C++ only (or a directive that delimits it). Only `#ifdef __cplusplus`,
+    /// `#ifndef __cplusplus` and their #else and #endif are evaluated; everything else is left to
     /// GLSL.
     static bool skip_cpp(std::string_view line, int& cpp_depth, std::vector<int>& guards) {
         std::string_view rest;
@@ -229,7 +229,7 @@ class Assembler {
                 wanted);
         }
         if (!files_.read(*path)) {
-            // Not from the root: beside the file that includes it, then.
+            // Not found from the root: try the including file's folder.
             const std::filesystem::path beside =
                 std::filesystem::path(source_.files[number]).parent_path() / *path;
             if (files_.read(beside.generic_string())) {
@@ -336,7 +336,7 @@ Result<ShaderSource> assemble_shader(
 
 namespace {
 
-/// Reads digits at the front of `text`; false if there are none or more than any line number has.
+/// Parses digits at the front of `text`; false if there are none or too many for a line number.
 bool take_number(std::string_view& text, std::size_t& number) {
     constexpr std::size_t kMaxDigits = 8;
     const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
@@ -351,7 +351,7 @@ bool take_number(std::string_view& text, std::size_t& number) {
     return true;
 }
 
-/// If `line` begins with a compiler's place, its line number; `line` is left with the message.
+/// If `line` begins with a source location, removes it and stores its line number.
 bool take_place(std::string_view& line, std::size_t& number) {
     std::string_view rest = line;
     for (const std::string_view prefix : {"ERROR: ", "WARNING: "}) {

@@ -11,27 +11,27 @@
 namespace limn::gpu {
 
 // GLSL from files. `#include "path"` is resolved here: from the shader folder, then from the
-// including file's own folder; each file once, cycles refused. Layouts shared with C++ (name_gpu.h)
-// lose what stands under `#ifdef __cplusplus`. Every line of the result remembers where it stood,
-// so that a compiler's message can name the file and line; #line is not used, as Mesa forgets its
-// file number within expressions.
+// including file's own folder; each file once, cycles are errors. Of layouts shared with C++
+// (name_gpu.h), everything under `#ifdef __cplusplus` is removed. The origin of every line is kept,
+// so that compiler messages can name file and line; #line is not used, as Mesa loses its file
+// number within expressions.
 
-/// Where shader files come from: texts put in by hand, then a folder on disk, then those in the
-/// program.
+/// Where shader files are looked up: in-memory texts first, then a folder on disk, then the files
+/// embedded in the program.
 class ShaderFiles {
   public:
-    /// The files in the program, and the folder they came from if it is still there: editing works.
+    /// The embedded files, and the folder they came from if it still exists, so that edits work.
     [[nodiscard]] static ShaderFiles standard();
-    /// Nothing but what put() adds.
+    /// Only what put() adds.
     ShaderFiles() = default;
-    /// A folder alone.
+    /// Only a folder.
     explicit ShaderFiles(std::string folder) : folder_(std::move(folder)) {}
 
     void put(std::string path, std::string text) { texts_[std::move(path)] = std::move(text); }
-    /// `path` from the shader folder, '/' between names, without "..".
+    /// `path` is relative to the shader folder, with '/' and without "..".
     [[nodiscard]] std::optional<std::string> read(std::string_view path) const;
-    /// Changes whenever the file does: time of last change on disk, or a hash; 0 if it is not
-    /// there.
+    /// Changes whenever the file does: from its modification time on disk, or a hash; 0 if it does
+    /// not exist.
     [[nodiscard]] std::uint64_t version(std::string_view path) const;
 
   private:
@@ -55,19 +55,17 @@ struct ShaderSource {
     };
     std::string text;                ///< ready for glShaderSource
     std::vector<std::string> files;  ///< the shader itself first
-    std::vector<Place> places;       ///< of each line of `text`
+    std::vector<Place> places;       ///< origin of each line of `text`
 };
 
-/// A file and its ShaderFiles::version() from before it was read: an edit in between is noticed
-/// later.
+/// A file and its ShaderFiles::version() from before it was read, so that no edit is missed.
 struct ShaderFileVersion {
     std::string path;
     std::uint64_t version = 0;
 };
 
 /// Fails with "file:line: ..." for a missing file, a cycle, a bad #include or a missing #version.
-/// `files_seen`, if given, receives every file that was asked for, also on failure: reload watches
-/// them.
+/// `files_seen`, if given, receives every file that was requested, also on failure, for reloading.
 [[nodiscard]] Result<ShaderSource> assemble_shader(
     const ShaderFiles& files, std::string_view path, const std::vector<ShaderDefine>& defines = {},
     std::vector<ShaderFileVersion>* files_seen = nullptr);

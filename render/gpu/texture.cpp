@@ -169,7 +169,7 @@ std::size_t texture_bytes(const TextureDesc& desc) {
 Status check_texture(const DeviceCaps& caps, const TextureDesc& desc) {
     if (format_info(desc.format).bytes == 0) {
         return fail(
-            "texture: format {} found, expected one that Limn knows",
+            "texture: format {} found, expected a supported one",
             fmt::format("{:#x}", desc.format));
     }
     if (desc.width < 1 || desc.height < 1 || desc.depth < 1) {

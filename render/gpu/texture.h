@@ -10,13 +10,13 @@ namespace limn::gpu {
 
 struct DeviceCaps;
 
-/// What an image format is made of. Transfers to and from the CPU use `pixel_format` and
+/// Properties of an image format. Transfers to and from the CPU use `pixel_format` and
 /// `pixel_type`.
 struct FormatInfo {
     GLenum format = GL_NONE;        ///< sized, e.g. GL_RGBA16F
     const char* name = "unknown";   ///< "RGBA16F"
     int channels = 0;               ///< 1 .. 4; depth and depth-stencil count 1
-    int bytes = 0;                  ///< of one pixel on the GPU; 0 for formats we do not know
+    int bytes = 0;                  ///< per pixel on the GPU; 0 for unsupported formats
     GLenum pixel_format = GL_NONE;  ///< e.g. GL_RGBA, GL_RED_INTEGER, GL_DEPTH_COMPONENT
     GLenum pixel_type = GL_NONE;    ///< e.g. GL_HALF_FLOAT
     bool depth = false;
@@ -24,7 +24,7 @@ struct FormatInfo {
     bool integer = false;
 };
 
-/// Of a sized format that Limn uses; `bytes` is 0 if it is not one of them.
+/// Properties of a sized format; `bytes` is 0 if Limn does not support it.
 [[nodiscard]] const FormatInfo& format_info(GLenum format);
 
 struct TextureDesc {
@@ -32,8 +32,8 @@ struct TextureDesc {
     int width = 1;             ///< [px], > 0
     int height = 1;            ///< [px], > 0
     int depth = 1;             ///< slices of a 3D texture, layers of an array; 6 n for cube arrays
-    int levels = 1;            ///< mip levels; 0 = all down to 1x1
-    int samples = 0;           ///< 0: not multisampled
+    int levels = 1;            ///< mip levels; 0 = full chain down to 1x1
+    int samples = 0;           ///< 0 = not multisampled
     GLenum target =
         GL_TEXTURE_2D;  ///< 2D, 2D_ARRAY, 3D, CUBE_MAP, CUBE_MAP_ARRAY; multisampled by `samples`
 
@@ -46,7 +46,7 @@ struct TextureDesc {
 /// Bytes of all levels and layers, without padding.
 [[nodiscard]] std::size_t texture_bytes(const TextureDesc& desc);
 
-/// One line that names the limit which `desc` exceeds, or Done: for sizes that come from files.
+/// Fails with one line that names the limit which `desc` exceeds: for sizes that come from files.
 [[nodiscard]] Status check_texture(const DeviceCaps& caps, const TextureDesc& desc);
 
 class Texture {
@@ -55,9 +55,9 @@ class Texture {
     /// Immutable storage, contents undefined. A level count of 0 becomes the full one.
     Texture(std::string_view label, const TextureDesc& desc);
 
-    /// Replaces one level (all layers, or `layer` alone if >= 0; a face of a cube is a layer). Rows
-    /// are tight and bottom row first, as OpenGL has them; `pixels` must hold the whole region in
-    /// `format` and `type`.
+    /// Replaces one level (all layers, or only `layer` if >= 0; a face of a cube is a layer). Rows
+    /// are tightly packed, bottom row first; `pixels` must hold the whole region in `format` and
+    /// `type`.
     void upload(
         std::span<const std::byte> pixels, GLenum format, GLenum type, int level = 0,
         int layer = -1);
@@ -69,7 +69,7 @@ class Texture {
         upload(std::as_bytes(pixels), format, type, level, layer);
     }
 
-    /// Takes over level 0 of a texture of the same size, format and layers.
+    /// Copies level 0 of a texture of the same size, format and layers.
     void copy_from(const Texture& other);
 
     /// Sets every texel of a level, converted as a shader would write it; not for integer formats.
@@ -78,8 +78,8 @@ class Texture {
     /// Fills levels 1 .. n from level 0.
     void generate_mipmaps();
 
-    /// How it is read where no Sampler is bound; new textures have linear filters (nearest for
-    /// integer and depth formats), trilinear if they have levels, and clamp to the edge.
+    /// Filtering where no Sampler is bound. New textures filter linearly (nearest for integer and
+    /// depth formats), trilinearly if they have mip levels, and clamp to the edge.
     void set_filter(GLenum minify, GLenum magnify);
     void set_wrap(GLenum wrap);
 
@@ -98,12 +98,12 @@ class Texture {
     GLenum target_ = GL_TEXTURE_2D;
 };
 
-/// How a shader reads a texture; bound beside it, it replaces the texture's own filter and wrap.
+/// How a shader samples a texture; a bound sampler overrides the texture's own filter and wrap.
 struct SamplerDesc {
     GLenum minify = GL_LINEAR_MIPMAP_LINEAR;
     GLenum magnify = GL_LINEAR;
     GLenum wrap = GL_REPEAT;
-    float anisotropy = 1.0f;     ///< >= 1, clamped to what the device has
+    float anisotropy = 1.0f;     ///< >= 1, clamped to the device's limit
     GLenum compare = GL_NONE;    ///< e.g. GL_GEQUAL: a shadow sampler
     Vec4 border = {0, 0, 0, 0};  ///< with GL_CLAMP_TO_BORDER
 

@@ -19,14 +19,14 @@ struct VertexAttribute {
     bool integer = false;     ///< stays an integer in the shader
 };
 
-/// The format of vertices and the buffers they come from.
+/// A vertex format and the buffers that vertices come from.
 class VertexArray {
   public:
     VertexArray() = default;
-    /// No attributes: for shaders that make vertices from gl_VertexID or fetch them from buffers.
+    /// Without attributes: for shaders that derive vertices from gl_VertexID or fetch from buffers.
     explicit VertexArray(std::string_view label, std::span<const VertexAttribute> attributes = {});
 
-    /// Vertices of a stream, `stride` bytes apart; a `divisor` of 1 advances once an instance.
+    /// Vertices of a stream, `stride` bytes apart; a `divisor` of 1 advances once per instance.
     void set_vertices(
         GLuint stream, const Buffer& buffer, std::size_t offset, int stride, GLuint divisor = 0);
     void set_indices(const Buffer& buffer);

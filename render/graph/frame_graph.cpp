@@ -8,8 +8,8 @@
 namespace limn {
 namespace {
 
-// An id is the resource's index below and its frame's number above, so that an id of an older frame
-// is noticed.
+// An id has the resource's index in the low bits and its frame's generation in the high bits, so
+// that stale ids are detected.
 constexpr std::uint32_t kIndexBits = 16;
 constexpr std::uint32_t kIndexMask = (1u << kIndexBits) - 1;
 constexpr std::uint32_t kGenerationMask = 0x7fff;  // leaves ~0u for "no id"
@@ -60,6 +60,9 @@ BufferId FrameGraph::create_buffer(const BufferSpec& spec) {
 
 TextureId FrameGraph::import(std::string_view name, const gpu::Texture& texture) {
     LIMN_CHECK(texture);
+    if (const std::uint32_t known = impl_->find_imported(&texture); known != ~0u) {
+        return {known};
+    }
     Impl::Resource resource;
     resource.name = impl_->intern(name);
     resource.desc = texture.desc();
@@ -69,12 +72,26 @@ TextureId FrameGraph::import(std::string_view name, const gpu::Texture& texture)
 
 BufferId FrameGraph::import(std::string_view name, const gpu::Buffer& buffer) {
     LIMN_CHECK(buffer);
+    if (const std::uint32_t known = impl_->find_imported(&buffer); known != ~0u) {
+        return {known};
+    }
     Impl::Resource resource;
     resource.name = impl_->intern(name);
     resource.is_texture = false;
     resource.bytes = buffer.size();
     resource.imported_buffer = &buffer;
     return {impl_->add_resource(resource)};
+}
+
+void FrameGraph::begin_scope(std::string_view scope) {
+    impl_->scope = scope;
+    if (!scope.empty()) {
+        impl_->scope += '/';
+    }
+}
+
+void FrameGraph::end_scope() {
+    impl_->scope.clear();
 }
 
 void FrameGraph::always_run() {
@@ -115,9 +132,10 @@ void FrameGraph::add_pass_erased(
     std::string_view name, std::span<const Use> reads, std::span<const Use> writes, void* closure,
     RunFunction run, DestroyFunction destroy) {
     Impl& graph = *impl_;
-    LIMN_CHECK_NOTE(graph.running == nullptr, "a pass is added while one runs");
+    LIMN_CHECK_NOTE(graph.running == nullptr, "add_pass() called while a pass is running");
     Impl::Pass pass;
-    pass.name = graph.intern(name);
+    graph.scoped_name.assign(graph.scope).append(name);
+    pass.name = graph.intern(graph.scoped_name);
     pass.reads = static_cast<std::uint32_t>(graph.uses.size());
     graph.uses.insert(graph.uses.end(), reads.begin(), reads.end());
     pass.writes = static_cast<std::uint32_t>(graph.uses.size());
@@ -150,8 +168,8 @@ Status FrameGraph::validate() const {
                     pass_name, graph.name_of(r));
             }
             for (const Use& write : graph.writes(pass)) {
-                // A shader may read and write the same image or block. A target it may not sample,
-                // except to draw one level or layer from the others (mip chains).
+                // A shader may read and write the same image or block, but must not sample a
+                // target, except to draw one level or layer from the others (mip chains).
                 const bool whole = write.level == 0 && write.layer < 0;
                 if (write.resource == use.resource && graph.is_target(write, true) && whole) {
                     return fail(
@@ -215,7 +233,7 @@ const gpu::Texture* FrameGraph::texture(TextureId id) const {
     if (r.imported_texture != nullptr) {
         return r.imported_texture;
     }
-    const bool holds = r.slot != TargetPool::kNobody
+    const bool holds = r.slot != TargetPool::kNoOwner
                        && impl_->pool.owner_of_texture(r.slot) == (id.index & kIndexMask);
     return holds ? &impl_->pool.texture(r.slot) : nullptr;
 }
@@ -271,9 +289,18 @@ std::uint32_t FrameGraph::Impl::add_resource(const Resource& resource) {
     return generation << kIndexBits | static_cast<std::uint32_t>(resources.size() - 1);
 }
 
+std::uint32_t FrameGraph::Impl::find_imported(const void* object) const {
+    for (std::size_t i = 0; i < resources.size(); ++i) {
+        if (resources[i].imported_texture == object || resources[i].imported_buffer == object) {
+            return generation << kIndexBits | static_cast<std::uint32_t>(i);
+        }
+    }
+    return ~0u;
+}
+
 std::uint32_t FrameGraph::Impl::index_of(std::uint32_t id) const {
-    LIMN_CHECK_NOTE(id != ~0u, "an id that names nothing");
-    LIMN_CHECK_NOTE(id >> kIndexBits == generation, "an id of an earlier frame");
+    LIMN_CHECK_NOTE(id != ~0u, "invalid resource id");
+    LIMN_CHECK_NOTE(id >> kIndexBits == generation, "stale resource id from an earlier frame");
     LIMN_CHECK((id & kIndexMask) < resources.size());
     return id & kIndexMask;
 }
@@ -308,7 +335,7 @@ const gpu::Texture& PassContext::texture(TextureId id) const {
     const bool declared = std::any_of(
         graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end,
         [=](const Use& use) { return use.resource == index; });
-    LIMN_CHECK_NOTE(declared, "the pass did not declare that it uses this texture");
+    LIMN_CHECK_NOTE(declared, "texture used by a pass that did not declare it");
     return graph.physical_texture(graph.resources[index]);
 }
 
@@ -320,7 +347,7 @@ const gpu::Buffer& PassContext::buffer(BufferId id) const {
     const bool declared = std::any_of(
         graph.uses.begin() + pass.reads, graph.uses.begin() + pass.end,
         [=](const Use& use) { return use.resource == index; });
-    LIMN_CHECK_NOTE(declared && !r.is_texture, "the pass did not declare that it uses this buffer");
+    LIMN_CHECK_NOTE(declared && !r.is_texture, "buffer used by a pass that did not declare it");
     return r.imported_buffer != nullptr ? *r.imported_buffer : graph.pool.buffer(r.slot);
 }
 

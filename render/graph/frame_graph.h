@@ -15,16 +15,16 @@
 
 namespace limn {
 
-// One frame as a list of passes. A pass says which textures and buffers it reads and writes and
-// brings the code that draws; the graph does the rest:
+// One frame as a list of passes. A pass declares which textures and buffers it reads and writes,
+// and brings the code that draws; the graph does the rest:
 //
-// - a pass that nothing needs is not run; needed are what keep() names and what is imported;
-// - transient textures come from a pool and share memory when their lifetimes do not overlap;
+// - a pass whose output is unused is culled; kept and imported resources count as used;
+// - transient textures come from a pool and alias when their lifetimes do not overlap;
 // - targets are attached, cleared and bound, memory barriers set, debug groups opened;
-// - every pass is timed on the CPU and the GPU (smoothed, some frames late, never waiting).
+// - every pass is timed on the CPU and the GPU (smoothed, some frames late, without stalls).
 //
-// Passes run in the order they are added. Reading what no earlier pass wrote is a programmer's
-// mistake and stops.
+// Passes run in the order they are added. Reading what no earlier pass wrote is a programming error
+// and aborts.
 //
 //     graph.begin_frame();
 //     const TextureId hdr = graph.create({.name = "hdr", .width = w, .height = h});
@@ -37,7 +37,7 @@ namespace limn {
 //     graph.execute();
 //     const gpu::Texture* image = graph.texture(hdr);
 //
-// Make one graph and keep it: after the first frames it allocates nothing. What a pass captures is
+// Create one graph and reuse it: after the first frames it allocates nothing. A pass's captures are
 // copied into the graph and destroyed after execute().
 
 struct TextureId {
@@ -51,8 +51,8 @@ struct BufferId {
     bool operator==(const BufferId&) const = default;
 };
 
-/// A texture that lives for (part of) a frame. Names are paths like "gbuffer.normal"; the viewer
-/// lists them.
+/// A texture that lives for (part of) a frame. Names are paths like "gbuffer.normal", as listed in
+/// the buffer viewer.
 struct TextureSpec {
     std::string_view name = {};
     GLenum format = GL_RGBA16F;
@@ -68,12 +68,12 @@ struct BufferSpec {
     std::size_t bytes = 0;
 };
 
-/// How a pass uses something; made by the functions below, or of an id alone.
+/// How a pass uses a resource; made by the functions below, or implicitly from an id.
 struct Use {
     enum class How : std::uint8_t {
-        Plain,  ///< read: any kind of fetch. Written: a target (texture), a storage block (buffer)
+        Plain,      ///< read: any kind of fetch; written: a render target or a storage block
         Cleared,    ///< a target, cleared first
-        Discarded,  ///< a target of which every pixel is written
+        Discarded,  ///< a target whose previous contents are not needed
         DepthTest,  ///< a depth attachment tested but not written; may be sampled as well
         Image,      ///< written as a shader image or a copy: not attached
     };
@@ -87,17 +87,19 @@ struct Use {
     int level = 0;
     int layer = -1;  ///< all
     Vec4 clear = {0, 0, 0, 0};
+    int unit = -1;                          ///< of sampled(); -1: the pass binds it
+    const gpu::Sampler* sampler = nullptr;  ///< of sampled(); null: the texture's own filter
 };
 
-/// A target cleared to `value` before the pass; depth takes x, stencil y. The default is depth's
-/// far end.
+/// A target cleared to `value` before the pass; depth uses x, stencil y. The default is the far
+/// plane.
 [[nodiscard]] inline Use cleared(TextureId texture, const Vec4& value = Vec4(0)) {
     Use use(texture.index, Use::How::Cleared);
     use.clear = value;
     return use;
 }
-/// A target of which the pass writes every pixel: what it held is not kept, nor the passes that
-/// drew it.
+/// A target of which the pass writes every pixel: its previous contents, and the passes that drew
+/// them, are not needed.
 [[nodiscard]] inline Use discarded(TextureId texture) {
     return {texture.index, Use::How::Discarded};
 }
@@ -105,7 +107,7 @@ struct Use {
 [[nodiscard]] inline Use image(TextureId texture) {
     return {texture.index, Use::How::Image};
 }
-/// Among the reads: the depth buffer to test against without writing.
+/// For the reads: the depth buffer to test against without writing.
 [[nodiscard]] inline Use depth_tested(TextureId texture) {
     return {texture.index, Use::How::DepthTest};
 }
@@ -116,15 +118,22 @@ struct Use {
     return use;
 }
 
+/// For the reads: bound to a texture unit before the pass runs; `sampler` must outlive the frame.
+[[nodiscard]] inline Use sampled(Use use, unsigned unit, const gpu::Sampler* sampler = nullptr) {
+    use.unit = static_cast<int>(unit);
+    use.sampler = sampler;
+    return use;
+}
+
 class FrameGraph;
 
-/// What a pass sees while it runs: its targets are bound and cleared, the viewport covers them.
+/// Passed to a running pass: its targets are bound and cleared, the viewport covers them.
 class PassContext {
   public:
     [[nodiscard]] gpu::Device& device() const { return device_; }
     [[nodiscard]] const gpu::Texture& texture(TextureId id) const;
     [[nodiscard]] const gpu::Buffer& buffer(BufferId id) const;
-    /// Of the targets [px]; (0, 0) without any.
+    /// Size of the targets [px]; (0, 0) without any.
     [[nodiscard]] IVec2 size() const { return size_; }
 
     void bind_texture(unsigned unit, TextureId id, const gpu::Sampler* sampler = nullptr) const;
@@ -142,11 +151,11 @@ class PassContext {
     IVec2 size_ = {0, 0};
 };
 
-/// What a pass costs. GPU times are of a frame some frames ago. Where the CPU draws (llvmpipe) a
-/// driver call may wait for the passes before, and that time counts as this pass's CPU time.
+/// Cost of a pass. GPU times lag some frames behind. On a software OpenGL (llvmpipe) a driver call
+/// may wait for earlier passes, which then counts as CPU time of this one.
 struct PassTiming {
     std::string_view name = {};
-    double cpu_ms = 0;       ///< smoothed over some 20 frames
+    double cpu_ms = 0;       ///< smoothed over about 20 frames
     double gpu_ms = 0;       ///< smoothed
     double last_cpu_ms = 0;  ///< of the last frame
     double last_gpu_ms = 0;  ///< of the last frame whose times arrived
@@ -159,17 +168,22 @@ class FrameGraph {
     FrameGraph(const FrameGraph&) = delete;
     FrameGraph& operator=(const FrameGraph&) = delete;
 
-    /// Forgets last frame's passes and textures; ids of it are no longer valid.
+    /// Drops the last frame's passes and textures; its ids become invalid.
     void begin_frame();
 
     [[nodiscard]] TextureId create(const TextureSpec& spec);
     [[nodiscard]] BufferId create_buffer(const BufferSpec& spec);
-    /// A texture or buffer from outside, which must live until execute() has returned. Passes that
-    /// write it are always run.
+    /// An external texture or buffer, which must live until execute() has returned. Passes that
+    /// write it always run.
     [[nodiscard]] TextureId import(std::string_view name, const gpu::Texture& texture);
     [[nodiscard]] BufferId import(std::string_view name, const gpu::Buffer& buffer);
 
-    /// Adds a pass. A texture may be among the writes of several passes: later ones draw over it.
+    /// Passes that are added until end_scope() are named "scope/pass", as those of a further view;
+    /// an empty scope changes no name.
+    void begin_scope(std::string_view scope);
+    void end_scope();
+
+    /// Adds a pass. Several passes may write the same texture: later ones draw over it.
     template <typename Run>
     void add_pass(
         std::string_view name, std::initializer_list<Use> reads, std::initializer_list<Use> writes,
@@ -181,18 +195,18 @@ class FrameGraph {
     template <typename Run>
     void add_pass(
         std::string_view name, std::span<const Use> reads, std::span<const Use> writes, Run&& run);
-    /// The pass added last is run whether or not somebody needs what it writes.
+    /// Exempts the pass added last from culling.
     void always_run();
 
-    /// The texture is wanted after the frame: its contents stay until the next begin_frame().
+    /// Retains the contents of the texture until the next begin_frame().
     void keep(TextureId texture);
-    /// keep() for everything of this name in every frame from now on (buffer viewer, AOVs); stop
-    /// with forget.
+    /// keep() for every texture of this name in all following frames (buffer viewer, AOVs), until
+    /// forget_named().
     void keep_named(std::string_view name);
     void forget_named(std::string_view name);
 
-    /// Mistakes in what was declared: a read before any write, a texture that is both read and
-    /// written in one pass, targets of different sizes. execute() stops on them.
+    /// Fails on a read before any write, a texture that is both read and written in one pass, or
+    /// targets of different sizes. execute() aborts on these.
     [[nodiscard]] Status validate() const;
     void execute();
 
@@ -202,21 +216,21 @@ class FrameGraph {
     [[nodiscard]] TextureSpec spec(TextureId id) const;
 
     // ---- after execute ----
-    /// Its contents after the frame; null if its passes were not run or its memory went to a later
-    /// texture: keep it.
+    /// The texture after the frame; null if its passes were culled or its memory was reused by a
+    /// later texture (use keep()).
     [[nodiscard]] const gpu::Texture* texture(TextureId id) const;
     /// Names of all textures of the frame, in order of declaration.
     [[nodiscard]] std::vector<std::string_view> texture_names() const;
     [[nodiscard]] bool was_run(std::string_view pass) const;
 
-    /// In the order of the last frame.
+    /// In the pass order of the last frame.
     [[nodiscard]] std::span<const PassTiming> timings() const;
     /// All passes of a frame together, smoothed.
     [[nodiscard]] double total_cpu_ms() const;
     [[nodiscard]] double total_gpu_ms() const;
     /// Waits for the GPU times of every frame so far: for `limn bench`.
     void wait_for_timings();
-    /// Timestamps can be switched off to see what they cost.
+    /// Timestamps can be switched off to measure their cost.
     void set_gpu_timing(bool on);
 
     /// A table of passes, what they read and write, and their times.
@@ -224,7 +238,7 @@ class FrameGraph {
     /// The same as a graph for Graphviz.
     [[nodiscard]] std::string to_dot() const;
 
-    /// Of the last frame.
+    /// Statistics of the last frame.
     struct Stats {
         int passes_run = 0;
         int passes_culled = 0;
@@ -232,7 +246,7 @@ class FrameGraph {
         int pool_textures = 0;           ///< alive in the pool
         int framebuffers = 0;            ///< alive in the cache
         std::size_t pool_bytes = 0;      ///< of textures and buffers in the pool
-        std::size_t unshared_bytes = 0;  ///< what they would take if each had its own memory
+        std::size_t unshared_bytes = 0;  ///< the same without aliasing
     };
     [[nodiscard]] const Stats& stats() const;
 
@@ -242,7 +256,7 @@ class FrameGraph {
     using RunFunction = void (*)(void*, PassContext&);
     using DestroyFunction = void (*)(void*);
 
-    /// Room for a pass's captures, until the next begin_frame().
+    /// Memory for a pass's captures, until the next begin_frame().
     [[nodiscard]] void* allocate_closure(std::size_t size, std::size_t alignment);
     void add_pass_erased(
         std::string_view name, std::span<const Use> reads, std::span<const Use> writes,
@@ -255,10 +269,10 @@ template <typename Run>
 void FrameGraph::add_pass(
     std::string_view name, std::span<const Use> reads, std::span<const Use> writes, Run&& run) {
     using Closure = std::decay_t<Run>;
-    void* room = allocate_closure(sizeof(Closure), alignof(Closure));
-    new (room) Closure(std::forward<Run>(run));
+    void* memory = allocate_closure(sizeof(Closure), alignof(Closure));
+    new (memory) Closure(std::forward<Run>(run));
     add_pass_erased(
-        name, reads, writes, room,
+        name, reads, writes, memory,
         [](void* closure, PassContext& context) { (*static_cast<Closure*>(closure))(context); },
         [](void* closure) { static_cast<Closure*>(closure)->~Closure(); });
 }

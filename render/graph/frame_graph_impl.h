@@ -15,7 +15,7 @@
 
 namespace limn {
 
-// What a FrameGraph holds, for the files that implement it: frame_graph.cpp declares and checks,
+// State of a FrameGraph, shared by its source files: frame_graph.cpp declares and validates,
 // frame_graph_run.cpp runs and times, frame_graph_text.cpp prints.
 
 struct TextHash {
@@ -34,11 +34,11 @@ struct FrameGraph::Impl {
         const gpu::Texture* imported_texture = nullptr;
         const gpu::Buffer* imported_buffer = nullptr;
         bool kept = false;
-        bool unsynced = false;  // imported: written by a shader with no barrier since
-        // Filled by plan(): passes that run and use it, first to last.
+        bool unsynced = false;  // imported: shader writes not yet followed by a barrier
+        // Lifetime, filled by plan(): first and last running pass that uses it.
         int first = -1;
         int last = -1;
-        std::uint32_t slot = TargetPool::kNobody;
+        std::uint32_t slot = TargetPool::kNoOwner;
 
         [[nodiscard]] bool imported() const {
             return imported_texture != nullptr || imported_buffer != nullptr;
@@ -46,7 +46,7 @@ struct FrameGraph::Impl {
     };
     struct Pass {
         std::uint32_t name = 0;
-        // Uses [reads, writes) are read, [writes, end) written.
+        // Ranges of `uses`: [reads, writes) are read, [writes, end) written.
         std::uint32_t reads = 0;
         std::uint32_t writes = 0;
         std::uint32_t end = 0;
@@ -56,7 +56,7 @@ struct FrameGraph::Impl {
         bool always = false;
         bool runs = false;
     };
-    /// Times of a pass by its name, over the frames.
+    /// Timings of all passes of one name, across frames.
     struct Times {
         double cpu_ms = 0;
         double gpu_ms = 0;
@@ -64,9 +64,9 @@ struct FrameGraph::Impl {
         double last_gpu_ms = 0;
         bool cpu_seen = false;
         bool gpu_seen = false;
-        std::uint64_t frame = 0;  // that last_cpu_ms is of
+        std::uint64_t frame = 0;  // of last_cpu_ms
     };
-    /// Captures of passes: blocks that are filled one after another and never move.
+    /// Bump allocator for captures of passes: blocks never move.
     struct Arena {
         std::vector<std::unique_ptr<std::byte[]>> blocks;
         std::size_t block = 0;
@@ -77,11 +77,15 @@ struct FrameGraph::Impl {
 
     gpu::Device& device;
     TargetPool pool;
-    std::deque<std::string> names;  // of passes and resources; never move, as timings view them
+    std::deque<std::string>
+        names;  // of passes and resources; stable, as timings hold views of them
     std::unordered_map<std::string, std::uint32_t, TextHash, std::equal_to<>> name_index;
     std::unordered_set<std::string, TextHash, std::equal_to<>> kept_names;
 
-    std::uint32_t generation = 0;  // of the frame, part of every id
+    std::string scope;        // of the passes being added, with its '/'
+    std::string scoped_name;  // scratch
+
+    std::uint32_t generation = 0;  // of the frame; part of every id
     std::vector<Resource> resources;
     std::vector<Pass> passes;
     std::vector<Use> uses;
@@ -100,11 +104,13 @@ struct FrameGraph::Impl {
     bool total_cpu_seen = false;
     bool total_gpu_seen = false;
     Stats stats;
-    std::vector<std::uint8_t> scratch;  // one a resource: scratch of validate() and plan()
+    std::vector<std::uint8_t> scratch;  // one per resource, for validate() and plan()
 
     // frame_graph.cpp
     [[nodiscard]] std::uint32_t intern(std::string_view name);
     [[nodiscard]] std::uint32_t add_resource(const Resource& resource);
+    /// The id of a texture or buffer that was imported before; ~0 if it was not.
+    [[nodiscard]] std::uint32_t find_imported(const void* object) const;
     [[nodiscard]] const Resource& resource(std::uint32_t id) const;
     [[nodiscard]] Resource& resource(std::uint32_t id);
     [[nodiscard]] std::uint32_t index_of(std::uint32_t id) const;
@@ -115,7 +121,7 @@ struct FrameGraph::Impl {
         return std::span(uses).subspan(pass.writes, pass.end - pass.writes);
     }
     [[nodiscard]] const std::string& name_of(const Resource& r) const { return names[r.name]; }
-    /// Attached to the pass's framebuffer.
+    /// Whether it is attached to the pass's framebuffer.
     [[nodiscard]] bool is_target(const Use& use, bool written) const;
     void destroy_closures();
 

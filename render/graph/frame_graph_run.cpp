@@ -12,11 +12,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kFrameStart = ~0u;  // tag of the first timestamp of a frame
-constexpr double kSmoothing = 0.1;  // weight of the newest frame: some 20 frames of memory; by eye
+constexpr double kSmoothing =
+    0.1;  // weight of the newest frame: a memory of about 20 frames; by eye
 constexpr std::size_t kMaxColors = 8;
 
-// What may follow a write by a shader. Both are generous: a barrier costs the same whatever it
-// names.
+// All accesses that may follow a shader write; a barrier costs the same whatever its bits.
 constexpr GLbitfield kTextureBarrier =
     GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT
     | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT;
@@ -29,16 +29,16 @@ double milliseconds(Clock::duration time) {
     return std::chrono::duration<double, std::milli>(time).count();
 }
 
-void smooth(double& value, bool& seen, double sample) {
-    value = seen ? value + kSmoothing * (sample - value) : sample;
-    seen = true;
+void smooth(double& value, bool& initialized, double sample) {
+    value = initialized ? value + kSmoothing * (sample - value) : sample;
+    initialized = true;
 }
 
 }  // namespace
 
 void FrameGraph::execute() {
     Impl& graph = *impl_;
-    LIMN_CHECK_NOTE(!graph.executed, "execute() called twice: begin_frame() comes first");
+    LIMN_CHECK_NOTE(!graph.executed, "execute() called twice without begin_frame()");
     const Status valid = validate();
     LIMN_CHECK_NOTE(valid.ok(), valid.ok() ? "" : valid.error().message.c_str());
 
@@ -61,10 +61,10 @@ void FrameGraph::execute() {
     if (graph.gpu_timing) {
         graph.timer.end_frame();
     }
-    // Whoever reads results next is not a pass, and knows of no barrier.
+    // Code outside the graph reads the results without a barrier of its own.
     bool unsynced = false;
     for (Impl::Resource& r : graph.resources) {
-        if ((r.imported() || r.slot != TargetPool::kNobody) && graph.unsynced(r)) {
+        if ((r.imported() || r.slot != TargetPool::kNoOwner) && graph.unsynced(r)) {
             graph.unsynced(r) = false;
             unsynced = true;
         }
@@ -81,9 +81,9 @@ void FrameGraph::execute() {
     graph.publish_timings();
 }
 
-/// Decides which passes run, and from which to which of them every resource lives.
+/// Culls passes and determines the lifetime of every resource.
 void FrameGraph::Impl::plan() {
-    // Backwards: what is needed after a pass decides whether it runs, and that what it needs.
+    // Backwards: a pass runs if its output is needed later, and then its inputs are needed.
     std::vector<std::uint8_t>& needed = scratch;
     needed.assign(resources.size(), 0);
     for (std::size_t i = 0; i < resources.size(); ++i) {
@@ -102,7 +102,7 @@ void FrameGraph::Impl::plan() {
         for (const Use& use : writes(pass)) {
             const Resource& r = resources[use.resource];
             const bool replaces = use.how == Use::How::Cleared || use.how == Use::How::Discarded;
-            // Drawing over something needs what lies beneath; replacing all of it does not.
+            // Drawing over a target needs its contents; replacing all of it does not.
             const bool whole = r.desc.levels == 1 && use.layer < 0;
             needed[use.resource] = replaces && whole ? 0 : 1;
         }
@@ -136,7 +136,7 @@ void FrameGraph::Impl::plan() {
 void FrameGraph::Impl::acquire(const Pass& pass, int number) {
     for (std::uint32_t u = pass.reads; u < pass.end; ++u) {
         Resource& r = resources[uses[u].resource];
-        if (!r.imported() && r.first == number && r.slot == TargetPool::kNobody) {
+        if (!r.imported() && r.first == number && r.slot == TargetPool::kNoOwner) {
             r.slot = r.is_texture ? pool.acquire_texture(r.desc, uses[u].resource)
                                   : pool.acquire_buffer(r.bytes, uses[u].resource);
         }
@@ -177,10 +177,10 @@ void FrameGraph::Impl::synchronize(const Pass& pass) {
     }
     glMemoryBarrier(barrier);
     ++stats.barriers;
-    // A barrier is for everything written so far, not only for what this pass uses.
+    // A barrier covers everything written so far, not only what this pass uses.
     for (Resource& r : resources) {
         const bool covered = (barrier & (r.is_texture ? kTextureBarrier : kBufferBarrier)) != 0;
-        if (covered && (r.imported() || r.slot != TargetPool::kNobody)) {
+        if (covered && (r.imported() || r.slot != TargetPool::kNoOwner)) {
             unsynced(r) = false;
         }
     }
@@ -282,6 +282,13 @@ void FrameGraph::Impl::run_pass(Pass& pass, int number, PassContext& context) {
     synchronize(pass);
     running = &pass;
     context.size_ = bind_targets(pass);
+    for (const Use& use : reads(pass)) {
+        if (use.unit >= 0) {
+            device.bind_texture(
+                static_cast<unsigned>(use.unit), physical_texture(resources[use.resource]),
+                use.sampler);
+        }
+    }
     pass.run(pass.closure, context);
     running = nullptr;
     mark_unsynced(pass);
@@ -290,7 +297,7 @@ void FrameGraph::Impl::run_pass(Pass& pass, int number, PassContext& context) {
     if (gpu_timing) {
         timer.mark(pass.name);
     }
-    // Passes of one name count together.
+    // Passes of the same name are summed.
     Times& t = times[pass.name];
     const double cost = milliseconds(Clock::now() - begin);
     t.last_cpu_ms = t.frame == frame ? t.last_cpu_ms + cost : cost;

@@ -11,18 +11,17 @@ void TargetPool::begin_frame() {
     const auto old = [&](std::uint64_t last_used) { return frame_ - last_used > kFramesKept; };
     std::erase_if(
         framebuffers_, [&](const FramebufferEntry& entry) { return old(entry.last_used); });
-    // Slots keep their places, as their numbers are remembered within a frame; only their contents
-    // leave.
+    // Slot numbers stay valid within a frame, so slots are emptied, not erased.
     for (TextureSlot& slot : textures_) {
         slot.busy = false;
-        slot.owner = kNobody;
+        slot.owner = kNoOwner;
         if (slot.texture && old(slot.last_used)) {
             slot.texture = {};
         }
     }
     for (BufferSlot& slot : buffers_) {
         slot.busy = false;
-        slot.owner = kNobody;
+        slot.owner = kNoOwner;
         if (slot.buffer && old(slot.last_used)) {
             slot.buffer = {};
         }

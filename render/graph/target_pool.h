@@ -10,23 +10,22 @@
 
 namespace limn {
 
-// The memory behind transient textures and buffers of the frame graph, and the framebuffers that
-// combine them. What equals in format and size is used again, within a frame and from frame to
-// frame; what nobody asked for during kFramesKept frames is given back (after a resize, for
-// example).
+// The memory behind the frame graph's transient textures and buffers, and the framebuffers that
+// combine them. Resources of equal format and size are reused, within a frame and across frames;
+// those unused for kFramesKept frames are freed (after a resize, for example).
 
 class TargetPool {
   public:
     static constexpr std::uint64_t kFramesKept = 8;
-    static constexpr std::uint32_t kNobody = ~0u;
+    static constexpr std::uint32_t kNoOwner = ~0u;
 
-    /// Everything is free again; old leftovers are destroyed.
+    /// Marks everything as free and destroys what has not been used for kFramesKept frames.
     void begin_frame();
 
     /// A slot whose contents are undefined, owned by resource `owner` until released.
     [[nodiscard]] std::uint32_t acquire_texture(const gpu::TextureDesc& desc, std::uint32_t owner);
     [[nodiscard]] std::uint32_t acquire_buffer(std::size_t bytes, std::uint32_t owner);
-    /// The slot may be given to the next one; its contents stay until then.
+    /// Makes the slot available again; its contents stay until it is reused.
     void release_texture(std::uint32_t slot) { textures_[slot].busy = false; }
     void release_buffer(std::uint32_t slot) { buffers_[slot].busy = false; }
 
@@ -36,16 +35,16 @@ class TargetPool {
     [[nodiscard]] const gpu::Buffer& buffer(std::uint32_t slot) const {
         return buffers_[slot].buffer;
     }
-    /// Whose contents the slot holds.
+    /// Resource whose contents the slot holds.
     [[nodiscard]] std::uint32_t owner_of_texture(std::uint32_t slot) const {
         return textures_[slot].owner;
     }
 
-    /// Written by a shader with no barrier since; kept here because owners change.
+    /// Shader writes not yet followed by a barrier; tracked per slot, as owners change.
     [[nodiscard]] bool& texture_unsynced(std::uint32_t slot) { return textures_[slot].unsynced; }
     [[nodiscard]] bool& buffer_unsynced(std::uint32_t slot) { return buffers_[slot].unsynced; }
 
-    /// A framebuffer of these attachments, made once.
+    /// A cached framebuffer with these attachments.
     [[nodiscard]] const gpu::Framebuffer&
     framebuffer(std::span<const gpu::Attachment> colors, const gpu::Attachment& depth);
 
@@ -56,21 +55,21 @@ class TargetPool {
   private:
     struct TextureSlot {
         gpu::Texture texture;   // empty: the slot is vacant
-        gpu::TextureDesc desc;  // as asked for: Texture resolves a level count of 0
+        gpu::TextureDesc desc;  // as requested: Texture resolves a level count of 0
         std::uint64_t last_used = 0;
-        std::uint32_t owner = kNobody;
+        std::uint32_t owner = kNoOwner;
         bool busy = false;
         bool unsynced = false;
     };
     struct BufferSlot {
         gpu::Buffer buffer;
         std::uint64_t last_used = 0;
-        std::uint32_t owner = kNobody;
+        std::uint32_t owner = kNoOwner;
         bool busy = false;
         bool unsynced = false;
     };
     struct AttachmentKey {
-        std::uint64_t serial = 0;  // of the texture: names are used again, serials are not
+        std::uint64_t serial = 0;  // of the texture: GL names are recycled, serials are not
         int level = 0;
         int layer = 0;
         bool operator==(const AttachmentKey&) const = default;

@@ -1,10 +1,13 @@
 #include "render/passes/aov_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "render/fullscreen.h"
+#include "render/lighting.h"
+#include "render/passes/shadow_pass.h"
 #include "render/render_frame.h"
+#include "render/view_block.h"
 
+#include <algorithm>
 #include <string>
-#include <vector>
 
 namespace limn {
 
@@ -19,65 +22,94 @@ const std::array<Aov, kAovCount> kAovs = {{
 }};
 
 namespace {
+
 constexpr int kVelocityAov = 3;
 constexpr int kShadowTexelsAov = 5;
-}  // namespace
+constexpr int kVolumeLayersAov = 6;  ///< drawn by draw_volume_layers
 
-Result<AovPass> create_aov_pass(gpu::Device& device) {
-    AovPass pass;
-    for (int i = 0; i < kVolumeLayersAov; ++i) {
-        const Result<const gpu::Program*> program = device.shaders().load(
-            {.vertex = "fullscreen.vert",
-             .fragment = "aov.frag",
-             .defines = {{"AOV", std::to_string(i)}}});
-        if (!program) {
-            return program.error();
-        }
-        pass.programs[i] = *program;
-    }
-    return pass;
+bool is_requested(const FrameData& frame, std::string_view name) {
+    return std::find(frame.aovs.begin(), frame.aovs.end(), name) != frame.aovs.end();
 }
 
-TextureId draw_aov(
-    FrameGraph& graph, const AovPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
-    int aov) {
+TextureId draw_aov(FrameGraph& graph, AovEffect& effect, const ViewData& view, int aov) {
     const std::string name = "aov." + std::string(kAovs[aov].name);
-    const TextureId value = graph.create(
-        {.name = name,
-         .format = GL_RGBA32F,
-         .width = scene.view.width,
-         .height = scene.view.height});
-    std::vector<Use> reads = {gbuffer.surface, depth_tested(gbuffer.depth)};
+    const TextureId value = create_target(graph, name, GL_RGBA32F, view.size());
+    std::vector<Use> reads = {
+        sampled(view.gbuffer.surface, kGbufferUnit),
+        sampled(depth_tested(view.gbuffer.depth), kDepthUnit)};
     if (aov == kVelocityAov) {
-        reads.emplace_back(gbuffer.velocity);
+        reads.push_back(sampled(view.gbuffer.velocity, kVelocityUnit));
     }
-    const Use writes[] = {cleared(value, kAovs[aov].nothing)};
-    graph.add_pass(
-        name, std::span<const Use>(reads), std::span<const Use>(writes),
-        [&pass, &scene, gbuffer, aov](PassContext& context) {
-            const auto shadow_views = static_cast<int>(scene.shadows.records.size());
-            if (aov == kShadowTexelsAov && shadow_views == 0) {
-                return;
-            }
-            // The sky moves, too; it has nothing else.
-            gpu::PipelineState state = gpu::kFullscreenState;
-            if (aov != kVelocityAov) {
-                state.depth = {.test = true, .write = false, .func = GL_LESS};
-            }
-            context.device().use(gpu::Pipeline{pass.programs[aov], state});
-            bind_view(context.device(), scene);
-            context.bind_texture(kGbufferUnit, gbuffer.surface);
-            context.bind_texture(kDepthUnit, gbuffer.depth);
-            if (aov == kVelocityAov) {
-                context.bind_texture(kVelocityUnit, gbuffer.velocity);
-            }
-            if (aov == kShadowTexelsAov) {
-                scene.shadow_views->bind(context.device(), kShadowViewsUnit);
-                pass.programs[aov]->set("shadow_view_count", shadow_views);
-            }
-            context.device().draw_fullscreen();
-        });
+    const Use writes[] = {cleared(value, kAovs[aov].background)};
+    graph.add_pass(name, std::span(reads), writes, [&effect, &view, aov](PassContext& context) {
+        const auto* maps = view.data.find<ShadowMaps>();
+        const std::size_t shadow_views = maps != nullptr ? maps->list->records.size() : 0;
+        Variant variant;
+        variant.add("AOV", aov);
+        const gpu::Program* program = effect.programs.get(variant);
+        if (program == nullptr || (aov == kShadowTexelsAov && shadow_views == 0)) {
+            return;
+        }
+        // The sky has a velocity, but no other attribute.
+        gpu::PipelineState state = gpu::kFullscreenState;
+        if (aov != kVelocityAov) {
+            state.depth = {.test = true, .write = false, .func = GL_LESS};
+        }
+        context.device().use(gpu::Pipeline{program, state});
+        bind_view(context, view);
+        if (aov == kShadowTexelsAov) {
+            maps->records->bind(context.device(), kShadowViewsUnit);
+            program->set("shadow_view_count", static_cast<int>(shadow_views));
+        }
+        context.device().draw_fullscreen();
+    });
     return value;
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& aov_names() {
+    static const std::vector<std::string_view> kNames = [] {
+        std::vector<std::string_view> names;
+        for (const Aov& aov : kAovs) {
+            names.push_back(aov.name);
+        }
+        return names;
+    }();
+    return kNames;
+}
+
+int aov_index(std::string_view name) {
+    const auto found = std::find_if(
+        kAovs.begin(), kAovs.end(), [name](const Aov& aov) { return aov.name == name; });
+    return found != kAovs.end() ? static_cast<int>(found - kAovs.begin()) : -1;
+}
+
+int aov_channels(std::string_view name) {
+    const int index = aov_index(name);
+    return index >= 0 ? kAovs[index].channels : 0;
+}
+
+Result<AovEffect> AovEffect::create(gpu::Device& device, const RenderSettings&) {
+    return AovEffect{ProgramVariants::fullscreen(device, "aov.frag")};
+}
+
+void AovEffect::collect(FrameData& frame) {
+    frame.attributes = true;
+    frame.velocity |= is_requested(frame, kAovs[kVelocityAov].name);
+}
+
+void AovEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    auto& published = view.data.publish<AovTextures>();
+    published.textures.clear();
+    for (int i = 0; i < kAovCount; ++i) {
+        if (is_requested(frame, kAovs[i].name)) {
+            const TextureId texture = i == kVolumeLayersAov ? draw_volume_layers(graph, view)
+                                                            : draw_aov(graph, *this, view, i);
+            graph.keep(texture);
+            published.textures.emplace_back(i, texture);
+        }
+    }
 }
 
 }  // namespace limn

@@ -1,41 +1,48 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "ecs/base/math.h"
+#include "render/effect.h"
 
 #include <array>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace limn {
 
-// Attributes of the G-buffer as plain numbers, for files and the buffer viewer; and how well shadow
-// maps resolve what a pixel shows (shadow.map-aliasing).
+// G-buffer attributes as plain numbers, for image files and the buffer viewer; and the shadow map
+// resolution at each pixel (shadow.map-aliasing).
 //
 // Reads    G-buffer, records of the shadow views
-// Writes   RGBA32F, named "aov.<name>"; layers of shadow volumes come from their own pass
-// Order    after the G-buffer
+// Writes   RGBA32F, named "aov.<name>"; shadow volume layers come from their own pass
+// Order    after all that draws into the G-buffer
 // Shaders  aov.frag
 
 inline constexpr int kAovCount = 7;
-inline constexpr int kVolumeLayersAov = 6;  ///< draw_volume_layers makes it
 
 struct Aov {
     std::string_view name;
     int channels;
-    Vec4 nothing;  ///< value where no surface is
+    Vec4 background;  ///< value where there is no surface
 };
-/// In the order of aov.frag.
+/// In the order of AOV in aov.frag.
 extern const std::array<Aov, kAovCount> kAovs;
 
-struct AovPass {
-    std::array<const gpu::Program*, kVolumeLayersAov> programs{};
+/// Index into kAovs; -1: no such AOV.
+[[nodiscard]] int aov_index(std::string_view name);
+
+/// Those that were asked for, in the order of kAovs; published by AovEffect::draw().
+struct AovTextures {
+    std::vector<std::pair<int, TextureId>> textures;  ///< index into kAovs; kept
 };
 
-[[nodiscard]] Result<AovPass> create_aov_pass(gpu::Device& device);
+struct AovEffect {
+    ProgramVariants programs;
 
-/// `aov` is an index into kAovs; velocity needs a G-buffer with velocity.
-[[nodiscard]] TextureId draw_aov(
-    FrameGraph& graph, const AovPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
-    int aov);
+    static Result<AovEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame) { return !frame.aovs.empty(); }
+    void collect(FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
 
 }  // namespace limn

@@ -1,46 +1,35 @@
 #include "render/passes/blend_pass.h"
 
+#include "render/instance_list.h"
+#include "render/lighting.h"
+#include "render/surface_draws.h"
+#include "render/view_block.h"
+
 namespace limn {
 
-namespace {
-
-constexpr std::uint32_t kClippedKey = 1u << 31;  ///< beside those of lighting_key
-
-}  // namespace
-
-Result<BlendPass> create_blend_pass(gpu::Device& device) {
-    BlendPass pass = {SurfacePrograms(device, "mesh.vert", "blend.frag")};
-    const Status plain = pass.programs.load(0, 0, {});
-    if (!plain) {
-        return plain.error();
-    }
-    return pass;
+Result<BlendEffect> BlendEffect::create(gpu::Device& device, const RenderSettings&) {
+    BlendEffect effect{ProgramVariants::of_meshes(device, "blend.frag")};
+    LIMN_TRY(effect.programs.load());
+    return effect;
 }
 
-TextureId draw_blended(
-    FrameGraph& graph, BlendPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer) {
-    if (!scene.instances.blended.empty()) {
-        const std::vector<Use> reads = lighting_reads(scene, {depth_tested(gbuffer.depth)});
-        const Use writes[] = {radiance};
-        graph.add_pass(
-            "blended", std::span<const Use>(reads), std::span<const Use>(writes),
-            [&pass, &scene](PassContext& context) {
-                bind_lighting(context.device(), scene);
-                const bool clipped = is_clipped(scene);
-                std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
-                if (clipped) {
-                    defines.push_back({"CLIPPED"});
-                }
-                draw_runs(
-                    context.device(), scene, scene.instances.blended, pass.programs, 0,
-                    lighting_key(scene) | (clipped ? kClippedKey : 0), defines,
-                    {.depth = {.write = false},
-                     .blend = gpu::kBlendPremultiplied,
-                     .clip = clipped});
-            });
+void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    if (view.data.get<InstanceList>().blended.empty()) {
+        return;
     }
-    return radiance;
+    const std::vector<Use> reads = lighting_reads(view, {depth_tested(view.gbuffer.depth)});
+    const Use writes[] = {view.radiance};
+    graph.add_pass("blended", std::span(reads), writes, [this, &view](PassContext& context) {
+        const bool clipped = is_clipped(view);
+        Variant variant = view.lighting.variant;
+        variant.add_if(clipped, "CLIPPED");
+        bind_lighting(context, view);
+        draw_runs(
+            context, view, view.data.get<InstanceList>().blended, programs,
+            {.variant = &variant,
+             .state = {
+                 .depth = {.write = false}, .blend = gpu::kBlendPremultiplied, .clip = clipped}});
+    });
 }
 
 }  // namespace limn

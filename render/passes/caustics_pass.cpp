@@ -1,8 +1,12 @@
 #include "render/passes/caustics_pass.h"
 
-#include "ecs/base/log.h"
+#include "ecs/components/water.h"
+#include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/lighting.h"
+#include "render/passes/shadow_pass.h"
+#include "render/view_block.h"
 
 namespace limn {
 namespace {
@@ -11,56 +15,39 @@ constexpr unsigned kJobsUnit = 20;
 constexpr unsigned kRaysBinding = 0;
 constexpr unsigned kLightBinding = 1;
 constexpr unsigned kMapsImage = 0;
-constexpr unsigned kGroup = 64;  ///< texels of a work group
-constexpr std::uint32_t kOceanKey = 1u << 31;
+constexpr unsigned kGroup = 64;  ///< texels per work group
+constexpr unsigned kWaterLightsUnit = 20;
+constexpr unsigned kCausticMapsUnit = 21;
 
 gpu::Texture make_atlas(const IVec2& size) {
     return {"caustic maps", {.format = GL_R32F, .width = size.x, .height = size.y}};
 }
 
-/// Null, and said once, if it does not compile.
-const gpu::Program*
-rays_program(CausticsPass& pass, gpu::Device& device, const FrameScene& scene, bool ocean) {
-    const std::uint32_t key = lighting_key(scene) | (ocean ? kOceanKey : 0);
-    const auto found = pass.rays.find(key);
-    if (found != pass.rays.end()) {
-        return found->second;
-    }
-    std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
-    if (ocean) {
-        defines.push_back({"OCEAN"});
-    }
-    const Result<const gpu::Program*> program =
-        device.shaders().load({.compute = "caustics_rays.comp", .defines = defines});
-    if (!program) {
-        log_error("{}", program.error().message);
-    }
-    return pass.rays[key] = program ? *program : nullptr;
-}
-
-void use_with_jobs(gpu::Device& device, const CausticsPass& pass, const gpu::Program& program) {
+void use_with_jobs(gpu::Device& device, const CausticList& list, const gpu::Program& program) {
     device.use(program);
-    program.set("groups", pass.list.groups);
-    pass.jobs.bind(device, kJobsUnit);
+    program.set("groups", list.groups);
+    list.job_texture.bind(device, kJobsUnit);
 }
 
-/// Transient sums, then the maps.
-void sum_on_gpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made) {
-    const auto width = static_cast<unsigned>(pass.list.atlas.x);
-    const auto height = static_cast<unsigned>(pass.list.atlas.y);
+/// Sums into a transient buffer, then writes the maps.
+void sum_on_gpu(
+    FrameGraph& graph, const CausticsEffect& pass, const CausticList& list, BufferId rays,
+    TextureId made) {
+    const auto width = static_cast<unsigned>(list.atlas.x);
+    const auto height = static_cast<unsigned>(list.atlas.y);
     const std::size_t bytes = std::size_t{width} * height * sizeof(std::uint32_t);
     const BufferId light = graph.create_buffer({"caustics.light", bytes});
-    graph.add_pass("caustic splats", {rays}, {light}, [=, &pass](PassContext& context) {
+    graph.add_pass("caustic splats", {rays}, {light}, [=, &pass, &list](PassContext& context) {
         gpu::Device& device = context.device();
         const std::uint32_t none = 0;
         glClearNamedBufferSubData(
             context.buffer(light).id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
             GL_UNSIGNED_INT, &none);
-        use_with_jobs(device, pass, *pass.splat);
+        use_with_jobs(device, list, *pass.splat);
         pass.splat->set("width", static_cast<int>(width));
         context.bind_storage(kRaysBinding, rays);
         context.bind_storage(kLightBinding, light);
-        device.dispatch(static_cast<unsigned>(pass.list.groups));
+        device.dispatch(static_cast<unsigned>(list.groups));
     });
     graph.add_pass("caustic maps", {light}, {image(made)}, [=, &pass](PassContext& context) {
         gpu::Device& device = context.device();
@@ -71,86 +58,110 @@ void sum_on_gpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId 
     });
 }
 
-void sum_on_cpu(FrameGraph& graph, CausticsPass& pass, BufferId rays, TextureId made) {
-    graph.add_pass("caustic splats", {rays}, {image(made)}, [=, &pass](PassContext& context) {
-        const CausticList& list = pass.list;
-        pass.rays_on_cpu.resize(list.rays);
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        context.buffer(rays).read(0, std::as_writable_bytes(std::span(pass.rays_on_cpu)));
-        pass.atlas_on_cpu.resize(
-            static_cast<std::size_t>(list.atlas.x) * static_cast<std::size_t>(list.atlas.y));
-        splat_caustics(
-            list.maps, pass.rays_on_cpu, list.atlas.x, pass.sums_on_cpu, pass.atlas_on_cpu);
-        pass.maps.upload<float>(pass.atlas_on_cpu, GL_RED, GL_FLOAT);
-    });
+void sum_on_cpu(
+    FrameGraph& graph, CausticsEffect& pass, const CausticList& list, BufferId rays,
+    TextureId made) {
+    graph.add_pass(
+        "caustic splats", {rays}, {image(made)}, [=, &pass, &list](PassContext& context) {
+            pass.rays_on_cpu.resize(list.rays);
+            glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+            context.buffer(rays).read(0, std::as_writable_bytes(std::span(pass.rays_on_cpu)));
+            pass.atlas_on_cpu.resize(
+                static_cast<std::size_t>(list.atlas.x) * static_cast<std::size_t>(list.atlas.y));
+            splat_caustics(
+                list.maps, pass.rays_on_cpu, list.atlas.x, pass.sums_on_cpu, pass.atlas_on_cpu);
+            pass.maps.upload<float>(pass.atlas_on_cpu, GL_RED, GL_FLOAT);
+        });
+}
+
+/// What lies in, above or below water is lit by.
+struct WaterLights {
+    const BufferTexture* records;
+    const gpu::Texture* maps;
+};
+
+void bind_water_lights(PassContext& context, const WaterLights& its) {
+    its.records->bind(context.device(), kWaterLightsUnit);
+    context.device().bind_texture(kCausticMapsUnit, *its.maps);
 }
 
 }  // namespace
 
-Result<CausticsPass> create_caustics_pass(gpu::Device& device) {
-    CausticsPass pass;
-    pass.on_cpu = device.caps().software;
-    pass.maps = make_atlas({1, 1});
-    const Result<const gpu::Program*> splat =
-        device.shaders().load({.compute = "caustics_splat.comp"});
-    if (!splat) {
-        return splat.error();
-    }
-    const Result<const gpu::Program*> map = device.shaders().load({.compute = "caustics_map.comp"});
-    if (!map) {
-        return map.error();
-    }
-    pass.splat = *splat;
-    pass.map = *map;
-    return pass;
+bool CausticsEffect::is_used(const FrameData& frame) {
+    return !frame.world->query<const Water>().empty();
 }
 
-void resize_caustic_atlas(CausticsPass& pass) {
-    const IVec2 size = pass.list.atlas;
-    if (size.x > 0 && (pass.maps.width() != size.x || pass.maps.height() != size.y)) {
-        pass.maps = make_atlas(size);
-    }
+Result<CausticsEffect> CausticsEffect::create(gpu::Device& device, const RenderSettings&) {
+    CausticsEffect effect{
+        .rays = ProgramVariants(device, {.compute = "caustics_rays.comp"}),
+        .on_cpu = device.caps().software,
+        .splat = LIMN_TRY(device.shaders().load({.compute = "caustics_splat.comp"})),
+        .map = LIMN_TRY(device.shaders().load({.compute = "caustics_map.comp"}))};
+    effect.maps = make_atlas({1, 1});
+    return effect;
 }
 
-TextureId draw_caustics(
-    FrameGraph& graph, CausticsPass& pass, const WaterSurfaces& waters, const FrameScene& scene) {
-    const CausticList& list = pass.list;
-    if (list.maps.empty()) {
-        return {};
+bool CausticsEffect::prepare(const FrameData& frame, ViewData& view) {
+    if (view.data.find<WaterSurfaces>() == nullptr) {
+        return false;
     }
-    const BufferId rays = graph.create_buffer({"caustics.rays", list.rays * sizeof(Vec4)});
-    const TextureId made = graph.import("caustics", pass.maps);
+    auto& list = view.data.publish<CausticList>();
+    place_caustics(view.data.get<LightList>(), view.data.get<ShadowList>(), list);
+    list.record_texture.upload(*frame.ring, list.texels);
+    view.lighting.variant.add("WATERS");
+    view.lighting.variant.add_if(!list.mirrors.empty(), "MIRRORS");
+    auto& lights = view.data.publish<WaterLights>();
+    lights = {&list.record_texture, &maps};
+    view.lighting.add_binding<bind_water_lights>(lights);
+    if (!view.is(kMainViews) || list.maps.empty()) {
+        return false;  // lit as by flat water
+    }
+    list.job_texture.upload(*frame.ring, list.jobs);
+    if (maps.width() != list.atlas.x || maps.height() != list.atlas.y) {
+        maps = make_atlas(list.atlas);
+    }
+    return true;
+}
+
+void CausticsEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const auto& list = view.data.get<CausticList>();
+    const auto& waters = view.data.get<WaterSurfaces>();
+    const BufferId ray_buffer = graph.create_buffer({"caustics.rays", list.rays * sizeof(Vec4)});
+    const TextureId atlas = graph.import("caustics", maps);
 
     std::vector<Use> reads;
-    if (scene.shadow_maps.valid()) {
-        reads.emplace_back(scene.shadow_maps);
+    if (const TextureId shadows = view.data.get<ShadowMaps>().atlas; shadows.valid()) {
+        reads.emplace_back(shadows);
     }
-    const Use writes[] = {rays};
+    const Use writes[] = {ray_buffer};
     graph.add_pass(
-        "caustic rays", std::span<const Use>(reads), std::span<const Use>(writes),
-        [=, &pass, &waters, &scene](PassContext& context) {
+        "caustic rays", std::span(reads), writes,
+        [this, &list, &waters, &view, ray_buffer](PassContext& context) {
             gpu::Device& device = context.device();
-            const bool ocean = !waters.seas.empty();
-            const gpu::Program* program = rays_program(pass, device, scene, ocean);
+            Variant variant = view.lighting.variant;
+            variant.add_if(waters.any_seas(), "OCEAN");
+            const gpu::Program* program = rays.get(variant);
             if (program == nullptr) {
                 return;
             }
-            use_with_jobs(device, pass, *program);
-            bind_view(device, scene);
-            if (scene.lights.shadows) {
-                device.bind_texture(kShadowAtlasUnit, *scene.shadow_atlas);
-                scene.shadow_views->bind(device, kShadowViewsUnit);
+            use_with_jobs(device, list, *program);
+            bind_view(context, view);
+            if (view.data.get<LightList>().shadows) {
+                device.bind_texture(
+                    kShadowAtlasUnit, context.texture(view.data.get<ShadowMaps>().atlas));
+                view.data.get<ShadowMaps>().records->bind(device, kShadowViewsUnit);
             }
             bind_water_surfaces(device, waters);
-            context.bind_storage(kRaysBinding, rays);
-            device.dispatch(static_cast<unsigned>(pass.list.groups));
+            context.bind_storage(kRaysBinding, ray_buffer);
+            device.dispatch(static_cast<unsigned>(list.groups));
         });
-    if (pass.on_cpu) {
-        sum_on_cpu(graph, pass, rays, made);
+    if (on_cpu) {
+        sum_on_cpu(graph, *this, list, ray_buffer, atlas);
     } else {
-        sum_on_gpu(graph, pass, rays, made);
+        sum_on_gpu(graph, *this, list, ray_buffer, atlas);
     }
-    return made;
+    view.data.publish<CausticMaps>().atlas = atlas;
+    view.lighting.reads.emplace_back(atlas);
 }
 
 }  // namespace limn

@@ -1,6 +1,12 @@
 #include "render/passes/cluster_pass.h"
 
+#include "ecs/base/log.h"
+#include "ecs/world.h"
+#include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/instance_list.h"
+#include "render/render_frame.h"
+#include "render/view_block.h"
 
 #include <bit>
 
@@ -24,7 +30,7 @@ unsigned block_count(const ClusterShape& shape) {
            * divide_up(shape.slices, layout::kBlockSlices);
 }
 
-/// Sizes change from frame to frame; powers of two let the pool find the buffer again.
+/// Sizes vary from frame to frame; rounding to powers of two lets the pool reuse the buffer.
 std::size_t rounded(std::size_t bytes) {
     return std::bit_ceil(std::max<std::size_t>(bytes, 1024));
 }
@@ -33,32 +39,22 @@ std::size_t rounded(std::size_t bytes) {
 
 Result<ClusterPass> create_cluster_pass(gpu::Device& device) {
     ClusterPass pass;
-    const auto load = [&](const gpu::Program*& program, const gpu::ProgramDesc& desc) -> Status {
-        const Result<const gpu::Program*> made = device.shaders().load(desc);
-        if (!made) {
-            return made.error();
-        }
-        program = *made;
-        return Done{};
-    };
-    for (const Status& loaded :
-         {load(pass.blocks, {.compute = "cluster_blocks.comp"}),
-          load(pass.count, {.compute = "cluster_lists.comp"}),
-          load(pass.scan, {.compute = "cluster_scan.comp"}),
-          load(pass.fill, {.compute = "cluster_lists.comp", .defines = {{"FILL"}}})}) {
-        if (!loaded) {
-            return loaded.error();
-        }
-    }
+    gpu::ShaderLibrary& shaders = device.shaders();
+    pass.blocks = LIMN_TRY(shaders.load({.compute = "cluster_blocks.comp"}));
+    pass.count = LIMN_TRY(shaders.load({.compute = "cluster_lists.comp"}));
+    pass.scan = LIMN_TRY(shaders.load({.compute = "cluster_scan.comp"}));
+    pass.fill = LIMN_TRY(shaders.load({.compute = "cluster_lists.comp", .defines = {{"FILL"}}}));
     return pass;
 }
 
-ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameScene& scene) {
-    const ClusterLights& clusters = scene.clusters;
+ClusterLists build_clusters(
+    FrameGraph& graph, ClusterPass& pass, const ClusterLights& clusters, const ViewData& view) {
     ClusterLists lists;
     if (clusters.lights.empty()) {
         return lists;
     }
+    lists.cell_texture = &pass.cells;
+    lists.index_texture = &pass.indices;
     const auto lights = static_cast<unsigned>(clusters.lights.size());
     const unsigned words = divide_up(lights, 32);
     const unsigned blocks = block_count(clusters.shape);
@@ -72,22 +68,22 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
 
     graph.add_pass(
         "clusters.blocks", {}, {masks},
-        [&pass, &scene, masks, lights, blocks, words](PassContext& context) {
+        [&pass, &clusters, &view, masks, lights, blocks, words](PassContext& context) {
             context.device().use(*pass.blocks);
-            bind_view(context.device(), scene);
+            bind_view(context, view);
             pass.blocks->set("light_count", lights);
-            pass.boxes.bind(context.device(), kBoxesUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
             context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
         });
     graph.add_pass(
         "clusters.count", {masks}, {lists.cells},
-        [&pass, &scene, masks, lists, lights, blocks](PassContext& context) {
+        [&pass, &clusters, &view, masks, lists, lights, blocks](PassContext& context) {
             context.device().use(*pass.count);
-            bind_view(context.device(), scene);
+            bind_view(context, view);
             pass.count->set("light_count", lights);
-            pass.lights.bind(context.device(), kClusterLightsUnit);
-            pass.boxes.bind(context.device(), kBoxesUnit);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
             context.bind_storage(kCellsBinding, lists.cells);
             context.device().dispatch(blocks);
@@ -100,12 +96,12 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
     });
     graph.add_pass(
         "clusters.fill", {masks, lists.cells}, {lists.indices},
-        [&pass, &scene, masks, lists, lights, blocks](PassContext& context) {
+        [&pass, &clusters, &view, masks, lists, lights, blocks](PassContext& context) {
             context.device().use(*pass.fill);
-            bind_view(context.device(), scene);
+            bind_view(context, view);
             pass.fill->set("light_count", lights);
-            pass.lights.bind(context.device(), kClusterLightsUnit);
-            pass.boxes.bind(context.device(), kBoxesUnit);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
+            clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
             context.bind_storage(kCellsBinding, lists.cells);
             context.bind_storage(kIndicesBinding, lists.indices);
@@ -114,6 +110,74 @@ ClusterLists build_clusters(FrameGraph& graph, ClusterPass& pass, const FrameSce
             pass.indices.set(context.buffer(lists.indices));
         });
     return lists;
+}
+
+Result<LightListEffect> LightListEffect::create(gpu::Device& device, const RenderSettings&) {
+    return LightListEffect{LIMN_TRY(create_cluster_pass(device))};
+}
+
+void LightListEffect::collect(FrameData& frame) {
+    collect_lights(*frame.world, frame.camera.alpha, frame.data.publish<LightList>());
+}
+
+bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
+    const auto* found = frame.world->find_resource<Rendering>();
+    const Rendering rendering = found != nullptr && view.is(kMainViews) ? *found : Rendering{};
+    auto& method = view.data.publish<LightingMethod>();
+    method.per_vertex = rendering.shading == ShadingRate::Vertex;
+    method.method = method.per_vertex ? LightMethod::ObjectMajor : rendering.lights;
+    method.infinite_viewer = rendering.infinite_viewer;
+
+    auto& lights = view.data.publish<LightList>();
+    lights = frame.data.get<LightList>();
+    auto& placed = view.data.publish<ClusterLights>();
+    place_lights(view.camera, lights, placed);
+    placed.light_records.upload(*frame.ring, placed.lights);
+    placed.box_records.upload(*frame.ring, placed.boxes);
+    if (placed.dropped > 0 && !dropped_reported) {
+        log_warn(
+            "lights: {} of {} cover so much of the image that the cluster lists have no room for "
+            "them (kMaxListEntries, light_clusters.h); they are not shown",
+            placed.dropped, lights.reach.size());
+        dropped_reported = true;
+    }
+    view.block = frame.ring->push_value(
+        make_view_block(view.camera, placed.shape, lights, method.infinite_viewer));
+
+    Variant& variant = view.lighting.variant;
+    variant.add_if(lights.directional > 0, "DIRECTIONAL_LIGHTS");
+    variant.add_if(lights.spots > 0, "SPOT_LIGHTS");
+    variant.add_if(lights.spot_angles, "SPOT_ANGLES");
+    variant.add_if(lights.linear_fade, "LINEAR_FADE");
+    variant.add_if(!placed.lights.empty(), "LOCAL_LIGHTS");
+    variant.add_if(frame.materials->has_classic(), "CLASSIC_MODELS");
+    return true;
+}
+
+void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const bool by_clusters = view.data.get<LightingMethod>().method == LightMethod::Clustered
+                             || !view.data.get<InstanceList>().blended.empty();
+    if (!by_clusters) {
+        return;
+    }
+    const ClusterLists lists =
+        build_clusters(graph, clusters, view.data.get<ClusterLights>(), view);
+    if (!lists.cells.valid()) {
+        return;
+    }
+    auto& published = view.data.publish<ClusterLists>();
+    published = lists;
+    view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});
+    view.lighting.add_binding<[](PassContext& context, const ClusterLists& its) {
+        its.index_texture->bind(context.device(), kLightIndicesUnit);
+        its.cell_texture->bind(context.device(), kLightCellsUnit);
+    }>(published);
+}
+
+void LightListEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    if (const auto* lights = view.data.find<LightList>()) {
+        out.statistics.lights = static_cast<int>(lights->records.size());
+    }
 }
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "ecs/base/log.h"
 #include "render/gpu/shader_library.h"
 #include "render/mesh_pool.h"
+#include "render/render_frame.h"
 
 #include <algorithm>
 #include <string>
@@ -19,7 +20,7 @@ constexpr unsigned kPositionsBinding = 0;
 constexpr unsigned kBeforeBinding = 1;
 constexpr unsigned kAttributesBinding = 2;
 
-/// The vertices of a batch in one of their streams.
+/// Binds the vertices of a batch in one of their streams.
 void bind_stream(
     gpu::Device& device, unsigned binding, const gpu::Buffer& buffer, const DeformBatch& batch,
     std::size_t stride) {
@@ -63,13 +64,8 @@ const gpu::Program* program_of(gpu::Device& device, DeformPass& pass, std::uint3
 }  // namespace
 
 Result<DeformPass> create_deform_pass(gpu::Device& device) {
-    DeformPass pass;
-    const Result<const gpu::Program*> common =
-        load_program(device, layout::kDeformNow | layout::kDeformJoints);
-    if (!common) {
-        return common.error();
-    }
-    return pass;
+    LIMN_TRY(load_program(device, layout::kDeformCurrent | layout::kDeformJoints));
+    return DeformPass{};
 }
 
 void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
@@ -95,12 +91,30 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
                 run_batch(device, *program, shapes.vertices(), batch);
             }
         }
-        // Vertex buffers are no resources of the graph.
+        // Vertex buffers are not resources of the graph.
         glMemoryBarrier(
             GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT
             | GL_SHADER_STORAGE_BARRIER_BIT);
     });
     graph.always_run();
+}
+
+Result<DeformEffect> DeformEffect::create(gpu::Device& device, const RenderSettings&) {
+    return DeformEffect{LIMN_TRY(create_deform_pass(device))};
+}
+
+void DeformEffect::collect(FrameData& frame) {
+    frame.shapes->update(
+        *frame.world, *frame.meshes, frame.camera.alpha, frame.camera.previous_alpha);
+}
+
+void DeformEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    frame.shapes->write_jobs(*frame.ring);
+    deform_meshes(graph, pass, *frame.shapes);
+}
+
+void DeformEffect::report(const FrameData& frame, const ViewData&, FrameOutput& out) {
+    out.statistics.deformed = frame.shapes->work().instances;
 }
 
 }  // namespace limn

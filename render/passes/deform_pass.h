@@ -1,23 +1,23 @@
 #pragma once
 
 #include "render/buffer_texture.h"
-#include "render/graph/frame_graph.h"
+#include "render/effect.h"
 #include "render/skinning/deformed_list.h"
 
 #include <map>
 
 namespace limn {
 
-// Gives every instance whose shape changed its new vertices: morph targets, then joints, as linear
-// blends or dual quaternions, any number of each (char.skin-gpu).
+// Computes the vertices of every instance whose shape changed: morph targets, then joints, as
+// linear blend or dual quaternion skinning, any number of each (char.skin-gpu).
 //
 // Reads    DeformWork, RestPool
-// Writes   DeformedVertices: positions, normals, tangents, and positions before if asked for
+// Writes   DeformedVertices: positions, normals, tangents; previous positions if requested
 // Order    before everything that draws meshes
 // Shaders  deform.comp, lib/skinning.glsl; layout in deform_gpu.h
 
 struct DeformPass {
-    /// By kDeform*; made when first needed. Null: it does not compile, and nothing is deformed.
+    /// By kDeform*, loaded on first use. Null: failed to compile, nothing is deformed.
     std::map<std::uint32_t, const gpu::Program*> programs;
     BufferTexture jobs = BufferTexture("deform jobs", GL_RGBA32UI);
     BufferTexture groups = BufferTexture("deform groups", GL_R32UI);
@@ -28,7 +28,17 @@ struct DeformPass {
 
 [[nodiscard]] Result<DeformPass> create_deform_pass(gpu::Device& device);
 
-/// Adds nothing where no shape changed.
+/// Adds no pass if no shape changed.
 void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes);
+
+/// Computes them once a frame, for all views: they request what they draw in prepare().
+struct DeformEffect {
+    DeformPass pass;
+
+    [[nodiscard]] static Result<DeformEffect> create(gpu::Device& device, const RenderSettings&);
+    void collect(FrameData& frame);
+    void draw_shared(FrameGraph& graph, const FrameData& frame);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
+};
 
 }  // namespace limn

@@ -1,37 +1,35 @@
 #pragma once
 
+#include "render/effect.h"
 #include "render/gpu/buffer.h"
-#include "render/gpu/device.h"
-#include "render/graph/frame_graph.h"
+#include "render/shaders/focus_gpu.h"
 
 namespace limn {
 
-struct RenderView;
-
-// Depth of field: what is out of focus is spread over its circle of confusion (thin_lens.h).
+// Depth of field: spreads out-of-focus light over its circle of confusion (thin_lens.h).
 //
 // Reads    radiance, depth
-// Writes   radiance through the lens
-// Order    after all that draws into the scene and after motion blur, before glow
+// Writes   radiance as seen through the lens
+// Order    after everything drawn into the scene and after motion blur, before glow
 // Shaders  focus_*; lib/focus.glsl, layout in focus_gpu.h
 //
-// Circles of up to 5 px are gathered from the picture itself. Wider ones are gathered at half its
-// size, far and near ones apart: up to 8 px of radius every texel around is asked whether its
-// circle comes as far as here, and its light is taken by the area that it is spread over. Of those
-// that are wider still, up to 48 taps ask that at a quarter of the size, on levels as coarse as
-// they need to leave no gaps. What is sharp therefore never leaks into what is not, and a near
-// thing spreads over what is behind it; what it hides there is guessed from around it. Behind the
-// focus, what has clearly narrower circles lies over the rest, what has about the same beside it.
-// Highlights of wide circles, which would show the pattern of the taps, are taken off and drawn as
-// discs of their own, at full size. A disc must add some percent to what is around it to be worth
-// one, which bounds how many lie over each other.
+// Circles of up to 5 px are gathered at full resolution. Wider ones are gathered at half
+// resolution, far and near field separately: up to a radius of 8 px, every texel around is tested
+// for whether its circle reaches the current one, weighted by the inverse of the circle's area.
+// Wider circles are gathered at quarter resolution with up to 48 taps, on mip levels coarse enough
+// to leave no gaps. In-focus surfaces therefore never leak into blurred ones, and the near field
+// spreads over what is behind it; what it hides there is inpainted from its surroundings. Behind
+// the focus, clearly narrower circles lie over the rest, similar ones beside it. Highlights with
+// wide circles, which would reveal the tap pattern, are extracted and drawn as discs at full
+// resolution. A disc must add some percent to its surroundings to be drawn, which bounds the
+// overdraw.
 //
-// Tiles of 16 px know what is to be done in them: where all is sharp, a copy. Blended surfaces are
+// Tiles of 16 px are classified: where all is in focus, the pass only copies. Blended surfaces are
 // as sharp as what is behind them. After Jimenez, "Next Generation Post Processing in Call of Duty:
 // Advanced Warfare" (2014), and Abadie, "A Life of a Bokeh" (2018).
 //
-// FocusMethod::Mip is the cheapest kind (post.dof-mip): sharp things leak into blurred ones, near
-// ones keep their outline, discs are squares.
+// FocusMethod::Mip is the cheapest method (post.dof-mip): sharp surfaces leak into blurred ones,
+// near ones keep their outline, discs are squares.
 
 struct DepthOfFieldPass {
     const gpu::Program* blocks = nullptr;
@@ -47,17 +45,29 @@ struct DepthOfFieldPass {
     const gpu::Program* compose[4] = {};  ///< [1]: with small circles, [2]: with large ones
     const gpu::Program* disc = nullptr;
     const gpu::Program* mip = nullptr;
-    gpu::Buffer focus;  ///< layout::FocusBlock (focus_block.h)
+    gpu::Buffer focus;  ///< layout::FocusBlock
 };
 
 [[nodiscard]] Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device);
 
-/// Whether the widest circle of the view's lens can be told from a point.
+/// Whether the view's lens can produce a circle of visible size.
 [[nodiscard]] bool has_depth_of_field(const RenderView& view);
 
-/// The picture through the lens of the view, for which has_depth_of_field.
+/// The view's circles of confusion, and the kernels that spread discs of their size at full and at
+/// half resolution.
+[[nodiscard]] layout::FocusBlock make_focus_block(const RenderView& view);
+
+/// The image through the view's lens; requires has_depth_of_field(view).
 [[nodiscard]] TextureId draw_depth_of_field(
     FrameGraph& graph, DepthOfFieldPass& pass, const RenderView& view, TextureId radiance,
     TextureId depth);
+
+struct DepthOfFieldEffect {
+    DepthOfFieldPass pass;
+
+    static Result<DepthOfFieldEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame) { return has_depth_of_field(frame.camera); }
+    void draw(FrameGraph& graph, const FrameData&, ViewData& view);
+};
 
 }  // namespace limn

@@ -2,16 +2,18 @@
 
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/light_list.h"
+#include "render/lighting.h"
+#include "render/passes/light_pass.h"
+#include "render/surface_draws.h"
 
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kObjectLights = 1u << 16;  ///< beside lighting_key()
-constexpr std::uint32_t kDirectional = 1u << 17;
-constexpr int kTurns = 255;  ///< that the stencil can tell apart
+constexpr int kTurns = 255;  ///< distinct stencil references
 
-/// For the nearest surface, and of several there for one in each turn: from kTurns to the next
-/// multiple the stencil must be made 0 again.
+/// Shades the nearest surface, and only one of several at equal depth, once per turn; the stencil
+/// must be cleared after every kTurns turns.
 gpu::PipelineState nearest_once(int turn) {
     const gpu::StencilFace other_turns = {.func = GL_NOTEQUAL, .pass = GL_REPLACE};
     return {
@@ -31,116 +33,82 @@ void clear_stencil(gpu::Device& device, const gpu::Program& nothing) {
     device.draw_fullscreen();
 }
 
-std::vector<gpu::ShaderDefine> with(std::vector<gpu::ShaderDefine> defines, const char* more) {
-    defines.push_back({more});
-    return defines;
-}
-
-void draw_object_major(PassContext& context, ForwardPass& pass, const FrameScene& scene) {
-    gpu::Device& device = context.device();
-    bind_lighting(device, scene);
-    bind_shadow_masks(context, scene);
-    scene.object_lights->bind(device, kLightIndicesUnit);
-    scene.object_lists->bind(device, kLightCellsUnit);
+void draw_object_major(PassContext& context, ForwardPass& pass, const ViewData& view) {
+    const auto& records = view.data.get<LightRecords>();
+    bind_lighting(context, view);
+    bind_shadow_masks(context, view);
+    records.object_indices.bind(context.device(), kLightIndicesUnit);
+    records.object_lists.bind(context.device(), kLightCellsUnit);
+    Variant variant = view.lighting.variant;
+    variant.add("OBJECT_LIGHTS");
+    const bool per_vertex = view.data.get<LightingMethod>().per_vertex;
     draw_runs(
-        device, scene, scene.instances.opaque, scene.per_vertex ? pass.gouraud : pass.list, 0,
-        lighting_key(scene) | kObjectLights, with(lighting_defines(scene), "OBJECT_LIGHTS"),
-        nearest_once(0));
+        context, view, view.data.get<InstanceList>().opaque, per_vertex ? pass.gouraud : pass.list,
+        {.variant = &variant, .state = nearest_once(0)});
 }
 
-void add_lights(PassContext& context, ForwardPass& pass, const FrameScene& scene) {
-    gpu::Device& device = context.device();
-    const std::uint32_t key = lighting_key(scene);
-    const std::vector<gpu::ShaderDefine> defines = lighting_defines(scene);
-    bind_lighting(device, scene);
-    bind_shadow_masks(context, scene);
+void add_lights(PassContext& context, ForwardPass& pass, const ViewData& view) {
+    const auto& records = view.data.get<LightRecords>();
+    bind_lighting(context, view);
+    bind_shadow_masks(context, view);
     int turn = 0;  // the first is that of the surroundings
     const auto next_turn = [&] {
         if (++turn % kTurns == 0) {
-            clear_stencil(device, *pass.nothing);
+            clear_stencil(context.device(), *pass.nothing);
         }
         gpu::PipelineState state = nearest_once(turn);
         state.blend = gpu::kBlendAdd;
         return state;
     };
-    for (int i = 0; i < scene.lights.directional; ++i) {
+    Variant directional = view.lighting.variant;
+    directional.add("DIRECTIONAL_LIGHT");
+    for (int i = 0; i < view.data.get<LightList>().directional; ++i) {
         draw_runs(
-            device, scene, scene.instances.opaque, pass.one, 0, key | kDirectional,
-            with(defines, "DIRECTIONAL_LIGHT"), next_turn(), i);
+            context, view, view.data.get<InstanceList>().opaque, pass.one,
+            {.variant = &directional, .state = next_turn(), .light = i});
     }
-    const std::span<const LightRun> runs = scene.light_draws.runs;
+    const std::span<const LightRun> runs = records.draws.runs;
     for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
         while (end < runs.size() && runs[end].light == runs[begin].light) {
             ++end;
         }
         draw_light_runs(
-            device, scene, runs.subspan(begin, end - begin), pass.one, key, defines, next_turn());
+            context, view, runs.subspan(begin, end - begin), records.commands, pass.one,
+            {.variant = &view.lighting.variant, .state = next_turn()});
     }
 }
 
 }  // namespace
 
 Result<ForwardPass> create_forward_pass(gpu::Device& device) {
-    ForwardPass pass = {
-        .depth = SurfacePrograms(device, "mesh.vert", "depth_first.frag"),
-        .list = SurfacePrograms(device, "mesh.vert", "forward_list.frag"),
-        .gouraud = SurfacePrograms(device, "gouraud.vert", "gouraud.frag"),
-        .base = SurfacePrograms(device, "mesh.vert", "forward_base.frag"),
-        .one = SurfacePrograms(device, "mesh.vert", "forward_one.frag")};
-    const Status plain = pass.depth.load(0, 0, {});
-    if (!plain) {
-        return plain.error();
-    }
-    const Result<const gpu::Program*> nothing =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"});
-    if (!nothing) {
-        return nothing.error();
-    }
-    pass.nothing = *nothing;
-    return pass;
+    return ForwardPass{
+        .list = ProgramVariants::of_meshes(device, "forward_list.frag"),
+        .gouraud = ProgramVariants::of_meshes(device, "gouraud.frag", "gouraud.vert"),
+        .base = ProgramVariants::of_meshes(device, "forward_base.frag"),
+        .one = ProgramVariants::of_meshes(device, "forward_one.frag"),
+        .nothing = LIMN_TRY(
+            device.shaders().load({.vertex = "fullscreen.vert", .fragment = "nothing.frag"}))};
 }
 
-TextureId draw_depth_first(FrameGraph& graph, ForwardPass& pass, const FrameScene& scene) {
-    const TextureId depth = graph.create(
-        {.name = "depth",
-         .format = static_cast<GLenum>(
-             needs_stencil(scene) ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F),
-         .width = scene.view.width,
-         .height = scene.view.height});
-    graph.add_pass("depth", {}, {cleared(depth)}, [&pass, &scene](PassContext& context) {
-        bind_view(context.device(), scene);
-        draw_depths(context.device(), scene, pass.depth);
-    });
-    return depth;
-}
-
-TextureId
-draw_forward(FrameGraph& graph, ForwardPass& pass, const FrameScene& scene, TextureId depth) {
-    const TextureId radiance = graph.create(
-        {.name = "radiance",
-         .format = scene.radiance_format,
-         .width = scene.view.width,
-         .height = scene.view.height});
-    const std::vector<Use> reads = lighting_reads(scene, {});
-    if (scene.method == LightMethod::ObjectMajor) {
-        const Use writes[] = {cleared(radiance), depth};
-        graph.add_pass(
-            "objects", std::span<const Use>(reads), std::span<const Use>(writes),
-            [&pass, &scene](PassContext& context) { draw_object_major(context, pass, scene); });
-        return radiance;
-    }
-    graph.add_pass(
-        "objects.base", {}, {cleared(radiance), depth}, [&pass, &scene](PassContext& context) {
-            bind_lighting(context.device(), scene);
-            draw_runs(
-                context.device(), scene, scene.instances.opaque, pass.base, 0, lighting_key(scene),
-                lighting_defines(scene), nearest_once(0));
+void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
+    const std::vector<Use> reads = lighting_reads(view, {});
+    const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
+    if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
+        graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {
+            draw_object_major(context, pass, view);
         });
-    const Use writes[] = {radiance, depth};
+        return;
+    }
+    graph.add_pass("objects.base", std::span(reads), first, [&pass, &view](PassContext& context) {
+        bind_lighting(context, view);
+        draw_runs(
+            context, view, view.data.get<InstanceList>().opaque, pass.base,
+            {.variant = &view.lighting.variant, .state = nearest_once(0)});
+    });
+    const Use writes[] = {view.radiance, view.gbuffer.depth};
     graph.add_pass(
-        "objects.lights", std::span<const Use>(reads), std::span<const Use>(writes),
-        [&pass, &scene](PassContext& context) { add_lights(context, pass, scene); });
-    return radiance;
+        "objects.lights", std::span(reads), writes,
+        [&pass, &view](PassContext& context) { add_lights(context, pass, view); });
 }
 
 }  // namespace limn

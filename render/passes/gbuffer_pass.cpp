@@ -1,80 +1,127 @@
 #include "render/passes/gbuffer_pass.h"
 
+#include "ecs/base/log.h"
+#include "ecs/components/surface.h"
+#include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/lighting.h"
+#include "render/render_frame.h"
+#include "render/shadow/volume_list.h"
+#include "render/surface_draws.h"
+#include "render/view_block.h"
+
+#include <algorithm>
 
 namespace limn {
 namespace {
 
-/// Over what no surface covers; nothing while the camera stands still.
-void draw_sky_velocity(
-    FrameGraph& graph, const GbufferPass& pass, const FrameScene& scene, const Gbuffer& gbuffer) {
-    if (scene.view.previous_from_world == scene.view.steady_from_world) {
+/// Where no surface is; nothing while the camera stands still.
+void draw_sky_velocity(FrameGraph& graph, const gpu::Program* program, const ViewData& view) {
+    if (view.camera.previous_clip_from_world == view.camera.unjittered_from_world) {
         return;
     }
-    graph.add_pass(
-        "gbuffer, sky velocity", {depth_tested(gbuffer.depth)}, {gbuffer.velocity},
-        [&pass, &scene](PassContext& context) {
-            gpu::PipelineState state = gpu::kFullscreenState;
-            state.depth = {.test = true, .write = false, .func = GL_EQUAL};
-            context.device().use(gpu::Pipeline{pass.sky_velocity, state});
-            bind_view(context.device(), scene);
-            context.device().draw_fullscreen();
-        });
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.depth = {.test = true, .write = false, .func = GL_EQUAL};
+    add_fullscreen_pass(
+        graph, "gbuffer, sky velocity", {depth_tested(view.gbuffer.depth)}, {view.gbuffer.velocity},
+        program, state,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
+}
+
+/// Hybrid shadows look at normals.
+bool needs_normals(const ViewData& view) {
+    const auto* volumes = view.data.find<VolumeList>();
+    return volumes != nullptr
+           && std::any_of(
+               volumes->lights.begin(), volumes->lights.end(),
+               [](const VolumeLight& light) { return light.hybrid; });
 }
 
 }  // namespace
 
-Result<GbufferPass> create_gbuffer_pass(gpu::Device& device) {
-    GbufferPass pass = {SurfacePrograms(device, "mesh.vert", "gbuffer.frag"), nullptr};
-    const Status plain = pass.programs.load(0, 0, {});
-    if (!plain) {
-        return plain.error();
-    }
-    const Result<const gpu::Program*> sky =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "sky_velocity.frag"});
-    if (!sky) {
-        return sky.error();
-    }
-    pass.sky_velocity = *sky;
-    return pass;
+GLenum depth_format(const ViewData& view) {
+    const LightMethod method = view.data.get<LightingMethod>().method;
+    const bool by_screen = method == LightMethod::Clustered || method == LightMethod::FullScreen;
+    const auto* volumes = view.data.find<VolumeList>();
+    const bool stencil = !by_screen || (volumes != nullptr && !volumes->lights.empty());
+    return stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F;
 }
 
-Gbuffer draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& scene, bool velocity) {
-    const int width = scene.view.width;
-    const int height = scene.view.height;
-    Gbuffer g;
-    g.surface = graph.create(
-        {.name = "gbuffer.surface", .format = GL_RGBA32UI, .width = width, .height = height});
-    g.depth = graph.create(
-        {.name = "gbuffer.depth",
-         .format = static_cast<GLenum>(
-             needs_stencil(scene) ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F),
-         .width = width,
-         .height = height});
-    const auto draw = [&pass, &scene, velocity](PassContext& context) {
-        bind_view(context.device(), scene);
-        const bool clipped = is_clipped(scene);
-        draw_runs(
-            context.device(), scene, scene.instances.opaque, pass.programs,
-            velocity ? kVelocity : 0u, clipped ? 1 : 0,
-            clipped ? std::vector<gpu::ShaderDefine>{{"CLIPPED"}}
-                    : std::vector<gpu::ShaderDefine>{},
-            {.clip = clipped});
-    };
-    if (velocity) {
-        g.velocity = graph.create(
-            {.name = "gbuffer.velocity",
-             .format = scene.velocity_format,
-             .width = width,
-             .height = height});
-        graph.add_pass(
-            "gbuffer", {}, {discarded(g.surface), cleared(g.velocity), cleared(g.depth)}, draw);
-        draw_sky_velocity(graph, pass, scene, g);
-    } else {
-        graph.add_pass("gbuffer", {}, {discarded(g.surface), cleared(g.depth)}, draw);
+Result<GbufferEffect> GbufferEffect::create(gpu::Device& device, const RenderSettings&) {
+    GbufferEffect effect{
+        .programs = ProgramVariants::of_meshes(device, "gbuffer.frag"),
+        .depth_first = ProgramVariants::of_meshes(device, "depth_first.frag")};
+    LIMN_TRY(effect.programs.load());
+    effect.sky_velocity = LIMN_TRY(
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "sky_velocity.frag"}));
+    return effect;
+}
+
+bool GbufferEffect::prepare(const FrameData& frame, ViewData& view) {
+    auto& list = view.data.publish<InstanceList>();
+    collector.collect(
+        *frame.world, view.camera, *frame.meshes, *frame.materials, *frame.shapes, view.velocity,
+        *frame.ring, list, view.data.get<LightingMethod>().is_forward());
+    for (const std::uint32_t mesh : list.without_tangents) {
+        if (reported_meshes.insert(mesh).second) {
+            log_warn(
+                "mesh {}: no tangents found, expected one per vertex; drawn without its normal map",
+                frame.assets->meshes[mesh].name);
+        }
     }
-    return g;
+    return true;
+}
+
+void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    const auto create = [&](const char* name, GLenum format) {
+        return graph.create(
+            {.name = name,
+             .format = format,
+             .width = view.camera.width,
+             .height = view.camera.height});
+    };
+    const bool attributes = view.attributes || view.velocity || needs_normals(view);
+    if (view.data.get<LightingMethod>().is_forward() && !attributes) {
+        view.gbuffer.depth = create("depth", depth_format(view));
+        graph.add_pass(
+            "depth", {}, {cleared(view.gbuffer.depth)}, [this, &view](PassContext& context) {
+                bind_view(context, view);
+                draw_depths(context, view, depth_first);
+            });
+        return;
+    }
+    view.gbuffer.surface = create("gbuffer.surface", GL_RGBA32UI);
+    view.gbuffer.depth = create("gbuffer.depth", depth_format(view));
+    std::vector<Use> writes = {discarded(view.gbuffer.surface)};
+    if (view.velocity) {
+        view.gbuffer.velocity = create("gbuffer.velocity", frame.velocity_format);
+        writes.push_back(cleared(view.gbuffer.velocity));
+    }
+    writes.push_back(cleared(view.gbuffer.depth));
+    graph.add_pass("gbuffer", {}, writes, [this, &view](PassContext& context) {
+        const bool clipped = is_clipped(view);
+        Variant variant;
+        variant.add_if(clipped, "CLIPPED");
+        bind_view(context, view);
+        draw_runs(
+            context, view, view.data.get<InstanceList>().opaque, programs,
+            {.variant = &variant,
+             .features = view.velocity ? kVelocity : 0u,
+             .state = {.clip = clipped}});
+    });
+    if (view.velocity) {
+        draw_sky_velocity(graph, sky_velocity, view);
+    }
+}
+
+void GbufferEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    if (const auto* list = view.data.find<InstanceList>()) {
+        out.statistics.instances = list->total;
+        out.statistics.visible_instances = list->visible;
+        out.statistics.draws = static_cast<int>(list->opaque.size() + list->blended.size());
+        out.statistics.triangles = list->triangles;
+    }
 }
 
 }  // namespace limn

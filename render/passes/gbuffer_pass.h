@@ -1,31 +1,42 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "render/effect.h"
+#include "render/instance_list.h"
+
+#include <set>
 
 namespace limn {
 
-// Draws every opaque and alpha-tested surface without lighting it: attributes for the passes that
-// follow.
+// Draws the attributes of every opaque and alpha-tested surface, unlit, for the passes that follow.
 //
 // Reads    InstanceList
-// Writes   surface attributes (lib/gbuffer.glsl), depth, and velocity if asked for
-// Order    first of the image
+// Writes   surface attributes (lib/gbuffer.glsl), depth, and velocity if requested
+// Order    first pass of the frame
 // Shaders  mesh.vert, gbuffer.frag, lib/material.glsl; sky_velocity.frag
 //
-// Velocity is that of the camera and of each vertex: as its instance moves, as joints and morph
-// targets move it. Where nothing is, it is that of the camera's turning. Blended surfaces have
-// none: a pixel moves as what is seen through them, as only one motion fits in a pixel and the
-// opaque one is the sharper. Numbers only, at most eight pictures long; jitter is no motion.
+// Velocity includes the motion of the camera, of each instance, and of each vertex by joints and
+// morph targets. For the background it is the camera's rotation. Blended surfaces have no velocity:
+// a pixel holds one motion, that of the opaque surface behind, which is the sharper. Always finite,
+// at most eight image sizes long; jitter is excluded.
 
-struct GbufferPass {
-    SurfacePrograms programs;
+// With forward lighting, which needs no attributes, a depth prepass takes its place.
+
+/// Of the depth buffer of a view: with stencil where shadow or light volumes are counted, or where
+/// each pixel is lit once.
+[[nodiscard]] GLenum depth_format(const ViewData& view);
+
+/// Publishes InstanceList in each view.
+struct GbufferEffect {
+    ProgramVariants programs;
+    ProgramVariants depth_first;
     const gpu::Program* sky_velocity = nullptr;
+    InstanceCollector collector{};
+    std::set<std::uint32_t> reported_meshes{};  ///< that lack the tangents of their normal map
+
+    [[nodiscard]] static Result<GbufferEffect> create(gpu::Device& device, const RenderSettings&);
+    bool prepare(const FrameData& frame, ViewData& view);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
-
-[[nodiscard]] Result<GbufferPass> create_gbuffer_pass(gpu::Device& device);
-
-[[nodiscard]] Gbuffer
-draw_gbuffer(FrameGraph& graph, GbufferPass& pass, const FrameScene& scene, bool velocity);
 
 }  // namespace limn

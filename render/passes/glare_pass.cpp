@@ -1,6 +1,8 @@
 #include "render/passes/glare_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,21 +10,14 @@
 namespace limn {
 namespace {
 
-constexpr int kMostSteps = 12;
+constexpr int kMaxSteps = 12;
 
-TextureId create_like(FrameGraph& graph, std::string_view name, TextureId other) {
-    TextureSpec spec = graph.spec(other);
-    spec.name = name;
-    return graph.create(spec);
-}
-
-/// Adds the line in a direction to `star`.
+/// Adds the streak along `direction`, to both sides, to `star`.
 void draw_line(
     FrameGraph& graph, const GlarePass& pass, TextureId source, const Use& star,
     const Vec2& direction, float half_length) {
     // Tents of half-lengths unit * 2, 4 ... 2^steps; the light of each is half that of the last.
-    const int steps =
-        std::clamp(static_cast<int>(std::ceil(std::log2(half_length))), 1, kMostSteps);
+    const int steps = std::clamp(static_cast<int>(std::ceil(std::log2(half_length))), 1, kMaxSteps);
     const float unit = half_length / std::exp2(static_cast<float>(steps));
     const float whole = 2.0f - std::exp2(1.0f - static_cast<float>(steps));
     TextureId sum = source;
@@ -32,46 +27,38 @@ void draw_line(
         const TextureId next =
             last ? TextureId{star.resource} : create_like(graph, "glare.streak", source);
         const Use target = last ? star : discarded(next);
-        graph.add_pass(
-            "glare.streak", {source, sum}, {target},
-            [&pass, source, sum, last, share = std::exp2(-static_cast<float>(i)) / whole,
-             before = first ? 0.0f : 1.0f,
-             offset = unit * std::exp2(static_cast<float>(i)) * direction](PassContext& context) {
-                gpu::PipelineState state = gpu::kFullscreenState;
-                state.blend = last ? gpu::kBlendAdd : gpu::kBlendOff;
-                context.device().use(gpu::Pipeline{pass.streak, state});
-                pass.streak->set("offset", offset);
-                pass.streak->set("share", share);
-                pass.streak->set("before", before);
-                context.bind_texture(0, source, &pass.dark_outside);
-                context.bind_texture(1, sum, &pass.dark_outside);
-                context.device().draw_fullscreen();
+        gpu::PipelineState state = gpu::kFullscreenState;
+        state.blend = last ? gpu::kBlendAdd : gpu::kBlendOff;
+        add_fullscreen_pass(
+            graph, "glare.streak",
+            {sampled(source, 0, &pass.black_border), sampled(sum, 1, &pass.black_border)}, {target},
+            pass.streak, state,
+            [share = std::exp2(-static_cast<float>(i)) / whole, sum_weight = first ? 0.0f : 1.0f,
+             offset = unit * std::exp2(static_cast<float>(i))
+                      * direction](PassContext&, const gpu::Program& program) {
+                program.set("offset", offset);
+                program.set("share", share);
+                program.set("sum_weight", sum_weight);
             });
         sum = next;
     }
 }
 
+Glare glare_of(const FrameData& frame) {
+    const auto* glare = frame.world->find_resource<Glare>();
+    return glare != nullptr ? within_ranges(*glare) : Glare{.strength = 0};
+}
+
 }  // namespace
 
 Result<GlarePass> create_glare_pass(gpu::Device& device) {
-    GlarePass pass;
-    struct Wanted {
-        const gpu::Program*& program;
-        const char* fragment;
-    };
-    for (const Wanted& wanted :
-         {Wanted{pass.source, "glare_source.frag"}, Wanted{pass.streak, "glare_streak.frag"},
-          Wanted{pass.add, "glare_add.frag"}}) {
-        const Result<const gpu::Program*> program =
-            device.shaders().load({.vertex = "fullscreen.vert", .fragment = wanted.fragment});
-        if (!program) {
-            return program.error();
-        }
-        wanted.program = *program;
-    }
-    pass.dark_outside = gpu::Sampler(
-        "dark outside", {.minify = GL_LINEAR, .magnify = GL_LINEAR, .wrap = GL_CLAMP_TO_BORDER});
-    return pass;
+    return GlarePass{
+        LIMN_TRY(load_fullscreen(device, "glare_source.frag")),
+        LIMN_TRY(load_fullscreen(device, "glare_streak.frag")),
+        LIMN_TRY(load_fullscreen(device, "glare_add.frag")),
+        gpu::Sampler(
+            "black border",
+            {.minify = GL_LINEAR, .magnify = GL_LINEAR, .wrap = GL_CLAMP_TO_BORDER})};
 }
 
 int glare_lines(const Glare& glare) {
@@ -82,18 +69,12 @@ int glare_lines(const Glare& glare) {
 TextureId
 draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, TextureId radiance) {
     const TextureSpec spec = graph.spec(radiance);
-    const TextureId source = graph.create(
-        {.name = "glare.source",
-         .format = spec.format,
-         .width = (spec.width + 1) / 2,
-         .height = (spec.height + 1) / 2});
-    graph.add_pass(
-        "glare.source", {radiance}, {discarded(source)},
-        [program = pass.source, radiance, threshold = glare.threshold](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("threshold", threshold);
-            context.bind_texture(0, radiance);
-            context.device().draw_fullscreen();
+    const TextureId source = create_target(
+        graph, "glare.source", spec.format, half_resolution({spec.width, spec.height}));
+    add_fullscreen_pass(
+        graph, "glare.source", {sampled(radiance, 0)}, {discarded(source)}, pass.source,
+        [threshold = glare.threshold](PassContext&, const gpu::Program& program) {
+            program.set("threshold", threshold);
         });
     const TextureId star = create_like(graph, "glare.star", source);
     const int lines = glare_lines(glare);
@@ -105,22 +86,24 @@ draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, Texture
             graph, pass, source, i == 0 ? cleared(star) : Use(star),
             {std::cos(angle), std::sin(angle)}, half_length);
     }
-    const TextureId glaring = graph.create(
-        {.name = "radiance with glare",
-         .format = spec.format,
-         .width = spec.width,
-         .height = spec.height});
-    graph.add_pass(
-        "glare", {radiance, star}, {discarded(glaring)},
-        [program = pass.add, radiance, star,
-         strength = glare.strength / static_cast<float>(lines)](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("strength", strength);
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, star);
-            context.device().draw_fullscreen();
-        });
+    const TextureId glaring = create_like(graph, "radiance with glare", radiance);
+    add_fullscreen_pass(
+        graph, "glare", {sampled(radiance, 0), sampled(star, 1)}, {discarded(glaring)}, pass.add,
+        [strength = glare.strength / static_cast<float>(lines)](
+            PassContext&, const gpu::Program& program) { program.set("strength", strength); });
     return glaring;
+}
+
+Result<GlareEffect> GlareEffect::create(gpu::Device& device, const RenderSettings&) {
+    return GlareEffect{LIMN_TRY(create_glare_pass(device))};
+}
+
+bool GlareEffect::is_used(const FrameData& frame) {
+    return glare_of(frame).strength > 0;
+}
+
+void GlareEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    view.radiance = draw_glare(graph, pass, glare_of(frame), view.radiance);
 }
 
 }  // namespace limn

@@ -1,22 +1,21 @@
 #pragma once
 
 #include "ecs/components/glare.h"
-#include "render/gpu/program.h"
+#include "render/effect.h"
 #include "render/gpu/texture.h"
-#include "render/graph/frame_graph.h"
 
 namespace limn {
 
-// Glare: the star that an aperture of straight blades makes of a point of light
+// Glare: the star pattern that an aperture of straight blades makes of a point light
 // (post.glare-heat-haze).
 //
 //     out = I + strength * star(I (1 - threshold / luminance))
 //
-// Each edge diffracts light to both sides, perpendicular to itself; along such a line it falls with
-// the square of the distance, and longer waves go farther. A line is a sum of tents, each twice as
-// long as the one before, made by readings twice as far apart in each pass; the light of a star is
-// that of its source, but for what leaves the picture. Bands of single colors, which daylight blurs
-// away, are left out.
+// Each edge diffracts light to both sides, perpendicular to itself; along such a streak intensity
+// falls off with the square of the distance, and longer wavelengths reach farther. A streak is a
+// sum of tent filters, each twice as long as the previous one, from reads twice as far apart in
+// each pass; a star conserves the light of its source, except for what leaves the image. Spectral
+// bands, which daylight blurs away, are left out.
 //
 // Reads    radiance
 // Writes   radiance with glare
@@ -27,7 +26,7 @@ struct GlarePass {
     const gpu::Program* source = nullptr;
     const gpu::Program* streak = nullptr;
     const gpu::Program* add = nullptr;
-    gpu::Sampler dark_outside;
+    gpu::Sampler black_border;
 };
 
 [[nodiscard]] Result<GlarePass> create_glare_pass(gpu::Device& device);
@@ -36,7 +35,15 @@ struct GlarePass {
 [[nodiscard]] TextureId
 draw_glare(FrameGraph& graph, const GlarePass& pass, const Glare& glare, TextureId radiance);
 
-/// Lines through a point; each is two streaks.
+/// Number of lines through a point; each is two streaks.
 [[nodiscard]] int glare_lines(const Glare& glare);
+
+struct GlareEffect {
+    GlarePass pass;
+
+    static Result<GlareEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
 
 }  // namespace limn

@@ -1,50 +1,32 @@
 #include "render/passes/glow_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/settings.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace limn {
 namespace {
 
-constexpr int kMostLevels = 14;
-/// Standard deviation of level k over 2^k pixels. Its variance is the sum of those of the steps
-/// down and up: 3/2 for the first, 9/2 pixels for each that follows, which makes 3/2 4^k - 9/2.
+constexpr int kMaxLevels = 14;
+/// Standard deviation of level k, in units of 2^k pixels. Its variance is the sum over the steps
+/// down and up: 3/2 for the first, 9/2 pixels for each that follows, which gives 3/2 4^k - 9/2.
 constexpr float kLevelSigma = 1.2247f;
 
-IVec2 half_of(const IVec2& size) {
-    return (size + 1) / 2;
-}
-
-IVec2 size_of(const FrameGraph& graph, TextureId texture) {
-    const TextureSpec spec = graph.spec(texture);
-    return {spec.width, spec.height};
-}
-
-struct ProgramSlot {
-    const gpu::Program*& program;
-    const char* fragment;
-    const char* define;  ///< none if empty
-};
-
-/// The first level: half the picture, its alpha how much of its light each texel passes on.
+/// The first level, at half resolution; alpha is the fraction of its light each texel passes on.
 TextureId draw_first(
     FrameGraph& graph, const GlowPass& pass, const Glow& glow, TextureId radiance, bool even) {
-    const IVec2 size = half_of(size_of(graph, radiance));
-    const TextureId first = graph.create(
-        {.name = "glow", .format = graph.spec(radiance).format, .width = size.x, .height = size.y});
-    graph.add_pass(
-        "glow.first", {radiance}, {discarded(first)},
-        [program = even ? pass.first : pass.first_any,
-         per_firefly = glow.firefly > 0 ? 1.0f / glow.firefly : 0.0f, radiance,
-         size](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("size", size);
-            program->set("per_firefly", per_firefly);
-            context.bind_texture(0, radiance);
-            context.device().draw_fullscreen();
+    const IVec2 size = half_resolution(size_of(graph, radiance));
+    const TextureId first = create_target(graph, "glow", graph.spec(radiance).format, size);
+    add_fullscreen_pass(
+        graph, "glow.first", {sampled(radiance, 0)}, {discarded(first)},
+        even ? pass.first : pass.first_odd,
+        [size, inverse_firefly = glow.firefly > 0 ? 1.0f / glow.firefly : 0.0f](
+            PassContext&, const gpu::Program& program) {
+            program.set("size", size);
+            program.set("inverse_firefly", inverse_firefly);
         });
     return first;
 }
@@ -54,35 +36,26 @@ void draw_axis(
     FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
     Use target, const IVec2& axis, float gain, const gpu::PipelineState& state) {
     const IVec2 size = size_of(graph, TextureId{target.resource});
-    graph.add_pass(
-        name, {source}, {target},
-        [program, source, axis, gain, state,
-         along = size.x * axis.x + size.y * axis.y](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, state});
-            program->set("axis", axis);
-            program->set("sizes", along);
-            program->set("gain", gain);
-            context.bind_texture(0, source);
-            context.device().draw_fullscreen();
+    add_fullscreen_pass(
+        graph, name, {sampled(source, 0)}, {target}, program, state,
+        [axis, gain,
+         along = size.x * axis.x + size.y * axis.y](PassContext&, const gpu::Program& its) {
+            its.set("axis", axis);
+            its.set("sizes", along);
+            its.set("gain", gain);
         });
 }
 
-/// What both axes of a step have between them: the width of `wide`, the height of `high`.
+/// Intermediate target of a separable step: the width of `wide`, the height of `high`.
 TextureId create_between(FrameGraph& graph, TextureId wide, TextureId high) {
-    return graph.create(
-        {.name = "glow.between",
-         .format = graph.spec(wide).format,
-         .width = graph.spec(wide).width,
-         .height = graph.spec(high).height});
+    return create_target(
+        graph, "glow.between", graph.spec(wide).format,
+        {graph.spec(wide).width, graph.spec(high).height});
 }
 
 TextureId step_down(FrameGraph& graph, const GlowPass& pass, TextureId larger) {
-    const IVec2 size = half_of(size_of(graph, larger));
-    const TextureId smaller = graph.create(
-        {.name = "glow.level",
-         .format = graph.spec(larger).format,
-         .width = size.x,
-         .height = size.y});
+    const TextureId smaller = create_target(
+        graph, "glow.level", graph.spec(larger).format, half_resolution(size_of(graph, larger)));
     const TextureId between = create_between(graph, smaller, larger);
     const gpu::PipelineState& state = gpu::kFullscreenState;
     draw_axis(graph, "glow.down", pass.down, larger, discarded(between), {1, 0}, 1, state);
@@ -102,26 +75,53 @@ void step_up(
     draw_axis(graph, "glow.up", pass.up, between, Use(larger), {1, 0}, 1, state);
 }
 
+/// The image and its glow, put together by `program`.
+TextureId compose(
+    FrameGraph& graph, const gpu::Program* program, TextureId radiance, TextureId glow,
+    float strength) {
+    const TextureId glowing = create_like(graph, "radiance with glow", radiance);
+    add_fullscreen_pass(
+        graph, "glow", {sampled(radiance, 0), sampled(glow, 1)}, {discarded(glowing)}, program,
+        [strength](PassContext&, const gpu::Program& its) { its.set("strength", strength); });
+    return glowing;
+}
+
+Result<GlowMaskPass> create_glow_mask_pass(gpu::Device& device) {
+    return GlowMaskPass{
+        LIMN_TRY(load_fullscreen(device, "glow_mask.frag")),
+        LIMN_TRY(load_fullscreen(device, "glow_add.frag")),
+        LIMN_TRY(create_separable_blur(device))};
+}
+
+TextureId draw_glow_mask(
+    FrameGraph& graph, const GlowMaskPass& pass, const Glow& glow, const Gbuffer& gbuffer,
+    TextureId radiance) {
+    TextureId mask = create_target(
+        graph, "glow mask", graph.spec(radiance).format, half_resolution(size_of(graph, radiance)));
+    add_fullscreen_pass(
+        graph, "glow mask", {sampled(gbuffer.surface, 0), sampled(gbuffer.depth, 1)},
+        {discarded(mask)}, pass.mask);
+    for (int i = 0; i < std::clamp(glow.passes, 1, 16); ++i) {
+        mask = blur_separable(graph, pass.blur, "glow mask blur", mask);
+    }
+    return compose(graph, pass.add, radiance, mask, glow.strength);
+}
+
+Glow glow_of(const FrameData& frame) {
+    const auto* glow = frame.world->find_resource<Glow>();
+    return glow != nullptr ? within_ranges(*glow) : Glow{.strength = 0};
+}
+
 }  // namespace
 
 Result<GlowPass> create_glow_pass(gpu::Device& device) {
-    GlowPass pass;
-    const ProgramSlot slots[] = {
-        {pass.first, "glow_first.frag", ""}, {pass.first_any, "glow_first.frag", "ANY_SIZE"},
-        {pass.down, "glow_step.frag", ""},   {pass.up, "glow_step.frag", "UP"},
-        {pass.mix, "glow_mix.frag", ""},     {pass.mix_any, "glow_mix.frag", "ANY_SIZE"}};
-    for (const ProgramSlot& slot : slots) {
-        gpu::ProgramDesc desc = {.vertex = "fullscreen.vert", .fragment = slot.fragment};
-        if (*slot.define != 0) {
-            desc.defines.push_back({slot.define, "1"});
-        }
-        const Result<const gpu::Program*> program = device.shaders().load(desc);
-        if (!program) {
-            return program.error();
-        }
-        slot.program = *program;
-    }
-    return pass;
+    return GlowPass{
+        .first = LIMN_TRY(load_fullscreen(device, "glow_first.frag")),
+        .first_odd = LIMN_TRY(load_fullscreen(device, "glow_first.frag", {{"ANY_SIZE"}})),
+        .down = LIMN_TRY(load_fullscreen(device, "glow_step.frag")),
+        .up = LIMN_TRY(load_fullscreen(device, "glow_step.frag", {{"UP"}})),
+        .mix = LIMN_TRY(load_fullscreen(device, "glow_mix.frag")),
+        .mix_odd = LIMN_TRY(load_fullscreen(device, "glow_mix.frag", {{"ANY_SIZE"}}))};
 }
 
 std::vector<float> glow_weights(const Glow& glow, int width, int height) {
@@ -129,18 +129,18 @@ std::vector<float> glow_weights(const Glow& glow, int width, int height) {
     const float depth = std::log2(radius / kLevelSigma);
     std::vector<float> weights;
     float sum = 0;
-    IVec2 size = half_of({width, height});
-    for (int level = 2; level <= kMostLevels; ++level) {
+    IVec2 size = half_resolution({width, height});
+    for (int level = 2; level <= kMaxLevels; ++level) {
         const float share = std::clamp(depth - static_cast<float>(level - 1), 0.0f, 1.0f);
         const bool first = level == 2;
         if (!first && (share == 0 || size == IVec2(1))) {
             break;
         }
-        // At its own distance, a level of twice the size has a quarter of the density.
+        // A level of twice the size has a quarter of the density.
         const float density = std::exp2((2.0f - glow.falloff) * static_cast<float>(level));
         weights.push_back(density * (first ? 1.0f : share));
         sum += weights.back();
-        size = half_of(size);
+        size = half_resolution(size);
     }
     for (float& weight : weights) {
         weight /= sum;
@@ -150,7 +150,7 @@ std::vector<float> glow_weights(const Glow& glow, int width, int height) {
 
 TextureId draw_glow(FrameGraph& graph, const GlowPass& pass, const Glow& glow, TextureId radiance) {
     const IVec2 size = size_of(graph, radiance);
-    const bool even = size == 2 * half_of(size);
+    const bool even = size == 2 * half_resolution(size);
     const std::vector<float> weights = glow_weights(glow, size.x, size.y);
     std::vector<TextureId> levels = {draw_first(graph, pass, glow, radiance, even)};
     while (levels.size() <= weights.size()) {
@@ -160,25 +160,31 @@ TextureId draw_glow(FrameGraph& graph, const GlowPass& pass, const Glow& glow, T
         const float gain = weights[i] / weights[i - 1];
         step_up(graph, pass, levels[i + 1], levels[i], gain, gpu::kBlendAdd);
     }
-    // The first level is no part of it: it would soften the picture more than make it glow.
+    // The first level is left out: it would soften the image rather than make it glow.
     step_up(graph, pass, levels[1], levels[0], weights[0], gpu::kBlendOff);
 
-    const TextureId glowing = graph.create(
-        {.name = "radiance with glow",
-         .format = graph.spec(radiance).format,
-         .width = size.x,
-         .height = size.y});
-    graph.add_pass(
-        "glow", {radiance, levels[0]}, {discarded(glowing)},
-        [program = even ? pass.mix : pass.mix_any, radiance, level = levels[0],
-         strength = glow.strength](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("strength", strength);
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, level);
-            context.device().draw_fullscreen();
-        });
-    return glowing;
+    return compose(graph, even ? pass.mix : pass.mix_odd, radiance, levels[0], glow.strength);
+}
+
+Result<GlowEffect> GlowEffect::create(gpu::Device& device, const RenderSettings&) {
+    return GlowEffect{LIMN_TRY(create_glow_pass(device)), LIMN_TRY(create_glow_mask_pass(device))};
+}
+
+bool GlowEffect::is_used(const FrameData& frame) {
+    const Glow glow = glow_of(frame);
+    const std::uint32_t kinds = glow.kind == GlowKind::Mask ? kMainViews : kFilmViews;
+    return glow.strength > 0 && (frame.kind & kinds) != 0;
+}
+
+void GlowEffect::collect(FrameData& frame) {
+    frame.attributes |= glow_of(frame).kind == GlowKind::Mask;
+}
+
+void GlowEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    const Glow glow = glow_of(frame);
+    view.radiance = glow.kind == GlowKind::Mask
+                        ? draw_glow_mask(graph, mask, glow, view.gbuffer, view.radiance)
+                        : draw_glow(graph, lens, glow, view.radiance);
 }
 
 }  // namespace limn

@@ -1,85 +1,125 @@
 #include "render/passes/light_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "ecs/base/log.h"
+#include "render/gpu/device.h"
+#include "render/instance_list.h"
+#include "render/light_clusters.h"
+#include "render/lighting.h"
+#include "render/material_pool.h"
+#include "render/render_frame.h"
 
 namespace limn {
 namespace {
 
-/// The triangle of fullscreen.vert lies at depth 0: less than a surface's, equal to nothing's.
-gpu::PipelineState full_screen_where(GLenum depth_func) {
-    return {.depth = {.test = true, .write = false, .func = depth_func}, .cull = GL_NONE};
+constexpr unsigned kLightsUnit = 9;
+constexpr unsigned kSurfaceMaterialsUnit = 13;
+constexpr unsigned kProjectorImagesUnit = 18;
+constexpr unsigned kProjectorsUnit = 19;
+
+void bind_records(PassContext& context, const LightRecords& its) {
+    its.records.bind(context.device(), kLightsUnit);
+    if (!its.projector_pool->records().empty()) {
+        context.device().bind_texture(kProjectorImagesUnit, its.projector_pool->images());
+        its.projectors.bind(context.device(), kProjectorsUnit);
+    }
+}
+
+void bind_materials(PassContext& context, const MaterialPool& materials) {
+    materials.records().bind(context.device(), kSurfaceMaterialsUnit);
+}
+
+/// What the forward methods loop over.
+void upload_objects(
+    const FrameData& frame, const ViewData& view, const LightList& lights, LightRecords& to) {
+    const auto& list = view.data.get<InstanceList>();
+    collect_light_objects(lights, view.data.get<ClusterLights>(), list, to.objects);
+    if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
+        list_lights_of_objects(to.objects, list.opaque_instances, to.object_lights);
+        to.object_lists.upload(*frame.ring, to.object_lights.lists);
+        to.object_indices.upload(*frame.ring, to.object_lights.lights);
+    } else {
+        list_draws_of_lights(to.objects, list, to.draws);
+        to.commands = frame.ring->push(std::span<const DrawCommand>(to.draws.commands));
+    }
+}
+
+/// The pass, created when it is first needed; null, and logged, if it cannot be.
+template <typename Pass>
+Pass* get_or_create(
+    std::optional<Pass>& pass, gpu::Device& device, Result<Pass> (*create)(gpu::Device&)) {
+    if (!pass) {
+        Result<Pass> made = create(device);
+        if (!made) {
+            log_error("{}", made.error().message);
+            return nullptr;
+        }
+        pass = *std::move(made);
+    }
+    return &*pass;
+}
+
+void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
+    const std::vector<Use> reads = lighting_reads(
+        view, {sampled(view.gbuffer.surface, kGbufferUnit),
+               sampled(depth_tested(view.gbuffer.depth), kDepthUnit)});
+    const Use writes[] = {cleared(view.radiance)};
+    graph.add_pass("lights", std::span(reads), writes, [&programs, &view](PassContext& context) {
+        const gpu::Program* program = programs.get(view.lighting.variant);
+        if (program == nullptr) {
+            return;
+        }
+        context.device().use(gpu::Pipeline{program, kWhereSurfaces});
+        bind_lighting(context, view);
+        bind_shadow_masks(context, view);
+        context.device().draw_fullscreen();
+    });
 }
 
 }  // namespace
 
-Result<LightPass> create_light_pass(gpu::Device& device) {
-    LightPass pass = {.lights = SurfacePrograms(device, "fullscreen.vert", "light_pass.frag")};
-    const Status plain = pass.lights.load(0, 0, {});
-    if (!plain) {
-        return plain.error();
+Result<LightEffect> LightEffect::create(gpu::Device& device, const RenderSettings&) {
+    LightEffect effect{.clustered = ProgramVariants::fullscreen(device, "light_pass.frag")};
+    LIMN_TRY(effect.clustered.load());
+    return effect;
+}
+
+bool LightEffect::prepare(const FrameData& frame, ViewData& view) {
+    // The view's own lights: shadows have been set, projectors are the last to add to them.
+    auto& lights = view.data.publish<LightList>();
+    auto& published = view.data.publish<LightRecords>();
+    projectors.update(*frame.assets, lights);
+    published.records.upload(*frame.ring, lights.records);
+    published.projectors.upload(*frame.ring, projectors.records());
+    published.projector_pool = &projectors;
+    view.lighting.variant.add_if(!projectors.records().empty(), "PROJECTORS");
+    view.lighting.add_binding<bind_records>(published);
+    view.lighting.add_binding<bind_materials>(*frame.materials);
+    if (view.data.get<LightingMethod>().is_forward()) {
+        upload_objects(frame, view, lights, published);
     }
-    for (int kind = 0; kind < kSkyKinds; ++kind) {
-        const Result<const gpu::Program*> sky = device.shaders().load(
-            {.vertex = "fullscreen.vert",
-             .fragment = "sky.frag",
-             .defines = {{"SKY_KIND", std::to_string(kind)}}});
-        if (!sky) {
-            return sky.error();
+    return true;
+}
+
+void LightEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    view.radiance = create_radiance(graph, view);
+    const auto& method = view.data.get<LightingMethod>();
+    if (method.method == LightMethod::Clustered) {
+        draw_clustered(graph, clustered, view);
+    } else if (method.is_forward()) {
+        if (ForwardPass* pass = get_or_create(forward, *frame.device, create_forward_pass)) {
+            draw_forward(graph, *pass, view);
         }
-        pass.sky[kind] = *sky;
+    } else if (LightEachPass* pass = get_or_create(each, *frame.device, create_light_each_pass)) {
+        draw_each_light(graph, *pass, view);
     }
-    return pass;
 }
 
-TextureId
-draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const Gbuffer& gbuffer) {
-    const TextureId radiance = graph.create(
-        {.name = "radiance",
-         .format = scene.radiance_format,
-         .width = scene.view.width,
-         .height = scene.view.height});
-    const std::vector<Use> reads =
-        lighting_reads(scene, {gbuffer.surface, depth_tested(gbuffer.depth)});
-    const Use writes[] = {cleared(radiance)};
-    graph.add_pass(
-        "lights", std::span<const Use>(reads), std::span<const Use>(writes),
-        [&pass, &scene, gbuffer](PassContext& context) {
-            const gpu::Program* program =
-                pass.lights.get(0, lighting_key(scene), lighting_defines(scene));
-            if (program == nullptr) {
-                return;
-            }
-            context.device().use(gpu::Pipeline{program, full_screen_where(GL_LESS)});
-            bind_lighting(context.device(), scene);
-            context.bind_texture(kGbufferUnit, gbuffer.surface);
-            context.bind_texture(kDepthUnit, gbuffer.depth);
-            bind_shadow_masks(context, scene);
-            context.device().draw_fullscreen();
-        });
-    return radiance;
-}
-
-TextureId draw_sky(
-    FrameGraph& graph, const LightPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer) {
-    if (scene.environment.settings.visible || scene.for_light) {
-        graph.add_pass(
-            "sky", {depth_tested(gbuffer.depth)}, {radiance},
-            [&pass, &scene](PassContext& context) {
-                const auto kind = static_cast<int>(scene.environment.settings.sky);
-                context.device().use(gpu::Pipeline{pass.sky[kind], full_screen_where(GL_EQUAL)});
-                bind_view(context.device(), scene);
-                const gpu::RingSlice& block = scene.environment_block;
-                context.device().bind_uniforms(
-                    kEnvironmentBinding, block.buffer, block.offset, block.size);
-                if (scene.environment.settings.sky == SkyKind::Panorama) {
-                    context.device().bind_texture(kGbufferUnit, *scene.environment.cube);
-                }
-                pass.sky[kind]->set("for_light", scene.for_light ? 1 : 0);
-                context.device().draw_fullscreen();
-            });
+void LightEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    const auto* method = view.data.find<LightingMethod>();
+    if (method != nullptr && method->method == LightMethod::LightMajor) {
+        out.statistics.lit_objects =
+            static_cast<int>(view.data.get<LightRecords>().objects.objects.size());
     }
-    return radiance;
 }
 
 }  // namespace limn

@@ -1,34 +1,51 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "render/buffer_texture.h"
+#include "render/effect.h"
+#include "render/light_objects.h"
+#include "render/passes/forward_pass.h"
+#include "render/passes/light_each_pass.h"
+#include "render/projector_list.h"
+
+#include <optional>
 
 namespace limn {
 
-// Lights the G-buffer and puts the sky behind it.
+// Lights all opaque surfaces, by the method that the level chose (LightMethod).
 //
-// Reads    G-buffer, light clusters, environment
-// Writes   radiance: linear; alpha 1 where a surface or the sky is
-// Order    after the G-buffer
-// Shaders  light_pass.frag, sky.frag, lib/lighting.glsl
+// Reads    G-buffer or depth, light records and clusters, LightingInputs
+// Writes   radiance: linear; alpha 1 where there is a surface, black elsewhere
+// Order    after the G-buffer, shadows and caustics
+// Shaders  light_pass.frag, lib/lighting.glsl
 //
-// One pass whatever the number of lights: a pixel sums those of its cell (deferred.light-pass). The
-// depth test keeps light to surfaces and the sky to the rest.
+// Clustered: one pass for any number of lights, a pixel sums the lights of its cluster
+// (deferred.light-pass); the depth test restricts it to surfaces. The older methods, kept for
+// comparison, are light_each_pass.h (one light at a time over the G-buffer) and forward_pass.h
+// (surfaces lit while they are drawn).
 
-struct LightPass {
-    SurfacePrograms lights;
-    const gpu::Program* sky[kSkyKinds] = {};  ///< by SkyKind
+/// What the effect uploads for a view, published once the view's lights have their shadows.
+struct LightRecords {
+    BufferTexture records = BufferTexture("lights", GL_RGBA32F);
+    BufferTexture projectors = BufferTexture("projectors", GL_RGBA32F);
+    const ProjectorPool* projector_pool = nullptr;
+    LightObjects objects;  ///< of the forward methods
+    ObjectLights object_lights;
+    BufferTexture object_lists = BufferTexture("object lists", GL_RG32UI);
+    BufferTexture object_indices = BufferTexture("object lights", GL_R32UI);
+    LightDraws draws;  ///< of LightMethod::LightMajor
+    gpu::RingSlice commands;
 };
 
-[[nodiscard]] Result<LightPass> create_light_pass(gpu::Device& device);
+struct LightEffect {
+    ProgramVariants clustered;
+    std::optional<LightEachPass> each{};   ///< created when a level first asks for it
+    std::optional<ForwardPass> forward{};  ///< the same
+    ProjectorPool projectors{};
 
-/// Radiance of all opaque surfaces; black elsewhere.
-[[nodiscard]] TextureId
-draw_lights(FrameGraph& graph, LightPass& pass, const FrameScene& scene, const Gbuffer& gbuffer);
-
-/// Radiance with the sky where no surface is, if the environment is visible or a probe looks.
-[[nodiscard]] TextureId draw_sky(
-    FrameGraph& graph, const LightPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer);
+    [[nodiscard]] static Result<LightEffect> create(gpu::Device& device, const RenderSettings&);
+    bool prepare(const FrameData& frame, ViewData& view);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
+};
 
 }  // namespace limn

@@ -1,6 +1,6 @@
 #include "render/passes/local_luminance_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "render/fullscreen.h"
 #include "render/shaders/tone_gpu.h"
 
 #include <algorithm>
@@ -12,20 +12,20 @@ namespace limn {
 namespace {
 
 constexpr unsigned kWeightsBinding = 2;
-constexpr int kFineRadius = 4;  // of the widest blur of each level [texels]
+constexpr int kFineRadius = 4;  // kernel radius of each level [texels]
 constexpr int kMiddleRadius = 11;
 constexpr int kCoarseRadius = 14;
-constexpr int kMiddleStep = 2;  // pixels a texel
+constexpr int kMiddleStep = 2;  // pixels per texel
 constexpr int kCoarseStep = 4;
 constexpr double kBox2 = 0.25;         // variance of the mean of two neighbors [texels^2]
-constexpr double kBilinear = 1.0 / 6;  // what reading between texels adds on average
+constexpr double kBilinear = 1.0 / 6;  // mean variance added by bilinear filtering [texels^2]
 
-/// Of scale i [px^2]: (1.6^i a1)^2 / 2 with a1^2 = 1/8.
+/// Variance of scale i [px^2]: (1.6^i a1)^2 / 2 with a1^2 = 1/8.
 double scale_variance(int i) {
     return std::pow(1.6, 2 * i) / 16;
 }
 
-/// Weights 0 .. radius of a sampled Gaussian, both sides summing to 1.
+/// Weights 0 .. radius of a sampled Gaussian; the two-sided sum is 1.
 std::array<double, 16> sample_gaussian(double sigma2, int radius) {
     std::array<double, 16> weights{};
     double sum = 0;
@@ -47,7 +47,7 @@ double variance_of(const std::array<double, 16>& weights) {
     return sum;
 }
 
-/// The same with exactly this variance [texels^2]: a narrow Gaussian has less once it is sampled.
+/// The same with exactly this variance [texels^2], which sampling reduces for narrow Gaussians.
 std::array<double, 16> gaussian_of_variance(double variance, int radius) {
     double low = 1e-3;
     double high = 2 * variance + 1;
@@ -68,7 +68,7 @@ gpu::Buffer make_weights(const char* label, const std::array<std::array<double, 
     return gpu::Buffer(label, sizeof(block), gpu::BufferUse::Static, &block);
 }
 
-/// What is left to blur on a grid of `step` pixels a texel, of a source of variance `done` [px^2].
+/// Remaining blur on a grid of `step` pixels per texel, for a source of variance `done` [px^2].
 std::array<double, 16> remaining(int scale, double done, int step, int radius) {
     const double left = (scale_variance(scale) - done) / (step * step) - kBilinear;
     return gaussian_of_variance(std::max(left, 0.01), radius);
@@ -77,43 +77,29 @@ std::array<double, 16> remaining(int scale, double done, int step, int radius) {
 enum class BlurSource : std::uint8_t { Radiance, OneComponent, Components };  // SOURCE
 
 Result<const gpu::Program*> load_blur(gpu::Device& device, BlurSource source, int radius) {
-    return device.shaders().load(
-        {.vertex = "fullscreen.vert",
-         .fragment = "local_blur.frag",
-         .defines = {
-             {"SOURCE", std::to_string(static_cast<int>(source))},
-             {"RADIUS", std::to_string(radius)}}});
+    return load_fullscreen(
+        device, "local_blur.frag",
+        {{"SOURCE", std::to_string(static_cast<int>(source))}, {"RADIUS", std::to_string(radius)}});
 }
 
 using Weights = std::array<std::array<double, 16>, 4>;
 
 Result<LocalLuminancePass::Level> create_level(
     gpu::Device& device, const char* label, BlurSource source, int radius, const Weights& weights) {
-    const Result<const gpu::Program*> across = load_blur(device, source, radius);
-    if (!across) {
-        return across.error();
-    }
-    const Result<const gpu::Program*> up = load_blur(device, BlurSource::Components, radius);
-    if (!up) {
-        return up.error();
-    }
-    return LocalLuminancePass::Level{*across, *up, make_weights(label, weights)};
+    return LocalLuminancePass::Level{
+        LIMN_TRY(load_blur(device, source, radius)),
+        LIMN_TRY(load_blur(device, BlurSource::Components, radius)), make_weights(label, weights)};
 }
 
 TextureId blur_along(
     FrameGraph& graph, std::string_view name, const gpu::Program* program,
     const gpu::Buffer& weights, TextureId source, const IVec2& direction) {
-    const TextureSpec spec = graph.spec(source);
-    const TextureId target = graph.create(
-        {.name = name, .format = GL_RGBA32F, .width = spec.width, .height = spec.height});
-    graph.add_pass(
-        name, {source}, {discarded(target)},
-        [program, &weights, source, direction](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
+    const TextureId target = create_target(graph, name, GL_RGBA32F, size_of(graph, source));
+    add_fullscreen_pass(
+        graph, name, {sampled(source, 0)}, {discarded(target)}, program,
+        [&weights, direction](PassContext& context, const gpu::Program& its) {
             context.device().bind_uniforms(kWeightsBinding, weights);
-            program->set("direction", direction);
-            context.bind_texture(0, source);
-            context.device().draw_fullscreen();
+            its.set("direction", direction);
         });
     return target;
 }
@@ -129,29 +115,16 @@ TextureId blur_level(
 TextureId shrink(
     FrameGraph& graph, std::string_view name, const gpu::Program* program, TextureId source,
     const IVec2& size) {
-    const TextureId target =
-        graph.create({.name = name, .format = GL_R32F, .width = size.x, .height = size.y});
-    graph.add_pass(
-        name, {source}, {discarded(target)}, [program, source, size](PassContext& context) {
-            context.device().use(gpu::Pipeline{program, gpu::kFullscreenState});
-            program->set("texel", 1.0f / Vec2(size));
-            context.bind_texture(0, source);
-            context.device().draw_fullscreen();
-        });
+    const TextureId target = create_target(graph, name, GL_R32F, size);
+    add_fullscreen_pass(
+        graph, name, {sampled(source, 0)}, {discarded(target)}, program,
+        [size](PassContext&, const gpu::Program& its) { its.set("texel", 1.0f / Vec2(size)); });
     return target;
 }
 
 }  // namespace
 
 Result<LocalLuminancePass> create_local_luminance_pass(gpu::Device& device) {
-    LocalLuminancePass pass;
-    const Result<const gpu::Program*> shrink =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "local_shrink.frag"});
-    if (!shrink) {
-        return shrink.error();
-    }
-    pass.shrink = *shrink;
-
     Weights fine;
     Weights middle;
     Weights coarse{};
@@ -163,25 +136,13 @@ Result<LocalLuminancePass> create_local_luminance_pass(gpu::Device& device) {
         const double done = scale_variance(7) + kBox2 * kMiddleStep * kMiddleStep;
         coarse[k] = remaining(8 + k, done, kCoarseStep, kCoarseRadius);
     }
-    struct Wanted {
-        LocalLuminancePass::Level& level;
-        const char* label;
-        BlurSource source;
-        int radius;
-        const Weights& weights;
-    };
-    for (const Wanted& wanted :
-         {Wanted{pass.fine, "fine blurs", BlurSource::Radiance, kFineRadius, fine},
-          Wanted{pass.middle, "middle blurs", BlurSource::OneComponent, kMiddleRadius, middle},
-          Wanted{pass.coarse, "coarse blurs", BlurSource::OneComponent, kCoarseRadius, coarse}}) {
-        Result<LocalLuminancePass::Level> level =
-            create_level(device, wanted.label, wanted.source, wanted.radius, wanted.weights);
-        if (!level) {
-            return level.error();
-        }
-        wanted.level = *std::move(level);
-    }
-    return pass;
+    return LocalLuminancePass{
+        LIMN_TRY(create_level(device, "fine blurs", BlurSource::Radiance, kFineRadius, fine)),
+        LIMN_TRY(
+            create_level(device, "middle blurs", BlurSource::OneComponent, kMiddleRadius, middle)),
+        LIMN_TRY(
+            create_level(device, "coarse blurs", BlurSource::OneComponent, kCoarseRadius, coarse)),
+        LIMN_TRY(load_fullscreen(device, "local_shrink.frag"))};
 }
 
 LocalLuminance

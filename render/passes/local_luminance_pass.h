@@ -1,8 +1,9 @@
 #pragma once
 
+#include "ecs/base/result.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/program.h"
-#include "render/tone.h"
+#include "render/graph/frame_graph.h"
 
 namespace limn {
 
@@ -13,9 +14,16 @@ namespace limn {
 // Order    before the tone map
 // Shaders  local_blur.frag, local_shrink.frag; weights in tone_gpu.h
 //
-// Four blurs share each pair of passes, a component each. The wide ones are made of a picture that
-// is blurred already and therefore can be small; variances add, so what is left to do is known.
-// They differ from true Gaussians by some percent where a single pixel outshines everything.
+// Four blurs share each pair of passes, one per channel. The wide ones start from an image that is
+// already blurred and can therefore be smaller; variances add, so the remaining blur is known. The
+// results differ from true Gaussians by some percent where a single pixel outshines everything.
+
+/// Luminance blurred for dodge and burn: scale i is a Gaussian of variance 1.6^(2 i) / 16 [px^2].
+struct LocalLuminance {
+    TextureId fine;    ///< scales 0 .. 3, full resolution
+    TextureId middle;  ///< 4 .. 7, half resolution
+    TextureId coarse;  ///< 8 and 9, quarter resolution
+};
 
 struct LocalLuminancePass {
     struct Level {

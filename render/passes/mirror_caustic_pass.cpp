@@ -1,11 +1,11 @@
 #include "render/passes/mirror_caustic_pass.h"
 
-#include "ecs/base/log.h"
-#include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
-#include "render/render_view.h"
+#include "render/light_list.h"
+#include "render/mesh_pool.h"
+#include "render/view_block.h"
 
 #include <glm/geometric.hpp>
 
@@ -17,27 +17,29 @@ namespace {
 
 bool is_finite(const MirrorCaustic& m) {
     const float sum = m.normal.x + m.normal.y + m.normal.z + m.offset + m.color.x + m.color.y
-                      + m.color.z + m.strength + m.power_plane + m.power_surface + m.farthest
-                      + m.highest;
+                      + m.color.z + m.strength + m.plane_exponent + m.surface_exponent
+                      + m.max_distance + m.max_height;
     return std::isfinite(sum) && glm::length(m.normal) > 1e-6f;
 }
 
 void draw_mirror(
-    gpu::Device& device, const gpu::Program& program, const FrameScene& scene,
+    gpu::Device& device, const gpu::Program& program, const ViewData& view,
     const CausticMirror& mirror) {
-    if (mirror.mesh >= scene.meshes->meshes().size()) {
+    const std::vector<MeshRange>& meshes = view.frame->meshes->meshes();
+    if (mirror.mesh >= meshes.size()) {
         return;
     }
-    const MeshRange& mesh = scene.meshes->meshes()[mirror.mesh];
+    const MeshRange& mesh = meshes[mirror.mesh];
     const MirrorCaustic& m = mirror.settings;
-    const layout::LightRecord& light = scene.lights.records.front();
+    const auto& lights = view.data.get<LightList>();
+    const layout::LightRecord& light = lights.records.front();
     const float length = glm::length(m.normal);
     program.set("row_x", mirror.world_from_mesh.row[0]);
     program.set("row_y", mirror.world_from_mesh.row[1]);
     program.set("row_z", mirror.world_from_mesh.row[2]);
-    program.set("light", Vec4(Vec3(light.position), scene.lights.directional > 0 ? 0.0f : 1.0f));
+    program.set("light", Vec4(Vec3(light.position), lights.directional > 0 ? 0.0f : 1.0f));
     program.set("plane", Vec4(m.normal, m.offset) / length);
-    program.set("look", Vec4(m.power_plane, m.power_surface, m.farthest, m.highest));
+    program.set("look", Vec4(m.plane_exponent, m.surface_exponent, m.max_distance, m.max_height));
     program.set("color", m.strength * m.color * Vec3(light.color));
     device.draw_indexed(
         GL_TRIANGLES, static_cast<int>(mesh.index_count), GL_UNSIGNED_INT,
@@ -46,52 +48,46 @@ void draw_mirror(
 
 }  // namespace
 
-void collect_mirrors(const World& world, float alpha, std::vector<CausticMirror>& mirrors) {
+Result<MirrorCausticEffect>
+MirrorCausticEffect::create(gpu::Device& device, const RenderSettings&) {
+    return MirrorCausticEffect{LIMN_TRY(device.shaders().load(
+        {.vertex = "mirror_caustic.vert", .fragment = "mirror_caustic.frag"}))};
+}
+
+bool MirrorCausticEffect::is_used(const FrameData& frame) {
+    return !frame.world->query<const MirrorCaustic>().empty();
+}
+
+void MirrorCausticEffect::collect(FrameData& frame) {
     mirrors.clear();
-    world
-        .query<
+    frame.world
+        ->query<
             const MirrorCaustic, const MeshInstance, const WorldTransform,
             Optional<const PreviousWorldTransform>>()
         .each([&](const MirrorCaustic& settings, const MeshInstance& surface,
                   const WorldTransform& now, const PreviousWorldTransform* before) {
             if (is_finite(settings) && settings.strength > 0) {
-                const Affine place =
-                    before != nullptr ? mix_affine(before->world, now.world, alpha) : now.world;
+                const Affine place = before != nullptr
+                                         ? mix_affine(before->world, now.world, frame.camera.alpha)
+                                         : now.world;
                 mirrors.push_back({settings, surface.mesh.index, place});
             }
         });
 }
 
-void draw_mirror_caustics(
-    FrameGraph& graph, gpu::Device& device, MirrorCausticPass& pass, const FrameScene& scene,
-    TextureId radiance, const Gbuffer& gbuffer) {
-    if (pass.mirrors.empty() || scene.lights.records.empty()) {
-        return;
-    }
-    if (pass.program == nullptr && !pass.failed) {
-        const Result<const gpu::Program*> made = device.shaders().load(
-            {.vertex = "mirror_caustic.vert", .fragment = "mirror_caustic.frag"});
-        pass.failed = !made;
-        if (made) {
-            pass.program = *made;
-        } else {
-            log_error("{}", made.error().message);
-        }
-    }
-    if (pass.program == nullptr) {
+void MirrorCausticEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    if (mirrors.empty() || view.data.get<LightList>().records.empty()) {
         return;
     }
     graph.add_pass(
-        "mirror caustics", {depth_tested(gbuffer.depth)}, {radiance},
-        [&pass, &scene](PassContext& context) {
-            gpu::Device& its_device = context.device();
-            its_device.use(gpu::Pipeline{
-                pass.program,
-                {.depth = {.write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
-            bind_view(its_device, scene);
-            its_device.bind_vertex_array(scene.meshes->vertices());
-            for (const CausticMirror& mirror : pass.mirrors) {
-                draw_mirror(its_device, *pass.program, scene, mirror);
+        "mirror caustics", {depth_tested(view.gbuffer.depth)}, {view.radiance},
+        [this, &view](PassContext& context) {
+            context.device().use(gpu::Pipeline{
+                program, {.depth = {.write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
+            bind_view(context, view);
+            context.device().bind_vertex_array(view.frame->meshes->vertices());
+            for (const CausticMirror& mirror : mirrors) {
+                draw_mirror(context.device(), *program, view, mirror);
             }
         });
 }

@@ -1,25 +1,22 @@
 #pragma once
 
 #include "ecs/components/mirror_caustic.h"
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "ecs/components/transform.h"
+#include "render/effect.h"
 
 #include <vector>
 
 namespace limn {
 
-class World;
-
-// Light that meshes mirror onto a plane (caustic.reflection-plane).
+// Light that meshes reflect onto a plane (caustic.reflection-plane).
 //
-// Reads    depth; entities with MirrorCaustic, a mesh and a place; the first light
+// Reads    depth; entities with MirrorCaustic, a mesh and a transform; the first light
 // Writes   radiance
 // Order    after the sky, before water
 // Shaders  mirror_caustic.vert, mirror_caustic.frag, lib/caustic_landing.glsl
 //
-// Nothing stands in the way of this light, and the plane is lit whatever it is made of; meshes that
-// change their shape mirror as they were made. The program is made when there is a mirror for the
-// first time.
+// This light is not shadowed, and the plane is lit whatever its material; deformed meshes reflect
+// in their rest pose.
 
 struct CausticMirror {
     MirrorCaustic settings;
@@ -27,18 +24,14 @@ struct CausticMirror {
     Affine world_from_mesh;
 };
 
-struct MirrorCausticPass {
+struct MirrorCausticEffect {
     const gpu::Program* program = nullptr;
-    bool failed = false;  ///< to compile: logged, no mirrors
-    std::vector<CausticMirror> mirrors;
+    std::vector<CausticMirror> mirrors = {};  ///< of the frame, in world order
+
+    static Result<MirrorCausticEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    void collect(FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData&, ViewData& view);
 };
-
-/// Those of the world at the moment that `alpha` says, in world order.
-void collect_mirrors(const World& world, float alpha, std::vector<CausticMirror>& mirrors);
-
-/// Draws over `radiance`; adds no pass without mirrors or light.
-void draw_mirror_caustics(
-    FrameGraph& graph, gpu::Device& device, MirrorCausticPass& pass, const FrameScene& scene,
-    TextureId radiance, const Gbuffer& gbuffer);
 
 }  // namespace limn

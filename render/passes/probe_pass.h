@@ -1,24 +1,31 @@
 #pragma once
 
-#include "render/graph/frame_graph.h"
+#include "render/effect.h"
+#include "render/env_probe_list.h"
 
 namespace limn {
 
-// Keeps what a probe sees toward one face (env.capture).
+// Copies a rendered probe face into its cube map (env.capture).
 //
-// Reads    radiance of a square picture with a field of view of 90 degrees
+// Reads    radiance of a square view with a field of view of 90 degrees
 // Writes   a face of the probe's cube map
 // Order    after the blended surfaces
 // Shaders  probe_face.frag
 
-struct ProbePass {
+// The faces that are due are views of their own, drawn before the main one; when a round of six is
+// complete, the cube becomes a layer of the reflection maps (environment_pass.h).
+
+struct ProbeEffect {
     const gpu::Program* program = nullptr;
+    EnvProbeList probes{};
+    int faces_drawn = 0;  ///< in this frame
+
+    [[nodiscard]] static bool is_used(const FrameData& frame);
+    [[nodiscard]] static Result<ProbeEffect> create(gpu::Device& device, const RenderSettings&);
+    void request_views(FrameData& frame);
+    bool prepare(const FrameData& frame, ViewData& view);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
-
-[[nodiscard]] Result<ProbePass> create_probe_pass(gpu::Device& device);
-
-void keep_probe_face(
-    FrameGraph& graph, const ProbePass& pass, TextureId radiance, const gpu::Texture& cube,
-    int face);
 
 }  // namespace limn

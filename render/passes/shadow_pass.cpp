@@ -1,60 +1,161 @@
 #include "render/passes/shadow_pass.h"
 
+#include "ecs/base/log.h"
 #include "render/gpu/device.h"
-#include "render/graph/frame_graph.h"
+#include "render/lighting.h"
+#include "render/render_frame.h"
+#include "render/surface_draws.h"
+
+#include <utility>
 
 namespace limn {
 namespace {
+
+/// What lighting binds in a view with shadows.
+struct ShadowBindings {
+    BufferTexture records = BufferTexture("shadow views", GL_RGBA32F);
+    const gpu::Texture* atlas = nullptr;
+};
 
 gpu::Texture make_atlas(int size) {
     return {"shadow atlas", {.format = GL_DEPTH_COMPONENT32F, .width = size, .height = size}};
 }
 
-void draw_view(
-    gpu::Device& device, ShadowPass& pass, const FrameScene& scene, const ShadowDraw& draw) {
+/// Maps that were drawn keep their places and depths.
+void grow_atlas(gpu::Texture& atlas, int size) {
+    if (atlas.width() >= size) {
+        return;
+    }
+    gpu::Texture larger = make_atlas(size);
+    glCopyImageSubData(
+        atlas.id(), GL_TEXTURE_2D, 0, 0, 0, 0, larger.id(), GL_TEXTURE_2D, 0, 0, 0, 0,
+        atlas.width(), atlas.height(), 1);
+    atlas = std::move(larger);
+}
+
+void bind_shadows(PassContext& context, const ShadowBindings& its) {
+    context.device().bind_texture(kShadowAtlasUnit, *its.atlas);
+    its.records.bind(context.device(), kShadowViewsUnit);
+}
+
+void draw_map(
+    PassContext& context, ProgramVariants& programs, const ViewData& view, const ShadowDraw& draw) {
+    gpu::Device& device = context.device();
     const AtlasRect& place = draw.place;
     const gpu::PipelineState state = {.cull = GL_NONE, .depth_clamp = draw.clamp_depth};
     device.set_viewport(place.x, place.y, place.size, place.size);
     device.set_scissor(place.x, place.y, place.size, place.size);
     device.apply(state);
-    constexpr float kNothing = 0;
-    glClearBufferfv(GL_DEPTH, 0, &kNothing);
+    constexpr float kFar = 0;
+    glClearBufferfv(GL_DEPTH, 0, &kFar);
+    constexpr unsigned kViewBinding = 0;
     const gpu::RingSlice& block = draw.view_block;
     device.bind_uniforms(kViewBinding, block.buffer, block.offset, block.size);
-    draw_casters(device, scene, draw.casters, pass.programs, state);
+    draw_casters(context, view, draw.casters, programs, state);
 }
 
-}  // namespace
-
-Result<ShadowPass> create_shadow_pass(gpu::Device& device) {
-    ShadowPass pass = {SurfacePrograms(device, "mesh.vert", "shadow_map.frag"), make_atlas(1)};
-    const Status plain = pass.programs.load(0, 0, {});
-    if (!plain) {
-        return plain.error();
-    }
-    return pass;
-}
-
-void resize_shadow_atlas(ShadowPass& pass, const ShadowList& list) {
-    if (pass.atlas.width() < list.atlas_size) {
-        pass.atlas = make_atlas(list.atlas_size);
-    }
-}
-
-TextureId draw_shadows(FrameGraph& graph, ShadowPass& pass, const FrameScene& scene) {
-    if (scene.shadows.atlas_size == 0) {
+/// The atlas with this view's maps; not valid if nothing casts shadows.
+TextureId draw_maps(
+    FrameGraph& graph, ProgramVariants& programs, const gpu::Texture& texture,
+    const ViewData& view) {
+    const auto& list = view.data.get<ShadowList>();
+    if (list.atlas_size == 0) {
         return {};
     }
-    const TextureId atlas = graph.import("shadow.atlas", pass.atlas);
-    if (!scene.shadows.due.empty()) {
-        graph.add_pass("shadows", {}, {atlas}, [&pass, &scene](PassContext& context) {
-            for (const ShadowDraw& draw : scene.shadows.due) {
-                draw_view(context.device(), pass, scene, draw);
+    const TextureId atlas = graph.import("shadow.atlas", texture);
+    if (!list.due.empty()) {
+        graph.add_pass("shadows", {}, {atlas}, [&programs, &view, &list](PassContext& context) {
+            for (const ShadowDraw& draw : list.due) {
+                draw_map(context, programs, view, draw);
             }
             context.device().disable_scissor();
         });
     }
     return atlas;
+}
+
+}  // namespace
+
+Result<ShadowEffect> ShadowEffect::create(gpu::Device& device, const RenderSettings&) {
+    ShadowEffect effect{
+        .casters = ProgramVariants::of_meshes(device, "shadow_map.frag"), .atlas = make_atlas(1)};
+    LIMN_TRY(effect.casters.load());
+    return effect;
+}
+
+void ShadowEffect::collect(FrameData& frame) {
+    maps.begin_frame();
+    if (frame.assets_replaced) {
+        volumes.forget();
+    }
+}
+
+bool ShadowEffect::prepare(const FrameData& frame, ViewData& view) {
+    auto& lights = view.data.publish<LightList>();
+    auto& volume_list = view.data.publish<VolumeList>();
+    volumes.collect(*frame.world, view.camera, *frame.shapes, *frame.ring, lights, volume_list);
+    auto& list = view.data.publish<ShadowList>();
+    const auto* waters = view.data.find<WaterShadows>();
+    maps.collect(
+        frame, view, waters != nullptr ? waters->requests : std::span<const WaterShadow>(), lights,
+        list);
+    grow_atlas(atlas, list.atlas_size);
+    VolumeCollector::assign_hybrid_masks(lights, volume_list);
+    if (!volume_list.lights.empty()) {
+        volume_list.pass = create_volume_pass(frame);
+    }
+
+    auto& bindings = view.data.publish<ShadowBindings>();
+    bindings.records.upload(*frame.ring, list.records);
+    bindings.atlas = &atlas;
+    if (lights.shadows) {
+        view.lighting.add_binding<bind_shadows>(bindings);
+    }
+    Variant& variant = view.lighting.variant;
+    variant.add_if(lights.shadows, "SHADOWS");
+    variant.add_if(list.cubes, "SHADOW_CUBES");
+    variant.add_if(list.cascades, "SHADOW_CASCADES");
+    variant.add_if(list.soft, "SHADOW_SOFT");
+    variant.add_if(!list.records.empty(), "SHADOW_MAPS");
+    variant.add_if(!volume_list.lights.empty(), "SHADOW_MASKS");
+    return true;
+}
+
+/// Null, and logged, if its shaders do not compile.
+const ShadowVolumePass* ShadowEffect::create_volume_pass(const FrameData& frame) {
+    if (!volume_pass) {
+        Result<ShadowVolumePass> pass = create_shadow_volume_pass(*frame.device);
+        if (!pass) {
+            log_error("{}", pass.error().message);
+            return nullptr;
+        }
+        volume_pass = *std::move(pass);
+    }
+    return &*volume_pass;
+}
+
+void ShadowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    auto& published = view.data.publish<ShadowMaps>();
+    published.list = &view.data.get<ShadowList>();
+    published.records = &view.data.get<ShadowBindings>().records;
+    published.atlas = draw_maps(graph, casters, atlas, view);
+    if (published.atlas.valid()) {
+        view.lighting.reads.emplace_back(published.atlas);
+    }
+    const VolumeList& volume_list = view.data.get<VolumeList>();
+    if (volume_list.lights.empty() || !volume_pass) {
+        return;
+    }
+    auto& masks = view.data.publish<ShadowMasks>();
+    masks.layers = draw_shadow_volumes(graph, *volume_pass, view);
+    view.lighting.reads.emplace_back(masks.layers);
+}
+
+void ShadowEffect::report(const FrameData&, const ViewData& view, FrameOutput& out) {
+    if (const auto* list = view.data.find<ShadowList>()) {
+        out.statistics.shadow_views = static_cast<int>(list->records.size());
+        out.statistics.shadow_views_drawn = static_cast<int>(list->due.size());
+    }
 }
 
 }  // namespace limn

@@ -1,30 +1,49 @@
 #pragma once
 
-#include "render/frame_scene.h"
+#include "render/buffer_texture.h"
+#include "render/effect.h"
+#include "render/gpu/texture.h"
+#include "render/passes/shadow_volume_pass.h"
+#include "render/shadow/shadow_list.h"
+#include "render/shadow/volume_list.h"
+
+#include <optional>
 
 namespace limn {
 
-// Draws the shadow maps that are due into the one atlas; all others keep their depths.
+// Draws the shadow maps that are due into the shared atlas; all others keep their depths.
 //
 // Reads    ShadowList
-// Writes   shadow atlas: reversed depth of the caster nearest to the light, 0 where there is none
-// Order    before whatever is lit
+// Writes   shadow atlas: reversed depth of the caster nearest to the light, 0 where none
+// Order    before lighting
 // Shaders  mesh.vert, shadow_map.frag
 //
-// Casters are drawn from both sides: a wall shades whichever way it faces. There is no bias in the
-// maps, what is lit looks for it (lib/shadow.glsl).
+// Casters are drawn double-sided: a wall casts a shadow whichever way it faces. The maps have no
+// bias; lighting applies it (lib/shadow.glsl).
 
-struct ShadowPass {
-    SurfacePrograms programs;
-    gpu::Texture atlas;  ///< one texel until there is a shadow
+/// The shadow maps of a view, published when they are declared in the frame graph.
+struct ShadowMaps {
+    const ShadowList* list = nullptr;
+    const BufferTexture* records = nullptr;  ///< layout::ShadowViewRecord
+    TextureId atlas;
 };
 
-[[nodiscard]] Result<ShadowPass> create_shadow_pass(gpu::Device& device);
+/// Maps and volumes of a view's lights. Publishes ShadowList and VolumeList in prepare(),
+/// ShadowMaps and ShadowMasks in draw(); sets the shadows of the view's LightList.
+struct ShadowEffect {
+    ProgramVariants casters;
+    gpu::Texture atlas;  ///< 1x1 until there is a shadow
+    ShadowCollector maps{};
+    VolumeCollector volumes{};
+    std::optional<ShadowVolumePass> volume_pass{};  ///< created with the first volume
 
-/// Makes the atlas as large as the list wants it: empty, if it was smaller.
-void resize_shadow_atlas(ShadowPass& pass, const ShadowList& list);
+    [[nodiscard]] static Result<ShadowEffect> create(gpu::Device& device, const RenderSettings&);
+    void collect(FrameData& frame);
+    bool prepare(const FrameData& frame, ViewData& view);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 
-/// The atlas with this frame's maps; not valid if nothing casts shadows.
-[[nodiscard]] TextureId draw_shadows(FrameGraph& graph, ShadowPass& pass, const FrameScene& scene);
+    const ShadowVolumePass* create_volume_pass(const FrameData& frame);
+};
 
 }  // namespace limn

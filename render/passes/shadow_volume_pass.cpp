@@ -1,17 +1,21 @@
 #include "render/passes/shadow_volume_pass.h"
 
+#include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/lighting.h"
+#include "render/passes/shadow_pass.h"
+#include "render/view_block.h"
 
 namespace limn {
 namespace {
 
 constexpr unsigned kVolumeBinding = 2;
 
-/// Bit 7 of the stencil: the pixel lies on an edge of the light's map.
+/// Bit 7 of the stencil: the pixel lies on a shadow edge of the light's map.
 constexpr std::uint8_t kEdgeBit = 0x80;
 
-/// Front faces of a volume enter it, back faces leave it; of a mirrored caster they look swapped.
-/// With `edges` only marked pixels count, in the bits below the mark.
+/// Front faces of a volume enter it, back faces leave it; swapped for a mirrored caster. With
+/// `edges` only marked pixels are counted, in the bits below the mark.
 gpu::StencilState count_state(const VolumeRun& run, bool edges) {
     gpu::StencilFace enter = {.func = static_cast<GLenum>(edges ? GL_EQUAL : GL_ALWAYS)};
     gpu::StencilFace leave = enter;
@@ -33,14 +37,15 @@ gpu::StencilState count_state(const VolumeRun& run, bool edges) {
     return stencil;
 }
 
-void bind_volumes(gpu::Device& device, const FrameScene& scene) {
-    const VolumeList& list = scene.volumes;
+void bind_volumes(PassContext& context, const ViewData& view) {
+    gpu::Device& device = context.device();
+    const auto& list = view.data.get<VolumeList>();
     gpu::VertexArray& vertices = list.meshes->vertices();
     glVertexArrayVertexBuffer(
         vertices.id(), kVolumeInstanceStream, list.instances.buffer,
         static_cast<GLintptr>(list.instances.offset), sizeof(layout::VolumeInstance));
     glVertexArrayBindingDivisor(vertices.id(), kVolumeInstanceStream, 1);
-    bind_view(device, scene);
+    bind_view(context, view);
     device.bind_vertex_array(vertices);
     device.bind_indirect(list.commands.buffer);
 }
@@ -61,7 +66,7 @@ void draw_volumes(
     }
 }
 
-/// Only where the light reaches.
+/// Limits drawing to the light's range.
 void set_bounds(gpu::Device& device, const LightBounds& bounds) {
     device.set_scissor(bounds.x, bounds.y, bounds.width, bounds.height);
     device.set_depth_bounds(bounds.depth_min, bounds.depth_max);
@@ -72,11 +77,10 @@ void clear_bounds(gpu::Device& device) {
     device.disable_depth_bounds();
 }
 
-void count_light(
-    gpu::Device& device, const FrameScene& scene, const ShadowVolumePass& pass,
-    const VolumeLight& light) {
-    bind_volumes(device, scene);
-    draw_volumes(device, scene.volumes, light, pass.volumes, [&](const VolumeRun& run) {
+void count_light(PassContext& context, const ViewData& view, const VolumeLight& light) {
+    const auto& list = view.data.get<VolumeList>();
+    bind_volumes(context, view);
+    draw_volumes(context.device(), list, light, list.pass->volumes, [&](const VolumeRun& run) {
         gpu::PipelineState state;
         state.depth.write = false;
         state.stencil = count_state(run, light.hybrid);
@@ -87,7 +91,7 @@ void count_light(
     });
 }
 
-/// `lit` where the stencil passes `face`, whose operations set it back.
+/// Writes `lit` where the stencil passes `face`, whose operations reset it.
 void write_mask(
     gpu::Device& device, const ShadowVolumePass& pass, float lit, std::uint8_t reference,
     const gpu::StencilFace& face) {
@@ -98,71 +102,66 @@ void write_mask(
     device.draw_fullscreen();
 }
 
-/// After counting: 1 where nothing was counted; the stencil is 0 again.
+/// After counting: writes 1 where the count is 0 and resets the stencil to 0.
 void resolve_light(gpu::Device& device, const ShadowVolumePass& pass, bool hybrid) {
     if (!hybrid) {
         write_mask(device, pass, 1, 0, {.func = GL_EQUAL, .stencil_fail = GL_ZERO});
         return;
     }
-    // The map's answer stays where no edge is.
+    // Away from edges the map's result stays.
     write_mask(device, pass, 0, kEdgeBit, {.func = GL_LESS});
     write_mask(
         device, pass, 1, kEdgeBit, {.func = GL_EQUAL, .stencil_fail = GL_ZERO, .pass = GL_ZERO});
 }
 
-/// The map's answers into the light's layer of the mask, its edges into bit 7 of the stencil.
+const VolumeLight& light_of(const ViewData& view, int layer) {
+    return view.data.get<VolumeList>().lights[static_cast<std::size_t>(layer)];
+}
+
+/// Writes the map's result to the light's layer of the mask, its edges to bit 7 of the stencil.
 void add_classification(
-    FrameGraph& graph, ShadowVolumePass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
-    TextureId mask, int layer) {
-    const Use reads[] = {gbuffer.surface, depth_tested(gbuffer.depth), scene.shadow_maps};
+    FrameGraph& graph, ShadowVolumePass& pass, const ViewData& view, TextureId mask, int layer) {
+    const Use reads[] = {
+        sampled(view.gbuffer.surface, kGbufferUnit),
+        sampled(depth_tested(view.gbuffer.depth), kDepthUnit), view.data.get<ShadowMaps>().atlas};
     const Use writes[] = {target_level(cleared(mask), 0, layer)};
+    graph.add_pass("shadow classes", reads, writes, [&pass, &view, layer](PassContext& context) {
+        const auto& maps = view.data.get<ShadowList>();
+        Variant variant("SHADOW_MAPS");
+        variant.add("SHADOW_SOFT");
+        variant.add_if(maps.cubes, "SHADOW_CUBES");
+        variant.add_if(maps.cascades, "SHADOW_CASCADES");
+        const gpu::Program* program = pass.classify.get(variant);
+        if (program == nullptr) {
+            return;
+        }
+        gpu::Device& device = context.device();
+        const VolumeLight& light = light_of(view, layer);
+        gpu::PipelineState surfaces_only = gpu::kFullscreenState;
+        surfaces_only.depth = {.test = true, .write = false, .func = GL_LESS};
+        set_bounds(device, light.bounds);
+        device.use(gpu::Pipeline{program, surfaces_only});
+        program->set("map", light.map);
+        bind_lighting(context, view);
+        device.bind_uniforms(
+            kVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
+        device.draw_fullscreen();
+        clear_bounds(device);
+    });
+    gpu::PipelineState state = gpu::kFullscreenState;
+    state.stencil = {
+        .test = true,
+        .reference = kEdgeBit,
+        .front = {.pass = GL_REPLACE},
+        .back = {.pass = GL_REPLACE}};
     graph.add_pass(
-        "shadow classes", std::span<const Use>(reads), std::span<const Use>(writes),
-        [&pass, &scene, gbuffer, layer](PassContext& context) {
-            gpu::Device& device = context.device();
-            const VolumeLight& light = scene.volumes.lights[static_cast<std::size_t>(layer)];
-            std::vector<gpu::ShaderDefine> defines = {{"SHADOW_MAPS"}, {"SHADOW_SOFT"}};
-            if (scene.shadows.cubes) {
-                defines.push_back({"SHADOW_CUBES"});
-            }
-            if (scene.shadows.cascades) {
-                defines.push_back({"SHADOW_CASCADES"});
-            }
-            const std::uint32_t key =
-                (scene.shadows.cubes ? 1u : 0u) | (scene.shadows.cascades ? 2u : 0u);
-            const gpu::Program* program = pass.classify.get(0, key, defines);
-            if (program == nullptr) {
-                return;
-            }
-            gpu::PipelineState surfaces_only = gpu::kFullscreenState;
-            surfaces_only.depth = {.test = true, .write = false, .func = GL_LESS};
-            set_bounds(device, light.bounds);
-            device.use(gpu::Pipeline{program, surfaces_only});
-            program->set("map", light.map);
-            bind_lighting(device, scene);
-            device.bind_uniforms(
-                kVolumeBinding, light.block.buffer, light.block.offset, light.block.size);
-            context.bind_texture(kGbufferUnit, gbuffer.surface);
-            context.bind_texture(kDepthUnit, gbuffer.depth);
-            device.draw_fullscreen();
-            clear_bounds(device);
-        });
-    graph.add_pass(
-        "shadow edges", {mask}, {gbuffer.depth},
-        [&pass, &scene, mask, layer](PassContext& context) {
-            gpu::Device& device = context.device();
-            gpu::PipelineState state = gpu::kFullscreenState;
-            state.stencil = {
-                .test = true,
-                .reference = kEdgeBit,
-                .front = {.pass = GL_REPLACE},
-                .back = {.pass = GL_REPLACE}};
-            set_bounds(device, scene.volumes.lights[static_cast<std::size_t>(layer)].bounds);
-            device.use(gpu::Pipeline{pass.edges, state});
+        "shadow edges", {sampled(mask, kShadowMasksUnit)}, {view.gbuffer.depth},
+        [&pass, &view, state, layer](PassContext& context) {
+            set_bounds(context.device(), light_of(view, layer).bounds);
+            context.device().use(gpu::Pipeline{pass.edges, state});
             pass.edges->set("layer", layer);
-            context.bind_texture(kShadowMasksUnit, mask);
-            device.draw_fullscreen();
-            clear_bounds(device);
+            context.device().draw_fullscreen();
+            clear_bounds(context.device());
         });
 }
 
@@ -179,61 +178,41 @@ load_volume_program(gpu::Device& device, const char* fragment, bool prisms) {
 
 Result<ShadowVolumePass> create_shadow_volume_pass(gpu::Device& device) {
     ShadowVolumePass pass = {
-        .classify = SurfacePrograms(device, "fullscreen.vert", "shadow_classify.frag")};
+        .classify = ProgramVariants::fullscreen(device, "shadow_classify.frag")};
     for (int prisms = 0; prisms < 2; ++prisms) {
-        const Result<const gpu::Program*> volumes =
-            load_volume_program(device, "shadow_volume.frag", prisms == 1);
-        if (!volumes) {
-            return volumes.error();
-        }
-        pass.volumes[prisms] = *volumes;
-        const Result<const gpu::Program*> layers =
-            load_volume_program(device, "shadow_density.frag", prisms == 1);
-        if (!layers) {
-            return layers.error();
-        }
-        pass.layers[prisms] = *layers;
+        pass.volumes[prisms] =
+            LIMN_TRY(load_volume_program(device, "shadow_volume.frag", prisms == 1));
+        pass.layers[prisms] =
+            LIMN_TRY(load_volume_program(device, "shadow_density.frag", prisms == 1));
     }
-    const Result<const gpu::Program*> mask =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_mask.frag"});
-    if (!mask) {
-        return mask.error();
-    }
-    pass.mask = *mask;
-    const Result<const gpu::Program*> edges =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_edge.frag"});
-    if (!edges) {
-        return edges.error();
-    }
-    pass.edges = *edges;
+    pass.mask = LIMN_TRY(
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_mask.frag"}));
+    pass.edges = LIMN_TRY(
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_edge.frag"}));
     return pass;
 }
 
-TextureId draw_shadow_volumes(
-    FrameGraph& graph, ShadowVolumePass& pass, const FrameScene& scene, const Gbuffer& gbuffer) {
-    const std::vector<VolumeLight>& lights = scene.volumes.lights;
-    if (lights.empty()) {
-        return {};
-    }
+TextureId draw_shadow_volumes(FrameGraph& graph, ShadowVolumePass& pass, const ViewData& view) {
+    const std::vector<VolumeLight>& lights = view.data.get<VolumeList>().lights;
     const TextureId mask = graph.create(
         {.name = "shadow.mask",
          .format = GL_R8,
-         .width = scene.view.width,
-         .height = scene.view.height,
+         .width = view.camera.width,
+         .height = view.camera.height,
          .depth = static_cast<int>(lights.size()),
          .target = GL_TEXTURE_2D_ARRAY});
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const auto layer = static_cast<int>(i);
         if (lights[i].hybrid) {
-            add_classification(graph, pass, scene, gbuffer, mask, layer);
+            add_classification(graph, pass, view, mask, layer);
         }
         const Use whole = lights[i].hybrid ? Use(mask) : cleared(mask);
         graph.add_pass(
-            "shadow volumes", {}, {target_level(whole, 0, layer), gbuffer.depth},
-            [&pass, &scene, layer](PassContext& context) {
-                const VolumeLight& light = scene.volumes.lights[static_cast<std::size_t>(layer)];
+            "shadow volumes", {}, {target_level(whole, 0, layer), view.gbuffer.depth},
+            [&pass, &view, layer](PassContext& context) {
+                const VolumeLight& light = light_of(view, layer);
                 set_bounds(context.device(), light.bounds);
-                count_light(context.device(), scene, pass, light);
+                count_light(context, view, light);
                 resolve_light(context.device(), pass, light.hybrid);
                 clear_bounds(context.device());
             });
@@ -241,29 +220,28 @@ TextureId draw_shadow_volumes(
     return mask;
 }
 
-TextureId
-draw_volume_layers(FrameGraph& graph, const ShadowVolumePass& pass, const FrameScene& scene) {
+TextureId draw_volume_layers(FrameGraph& graph, const ViewData& view) {
     const TextureId layers = graph.create(
         {.name = "aov.volume_layers",
          .format = GL_RGBA32F,
-         .width = scene.view.width,
-         .height = scene.view.height});
-    graph.add_pass(
-        "aov.volume_layers", {}, {cleared(layers)}, [&pass, &scene](PassContext& context) {
-            if (scene.volumes.lights.empty()) {
-                return;
-            }
-            bind_volumes(context.device(), scene);
-            for (const VolumeLight& light : scene.volumes.lights) {
-                const auto state_of = [](const VolumeRun& run) {
-                    gpu::PipelineState state = gpu::kFullscreenState;
-                    state.blend = gpu::kBlendAdd;
-                    state.depth_clamp = run.z_fail;
-                    return state;
-                };
-                draw_volumes(context.device(), scene.volumes, light, pass.layers, state_of);
-            }
-        });
+         .width = view.camera.width,
+         .height = view.camera.height});
+    graph.add_pass("aov.volume_layers", {}, {cleared(layers)}, [&view](PassContext& context) {
+        const auto& list = view.data.get<VolumeList>();
+        if (list.lights.empty()) {
+            return;
+        }
+        bind_volumes(context, view);
+        for (const VolumeLight& light : list.lights) {
+            const auto state_of = [](const VolumeRun& run) {
+                gpu::PipelineState state = gpu::kFullscreenState;
+                state.blend = gpu::kBlendAdd;
+                state.depth_clamp = run.z_fail;
+                return state;
+            };
+            draw_volumes(context.device(), list, light, list.pass->layers, state_of);
+        }
+    });
     return layers;
 }
 

@@ -18,25 +18,18 @@ constexpr unsigned kMeasureBinding = 2;
 Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
     StatisticsPass pass;
     for (int histogram = 0; histogram < 2; ++histogram) {
-        const std::vector<gpu::ShaderDefine> defines =
-            histogram == 0 ? std::vector<gpu::ShaderDefine>{}
-                           : std::vector<gpu::ShaderDefine>{{"HISTOGRAM", "1"}};
-        const Result<const gpu::Program*> parts =
-            device.shaders().load({.compute = "picture_statistics.comp", .defines = defines});
-        if (!parts) {
-            return parts.error();
+        std::vector<gpu::ShaderDefine> defines;
+        if (histogram == 1) {
+            defines.push_back({"HISTOGRAM"});
         }
-        const Result<const gpu::Program*> join =
-            device.shaders().load({.compute = "picture_measure.comp", .defines = defines});
-        if (!join) {
-            return join.error();
-        }
-        pass.parts[histogram] = *parts;
-        pass.join[histogram] = *join;
+        pass.parts[histogram] = LIMN_TRY(
+            device.shaders().load({.compute = "image_statistics.comp", .defines = defines}));
+        pass.join[histogram] =
+            LIMN_TRY(device.shaders().load({.compute = "image_measure.comp", .defines = defines}));
     }
-    const layout::PictureMeasure nothing{};
+    const layout::ImageStatistics initial{};
     pass.measure =
-        gpu::Buffer("picture measure", sizeof(nothing), gpu::BufferUse::GpuOnly, &nothing);
+        gpu::Buffer("image statistics", sizeof(initial), gpu::BufferUse::GpuOnly, &initial);
     const std::vector<std::uint32_t> empty(layout::kHistogramBins);
     pass.histogram = gpu::Buffer(
         "luminance histogram", empty.size() * sizeof(std::uint32_t), gpu::BufferUse::GpuOnly,
@@ -44,11 +37,11 @@ Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
     return pass;
 }
 
-float eye_follows(float adaptation, float seconds) {
+float adaptation_blend(float adaptation, float seconds) {
     return adaptation > 0.0f ? 1.0f - std::exp(-std::max(seconds, 0.0f) / adaptation) : 1.0f;
 }
 
-BufferId measure_picture(
+BufferId measure_image(
     FrameGraph& graph, const StatisticsPass& pass, TextureId radiance,
     const MeasureRequest& request) {
     const TextureSpec source = graph.spec(radiance);
@@ -60,13 +53,12 @@ BufferId measure_picture(
     const BufferId parts = graph.create_buffer(
         {.name = "statistics", .bytes = sizeof(layout::StatisticsPart) * count});
     const BufferId histogram = graph.import("luminance histogram", pass.histogram);
-    const BufferId measure = graph.import("picture measure", pass.measure);
+    const BufferId measure = graph.import("image statistics", pass.measure);
 
     graph.add_pass(
-        "statistics", {radiance}, {parts, histogram},
-        [&pass, request, radiance, parts, histogram, groups](PassContext& context) {
+        "statistics", {sampled(radiance, 0)}, {parts, histogram},
+        [&pass, request, parts, histogram, groups](PassContext& context) {
             context.device().use(*pass.parts[request.histogram ? 1 : 0]);
-            context.bind_texture(0, radiance);
             context.bind_storage(kPartsBinding, parts);
             context.bind_storage(kHistogramBinding, histogram);
             context.device().dispatch(groups.x, groups.y);
@@ -78,8 +70,8 @@ BufferId measure_picture(
             context.device().use(program);
             program.set("part_count", count);
             program.set("key", request.key);
-            program.set("follow", request.follow);
-            program.set("adaptable", request.adaptable);
+            program.set("adaptation_blend", request.blend);
+            program.set("adaptation_range", request.adaptation_range);
             program.set("clipped_share", request.clipped_share);
             context.bind_storage(kPartsBinding, parts);
             context.bind_storage(kHistogramBinding, histogram);

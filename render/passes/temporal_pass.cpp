@@ -1,6 +1,9 @@
 #include "render/passes/temporal_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "ecs/components/rendering.h"
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/view_block.h"
 
 namespace limn {
 namespace {
@@ -13,58 +16,53 @@ gpu::Texture make_history(std::string_view label, GLenum format, const TextureSp
 
 }  // namespace
 
-Result<TemporalPass> create_temporal_pass(gpu::Device& device) {
-    const Result<const gpu::Program*> program =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "temporal.frag"});
-    if (!program) {
-        return program.error();
-    }
-    return TemporalPass{*program};
+Result<TemporalEffect> TemporalEffect::create(gpu::Device& device, const RenderSettings&) {
+    return TemporalEffect{LIMN_TRY(load_fullscreen(device, "temporal.frag"))};
 }
 
-TextureId resolve_temporally(
-    FrameGraph& graph, TemporalPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
-    TextureId radiance) {
-    LIMN_CHECK(gbuffer.velocity.valid());
-    const TextureSpec spec = graph.spec(radiance);
+bool TemporalEffect::is_used(const FrameData& frame) {
+    const auto* rendering = frame.world->find_resource<Rendering>();
+    return frame.kind == kCameraView && rendering != nullptr
+           && rendering->antialiasing == Antialiasing::Temporal;
+}
+
+void TemporalEffect::collect(FrameData& frame) {
+    since_cut = frame.since_last ? since_cut + 1 : 0;
+    frame.camera =
+        with_jitter(frame.camera, sample_jitter(since_cut % kTemporalSamples, kTemporalSamples));
+    frame.velocity = true;
+}
+
+void TemporalEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    LIMN_CHECK(view.gbuffer.velocity.valid());
+    const TextureSpec spec = graph.spec(view.radiance);
+    bool has_history = last_frame + 1 == frame.number && frame.since_last.has_value();
     for (int i = 0; i < 2; ++i) {
-        const bool fits = pass.history[i] && pass.history[i].width() == spec.width
-                          && pass.history[i].height() == spec.height
-                          && pass.history[i].desc().format == spec.format;
+        const bool fits = history[i] && history[i].width() == spec.width
+                          && history[i].height() == spec.height
+                          && history[i].desc().format == spec.format;
         if (!fits) {
-            pass.history[i] = make_history("temporal history", spec.format, spec);
-            pass.moments[i] = make_history("temporal moments", GL_RG32F, spec);
-            pass.any = false;
+            history[i] = make_history("temporal history", spec.format, spec);
+            moments[i] = make_history("temporal moments", GL_RG32F, spec);
+            has_history = false;
         }
     }
-    const bool any = pass.any && scene.since_last.has_value();
-    const TextureId before = graph.import("temporal.before", pass.history[pass.newest]);
-    const TextureId moments_before =
-        graph.import("temporal.moments before", pass.moments[pass.newest]);
-    pass.newest = 1 - pass.newest;
-    pass.any = true;
-    const TextureId resolved = graph.import("temporal", pass.history[pass.newest]);
-    const TextureId moments = graph.import("temporal.moments", pass.moments[pass.newest]);
-    graph.add_pass(
-        "temporal", {radiance, before, moments_before, gbuffer.velocity, gbuffer.depth},
-        {discarded(resolved), discarded(moments)},
-        [&program = *pass.program, &scene, gbuffer, radiance, before, moments_before,
-         any](PassContext& context) {
-            context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
-            bind_view(context.device(), scene);
-            program.set("any_history", any ? 1 : 0);
-            context.bind_texture(0, radiance);
-            context.bind_texture(1, before);
-            context.bind_texture(2, gbuffer.velocity);
-            context.bind_texture(3, gbuffer.depth);
-            context.bind_texture(4, moments_before);
-            context.device().draw_fullscreen();
+    const TextureId before = graph.import("temporal.history", history[newest]);
+    const TextureId moments_before = graph.import("temporal.previous moments", moments[newest]);
+    newest = 1 - newest;
+    last_frame = frame.number;
+    const TextureId resolved = graph.import("temporal", history[newest]);
+    const TextureId moments_now = graph.import("temporal.moments", moments[newest]);
+    add_fullscreen_pass(
+        graph, "temporal",
+        {sampled(view.radiance, 0), sampled(before, 1), sampled(view.gbuffer.velocity, 2),
+         sampled(view.gbuffer.depth, 3), sampled(moments_before, 4)},
+        {discarded(resolved), discarded(moments_now)}, program,
+        [&view, has_history](PassContext& context, const gpu::Program& its) {
+            bind_view(context, view);
+            its.set("has_history", has_history ? 1 : 0);
         });
-    return resolved;
-}
-
-void forget_pictures(TemporalPass& pass) {
-    pass.any = false;
+    view.radiance = resolved;
 }
 
 }  // namespace limn

@@ -1,49 +1,46 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "render/effect.h"
 #include "render/gpu/texture.h"
 
 #include <array>
+#include <cstdint>
 
 namespace limn {
 
-// Temporal anti-aliasing: each picture is drawn moved by another part of a pixel and laid over
-// those before it, which follow what moves.
+// Temporal anti-aliasing: each frame is drawn with another subpixel jitter and blended with the
+// reprojected history.
 //
-// Reads    radiance, depth, velocity; the result before, which it keeps
-// Writes   radiance: the result, which the next picture reads
-// Order    first of the lens, so that all else sees smooth edges
+// Reads    radiance, depth, velocity; the history, which it keeps
+// Writes   radiance: the result, history of the next frame
+// Order    first of the lens effects, so that the others see smooth edges
 // Shaders  temporal.frag
 //
-// History is read where the nearest surface of the neighborhood was, bicubically, and is clipped to
-// what the neighborhood's mean and variance in YCoCg allow: what appeared from behind something has
-// none worth keeping. Where nothing moves, up to 32 pictures count alike and their mean is that of
-// render_accumulated; where something does, 10. After a cut it begins anew.
+// History is sampled bicubically at the previous position of the nearest surface in the
+// neighborhood, and clipped to the neighborhood's mean and variance in YCoCg, which rejects
+// disoccluded history. Where nothing moves, up to 32 frames are averaged with equal weight and
+// their mean is that of render_accumulated; where something moves, 10. A cut, or a frame without
+// this effect, resets the history.
 //
 // After B. Karis, "High Quality Temporal Supersampling", 2014; M. Salvi, "An Excursion in Temporal
-// Supersampling", 2016; J. Jimenez, "Filmic SMAA", 2016. What is blended has the velocity of what
-// is behind it; mirrored pictures do not follow their reflections.
+// Supersampling", 2016; J. Jimenez, "Filmic SMAA", 2016. Blended surfaces have the velocity of what
+// is behind them; reflections are not reprojected.
 
-/// Pictures until the jitter repeats.
+/// Frames until the jitter repeats.
 inline constexpr int kTemporalSamples = 16;
 
-struct TemporalPass {
+struct TemporalEffect {
     const gpu::Program* program = nullptr;
     std::array<gpu::Texture, 2> history = {};  ///< radiance
-    std::array<gpu::Texture, 2> moments = {};  ///< how many pictures, and their variance
-    int newest = 0;                            ///< of the two
-    bool any = false;                          ///< whether it holds a picture
+    std::array<gpu::Texture, 2> moments = {};  ///< sample count, and variance
+    int newest = 0;                            ///< index of the latest history
+    std::uint64_t last_frame = 0;              ///< FrameData::number of the latest history
+    int since_cut = 0;                         ///< frames
+
+    static Result<TemporalEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    void collect(FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 };
-
-[[nodiscard]] Result<TemporalPass> create_temporal_pass(gpu::Device& device);
-
-/// `gbuffer` must have velocity.
-[[nodiscard]] TextureId resolve_temporally(
-    FrameGraph& graph, TemporalPass& pass, const FrameScene& scene, const Gbuffer& gbuffer,
-    TextureId radiance);
-
-/// Forgets the pictures before.
-void forget_pictures(TemporalPass& pass);
 
 }  // namespace limn

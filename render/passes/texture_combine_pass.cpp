@@ -2,12 +2,12 @@
 
 #include "ecs/components/texture_combine.h"
 #include "ecs/world.h"
-#include "render/gpu/shader_library.h"
+#include "render/fullscreen.h"
+#include "render/material_pool.h"
 
 #include <cmath>
 
 namespace limn {
-
 namespace {
 
 float wrapped(double copies) {
@@ -16,49 +16,45 @@ float wrapped(double copies) {
 
 }  // namespace
 
-Result<TextureCombinePass> create_texture_combine_pass(gpu::Device& device) {
-    const Result<const gpu::Program*> program =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "texture_combine.frag"});
-    if (!program) {
-        return program.error();
-    }
-    return TextureCombinePass{*program, gpu::Sampler("combined", {.minify = GL_LINEAR})};
+Result<TextureCombineEffect>
+TextureCombineEffect::create(gpu::Device& device, const RenderSettings&) {
+    return TextureCombineEffect{
+        LIMN_TRY(load_fullscreen(device, "texture_combine.frag")),
+        gpu::Sampler("combined", {.minify = GL_LINEAR})};
 }
 
-int combine_textures(
-    FrameGraph& graph, const TextureCombinePass& pass, const World& world,
-    const MaterialPool& materials, double time) {
-    int count = 0;
-    world.query<const TextureCombine>().each([&](const TextureCombine& combine) {
-        const gpu::Texture* water = materials.find_image(combine.water);
-        const gpu::Texture* grating = materials.find_image(combine.grating);
-        const gpu::Texture* texture = materials.find_image(combine.target);
+bool TextureCombineEffect::is_used(const FrameData& frame) {
+    return !frame.world->query<const TextureCombine>().empty();
+}
+
+void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
+        const gpu::Texture* water = frame.materials->find_image(combine.water);
+        const gpu::Texture* grating = frame.materials->find_image(combine.grating);
+        const gpu::Texture* texture = frame.materials->find_image(combine.target);
         if (water == nullptr || grating == nullptr || texture == nullptr || texture == water
             || texture == grating) {
             return;
         }
-        ++count;
         const Vec2 offset(
-            wrapped(time * static_cast<double>(combine.speed.x)),
-            wrapped(time * static_cast<double>(combine.speed.y)));
+            wrapped(frame.time * static_cast<double>(combine.speed.x)),
+            wrapped(frame.time * static_cast<double>(combine.speed.y)));
         const TextureId target = graph.import("combined texture", *texture);
-        graph.add_pass(
-            "combine textures", {}, {target_level(discarded(target), 0)},
-            [&pass, water, grating, texture, offset, gain = combine.gain](PassContext& context) {
-                context.device().use(gpu::Pipeline{pass.program, gpu::kFullscreenState});
-                context.device().bind_texture(0, *water, &pass.repeat);
-                context.device().bind_texture(1, *grating, &pass.repeat);
-                pass.program->set("size", Vec2(texture->width(), texture->height()));
-                pass.program->set("offset", offset);
-                pass.program->set("gain", gain);
-                pass.program->set("encoded", texture->desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
-                context.device().draw_fullscreen();
+        add_fullscreen_pass(
+            graph, "combine textures", {}, {target_level(discarded(target), 0)}, program,
+            [this, water, grating, texture, offset,
+             gain = combine.gain](PassContext& context, const gpu::Program& its) {
+                context.device().bind_texture(0, *water, &repeat);
+                context.device().bind_texture(1, *grating, &repeat);
+                its.set("size", Vec2(texture->width(), texture->height()));
+                its.set("offset", offset);
+                its.set("gain", gain);
+                its.set("encoded", texture->desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
         graph.add_pass("combined textures, smaller", {}, {image(target)}, [texture](PassContext&) {
             glGenerateTextureMipmap(texture->id());
         });
     });
-    return count;
 }
 
 }  // namespace limn

@@ -1,32 +1,28 @@
 #pragma once
 
-#include "render/frame_scene.h"
+#include "render/effect.h"
+#include "render/gpu/texture.h"
 
 namespace limn {
 
-class World;
-
-// Combines images into one that materials show (TextureCombine, tex.combine).
+// Combines images into one that materials use (TextureCombine, tex.combine).
 //
 // Reads    the images of every TextureCombine
-// Writes   its target, and smaller levels of it
+// Writes   its target, with mip levels
 // Order    before surfaces are drawn
 // Shaders  texture_combine.frag
 //
-// By the time that is shown, whatever the pictures a second. Who combines a target of another
-// should stand after it.
+// Animated by the time shown, independent of the frame rate. A TextureCombine that reads the target
+// of another should come after it.
 
-struct TextureCombinePass {
+struct TextureCombineEffect {
     const gpu::Program* program = nullptr;
-    gpu::Sampler repeat{};
+    gpu::Sampler repeat;
+
+    static Result<TextureCombineEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    /// Skips a TextureCombine that lacks an image or reads its own target.
+    void draw_shared(FrameGraph& graph, const FrameData& frame);
 };
-
-[[nodiscard]] Result<TextureCombinePass> create_texture_combine_pass(gpu::Device& device);
-
-/// `time` that is shown [s]. Nothing without a TextureCombine; one that lacks an image, or reads
-/// its target, is left out. Returns how many there are.
-int combine_textures(
-    FrameGraph& graph, const TextureCombinePass& pass, const World& world,
-    const MaterialPool& materials, double time);
 
 }  // namespace limn

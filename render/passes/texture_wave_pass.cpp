@@ -1,52 +1,44 @@
 #include "render/passes/texture_wave_pass.h"
 
-#include "render/gpu/shader_library.h"
+#include "render/fullscreen.h"
+#include "render/water/water_surfaces.h"
 
 namespace limn {
 
-Result<TextureWavePass> create_texture_wave_pass(gpu::Device& device) {
-    const Result<const gpu::Program*> program =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "texture_waves.frag"});
-    if (!program) {
-        return program.error();
-    }
-    return TextureWavePass{*program};
-}
-
-void draw_texture_waves(FrameGraph& graph, const TextureWavePass& pass, WaterSurfaces& waters) {
-    const auto tiles = static_cast<int>(waters.list.details.ends.size());
-    if (tiles == 0) {
+void draw_texture_waves(
+    FrameGraph& graph, const gpu::Program* program, gpu::Texture& tiles,
+    const WaterSurfaces& waters) {
+    const std::vector<std::size_t>& ends = waters.list.details.ends;
+    const auto count = static_cast<int>(ends.size());
+    if (count == 0) {
         return;
     }
-    gpu::Texture& slopes = waters.wave_tiles;
-    if (!slopes || slopes.layers() < tiles) {
-        slopes = gpu::Texture(
+    if (!tiles || tiles.layers() < count) {
+        tiles = gpu::Texture(
             "wave tiles", {.format = GL_RGBA32F,
                            .width = kWaveTileSize,
                            .height = kWaveTileSize,
-                           .depth = tiles,
+                           .depth = count,
                            .levels = 0,
                            .target = GL_TEXTURE_2D_ARRAY});
-        slopes.set_wrap(GL_REPEAT);
+        tiles.set_wrap(GL_REPEAT);
     }
-    const TextureId target = graph.import("wave tiles", slopes);
-    for (int tile = 0; tile < tiles; ++tile) {
-        graph.add_pass(
-            "texture waves", {}, {target_level(discarded(target), 0, tile)},
-            [&pass, &waters, tile](PassContext& context) {
-                const std::vector<std::size_t>& ends = waters.list.details.ends;
-                const auto i = static_cast<std::size_t>(tile);
-                const std::size_t first = i > 0 ? ends[i - 1] : 0;
-                context.device().use(gpu::Pipeline{pass.program, gpu::kFullscreenState});
-                pass.program->set("first", static_cast<int>(first));
-                pass.program->set("count", static_cast<int>(ends[i] - first));
-                pass.program->set("texels", static_cast<float>(kWaveTileSize));
+    const TextureId target = graph.import("wave tiles", tiles);
+    std::size_t first = 0;
+    for (int tile = 0; tile < count; ++tile) {
+        const std::size_t end = ends[static_cast<std::size_t>(tile)];
+        add_fullscreen_pass(
+            graph, "texture waves", {}, {target_level(discarded(target), 0, tile)}, program,
+            [&waters, first, end](PassContext& context, const gpu::Program& waves) {
+                waves.set("first", static_cast<int>(first));
+                waves.set("count", static_cast<int>(end - first));
+                waves.set("texels", static_cast<float>(kWaveTileSize));
                 waters.texture_waves.bind(context.device(), 0);
-                context.device().draw_fullscreen();
             });
+        first = end;
     }
-    graph.add_pass("texture waves, smaller", {}, {image(target)}, [&waters](PassContext&) {
-        waters.wave_tiles.generate_mipmaps();
+    graph.add_pass("texture waves, smaller", {}, {image(target)}, [&tiles](PassContext&) {
+        tiles.generate_mipmaps();
     });
 }
 

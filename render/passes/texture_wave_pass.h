@@ -1,24 +1,22 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/water/water_surfaces.h"
+#include "render/graph/frame_graph.h"
 
 namespace limn {
 
-// Draws waves that are too short to move vertices into tiles (water.geometric-texture-split).
+struct WaterSurfaces;
+
+// Renders waves that are too short for vertex displacement into tiling textures
+// (water.geometric-texture-split).
 //
 // Reads    WaterDetails
-// Writes   slopes of the tiles, and smaller levels of them
+// Writes   slopes of the tiles, with mip levels
 // Order    before water
 // Shaders  texture_waves.frag
 
-struct TextureWavePass {
-    const gpu::Program* program = nullptr;
-};
-
-[[nodiscard]] Result<TextureWavePass> create_texture_wave_pass(gpu::Device& device);
-
-/// Nothing where no water has such waves.
-void draw_texture_waves(FrameGraph& graph, const TextureWavePass& pass, WaterSurfaces& waters);
+/// Adds no pass if no water has such waves; resizes `tiles` if it has more than before.
+void draw_texture_waves(
+    FrameGraph& graph, const gpu::Program* program, gpu::Texture& tiles,
+    const WaterSurfaces& waters);
 
 }  // namespace limn

@@ -1,7 +1,17 @@
 #include "render/passes/water_pass.h"
 
+#include "ecs/world.h"
+#include "render/fullscreen.h"
+#include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
+#include "render/lighting.h"
+#include "render/material_pool.h"
+#include "render/passes/texture_wave_pass.h"
+#include "render/render_frame.h"
+#include "render/view_block.h"
 #include "render/water/foam_pattern.h"
+#include "render/water/water_reflection.h"
+#include "render/water/water_surfaces.h"
 
 #include <array>
 
@@ -18,23 +28,12 @@ constexpr unsigned kDetailsUnit = 25;
 constexpr unsigned kDistanceUnit = 26;
 constexpr unsigned kFoamUnit = 29;
 constexpr unsigned kFloorMapUnit = 27;
-constexpr std::uint32_t kVelocityKey = 1u << 31;  ///< beside those of lighting_key
-constexpr std::uint32_t kOceanKey = 1u << 30;
-constexpr std::uint32_t kLooksKey = 1u << 29;
-constexpr std::uint32_t kPlanarKey = 1u << 28;
-constexpr std::uint32_t kUntracedKey = 1u << 27;
-constexpr std::uint32_t kDetailKey = 1u << 26;
-constexpr std::uint32_t kDetailMapKey = 1u << 25;
-constexpr std::uint32_t kFromBelowKey = 1u << 24;
-constexpr std::uint32_t kFloorMapKey = 1u << 23;
-constexpr std::uint32_t kUnbentKey = 1u << 22;
-constexpr std::uint32_t kAttributesKey = 1u << 21;
 constexpr int kCells = layout::kWaterGrid;
 constexpr int kSide = kCells + 1;
 constexpr int kIndices = 6 * kCells * kCells;
 
-/// Two triangles a cell, their diagonals in turn so that vertices that slide onto their neighbors
-/// leave whole squares.
+/// Two triangles per cell with alternating diagonals, so that vertices that morph onto their
+/// neighbors leave whole squares.
 std::array<std::uint16_t, kIndices> grid_indices() {
     std::array<std::uint16_t, kIndices> indices{};
     std::size_t next = 0;
@@ -52,58 +51,47 @@ std::array<std::uint16_t, kIndices> grid_indices() {
     return indices;
 }
 
-/// What all waters of a frame ask for, as definitions and the key that tells them apart.
-struct Variant {
-    std::vector<gpu::ShaderDefine> defines;
-    std::uint32_t key = 0;
-};
-
-/// Null where no water has any.
-const gpu::Texture* detail_map(const FrameScene& scene, const WaterSurfaces& waters) {
-    return scene.materials->find_image(waters.list.details.normal_map);
+/// Null if no water has one.
+const gpu::Texture* detail_map(const FrameData& frame, const WaterSurfaces& waters) {
+    return frame.materials->find_image(waters.list.details.normal_map);
 }
 
-const gpu::Texture* floor_map(const FrameScene& scene, const WaterSurfaces& waters) {
+const gpu::Texture* floor_map(const FrameData& frame, const WaterSurfaces& waters) {
     const WaterLook* look = waters.list.floor;
-    return look != nullptr ? scene.materials->find_image(look->floor_map) : nullptr;
+    return look != nullptr ? frame.materials->find_image(look->floor_map) : nullptr;
 }
 
-Variant
-variant_of(const FrameScene& scene, const WaterSurfaces& waters, bool velocity, bool attributes) {
-    Variant variant = {lighting_defines(scene), lighting_key(scene)};
-    const auto add = [&](bool wanted, const char* name, std::uint32_t key) {
-        if (wanted) {
-            variant.defines.push_back({name});
-            variant.key |= key;
-        }
-    };
+/// What all waters of the view need.
+Variant variant_of(const ViewData& view, const WaterSurfaces& waters) {
     const WaterList& list = waters.list;
-    add(velocity, "VELOCITY", kVelocityKey);
-    add(attributes, "ATTRIBUTES", kAttributesKey);
-    add(!waters.seas.empty(), "OCEAN", kOceanKey);
-    add(list.looks, "LOOKS", kLooksKey);
-    add(list.planar, "PLANAR", kPlanarKey);
-    add(list.seen_from_below, "FROM_BELOW", kFromBelowKey);
-    add(!list.traced, "UNTRACED", kUntracedKey);
-    add(list.details.needed, "DETAIL", kDetailKey);
-    add(detail_map(scene, waters) != nullptr, "DETAIL_MAP", kDetailMapKey);
-    add(floor_map(scene, waters) != nullptr, "FLOOR_MAP", kFloorMapKey);
-    add(!list.bent, "UNBENT", kUnbentKey);
+    Variant variant = view.lighting.variant;
+    variant.add_if(view.velocity, "VELOCITY");
+    variant.add_if(view.attributes, "ATTRIBUTES");
+    variant.add_if(waters.any_seas(), "OCEAN");
+    variant.add_if(list.looks, "LOOKS");
+    variant.add_if(list.planar, "PLANAR");
+    variant.add_if(list.seen_from_below, "FROM_BELOW");
+    variant.add_if(!list.traced, "NO_SCREEN_REFLECTION");
+    variant.add_if(list.details.needed, "DETAIL");
+    variant.add_if(detail_map(*view.frame, waters) != nullptr, "DETAIL_MAP");
+    variant.add_if(floor_map(*view.frame, waters) != nullptr, "FLOOR_MAP");
+    variant.add_if(!list.bent, "NO_TRACED_REFRACTION");
     return variant;
 }
 
-void bind_details(gpu::Device& device, const WaterPass& pass, const FrameScene& scene) {
-    const WaterSurfaces& waters = pass.surfaces;
+void bind_details(
+    gpu::Device& device, const WaterEffect& effect, const FrameData& frame,
+    const WaterSurfaces& waters) {
     waters.details.bind(device, kDetailsUnit);
-    if (const gpu::Texture* map = detail_map(scene, waters)) {
-        device.bind_texture(kDetailMapUnit, *map, &pass.repeat);
+    if (const gpu::Texture* map = detail_map(frame, waters)) {
+        device.bind_texture(kDetailMapUnit, *map, &effect.repeat);
     }
-    if (waters.wave_tiles) {
-        device.bind_texture(kDetailWavesUnit, waters.wave_tiles);
+    if (effect.wave_tiles) {
+        device.bind_texture(kDetailWavesUnit, effect.wave_tiles);
     }
 }
 
-void bind_foam(gpu::Device& device, WaterPass& pass) {
+void bind_foam(gpu::Device& device, WaterEffect& pass) {
     if (!pass.foam) {
         constexpr int side = kFoamPatternSide;
         pass.foam =
@@ -117,134 +105,143 @@ void bind_foam(gpu::Device& device, WaterPass& pass) {
     device.bind_texture(kFoamUnit, pass.foam);
 }
 
-/// Draws radiance and distance of the scene.
-void draw_behind(
-    PassContext& context, const WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    TextureId depth) {
-    context.device().use(gpu::Pipeline{pass.behind, gpu::kFullscreenState});
-    bind_view(context.device(), scene);
-    context.bind_texture(0, radiance);
-    context.bind_texture(1, depth);
-    context.device().draw_fullscreen();
+/// Copies radiance and distance of the scene.
+/// Copies radiance and distance [m along the view axis, 0: nothing] of what lies behind the water.
+void copy_behind(
+    FrameGraph& graph, std::string_view name, const gpu::Program* program, const ViewData& view,
+    std::initializer_list<Use> targets) {
+    add_fullscreen_pass(
+        graph, name, {sampled(view.radiance, 0), sampled(view.gbuffer.depth, 1)}, targets, program,
+        [&view](PassContext& context, const gpu::Program&) { bind_view(context, view); });
 }
 
-/// The scene as the water sees it.
-struct Behind {
-    TextureId radiance;
-    TextureId distance;  ///< along the view axis [m], 0: nothing
-};
-
-Behind copy_behind(
-    FrameGraph& graph, const WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer) {
-    const auto create = [&](const char* name, GLenum format) {
-        return graph.create(
-            {.name = name,
-             .format = format,
-             .width = scene.view.width,
-             .height = scene.view.height});
-    };
-    const Behind behind = {
-        create("behind water", scene.radiance_format), create("distance behind water", GL_R32F)};
-    graph.add_pass(
-        "behind water", {radiance, gbuffer.depth},
-        {discarded(behind.radiance), discarded(behind.distance)},
-        [&pass, &scene, radiance, gbuffer](PassContext& context) {
-            draw_behind(context, pass, scene, radiance, gbuffer.depth);
-        });
-    return behind;
+bool any_water(const FrameData& frame) {
+    return !frame.world->query<const Water>().empty();
 }
 
 }  // namespace
 
-Result<WaterPass> create_water_pass(gpu::Device& device) {
-    WaterPass pass = {.surface = SurfacePrograms(device, "water.vert", "water.frag")};
-    const Result<const gpu::Program*> behind =
-        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"});
-    if (!behind) {
-        return behind.error();
-    }
-    pass.behind = *behind;
+bool WaterEffect::is_used(const FrameData& frame) {
+    return any_water(frame);
+}
+
+Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSettings&) {
+    gpu::ShaderLibrary& shaders = device.shaders();
+    WaterEffect effect{
+        .surface = ProgramVariants(device, {.vertex = "water.vert", .fragment = "water.frag"}),
+        .behind =
+            LIMN_TRY(shaders.load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"})),
+        .waves = LIMN_TRY(
+            shaders.load({.vertex = "fullscreen.vert", .fragment = "texture_waves.frag"}))};
     const std::array<std::uint16_t, kIndices> indices = grid_indices();
-    pass.indices = gpu::Buffer::of("water grid", std::span<const std::uint16_t>(indices));
-    pass.repeat = gpu::Sampler("water detail", {});
-    pass.grid = gpu::VertexArray("water grid");
-    pass.grid.set_indices(pass.indices);
-    return pass;
+    effect.indices = gpu::Buffer::of("water grid", std::span<const std::uint16_t>(indices));
+    effect.repeat = gpu::Sampler("water detail", {});
+    effect.grid = gpu::VertexArray("water grid");
+    effect.grid.set_indices(effect.indices);
+    return effect;
 }
 
-void keep_reflection(
-    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer) {
-    const int width = scene.view.width;
-    const int height = scene.view.height;
-    if (!pass.reflection || pass.reflection.width() != width
-        || pass.reflection.height() != height) {
-        pass.reflection = gpu::Texture(
-            "water reflection",
-            {.format = GL_RGBA32F, .width = width, .height = height, .levels = 0});
+void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    const auto* waters = view.data.find<WaterSurfaces>();
+    if (waters == nullptr) {
+        return;
     }
-    const TextureId target = graph.import("water reflection", pass.reflection);
-    graph.add_pass(
-        "water reflection", {radiance, gbuffer.depth}, {target_level(discarded(target), 0)},
-        [&pass, &scene, radiance, gbuffer](PassContext& context) {
-            draw_behind(context, pass, scene, radiance, gbuffer.depth);
-        });
-    graph.add_pass("water reflection, blurred", {}, {image(target)}, [&pass](PassContext&) {
-        pass.reflection.generate_mipmaps();
-    });
-}
+    if (waves_frame != frame.number) {  // the same for all views
+        waves_frame = frame.number;
+        draw_texture_waves(graph, waves, wave_tiles, *waters);
+    }
+    if (waters->list.empty()) {
+        return;
+    }
+    const TextureId scene = create_radiance(graph, view, "behind water");
+    const TextureId distance = graph.create(
+        {.name = "distance behind water",
+         .format = GL_R32F,
+         .width = view.camera.width,
+         .height = view.camera.height});
+    copy_behind(graph, "behind water", behind, view, {discarded(scene), discarded(distance)});
 
-TextureId draw_water(
-    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer, bool attributes) {
-    if (pass.surfaces.list.empty()) {
-        return radiance;
+    std::vector<Use> reads =
+        lighting_reads(view, {sampled(scene, kBehindUnit), sampled(distance, kDistanceUnit)});
+    const auto* reflection = frame.data.find<PlanarReflection>();
+    if (waters->list.planar) {
+        reads.push_back(
+            sampled(graph.import("water reflection", *reflection->map), kReflectionMapUnit));
     }
-    const Behind behind = copy_behind(graph, pass, scene, radiance, gbuffer);
-    const bool velocity = gbuffer.velocity.valid();
-    const std::vector<Use> reads = lighting_reads(scene, {behind.radiance, behind.distance});
-    std::vector<Use> writes = {radiance, gbuffer.depth};
-    if (velocity) {
-        writes.emplace_back(gbuffer.velocity);
+    if (waters->list.details.needed && wave_tiles) {
+        reads.emplace_back(graph.import("wave tiles", wave_tiles));
     }
-    if (attributes) {
-        writes.emplace_back(gbuffer.surface);
+    std::vector<Use> writes = {view.radiance, view.gbuffer.depth};
+    if (view.velocity) {
+        writes.emplace_back(view.gbuffer.velocity);
+    }
+    if (view.attributes) {
+        writes.emplace_back(view.gbuffer.surface);
     }
     graph.add_pass(
         "water", std::span<const Use>(reads), std::span<const Use>(writes),
-        [&pass, &scene, behind, velocity, attributes](PassContext& context) {
-            const Variant variant = variant_of(scene, pass.surfaces, velocity, attributes);
-            const gpu::Program* program = pass.surface.get(0, variant.key, variant.defines);
+        [this, waters, &view](PassContext& context) {
+            const gpu::Program* program = surface.get(variant_of(view, *waters));
             if (program == nullptr) {
                 return;
             }
             gpu::Device& device = context.device();
             device.use(gpu::Pipeline{program, {.cull = GL_NONE}});
-            bind_lighting(device, scene);
-            pass.patches.bind(device, kPatchesUnit);
-            bind_water_surfaces(device, pass.surfaces);
-            context.bind_texture(kBehindUnit, behind.radiance);
-            context.bind_texture(kDistanceUnit, behind.distance);
-            if (!pass.surfaces.seas.empty()) {
-                bind_foam(device, pass);
+            bind_lighting(context, view);
+            waters->patches.bind(device, kPatchesUnit);
+            bind_water_surfaces(device, *waters);
+            if (waters->any_seas()) {
+                bind_foam(device, *this);
             }
-            if (pass.surfaces.list.planar) {
-                device.bind_texture(kReflectionMapUnit, pass.reflection);
+            if (waters->list.details.needed) {
+                bind_details(device, *this, *view.frame, *waters);
             }
-            if (pass.surfaces.list.details.needed) {
-                bind_details(device, pass, scene);
+            if (const gpu::Texture* floor = floor_map(*view.frame, *waters)) {
+                device.bind_texture(kFloorMapUnit, *floor, &repeat);
+                program->set("floor_tile", waters->list.floor->floor_tile);
             }
-            if (const gpu::Texture* floor = floor_map(scene, pass.surfaces)) {
-                device.bind_texture(kFloorMapUnit, *floor, &pass.repeat);
-                program->set("floor_tile", pass.surfaces.list.floor->floor_tile);
-            }
-            device.bind_vertex_array(pass.grid);
+            device.bind_vertex_array(grid);
             device.draw_indexed(
                 GL_TRIANGLES, kIndices, GL_UNSIGNED_SHORT, 0, 0,
-                static_cast<int>(pass.surfaces.list.patches.size()));
+                static_cast<int>(waters->list.patches.size()));
         });
-    return radiance;
+}
+
+void WaterEffect::report(const FrameData& frame, const ViewData&, FrameOutput& out) {
+    out.statistics.water_reflections = frame.data.find<PlanarReflection>() != nullptr ? 1 : 0;
+}
+
+bool WaterMirrorEffect::is_used(const FrameData& frame) {
+    return any_water(frame) && find_planar_water(*frame.world, frame.camera).has_value();
+}
+
+Result<WaterMirrorEffect> WaterMirrorEffect::create(gpu::Device& device, const RenderSettings&) {
+    return WaterMirrorEffect{LIMN_TRY(
+        device.shaders().load({.vertex = "fullscreen.vert", .fragment = "water_behind.frag"}))};
+}
+
+void WaterMirrorEffect::request_views(FrameData& frame) {
+    const std::optional<PlanarWater> water = find_planar_water(*frame.world, frame.camera);
+    if (!water) {
+        return;
+    }
+    const RenderView camera = make_reflected_view(frame.camera, water->level, water->map_scale);
+    frame.views.push_back({kMirrorView, camera, "water reflection"});
+    if (!map || map.width() != camera.width || map.height() != camera.height) {
+        map = gpu::Texture(
+            "water reflection",
+            {.format = GL_RGBA32F, .width = camera.width, .height = camera.height, .levels = 0});
+    }
+    auto& published = frame.data.publish<PlanarReflection>();
+    published = {water->entity, &map};
+}
+
+void WaterMirrorEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
+    const TextureId target = graph.import("water reflection", map);
+    copy_behind(graph, "water reflection", copy, view, {target_level(discarded(target), 0)});
+    graph.add_pass("water reflection, blurred", {}, {image(target)}, [this](PassContext&) {
+        map.generate_mipmaps();
+    });
 }
 
 }  // namespace limn

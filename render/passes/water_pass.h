@@ -1,50 +1,55 @@
 #pragma once
 
-#include "render/frame_scene.h"
-#include "render/gbuffer.h"
+#include "render/effect.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/texture.h"
 #include "render/gpu/vertex_array.h"
-#include "render/water/water_surfaces.h"
 
 namespace limn {
 
-// Draws bodies of water over the lit scene: all of them with one draw.
+// Draws all bodies of water over the lit scene with one draw call.
 //
 // Reads    WaterList, radiance, depth, light clusters, environment
-// Writes   radiance, depth, velocity and, where asked for, attributes of what is water now
+// Writes   radiance, depth, velocity and, if requested, surface attributes where there is water
 // Order    after lights and sky, before blended surfaces
 // Shaders  water_behind.frag, water.vert, water.frag, lib/water_surface.glsl,
 //          lib/water_reflection.glsl, lib/water_refraction.glsl,
 //          lib/water_tracing.glsl, lib/water_foam.glsl
 //
-// A body may ask for a planar reflection (WaterLook): render_frame() draws it before the picture,
-// in a smaller one of its own, and keep_reflection() keeps it for the water.
+// A body may have a planar reflection (WaterLook): a view of its own, at lower resolution, that
+// WaterMirrorEffect asks for and stores.
 //
-// What lies behind is copied first: the water bends and mirrors it. It therefore sees neither
-// itself nor blended surfaces.
+// The scene behind is copied first, for refraction and screen-space reflection; the water therefore
+// shows neither itself nor blended surfaces.
 
-struct WaterPass {
-    SurfacePrograms surface;
+struct WaterEffect {
+    ProgramVariants surface;
     const gpu::Program* behind = nullptr;
+    const gpu::Program* waves = nullptr;  ///< texture_waves.frag
     gpu::VertexArray grid{};
     gpu::Buffer indices{};
-    WaterSurfaces surfaces{};
-    gpu::Sampler repeat{};      ///< of normal maps
-    gpu::Texture foam{};        ///< make_foam_pattern(), once there is a sea
-    gpu::Texture reflection{};  ///< radiance and distance, upside down, and blurred levels of it
-    BufferTexture patches = BufferTexture("water patches", GL_RGBA32F);
+    gpu::Sampler repeat{};          ///< of normal maps
+    gpu::Texture foam{};            ///< make_foam_pattern(), once there is a sea
+    gpu::Texture wave_tiles{};      ///< slopes of waves that fit into a tile
+    std::uint64_t waves_frame = 0;  ///< number of the frame whose waves the tiles show
+
+    [[nodiscard]] static bool is_used(const FrameData& frame);
+    [[nodiscard]] static Result<WaterEffect> create(gpu::Device& device, const RenderSettings&);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
 
-[[nodiscard]] Result<WaterPass> create_water_pass(gpu::Device& device);
+/// What planar water mirrors: asks for the mirrored view, whose image it stores with distances and
+/// blurred levels. Publishes PlanarReflection.
+struct WaterMirrorEffect {
+    const gpu::Program* copy = nullptr;
+    gpu::Texture map{};
 
-/// Keeps a picture of make_reflected_view() for the water of the next one.
-void keep_reflection(
-    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer);
-
-/// Radiance with the water; the same where there is none. The G-buffer's depth and velocity become
-/// those of the water; with `attributes` its surface, too.
-[[nodiscard]] TextureId draw_water(
-    FrameGraph& graph, WaterPass& pass, const FrameScene& scene, TextureId radiance,
-    const Gbuffer& gbuffer, bool attributes);
+    [[nodiscard]] static bool is_used(const FrameData& frame);
+    [[nodiscard]] static Result<WaterMirrorEffect>
+    create(gpu::Device& device, const RenderSettings&);
+    void request_views(FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-// Adds one sample picture to a sum that blending keeps.
+// Adds one sample image to a sum, by blending.
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_radiance;

@@ -19,7 +19,7 @@ uniform int shadow_view_count;
 layout(location = 0) out vec4 value;
 
 #if AOV == 5
-// Area of a view's map [texels] under the pixel that shows a surface at the end of `ray`, 0 outside of the map. The
+// Area of a view's shadow map [texels] under the pixel of a surface at the end of `ray`, 0 outside of the map. The
 // same as texels_per_pixel() (render/shadow/shadow_view.h).
 float texels_under_pixel(int view_index, vec3 ray, vec3 normal, vec3 right, vec3 up) {
     int at = view_index * int(kShadowViewTexels);

@@ -1,7 +1,7 @@
-// Alpha-blended surfaces, lit while they are drawn, from back to front. Opacity dims what the surface scatters
-// but not what it mirrors: glass that is nearly clear still shows the lamps. Premultiplied.
+// Alpha-blended surfaces, forward shaded from back to front. Opacity scales diffuse but not specular light: nearly
+// clear glass still reflects the lamps. Premultiplied.
 #version 450
-#define UNMASKED  // the masks of shadow volumes are of the opaque surfaces behind
+#define UNMASKED  // shadow masks are of the opaque surfaces behind
 #include "lib/lighting.glsl"
 #include "lib/material.glsl"
 
@@ -15,7 +15,7 @@ void main() {
     vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
     Reflected light = reflect_all(s, position_ws, gl_FragCoord.xy, cell_list(gl_FragCoord.xy, distance));
 
-    // The mirror hides what it reflects in place of: its share of what lies behind is gone.
+    // The share that is reflected does not transmit the background.
     Reflector r = make_reflector(s, to_viewer(position_ws));
     float mirror = dot(r.mirror, vec3(1.0 / 3.0));
     radiance = vec4(

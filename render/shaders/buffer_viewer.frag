@@ -1,10 +1,10 @@
-// Makes any 2D texture of the frame visible: a range of values becomes black to white, one channel or
-// three. What is not a number is magenta, what is infinite cyan. The target has the texture's size.
+// Displays any 2D texture of the frame: a range of values becomes black to white, one channel or
+// three. NaN is magenta, infinity cyan. The target has the texture's size.
 #version 450
 
 layout(binding = 0) uniform sampler2D buffer_image;
-uniform vec2 shown_range;    // the values drawn black and white
-uniform int shown_channel;   // 0 .. 3: that one in gray; 4: red, green and blue
+uniform vec2 shown_range;    // the values shown as black and white
+uniform int shown_channel;   // 0 .. 3: this one in gray; 4: red, green and blue
 uniform int encode_srgb;     // 1: the values are linear light
 
 layout(location = 0) out vec4 color;

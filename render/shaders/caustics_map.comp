@@ -1,4 +1,4 @@
-// The sums of caustics_splat.comp as a texture: light that arrives over the light that flat water sends there.
+// Converts the sums of caustics_splat.comp to a texture: light relative to that under flat water.
 #version 450
 #include "lib/caustic_record.glsl"
 
@@ -13,6 +13,6 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     int width = imageSize(maps).x;
     if (at.x < width) {
-        imageStore(maps, at, vec4(float(light[at.y * width + at.x]) / kWhole));
+        imageStore(maps, at, vec4(float(light[at.y * width + at.x]) / kFixedPointOne));
     }
 }

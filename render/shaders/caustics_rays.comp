@@ -1,8 +1,8 @@
-// Where light goes that meets the water at the points of a grid: bent by the surface as it is there and down to what
-// lies below, or mirrored and up to what stands above (lib/caustic_landing.glsl). An invocation a ray. Definitions:
-// OCEAN, and those of lib/shadow.glsl.
+// Traces light from the points of a grid on the water: refracted by the surface and down to what lies below, or
+// reflected and up to what stands above (lib/caustic_landing.glsl). One invocation per ray. Definitions: OCEAN, and
+// those of lib/shadow.glsl.
 #version 450
-#define UNMASKED  // the masks of shadow volumes are of pixels
+#define UNMASKED  // shadow masks are in screen space
 #include "lib/caustic_landing.glsl"
 #include "lib/caustic_record.glsl"
 #include "lib/optics.glsl"
@@ -21,10 +21,10 @@ layout(std430, binding = 0) writeonly buffer Rays {
 };
 
 const int kSteps = 5;
-const float kLeastSlope = 0.02;  // of light that is mirrored up [m/m]; the lowest sun has as much
+const float kMinSlope = 0.02;  // of light reflected upward [m/m]; that of the lowest sun
 
 #ifdef SHADOWS
-// How far below a place of the map something lies, or above it: 0 .. 1 of the way that light is followed.
+// Distance below (or above) a point of the map to the first surface: 0 .. 1 of the traced distance.
 float ground_at(CausticRecord record, vec2 uv) {
     vec4 rect = texelFetch(shadow_views, int(record.world.w) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
@@ -48,7 +48,8 @@ void main() {
     vec2 q = record.window.xy + record.window.zw * (vec2(at) / float(cells));
     vec2 cell = record.window.zw / float(cells);
 
-    // Beyond its rectangle the water goes on as it is at the rim: what lands by a wall has neighbors on both sides.
+    // Beyond its rectangle the water continues as at the rim, so that light landing at a wall has neighbors on both
+    // sides.
     bvec2 walled = greaterThan(water.shape.yz, vec2(0.0));
     vec2 bounds = mix(vec2(1e9), water.shape.yz - 0.5 * cell, walled);
     vec2 inner = clamp(q, -bounds, bounds);
@@ -62,38 +63,38 @@ void main() {
     float light = max(dot(area, to_sun), 0.0) * (mirrored ? share : 1.0 - share) / record.bent.w;
 
     vec3 ray = mirrored ? reflect_ray(normal, to_sun) : -refract_ray(normal, to_sun, 1.0 / water.shape.w);
-    vec2 slant = ray.xz / max(ray.y, kLeastSlope) * (mirrored ? 1.0 : -1.0);
+    vec2 slant = ray.xz / max(ray.y, kMinSlope) * (mirrored ? 1.0 : -1.0);
 
-    // Down below, rays at the edge of the map go straight; above it, there is no light beside the water, and none that
-    // waves throw down again.
+    // Below the water, rays at the edge of the map are undisturbed; above it, there is no light from beside the water,
+    // and none that waves reflect downward.
     vec2 edge = min(q - record.window.xy, record.window.xy + record.window.zw - q);
     float within = clamp(min(edge.x, edge.y) / record.grid.z, 0.0, 1.0);
     float free = mirrored ? record.place.w : within;
     if (mirrored) {
         bool beside = any(greaterThan(mix(vec2(-1.0), abs(q) - water.shape.yz, walled), vec2(0.0)));
-        light *= beside || ray.y < kLeastSlope ? 0.0 : all(walled) ? 1.0 : within;
+        light *= beside || ray.y < kMinSlope ? 0.0 : all(walled) ? 1.0 : within;
     }
     vec2 bent = record.bent.xy;
     vec2 entry = q + free * (offset.xz + (mirrored ? -slant : slant) * offset.y);
-    float way = record.bent.z;
+    float path = record.bent.z;
 #ifdef SHADOWS
     vec3 entry_ws = water.origin.xyz + water_to_world(water, vec3(inner.x, 0.0, inner.y) + vec3(0.0, offset.y, 0.0));
     light *= light_visibility(record.shadows, entry_ws, vec3(0.0, 1.0, 0.0), record.world.xyz, vec2(at));
     if (record.world.w >= 0.0 && record.grid.w != kCausticsPool) {
         for (int i = 0; i < kSteps; ++i) {
-            vec2 place = flat_place(entry, free * (slant - bent), way);
-            way = record.bent.z * ground_at(record, (place - record.window.xy) / record.window.zw);
+            vec2 place = undisturbed_entry(entry, free * (slant - bent), path);
+            path = record.bent.z * ground_at(record, (place - record.window.xy) / record.window.zw);
         }
     }
 #endif
     if (record.grid.w == kCausticsPool) {
         vec3 from = vec3(inner.x, offset.y, inner.y);
         vec3 hit = land_in_pool(from, vec3(slant.x, -1.0, slant.y), record.pool.xy, record.bent.z);
-        way = -hit.y;
-        entry = q - inner + hit.xz - slant * way;
+        path = -hit.y;
+        entry = q - inner + hit.xz - slant * path;
         light = light > 0.0 ? pool_light(offset.y, record.pool.z, record.pool.w) : 0.0;
     }
-    vec2 place = flat_place(entry, free * (slant - bent), way);
+    vec2 place = undisturbed_entry(entry, free * (slant - bent), path);
     rays[int(record.place.z) + ray_of_map.y] =
         vec4((place - record.window.xy) / record.window.zw * record.grid.y, light, offset.y);
 }

@@ -1,6 +1,6 @@
-// Sums the light of a map: an invocation a cell of the grid of rays, which is cut along both sides into so many that
-// they lie half a texel from each other or less where they land, or a whole one above the water; each gives its light
-// to the nearest four texels. None is lost, however the water folds, and whole numbers add up to the same in any order.
+// Accumulates the light of a map: one invocation per cell of the ray grid, which is subdivided until its rays land at
+// most half a texel apart, or a whole one above the water; each splats its light to the nearest four texels. Energy is
+// conserved even where light folds over itself, and integer sums do not depend on the order.
 #version 450
 #include "lib/caustic_record.glsl"
 
@@ -14,15 +14,15 @@ layout(std430, binding = 1) buffer Light {
 };
 uniform int width;  // of the atlas [texels]
 
-const float kMost = 48.0;         // rays along a side of a cell
+const float kMaxRays = 48.0;         // rays along a side of a cell
 const float kPerTexel = 2.0;      // rays along a texel
-const float kMostMirrored = 12.0;  // waves spread what they mirror so far that cells lie on each other in heaps
+const float kMaxRaysMirrored = 12.0;  // waves spread reflected light so far that many cells overlap
 const float kMirroredPerTexel = 1.0;
 
 int rays_along(vec2 one, vec2 other, bool mirrored) {
     vec2 longest = max(abs(one), abs(other));
     float wanted = (mirrored ? kMirroredPerTexel : kPerTexel) * max(longest.x, longest.y);
-    return int(clamp(ceil(wanted - 0.01), 1.0, mirrored ? kMostMirrored : kMost));
+    return int(clamp(ceil(wanted - 0.01), 1.0, mirrored ? kMaxRaysMirrored : kMaxRays));
 }
 
 void add(ivec2 first, ivec2 texel, int side, float amount) {
@@ -56,7 +56,7 @@ void main() {
         vec2 along = c.xy - b.xy;
         area = 0.5 * abs(across.x * along.y - across.y * along.x);
     }
-    float whole = kWhole * area / float(rows * columns);
+    float whole = kFixedPointOne * area / float(rows * columns);
     ivec2 first = ivec2(record.place.xy);
     for (int j = 0; j < rows; ++j) {
         float v = (float(j) + 0.5) / float(rows);

@@ -1,5 +1,5 @@
-// Which lights may touch which block of cells, as bits: word w of a block has a bit for each of lights 32 w ..
-// 32 w + 31. Compares boxes of cells alone; an invocation makes one word.
+// Coarse light culling: a bit mask of the lights that may touch each block of cells; word w of a block has the bits of
+// lights 32 w .. 32 w + 31. Compares only boxes of cells; one invocation per word.
 #version 450
 #include "cluster_gpu.h"
 #include "lib/cluster.glsl"

@@ -1,4 +1,4 @@
-// A point or spot light as the clusters see it: view space with x right, y up and z along the view axis.
+// A point or spot light for clustered culling, in view space: x right, y up, z along the view axis.
 
 #ifdef __cplusplus
 #pragma once
@@ -7,14 +7,14 @@ namespace limn::layout {
 #endif
 
 struct ClusterLight {
-    vec4 sphere;  // around all that it lights [m]; w: radius squared [m^2], negative: everywhere
-    vec4 apex;    // where it is [m]; w: cosine of the cone's half angle, -1 or less: no cone
-    vec4 axis;    // where a spot shines, unit; w: index in the list of all lights
+    vec4 sphere;  // bounds the lit volume [m]; w: radius squared [m^2], negative: unbounded
+    vec4 apex;    // position [m]; w: cosine of the cone's half angle, -1 or less: no cone
+    vec4 axis;    // direction of a spot, unit; w: index in the list of all lights
 };
 
 const uint kClusterLightTexels = 3u;
 
-// Cells are tested in blocks of so many columns, rows and slices; a block's lights are bits of words.
+// Cells are culled in blocks of this many columns, rows and slices; a block's lights are a bit mask.
 const uint kBlockColumns = 4u;
 const uint kBlockRows = 4u;
 const uint kBlockSlices = 2u;

@@ -1,4 +1,4 @@
-// The lights of each cell: those of its block's bits whose box of cells holds it and whose sphere and cone touch
+// The lights of each cell: those in its block's mask whose box of cells contains it and whose sphere and cone touch
 // it, in the order of the lights. Run twice: without definitions it counts, and after cluster_scan.comp with
 //   FILL  it writes the lists
 #version 450
@@ -49,7 +49,7 @@ void main() {
 #endif
     for (uint word = 0u; word < words; ++word) {
         uint bits = masks[first + word];
-        while (bits != 0u) {  // the same for all cells of the block
+        while (bits != 0u) {  // uniform over the block
             int light = int(word * 32u) + findLSB(bits);
             bits &= bits - 1u;
             if (inside && touches(light, cell, box, middle, half_diagonal)) {

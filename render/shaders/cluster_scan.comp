@@ -1,5 +1,5 @@
-// Where each cell's list begins: the sum of the lengths before it (exclusive prefix sum). One group; an
-// invocation sums a run of cells, the group sums the runs.
+// The begin of each cell's list: the exclusive prefix sum of the lengths. One group; each invocation sums a run of
+// cells, the group scans the runs.
 #version 450
 
 layout(local_size_x = 256) in;

@@ -1,5 +1,5 @@
-// Meshes that change their shape, all instances in one dispatch: a thread a vertex adds what morph targets add and
-// goes where its joints take it (lib/skinning.glsl), now and the moment before. Definition:
+// Morphing and skinning of all instances in one dispatch, one invocation per vertex: adds morph targets and applies
+// joints (lib/skinning.glsl), for the current and the previous frame. Definition:
 //   DEFORM_FLAGS  kDeform*
 #version 450
 #include "deform_gpu.h"
@@ -7,15 +7,15 @@
 
 layout(local_size_x = 64) in;  // kDeformGroup
 layout(binding = 0) uniform usamplerBuffer jobs;        // DeformJob
-layout(binding = 1) uniform usamplerBuffer group_jobs;  // whose vertices a work group has
+layout(binding = 1) uniform usamplerBuffer group_jobs;  // job of each work group
 layout(binding = 2) uniform usamplerBuffer rest;        // see deform_gpu.h
 layout(binding = 3) uniform samplerBuffer palettes;
 layout(binding = 4) uniform samplerBuffer weights;
 layout(std430, binding = 0) buffer Positions {
     float positions[];
 };
-layout(std430, binding = 1) writeonly buffer Before {
-    float before[];
+layout(std430, binding = 1) writeonly buffer Previous {
+    float previous[];
 };
 layout(std430, binding = 2) writeonly buffer Attributes {
     uint attributes[];  // layout of PackedVertex
@@ -23,7 +23,7 @@ layout(std430, binding = 2) writeonly buffer Attributes {
 
 uniform uint first_group;
 uniform uint group_count;
-uniform uint first_vertex;  // that the three buffers show
+uniform uint first_vertex;  // in the bound range of the three buffers
 
 const uint kFlags = uint(DEFORM_FLAGS);
 const uint kVertexWords = 10u;
@@ -34,7 +34,7 @@ struct Vertex {
     vec3 tangent;
 };
 
-// Where a vertex's data are.
+// Texel ranges of a vertex's data.
 struct Lists {
     int texel;  // of the mesh
     int influence;
@@ -46,7 +46,7 @@ struct Lists {
 vec3 unpack_turn(uint a, uint b, bool second) {
     vec2 u = unpackSnorm2x16(a);
     vec2 v = unpackSnorm2x16(b);
-    return kLargestTurn * (second ? vec3(u.y, v) : vec3(u, v.x));
+    return kMaxUnitDifference * (second ? vec3(u.y, v) : vec3(u, v.x));
 }
 
 Vertex add_morphs(Vertex v, Lists lists, int first_weight) {
@@ -71,17 +71,17 @@ Rows fetch_rows(int palette, uint joint) {
 Vertex move_by_rows(Vertex v, Lists lists, int palette) {
     Rows sum = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
     Rows strongest = sum;
-    float most = 0.0;
+    float max_weight = 0.0;
     for (int i = lists.influence; i < lists.influence_end; ++i) {
         uvec4 two = texelFetch(rest, lists.texel + i);
         vec2 w = uintBitsToFloat(two.yw);
         Rows first = fetch_rows(palette, two.x);
         Rows second = fetch_rows(palette, two.z);
         sum = add_rows(add_rows(sum, w.x, first), w.y, second);
-        strongest = choose_rows(w.x > most, first, strongest);
-        most = max(most, w.x);
-        strongest = choose_rows(w.y > most, second, strongest);
-        most = max(most, w.y);
+        strongest = choose_rows(w.x > max_weight, first, strongest);
+        max_weight = max(max_weight, w.x);
+        strongest = choose_rows(w.y > max_weight, second, strongest);
+        max_weight = max(max_weight, w.y);
     }
     vec3 normal = rows_normal(sum, strongest, v.normal);
     return Vertex(rows_point(sum, v.position), normal, rows_vector(sum, v.tangent));
@@ -124,16 +124,16 @@ void main() {
     group += first_group;
     int job = int(kDeformJobTexels * texelFetch(group_jobs, int(group)).x);
     uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, first_group
-    uvec4 job1 = texelFetch(jobs, job + 1);  // palette, palette_before, weights, weights_before
+    uvec4 job1 = texelFetch(jobs, job + 1);  // palette, previous_palette, weights, previous_weights
     uint number = (group - job0.w) * kDeformGroup + gl_LocalInvocationID.x;
     if (number >= job0.y) {
         return;
     }
     uint place = job0.z + number - first_vertex;
 
-    if ((kFlags & kDeformCopyBefore) != 0u) {
+    if ((kFlags & kDeformCopyPrevious) != 0u) {
         for (uint i = 0u; i < 3u; ++i) {
-            before[3u * place + i] = positions[3u * place + i];
+            previous[3u * place + i] = positions[3u * place + i];
         }
     }
     int texel = int(job0.x + kRestTexels * number);
@@ -147,13 +147,13 @@ void main() {
         int(texelFetch(rest, texel + int(kRestTexels)).w),
         int(b.w),
         int(texelFetch(rest, texel + int(kRestTexels) + 1).w));
-    if ((kFlags & kDeformBefore) != 0u) {
+    if ((kFlags & kDeformPrevious) != 0u) {
         vec3 p = deformed(v, lists, job1.y, job1.w).position;
-        before[3u * place] = p.x;
-        before[3u * place + 1u] = p.y;
-        before[3u * place + 2u] = p.z;
+        previous[3u * place] = p.x;
+        previous[3u * place + 1u] = p.y;
+        previous[3u * place + 2u] = p.z;
     }
-    if ((kFlags & kDeformNow) != 0u) {
+    if ((kFlags & kDeformCurrent) != 0u) {
         Vertex now = deformed(v, lists, job1.x, job1.z);
         positions[3u * place] = now.position.x;
         positions[3u * place + 1u] = now.position.y;

@@ -1,9 +1,9 @@
-// What deform.comp reads, as texels of four 32-bit numbers. C++ and GLSL read the same text.
+// Input of deform.comp, as texels of four 32-bit numbers. Shared by C++ and GLSL.
 //
-// A mesh at rest is a block of texels: three a vertex - position and its first influence, normal and its first
-// offset, tangent - and one vertex more, which ends the lists of the last; then influences, two a texel - joint,
-// weight, joint, weight - and offsets, two texels each - position and target, normal and tangent as six 16-bit
-// shares of kLargestTurn. Places in these lists count texels from the beginning of the block.
+// A mesh in bind pose is a block of texels: three per vertex - position and its first influence, normal and its
+// first offset, tangent - and a sentinel vertex, which ends the lists of the last; then influences, two per texel -
+// joint, weight, joint, weight - and morph offsets, two texels each - position and target, normal and tangent as six
+// 16-bit fractions of kMaxUnitDifference. Indices into these lists count texels from the beginning of the block.
 
 #ifdef __cplusplus
 #pragma once
@@ -11,33 +11,33 @@
 namespace limn::layout {
 #endif
 
-const uint kRestTexels = 3u;    // a vertex
-const uint kOffsetTexels = 2u;  // an offset of a morph target
-const float kLargestTurn = 2.0; // no two unit vectors differ by more
+const uint kRestTexels = 3u;    // per vertex
+const uint kOffsetTexels = 2u;  // per offset of a morph target
+const float kMaxUnitDifference = 2.0; // largest difference of two unit vectors, by component
 
-// One instance to be deformed: two texels.
+// One instance to deform: two texels.
 struct DeformJob {
     uint rest;            // first texel of the mesh
     uint vertex_count;
-    uint slot;            // first of its vertices among the deformed ones
+    uint slot;            // its first vertex in the buffers of deformed vertices
     uint first_group;     // work group of its first vertex
     uint palette;         // first texel of its joints: three rows each, or the two parts of a dual quaternion
-    uint palette_before;
+    uint previous_palette;  // the same in the previous frame
     uint weights;         // first of its morph weights
-    uint weights_before;
+    uint previous_weights;
 };
 
 const uint kDeformJobTexels = 2u;
 const uint kDeformGroup = 64u;        // vertices
 const uint kDeformGroupsWide = 1024u; // groups of a dispatch along x
 
-// What a dispatch does, and all its jobs alike: a program each, as llvmpipe walks through every branch.
-const uint kDeformNow = 1u;         // writes what is drawn
-const uint kDeformBefore = 2u;      // reckons the positions before
-const uint kDeformCopyBefore = 4u;  // what was drawn last are the positions before
+// What a dispatch does, the same for all its jobs. One program per combination, as llvmpipe executes every branch.
+const uint kDeformCurrent = 1u;         // writes the current vertices
+const uint kDeformPrevious = 2u;      // evaluates the previous positions
+const uint kDeformCopyPrevious = 4u;  // copies the last drawn positions to the previous ones
 const uint kDeformJoints = 8u;      // has a palette
 const uint kDeformDual = 16u;       // of dual quaternions
-const uint kDeformMorphs = 32u;     // has morph weights, one a target
+const uint kDeformMorphs = 32u;     // has morph weights, one per target
 
 #ifdef __cplusplus
 static_assert(sizeof(DeformJob) == 16 * kDeformJobTexels);

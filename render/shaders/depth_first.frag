@@ -1,4 +1,4 @@
-// Depth alone, before surfaces are lit while they are drawn. Definitions of lib/material.glsl, and
+// Depth prepass for forward shading. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 #version 450
 #ifdef ALPHA_MASK

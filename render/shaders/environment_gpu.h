@@ -1,4 +1,4 @@
-// The surroundings: what the sky function needs, and the light it sends, projected. std140.
+// The environment: parameters of the sky, its irradiance in spherical harmonics, and light probes. std140.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,11 +8,11 @@ namespace limn::layout {
 
 const uint kStudioLamps = 6u;
 const uint kMaxProbes = 8u;
-const uint kReflectionLayers = 1u + kMaxProbes;  // what can be mirrored: the sky, then one a probe
+const uint kReflectionLayers = 1u + kMaxProbes;  // of reflection maps: the sky, then one per probe
 
 // A soft box at infinity: the unit square of (dot(d, u), dot(d, v)) / dot(d, center).
 struct StudioLamp {
-    vec4 center;  // unit, toward it. w: width of its soft edge, share of the half side
+    vec4 center;  // unit, toward it. w: width of its soft edge, as a share of the half side
     vec4 u;       // world direction across / tangent of the half width
     vec4 v;       // world direction up / tangent of the half height
     vec4 color;   // radiance
@@ -23,8 +23,8 @@ struct EnvironmentBlock {
     vec4 horizon;        // w: intensity
     vec4 ground;
     vec4 sun_direction;  // unit, toward the first directional light
-    vec4 sun_color;      // its irradiance [lx]; black: none
-    vec4 reflection;     // x: levels of the reflection maps, y: their size [px]
+    vec4 sun_color;      // its irradiance [lx]; black: no sun
+    vec4 reflection;     // x: mip levels of the reflection maps, y: their size [px]
     StudioLamp lamps[kStudioLamps];
 };
 
@@ -33,11 +33,11 @@ struct Irradiance {
     vec4 coefficients[9];
 };
 
-// A probe: where it counts, and what it saw.
+// A light probe: its region of influence and its captured environment.
 struct ProbeRecord {
-    vec4 place_from_world[3];  // rows; it counts fully within the unit ball or, of a room, the unit cube
-    vec4 seen_from;            // world. w: layer of the reflection maps
-    vec4 shape;                // x: 1 a room, 0 a ball with all it shows far away. y: 1 / width of the rim beyond
+    vec4 probe_from_world[3];  // rows; full weight within the unit ball or, for a room, the unit cube
+    vec4 seen_from;            // capture position, world. w: layer of the reflection maps
+    vec4 shape;                // x: 1 = a room with parallax, 0 = a ball without. y: 1 / width of the fade beyond
 };
 
 struct ProbeBlock {

@@ -1,5 +1,5 @@
-// What of a block is out of focus: widest radius [px] of its near circles that are gathered finely, and coarsely; of its
-// far ones, and of those of them that are gathered finely. Apart from that, of small circles before and behind the focus.
+// Widest out-of-focus radii [px] in a block: of near circles that are gathered finely, and coarsely; of far circles,
+// and of those among them that are gathered finely. Separately, of small circles in front of and behind the focus.
 #version 450
 #include "lib/focus.glsl"
 
@@ -21,9 +21,9 @@ void main() {
             vec2 side = diameter < 0.0 ? vec2(radius, 0.0) : vec2(0.0, radius);
             float fine = coarse_share(radius) < 1.0 ? 1.0 : 0.0;
             float coarse = coarse_share(radius) > 0.0 ? 1.0 : 0.0;
-            vec2 large = 2.0 * radius > kSharpest ? side : vec2(0.0);
+            vec2 large = 2.0 * radius > kFullResDiameter ? side : vec2(0.0);
             block = max(block, vec4(large.x * fine, large.x * coarse, large.y, large.y * fine));
-            bool is_small = 2.0 * radius > kLeastCircle && 2.0 * radius < kBlurriest;
+            bool is_small = 2.0 * radius > kMinCircle && 2.0 * radius < kHalfResDiameter;
             small = max(small, is_small ? side : vec2(0.0));
         }
     }

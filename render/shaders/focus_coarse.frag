@@ -1,19 +1,19 @@
-// What reaches a texel of a quarter of the picture, of coarse circles: taps that fill the aperture ask whether the circle
-// there comes as far as here. The wider the circles, the coarser the level that is read, so that they leave no gaps.
+// Gathers coarse circles at quarter resolution: for taps over the aperture, tests whether the circle there reaches this
+// texel. The wider the circles, the coarser the mip level that is read, so that taps leave no gaps.
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D far_rest;  // with levels
+layout(binding = 0) uniform sampler2D far_rest;  // with mip levels
 layout(binding = 1) uniform sampler2D near_rest;
 layout(binding = 2) uniform sampler2D rest_radii;
 layout(binding = 7) uniform sampler2D focus_tiles;
 
-layout(location = 0) out vec4 far_coarse;   // with its share of the texel
-layout(location = 1) out vec4 near_coarse;  // with its coverage
-layout(location = 2) out float near_radius;  // [px] of what covers, times that
+layout(location = 0) out vec4 far_coarse;   // alpha: its share of the texel
+layout(location = 1) out vec4 near_coarse;  // alpha: coverage
+layout(location = 2) out float near_radius;  // [px], times coverage
 
 const int kCell = 4;           // side of a texel [px]
-const float kNarrowest = 0.2;  // circle that taps can tell, of the widest
+const float kNarrowest = 0.2;  // smallest circle that taps resolve, relative to the widest
 
 // Side of a texel of `level` [px].
 float side_of(float level) {
@@ -24,13 +24,13 @@ float square(float x) {
     return x * x;
 }
 
-// Over how much a circle ends among taps for the `widest` [px]: those lie too far apart to show a rim of 1 px of one that
-// is less.
+// Width of the soft rim of a circle among taps for the `widest` [px], which are too far apart to resolve a rim of 1 px
+// of a smaller one.
 float rim_of(float as_wide, float widest) {
     return mix(max(0.25 * widest, 1.0), 1.0, as_wide);
 }
 
-// 1 for circles as wide as the widest, 0 for all that are clearly less.
+// 1 for circles as wide as the widest, 0 for clearly smaller ones.
 float is_as_wide(float radius, float widest) {
     return clamp(1.0 - (widest - radius) / max(0.1 * widest, 1.0), 0.0, 1.0);
 }
@@ -41,14 +41,14 @@ int taps_for(float radius, float level) {
     return clamp(int(1.3 * texels), 8, kFocusTaps);
 }
 
-// As what they go through on the way to the picture widens discs: variances add. Texels are of side `texel` [px].
+// Compensates the widening of discs by the other steps of resampling: variances add. Texels have side `texel` [px].
 float fitted_radius(float radius, float texel) {
     float done = 0.25 * texel * texel + 25.0 / 6.0;
     return sqrt(max(radius * radius - done / focus.aperture.w, 0.0));
 }
 
-// What of a layer lies over a place, by the area that its circles are spread over. The widest that may come here bounds
-// the search. Discs before the focus stand on their heads.
+// Light of the near layer at a point, normalized by the areas of its circles. The widest circle that may reach here
+// bounds the search. Near discs are upside down.
 vec4 gather_near(vec2 uv, float reach, float level, int taps, out float radius) {
     vec2 stride = 0.25 * reach / vec2(textureSize(near_rest, 0));
     vec4 sum = vec4(0.0);
@@ -68,9 +68,9 @@ vec4 gather_near(vec2 uv, float reach, float level, int taps, out float radius) 
     return sum;
 }
 
-// How a circle of `radius` is spread over a place that a kernel of `widest` reads at `through`, against one as wide.
+// Intensity of a circle of `radius` at a tap `through` of a kernel of `widest`, relative to that of the widest circle.
 float spread_behind(float radius, float widest, float through) {
-    // A rim is soft, but not that of the circle that the kernel is made for.
+    // Rims are soft, except that of the circle for which the kernel is made.
     float as_wide = is_as_wide(radius, widest);
     float rim = rim_of(as_wide, widest);
     float reached = clamp((radius - through * widest) / rim + 0.5 + 0.5 * as_wide, 0.0, 1.0);
@@ -79,7 +79,7 @@ float spread_behind(float radius, float widest, float through) {
     return reached * max(widest * widest, 0.25) / max(area, 0.25);
 }
 
-// What lies behind the focus. The circle of the texel itself bounds what is behind it, or would reach before it.
+// Light of the far layer. The texel's own circle bounds those of farther texels, which would else bleed in front.
 vec4 gather_far(vec2 uv, float radius, float level, int taps) {
     float side = side_of(level);
     float widest = fitted_radius(radius, side);
@@ -91,7 +91,7 @@ vec4 gather_far(vec2 uv, float radius, float level, int taps) {
         vec2 there = uv - stride * through * focus.tap[i].xy;
         vec4 light = textureLod(far_rest, there, level - 1.0);
         float its = textureLod(rest_radii, there, level - 1.0).x / max(radius_weight(light), 1e-20);
-        float over = before(its, radius);
+        float over = front_weight(its, radius);
         light *= spread_behind(fitted_radius(min(its, radius), side), widest, through);
         front += over * light;
         beside += (1.0 - over) * light;
@@ -106,7 +106,7 @@ void main() {
 
     vec4 tile = texelFetch(focus_tiles, min(kCell * here / kFocusTile, focus.tiles.xy - 1), 0);
 
-    // Beside what is far, what is seen past the rims of fine circles.
+    // Next to far texels, what is visible past the rims of fine circles.
     vec4 own = texelFetch(far_rest, here, 0);
     float beside = tile.w > 0.0 ? kFineRadius : 0.0;
     float radius = own.a > 0.0 ? texelFetch(rest_radii, here, 0).x / max(radius_weight(own), 1e-20) : beside;

@@ -1,4 +1,4 @@
-// The disc of a highlight: as sharp as the picture has pixels, behind what hides it.
+// The disc of a highlight at full resolution, occluded by nearer surfaces.
 #version 450
 #include "lib/focus.glsl"
 
@@ -11,13 +11,13 @@ flat in vec2 middle;
 
 layout(location = 0) out vec4 color;
 
-// Share of the highlight that gets past what is seen here. The ray through the point of the aperture that lights this
-// pixel meets a nearer thing as far from here as that point's image there: what stands at that place decides.
-float gets_past(float own) {
+// Share of the highlight that passes the surface visible here. The ray through the point of the aperture that lights
+// this pixel crosses a nearer surface at the image of that point in the surface's own circle: the depth there decides.
+float unoccluded_share(float own) {
     float nearer = clamp(own / radius, 0.0, 1.0);
     vec2 there = mix(gl_FragCoord.xy, middle, nearer);
     float its = 0.5 * circle(texelFetch(scene_depth, ivec2(there), 0).r);
-    return clamp(8.0 * its / radius - 6.0, 0.0, 1.0);  // by eye: what is about as far away hides nothing
+    return clamp(8.0 * its / radius - 6.0, 0.0, 1.0);  // by eye: surfaces at about the same distance hide nothing
 }
 
 void main() {
@@ -27,7 +27,7 @@ void main() {
     if (radius > 0.0) {
         float own = 0.5 * circle(texelFetch(scene_depth, here, 0).r);
         float covered = texture(near_blurred, gl_FragCoord.xy * 0.5 / focus.size.zw).a;
-        visible = own > kFineRadius ? (1.0 - covered) * gets_past(own) : 0.0;
+        visible = own > kFineRadius ? (1.0 - covered) * unoccluded_share(own) : 0.0;
     } else {
         place = -place;
     }

@@ -1,4 +1,4 @@
-// A point as large as the disc of each highlight that focus_rest.frag took off, first far and then near ones.
+// A point sprite for the disc of each highlight removed by focus_rest.frag, first far and then near ones.
 #version 450
 #include "lib/focus.glsl"
 
@@ -6,28 +6,28 @@ layout(binding = 0) uniform sampler2D far_wide;
 layout(binding = 1) uniform sampler2D near_wide;
 layout(binding = 2) uniform sampler2D far_rest;
 layout(binding = 3) uniform sampler2D near_rest;
-layout(binding = 4) uniform sampler2D seen_pixels;
+layout(binding = 4) uniform sampler2D packed_pixels;
 layout(binding = 7) uniform sampler2D focus_tiles;
 
-uniform ivec2 texels;  // of a quarter of the picture
+uniform ivec2 texels;  // at quarter resolution
 
 flat out vec3 light;    // of the disc
-flat out float radius;  // [px], negative before the focus
+flat out float radius;  // [px], negative in front of the focus
 flat out vec2 middle;   // [px]
 
-// Share of a texel's light that comes from a pixel in this column or row, by the tent of focus_split.frag.
+// Weight of a pixel in this column or row of a texel, by the tent of focus_split.frag.
 float tent(int i) {
     return i == 0 || i == 5 ? 1.0 : i == 1 || i == 4 ? 3.0 : 4.0;
 }
 
-// Where the light of a texel is among the 6 x 6 pixels that it is of, and how wide its circle [px].
+// Centroid of a texel's light among its 6 x 6 pixels, and radius of its circle [px].
 vec3 middle_of(ivec2 texel, float side, int pixels) {
     ivec2 last = ivec2(focus.size.xy) - 1;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < pixels; ++i) {
         ivec2 place = ivec2(i % 6, i / 6);
         ivec2 pixel = clamp(4 * texel - 1 + place, ivec2(0), last);
-        vec4 seen = texelFetch(seen_pixels, pixel, 0);
+        vec4 seen = texelFetch(packed_pixels, pixel, 0);
         float its = seen.a == kUnknown ? 0.0 : side * seen.a;
         float shines = tent(place.x) * tent(place.y) * coarse_share(its) * luminance_of(seen.rgb);
         sum += shines * vec4(vec2(pixel) + 0.5, its, 1.0);
@@ -45,7 +45,7 @@ void main() {
     vec2 uv = 2.0 * (vec2(texel) + 0.5) / focus.size.zw;
     vec4 all = vec4(0.0);
     vec3 excess = vec3(0.0);
-    for (int i = 0; i < (is_near && tile.y > 0.0 ? 1 : 0); ++i) {  // a loop is left early, a branch may not be
+    for (int i = 0; i < (is_near && tile.y > 0.0 ? 1 : 0); ++i) {  // a loop is skipped, a branch might be flattened
         all = textureLod(near_wide, uv, 0.0);
         excess = all.rgb - texelFetch(near_rest, texel, 0).rgb;
     }

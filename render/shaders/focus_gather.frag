@@ -1,5 +1,5 @@
-// What reaches a texel of the half picture from behind the focus and from before it. Of fine circles every texel around
-// is asked whether its own comes as far as here; its light is taken by the area that it is spread over.
+// Gathers the far and near layers at half resolution. For fine circles, tests for every neighboring texel whether its
+// circle reaches here; its light is weighted by 1 / the area of the circle.
 #version 450
 #include "lib/focus.glsl"
 
@@ -8,22 +8,22 @@ layout(binding = 1) uniform sampler2D near_light;
 layout(binding = 2) uniform sampler2D far_kernels;
 layout(binding = 3) uniform sampler2D near_kernels;
 layout(binding = 4) uniform sampler2D far_wide;
-layout(binding = 5) uniform sampler2D far_coarse;  // of a quarter of the picture
+layout(binding = 5) uniform sampler2D far_coarse;  // quarter resolution
 layout(binding = 6) uniform sampler2D near_coarse;
 layout(binding = 9) uniform sampler2D near_radius;
 
 flat in vec4 tile;
 
-layout(location = 0) out vec4 far_blurred;   // with how well it is known
-layout(location = 1) out vec4 near_blurred;  // with its coverage
+layout(location = 0) out vec4 far_blurred;   // alpha: confidence
+layout(location = 1) out vec4 near_blurred;  // alpha: coverage
 
-// How a kernel of `radius` is spread over a place that the aperture `through` goes through; 1 where it covers.
+// Coverage by a kernel of `radius` at a texel through which the aperture of radius `through` passes.
 float reaches(float radius, float through) {
     return clamp(radius + 0.5 - through, 0.0, 1.0);
 }
 
-// The fine circles behind the focus over the wide ones as they are seen through a texel that has `own` kernel. That bounds
-// what lies behind it, or would reach before it; among wide circles all that is fine is before them.
+// Fine far circles over wide ones, as seen by a texel with kernel `own`. That bounds the circles of farther texels,
+// which would else bleed in front; fine circles are always in front of wide ones.
 vec4 gather_far(ivec2 here, vec2 own, bool is_fine, float reach, vec4 behind) {
     ivec2 last = ivec2(focus.size.zw) - 1;
     vec4 front = vec4(0.0);
@@ -35,7 +35,7 @@ vec4 gather_far(ivec2 here, vec2 own, bool is_fine, float reach, vec4 behind) {
         vec2 covers = is_fine && kernels.z > own.x ? own : kernels.zw;
         float through = focus.texel[i].z;
         vec2 comes = vec2(reaches(shines.x, through) * shines.y, reaches(covers.x, through) * covers.y);
-        vec2 over = is_fine ? vec2(before(kernels.x, own.x), before(kernels.z, own.x)) : vec2(1.0);
+        vec2 over = is_fine ? vec2(front_weight(kernels.x, own.x), front_weight(kernels.z, own.x)) : vec2(1.0);
         front += light * (comes * over).xxxy;
         behind += light * (comes - comes * over).xxxy;
     }
@@ -43,7 +43,7 @@ vec4 gather_far(ivec2 here, vec2 own, bool is_fine, float reach, vec4 behind) {
     return front + (1.0 - front.a) * behind / max(behind.a, 1e-5);
 }
 
-// How much of what a texel with a fine kernel shows is of wide circles behind it.
+// Share of wide circles in a texel with a fine kernel.
 float share_of_wide(ivec2 here, vec2 own, float reach) {
     ivec2 last = ivec2(focus.size.zw) - 1;
     float sum = 0.0;
@@ -54,8 +54,8 @@ float share_of_wide(ivec2 here, vec2 own, float reach) {
     return sum;
 }
 
-// What stands before the focus: `wide` circles, of that radius [px], with fine ones that are about as wide beside them
-// and the others, which are farther away, behind them.
+// Light of the near layer: `wide` circles of `radius` [px], merged with fine ones that are about as wide, over the other
+// fine ones, which are farther away.
 vec4 gather_near(ivec2 here, float reach, vec4 wide, float radius) {
     ivec2 last = ivec2(focus.size.zw) - 1;
     vec4 behind = vec4(0.0);
@@ -63,7 +63,7 @@ vec4 gather_near(ivec2 here, float reach, vec4 wide, float radius) {
         ivec2 there = clamp(here + ivec2(focus.texel[i].xy), ivec2(0), last);
         vec2 kernel = texelFetch(near_kernels, there, 0).xy;
         vec4 light = reaches(kernel.x, focus.texel[i].z) * kernel.y * texelFetch(near_light, there, 0);
-        float under = before(kernel.x, 0.5 * radius);
+        float under = front_weight(kernel.x, 0.5 * radius);
         wide += (1.0 - under) * light;
         behind += under * light;
     }

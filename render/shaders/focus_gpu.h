@@ -1,4 +1,4 @@
-// Depth of field: what its passes share. C++ and GLSL read the same text; std140.
+// Depth of field: layout of its passes, shared by C++ and GLSL; std140.
 
 #ifdef __cplusplus
 #pragma once
@@ -7,30 +7,30 @@ namespace limn::layout {
 #endif
 
 const int kFocusTaps = 48;
-const int kSlightTaps = 25;       // of small circles: the pixels less than 3 px away
-const int kFineTaps = 69;         // of fine ones: the texels less than 4.6 texels away
+const int kSlightTaps = 25;       // for small circles: the pixels less than 3 px away
+const int kFineTaps = 69;         // for fine circles: the half-resolution texels less than 4.6 texels away
 const int kFocusTile = 16;        // side [px]
-const int kFocusBlock = 4;        // side [px], of which tiles are made; small circles reach no further than one
-const float kSharpest = 4.0f;     // diameter up to which circles are gathered from the picture itself [px]
-const float kBlurriest = 5.0f;    // diameter from which they are gathered from its half [px]
-const float kLeastCircle = 1.0f;  // diameter up to which a circle is no larger than its pixel [px]
-const float kFineRadius = 8.0f;   // up to which every texel of the half picture is read [px]
-const float kLevelRadius = 11.0f;  // up to which the taps lie dense enough for all but highlights [px]
+const int kFocusBlock = 4;        // side of the blocks in a tile [px]; small circles reach no further than one block
+const float kFullResDiameter = 4.0f;  // up to which circles are gathered at full resolution [px]
+const float kHalfResDiameter = 5.0f;  // from which they are gathered at half resolution [px]
+const float kMinCircle = 1.0f;  // diameter up to which a circle is no larger than its pixel [px]
+const float kFineRadius = 8.0f;   // up to which every half-resolution texel is read [px]
+const float kLevelRadius = 11.0f;  // up to which the taps are dense enough for all but highlights [px]
 const int kKernelStep = 8;        // kernels per pixel of radius
-const int kKernels = 72;          // up to kFineRadius and a little
+const int kKernels = 72;          // slightly beyond kFineRadius
 const int kSlightStep = 32;       // areas per pixel of radius
-const int kAreas = 84;            // up to kBlurriest / 2 and a little
+const int kAreas = 84;            // slightly beyond kHalfResDiameter / 2
 
 struct FocusBlock {
     vec4 lens;      // circle of infinity focused at 1 m [px m]; 1 / focus; 1 / near plane [1/m]; largest circle [px]
-    vec4 aperture;  // sides, 0: round; rotation [rad]; area and variance along an axis, of radius 1
-    ivec4 tiles;    // columns; rows; tiles that the widest circle reaches; levels beneath the half picture
-    vec4 size;      // of the picture [px]; of its half
-    vec4 tap[48];     // xy: directions of a sunflower, to the rim of the aperture of radius 1
-    vec4 pixel[25];   // xy: the pixels around one, nearest first; z: how far away they are
-    vec4 texel[69];   // xy: those of the half picture; z: radius of the aperture that goes through them, ascending
-    vec4 kernel[36];  // xy, zw: for circles of radius i / kKernelStep [px], kernel [texels] and 1 / texels that it covers
-    vec4 area[21];    // 1 / pixels that small circles cover, of radius i / kSlightStep [px]
+    vec4 aperture;  // sides, 0: round; rotation [rad]; area and variance along an axis, for radius 1
+    ivec4 tiles;    // columns; rows; radius of the widest circle [tiles]; mip levels below half resolution
+    vec4 size;      // of the image [px]; of the half-resolution image [px]
+    vec4 tap[48];     // xy: directions of a sunflower pattern, to the rim of the aperture of radius 1
+    vec4 pixel[25];   // xy: offsets of the neighboring pixels, nearest first; z: their distances
+    vec4 texel[69];   // xy: the same at half resolution; z: radius of the aperture whose rim passes through, ascending
+    vec4 kernel[36];  // xy, zw: for circles of radius i / kKernelStep [px], radius [texels] and 1 / texels covered
+    vec4 area[21];    // 1 / pixels covered by small circles of radius i / kSlightStep [px]
 };
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// Luminance of a quarter of the picture, with the share of it that is known: what highlights are compared with.
+// Luminance at quarter resolution, with its weight: highlights are detected against it.
 #version 450
 #include "lib/focus.glsl"
 

@@ -1,4 +1,4 @@
-// The picture with the circle of every pixel beside its light, so that the passes that read many fetch once.
+// Packs the radius of the circle of each pixel with its radiance, so that later passes need one fetch.
 #version 450
 #include "lib/focus.glsl"
 

@@ -1,14 +1,14 @@
-// What is to be done in a tile, from what it and its neighbors show.
+// Classifies a tile by its own content and that of its neighbors.
 #version 450
 #include "lib/focus.glsl"
 
 layout(binding = 0) uniform sampler2D own_tiles;
 layout(binding = 1) uniform sampler2D own_small;
 
-// Widest radius [px] of the near circles that reach the tile, fine and coarse; if anything is far in it, of the fine far
-// circles that reach it, or a little; of wide far circles in it or beside it.
+// Widest radius [px] of the near circles that reach the tile, fine and coarse; if it has far pixels, of the fine far
+// circles that reach it, at least slightly above 0; of the wide far circles in it or next to it.
 layout(location = 0) out vec4 tile;
-// Of small circles: of near ones that reach the tile; if anything is behind the focus here, of those that are.
+// For small circles: of near ones that reach the tile; of far ones, if anything here is behind the focus.
 layout(location = 1) out vec2 slight;
 
 void main() {
@@ -18,9 +18,9 @@ void main() {
     bool is_far = own.z > 0.0;
     bool is_behind = is_far || slight.y > 0.0;
     tile = vec4(own.xy, is_far ? 0.25 : 0.0, 0.0);
-    int most = focus.tiles.z;
-    for (int y = -most; y <= most; ++y) {
-        for (int x = -most; x <= most; ++x) {
+    int max_reach = focus.tiles.z;
+    for (int y = -max_reach; y <= max_reach; ++y) {
+        for (int x = -max_reach; x <= max_reach; ++x) {
             ivec2 there = clamp(here + ivec2(x, y), ivec2(0), focus.tiles.xy - 1);
             vec4 other = texelFetch(own_tiles, there, 0);
             float gap = length(vec2(max(abs(ivec2(x, y)) - 1, ivec2(0)) * kFocusTile));

@@ -1,5 +1,5 @@
-// A quarter of the picture, its coarse circles alone, without their highlights: texels so much brighter than the light
-// around them that a few taps could not make discs of them. What is taken off here is drawn by focus_disc.vert.
+// Coarse circles at quarter resolution, without highlights: texels so much brighter than their surroundings that a few
+// taps could not render their discs. focus_disc.vert draws what is removed here.
 #version 450
 #include "lib/focus.glsl"
 
@@ -14,7 +14,7 @@ layout(location = 1) out vec4 near_rest;
 layout(location = 2) out vec2 radii;
 layout(location = 3) out vec4 behind;
 
-const float kVisible = 0.06;  // of the light around, what a disc adds to it at least; by eye
+const float kVisible = 0.06;  // minimum light of a disc relative to its surroundings; by eye
 
 vec4 without_highlight(vec4 light, inout float weighed_radius, vec2 uv) {
     float radius = weighed_radius / max(radius_weight(light), 1e-20);
@@ -22,10 +22,10 @@ vec4 without_highlight(vec4 light, inout float weighed_radius, vec2 uv) {
     vec2 mean = textureLod(mean_luminance, uv, level).xy;
     float around = light.a * mean.x / max(mean.y, 1e-5);
     float texels = focus.aperture.z * radius * radius / 16.0;
-    float most = around * max(2.0, kVisible * texels);
+    float limit = around * max(2.0, kVisible * texels);
     float luminance = luminance_of(light.rgb);
-    // Nothing up to `most`; of what is twice as bright, all but what is around.
-    float rest = luminance > most ? max(2.0 * most - luminance, around) : luminance;
+    // Removes nothing up to `limit`; from twice that brightness on, all above the surroundings.
+    float rest = luminance > limit ? max(2.0 * limit - luminance, around) : luminance;
     light.rgb *= rest / max(luminance, 1e-20);
     weighed_radius = radius * radius_weight(light);
     return light;

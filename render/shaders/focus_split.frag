@@ -1,20 +1,20 @@
-// Half the picture, sorted by where its pixels stand: far behind the focus, far before it, and all but the latter; of
-// the first two, what has wide circles apart. Colors come with their share of the texel.
+// Downsamples to half resolution and sorts pixels into layers: far, near, and all but the latter; the first two split
+// into fine and wide circles. Alpha: share of the texel.
 #version 450
 #include "lib/focus.glsl"
 
-layout(binding = 0) uniform sampler2D seen_pixels;
+layout(binding = 0) uniform sampler2D packed_pixels;
 
 layout(location = 0) out vec4 far_light;     // fine
 layout(location = 1) out vec4 near_light;    // fine
-layout(location = 2) out vec4 far_kernels;   // of what shines in the texel; of what it shows
-layout(location = 3) out vec2 near_kernels;  // of what shines
+layout(location = 2) out vec4 far_kernels;   // by brightness; by coverage
+layout(location = 3) out vec2 near_kernels;  // by brightness
 layout(location = 4) out vec4 far_wide;      // coarse
 layout(location = 5) out vec4 near_wide;     // coarse
-layout(location = 6) out vec2 wide_radii;    // [px] of both, by radius_weight
+layout(location = 6) out vec2 wide_radii;    // [px] of both, times radius_weight
 layout(location = 7) out vec4 behind_near;
 
-// Under a tent over 4 x 4 pixels: wherever in its texel a light is, its middle and its width stay what they were.
+// With a tent over 4 x 4 pixels, which preserves the position and width of a light anywhere in the texel.
 
 void main() {
     ivec2 first = 2 * ivec2(gl_FragCoord.xy) - 1;
@@ -28,7 +28,7 @@ void main() {
     vec3 radii = vec3(0.0);
     for (int i = 0; i < 16; ++i) {
         ivec2 place = ivec2(i & 3, i >> 2);
-        vec4 seen = texelFetch(seen_pixels, clamp(first + place, ivec2(0), last), 0);
+        vec4 seen = texelFetch(packed_pixels, clamp(first + place, ivec2(0), last), 0);
         vec2 tent = mix(vec2(0.375), vec2(0.125), notEqual(place - 1 & 2, ivec2(0)));
         float part = seen.a == kUnknown ? 0.0 : tent.x * tent.y;
         vec4 light = part * vec4(seen.rgb, 1.0);

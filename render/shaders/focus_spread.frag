@@ -1,4 +1,4 @@
-// Widest radius [px] of the small circles before the focus that reach a block.
+// Widest radius [px] of the small near circles that reach a block.
 #version 450
 #include "lib/focus.glsl"
 

@@ -1,19 +1,19 @@
-// A quad over every tile of which there is something to do, of one kind.
+// A quad for every tile of the given kinds.
 #version 450
 #include "lib/focus.glsl"
 
 layout(binding = 7) uniform sampler2D focus_tiles;
 layout(binding = 8) uniform sampler2D slight_tiles;
 
-uniform int kind;          // bits of the tiles that are drawn, see below
-uniform vec2 target_size;  // [px] of the picture: a little more than it, where its half is rounded up
+uniform int kind;          // bits of the tiles to draw, see below
+uniform vec2 target_size;  // in full-resolution [px]: slightly larger than the image if its half is rounded up
 
 flat out vec4 tile;
 
 const int kSharp = 1;   // nothing is out of focus
-const int kSlight = 2;  // small circles alone
+const int kSlight = 2;  // only small circles
 const int kBlurred = 4;
-const int kBlurredSlight = 8;  // and small ones, too
+const int kBlurredSlight = 8;  // both
 
 void main() {
     ivec2 place = ivec2(gl_InstanceID % focus.tiles.x, gl_InstanceID / focus.tiles.x);

@@ -1,5 +1,5 @@
-// The same of tiles as focus_blocks.frag has of blocks. Of small circles before the focus, those that reach into the tile;
-// of far ones also, a little, those beside it: past the rim of something in it they may be seen.
+// The result of focus_blocks.frag per tile. Includes small near circles that reach into the tile and, as a small value,
+// far circles next to it: they may be visible past the rim of something in it.
 #version 450
 #include "lib/focus.glsl"
 

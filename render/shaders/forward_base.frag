@@ -1,4 +1,4 @@
-// Surfaces without lights, drawn after their depth: the first of the passes that add a light each
+// Forward-shaded surfaces without lights, after the depth prepass: the base of the passes that add one light each
 // (light.structure-light-major).
 #version 450
 #include "lib/lighting.glsl"

@@ -1,4 +1,4 @@
-// Surfaces with all lights that reach their object (light.structure-object-major).
+// Forward-shaded surfaces with all lights that reach their object (light.structure-object-major).
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/forward.glsl"
@@ -9,7 +9,7 @@ layout(location = 0) out vec4 radiance;
 void main() {
     SurfaceSample s = forward_surface();
     vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
-    // light_cells holds objects' lists here, not cells'.
+    // Here light_cells holds the lists of objects, not of cells.
     uvec2 list = uvec2(0u);
 #ifdef LOCAL_LIGHTS
     list = texelFetch(light_cells, int(object)).xy;

@@ -1,4 +1,4 @@
-// What surfaces send on of one light, drawn again to be added (light.structure-light-major).
+// Forward-shaded light of a single light, drawn again and added (light.structure-light-major).
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/forward.glsl"

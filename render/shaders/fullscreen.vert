@@ -1,5 +1,5 @@
-// One triangle over the whole target, at the far plane: with the depth test GL_EQUAL it covers what no surface
-// covers, with GL_LESS what one does.
+// One triangle that covers the target, at the far plane: with the depth test GL_EQUAL it draws where no surface is,
+// with GL_LESS where one is.
 #version 450
 
 void main() {

@@ -1,13 +1,13 @@
-// Opaque surfaces without their light. Definitions of lib/material.glsl, and
+// Attributes of opaque surfaces. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff
-//   VELOCITY    motion since the moment before, as a difference of texture coordinates (now - before)
+//   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
 #version 450
 #include "lib/view.glsl"
 #include "lib/material.glsl"
 
 #ifdef VELOCITY
 #include "lib/velocity.glsl"
-layout(location = 5) in vec3 before;
+layout(location = 5) in vec3 previous_clip;
 layout(location = 1) out vec2 velocity;
 #endif
 layout(location = 0) out uvec4 surface;
@@ -22,6 +22,6 @@ void main() {
     surface = pack_surface(surface_sample(color.rgb));
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now_ndc, before);
+    velocity = velocity_from(now_ndc, previous_clip);
 #endif
 }

@@ -1,4 +1,4 @@
-// Adds a star of half the size to the picture, in the colors of diffraction: longer waves go farther.
+// Adds a half-resolution star to the image, with the colors of diffraction: longer wavelengths spread farther.
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_radiance;
@@ -6,7 +6,7 @@ layout(binding = 1) uniform sampler2D star;
 
 uniform float strength;
 
-const vec3 kWavelengths = vec3(1.11, 1.0, 0.85);  // 610, 550 and 465 nm, of green's
+const vec3 kWavelengths = vec3(1.11, 1.0, 0.85);  // 610, 550 and 465 nm, relative to green
 
 layout(location = 0) out vec4 radiance;
 

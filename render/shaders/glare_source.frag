@@ -1,4 +1,4 @@
-// The light above a threshold, at half the size: the mean of four pixels, each by itself.
+// The light above a threshold, at half resolution: thresholds each pixel, then averages four.
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
@@ -12,7 +12,7 @@ layout(location = 0) out vec4 above;
 vec3 above_at(ivec2 at) {
     bool inside = all(lessThan(at, textureSize(scene_radiance, 0)));
     vec3 color = inside ? texelFetch(scene_radiance, at, 0).rgb : vec3(0.0);
-    color = is_finite(color) ? clamp(color, 0.0, kMostLight) : vec3(0.0);
+    color = is_finite(color) ? clamp(color, 0.0, kMaxHalf) : vec3(0.0);
     float light = luminance(color);
     return light > threshold ? color * (1.0 - threshold / light) : vec3(0.0);
 }

@@ -1,18 +1,18 @@
-// Spreads what there is, and a share of the source, along a line: by [1 2 1] / 4 at a distance. Outside it is dark.
+// Spreads the sum so far, and a share of the source, along a line with [1 2 1] / 4 at a distance. Black outside.
 #version 450
 
 layout(binding = 0) uniform sampler2D source;
 layout(binding = 1) uniform sampler2D sum;
 
 uniform vec2 offset;   // [texels]
-uniform float share;   // of the source
-uniform float before;  // of the sum
+uniform float share;   // weight of the source
+uniform float sum_weight;  // weight of the sum
 
 layout(location = 0) out vec4 streak;
 
 vec3 light_at(vec2 place) {
     vec2 uv = place / vec2(textureSize(source, 0));
-    return before * texture(sum, uv).rgb + share * texture(source, uv).rgb;
+    return sum_weight * texture(sum, uv).rgb + share * texture(source, uv).rgb;
 }
 
 void main() {

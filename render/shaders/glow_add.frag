@@ -1,4 +1,4 @@
-// Adds a mask of half the size to the picture.
+// Adds a half-resolution mask to the image.
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_radiance;

@@ -1,5 +1,5 @@
-// A picture's light at half its size, in which lone bright pixels count less. Alpha is the share of its light that a
-// texel passes on. Definition ANY_SIZE: the sizes are not exactly 2 : 1.
+// Downsamples the image to half resolution with a firefly clamp. Alpha is the share of its light that a texel keeps.
+// Definition ANY_SIZE: the sizes are not exactly 2 : 1.
 #version 450
 #include "lib/pyramid.glsl"
 #include "lib/tone.glsl"
@@ -8,11 +8,11 @@
 layout(binding = 0) uniform sampler2D scene_radiance;
 
 uniform ivec2 size;         // of the target
-uniform float per_firefly;  // 1 over the luminance of a firefly; 0: there are none
+uniform float inverse_firefly;  // 1 / luminance of a firefly; 0: no clamp
 
 layout(location = 0) out vec4 passed_on;
 
-// The means of the pixels left and right, below and above of the texel's middle.
+// Means of the pixels in the four quadrants around the texel's center.
 struct Quarters {
     vec3 left_down;
     vec3 right_down;
@@ -40,7 +40,7 @@ Quarters read_quarters() {
             vec2 behind = max(columns, middle.x);
             float left = 2.0 * tent_share(before.x, before.y, middle.x, ratio.x);
             float right = 2.0 * tent_share(behind.x, behind.y, middle.x, ratio.x);
-            // Not more than one pixel beyond the border, where clamped is mirrored.
+            // At most one pixel beyond the border, where clamping equals mirroring.
             vec3 light = texelFetch(scene_radiance, clamp(begin + ivec2(x, y), ivec2(0), last), 0).rgb;
             q.left_down += left * down * light;
             q.right_down += right * down * light;
@@ -49,7 +49,7 @@ Quarters read_quarters() {
         }
     }
 #else
-    // Each reading weighs a pixel and its neighbor 3 : 1.
+    // Each bilinear fetch weights a pixel and its neighbor 3 : 1.
     vec2 texel = 0.5 / vec2(size);
     vec2 near = (2.0 * gl_FragCoord.xy - 0.75) * texel;
     vec2 far = (2.0 * gl_FragCoord.xy + 0.75) * texel;
@@ -65,18 +65,18 @@ void main() {
     Quarters q = read_quarters();
     vec3 mean = 0.25 * q.left_down + 0.25 * q.right_down + 0.25 * q.left_up + 0.25 * q.right_up;
 
-    // The mean of what is bright and what is not, weighed by 1 / (1 + luminance): Karis 2013.
+    // Weighted mean with 1 / (1 + luminance): Karis 2013.
     vec4 light = vec4(
         luminance(q.left_down), luminance(q.right_down), luminance(q.left_up), luminance(q.right_up));
     light = max(light, 0.0);
-    vec4 weight = 1.0 / (1.0 + light * per_firefly);
+    vec4 weight = 1.0 / (1.0 + light * inverse_firefly);
     float plain = dot(light, vec4(0.25));
     float weighted = dot(weight, light) / dot(weight, vec4(1.0));
     float passed = plain > 0.0 ? min(weighted / plain, 1.0) : 1.0;
 
     float peak = max(mean.r, max(mean.g, mean.b));
-    passed = min(passed, kMostLight / max(peak, 1.0));
-    // Nothing of what is no number, nor of what shares a texel with it.
+    passed = min(passed, kMaxHalf / max(peak, 1.0));
+    // Drops texels with NaN or infinity in any pixel.
     bool known = is_finite(mean) && is_finite(passed);
     passed_on = known ? vec4(passed * mean, passed) : vec4(0.0);
 }

@@ -1,4 +1,4 @@
-// What surfaces emit, at half the size: the mean of four pixels, so that small lamps do not flicker.
+// Emission of surfaces at half resolution: the mean of four pixels, so that small lamps do not flicker.
 #version 450
 #include "lib/gbuffer.glsl"
 

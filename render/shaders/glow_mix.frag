@@ -1,16 +1,16 @@
-// The picture less what each pixel gives away, and what the lens makes of that. Definition ANY_SIZE: the sizes are
-// not exactly 2 : 1.
+// Replaces a share of each pixel's light by the light that the lens scatters. Definition ANY_SIZE: the sizes are not
+// exactly 2 : 1.
 #version 450
 #include "lib/pyramid.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
-layout(binding = 1) uniform sampler2D glow;  // alpha: share of its light that a texel took
+layout(binding = 1) uniform sampler2D glow;  // alpha: share of its light that a texel keeps, see glow_first.frag
 
 uniform float strength;
 
 layout(location = 0) out vec4 radiance;
 
-// The transpose of the step in glow_first.frag: the mean over the pixel of what bilinear interpolation gives.
+// The transpose of the step in glow_first.frag: the mean of bilinear interpolation over the pixel.
 vec4 glow_at_pixel(ivec2 size) {
     ivec2 glow_size = textureSize(glow, 0);
 #ifdef ANY_SIZE

@@ -1,4 +1,4 @@
-// One axis of a step between two levels of the pyramid. Down: tents of smoothed pixels, smoothed again; up: the
+// One axis of a step between two levels of the pyramid. Down: smooths, applies the tent and smooths again; up: the
 // transpose of the first two. Definition UP.
 #version 450
 #include "lib/pyramid.glsl"

@@ -1,4 +1,5 @@
-// What the vertices sent on, in between (light.gouraud). Holes need no test: the depth pass before has left them out.
+// Interpolates the light of vertices (light.gouraud). Alpha-masked holes need no test: the depth prepass has left them
+// out.
 #version 450
 #define LIT_AT_VERTICES
 #include "lib/material.glsl"

@@ -1,7 +1,7 @@
-// Surfaces lit at their vertices, by all lights that reach their object (light.gouraud). Maps of color and emission come
-// pixel by pixel, that of roughness and metalness counts by its mean, the others not at all.
+// Per-vertex lighting by all lights that reach the object (light.gouraud). Color and emission maps apply per pixel,
+// that of roughness and metalness only by its mean, the others not at all.
 #version 450
-#define UNMASKED  // the masks of shadow volumes are of pixels
+#define UNMASKED  // shadow masks are in screen space
 #include "lib/mesh_vertex.glsl"
 #include "lib/lighting.glsl"
 
@@ -9,15 +9,15 @@ layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord
 
 #ifdef METAL_ROUGH_MAP
 layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
-const float kLastLevel = 16.0;                          // or the last there is
+const float kLastLevel = 16.0;                          // or the last one
 #endif
 
-layout(location = 0) out vec3 diffuse;   // what the base color's map still dims
+layout(location = 0) out vec3 diffuse;   // still to be multiplied by the base color map
 layout(location = 1) out vec3 specular;
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;
 layout(location = 4) flat out uvec2 material_and_flags;
-invariant gl_Position;  // drawn where the depth is that of depth_first.frag
+invariant gl_Position;  // the depth must equal that of depth_first.frag
 
 SurfaceSample vertex_surface() {
     int texel = int(instance.x * kMaterialTexels);
@@ -51,7 +51,7 @@ void main() {
 #ifdef DOUBLE_SIDED
     s.normal_ws *= dot(s.normal_ws, view.camera_ws.xyz - position_ws) < 0.0 ? -1.0 : 1.0;
 #endif
-    // light_cells holds objects' lists here, not cells'.
+    // Here light_cells holds the lists of objects, not of cells.
     uvec2 list = uvec2(0u);
 #ifdef LOCAL_LIGHTS
     list = texelFetch(light_cells, int(instance.z)).xy;

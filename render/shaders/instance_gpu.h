@@ -1,5 +1,5 @@
 // One drawn copy of a mesh, read as instance-rate vertex attributes: the draw's base instance picks the first.
-// Where it was before is a second stream of three rows, filled only when somebody asks for velocity.
+// The previous frame's transform is a second stream of three rows, filled only when velocity is rendered.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,11 +8,11 @@ namespace limn::layout {
 #endif
 
 struct InstanceRecord {
-    vec4 row[3];   // world_from_mesh at the moment shown
+    vec4 row[3];   // world_from_mesh, current
     uint material;
     uint flags;    // bit 0: mirrored, the determinant is negative; from bit 8: kModel* of lib/gbuffer.glsl
-    uint place;    // of this record among the frame's
-    float inflate; // by which vertices move along their normals, in the mesh's own space [m]
+    uint place;    // index of this record in the frame
+    float inflate; // distance by which vertices move along their normals, in mesh space [m]
 };
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-// Irradiance of a cube map's radiance: its projection on nine spherical harmonics, by one group that sums the texels
-// of a small mip level in a fixed order (Ramamoorthi and Hanrahan 2001).
+// Irradiance of a cube map: projects it on nine spherical harmonics, by one work group that sums the texels of a small
+// mip level in a fixed order (Ramamoorthi and Hanrahan 2001).
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/irradiance.glsl"
@@ -28,7 +28,7 @@ void main() {
         uvec2 texel = uvec2(i % side, i / side % side);
         vec3 d = cube_direction(int(i / (side * side)), (vec2(texel) + 0.5) / float(side));
         float inverse_length = inversesqrt(dot(d, d));
-        float solid_angle = inverse_length * inverse_length * inverse_length;  // up to a factor, made good below
+        float solid_angle = inverse_length * inverse_length * inverse_length;  // up to a factor, normalized below
         float h[9] = harmonics(d * inverse_length);
         vec3 radiance = textureLod(cube, d, float(level)).rgb;
         for (int k = 0; k < 9; ++k) {

@@ -1,5 +1,4 @@
-// What every surface sends on without lights: its emission and the surroundings. The first of the passes that add
-// one light each.
+// Light of every surface without lights: emission and environment. The base of the passes that add one light each.
 #version 450
 #include "lib/lighting.glsl"
 

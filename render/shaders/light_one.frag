@@ -1,4 +1,4 @@
-// What surfaces send on of one light, to be added to what is there (deferred.light-pass).
+// Reflected light of a single light, added to the target (deferred.light-pass).
 #version 450
 #include "lib/lighting.glsl"
 #include "lib/one_light.glsl"

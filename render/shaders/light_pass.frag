@@ -1,4 +1,4 @@
-// Light of every surface that is seen: one pass over the G-buffer, each pixel with the lights of its cell.
+// Deferred shading: one pass over the G-buffer, each pixel with the lights of its cluster cell.
 #version 450
 #include "lib/lighting.glsl"
 

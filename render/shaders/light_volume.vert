@@ -1,16 +1,16 @@
-// The volume that a light fills, as few triangles as wrap it: a ball around a point light, or with the definition
+// Bounding mesh of a light's volume, of few triangles: a ball around a point light, or with the definition
 //   CONE  a pyramid around a spot's cone
-// No vertex data: vertex ids count corners of triangles, counterclockwise from outside.
+// Without vertex data: gl_VertexID enumerates the corners of triangles, counterclockwise from outside.
 #version 450
 #include "lib/view.glsl"
 
-uniform vec4 volume_sphere;  // where the light is [m] and its radius [m]
+uniform vec4 volume_sphere;  // position and radius of the light [m]
 uniform vec4 volume_axis;    // unit; w: tangent of the cone's half angle
 
 const float kStep = 0.785398163397448;  // eighth of a turn
-// A ring's polygon through points of a circle lies within it: so much larger, it wraps it.
+// Factors by which polygons inscribed in a circle grow to enclose it.
 const float kWrapRing = 1.08239220029239;  // 1 / cos(half a step)
-const float kWrapBall = 1.171572875253810;  // its square: wraps in both directions
+const float kWrapBall = 1.171572875253810;  // its square, for both directions
 
 // Corner 0 .. 5 of a quad of two triangles, as steps right and up.
 ivec2 quad_corner(int corner) {

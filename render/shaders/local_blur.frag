@@ -1,6 +1,6 @@
-// One direction of up to four Gaussian blurs at once, a component each, of a picture's luminance.
-//   SOURCE  0: radiance; 1: the x component, for all four; 2: the components, each its own
-//   RADIUS  of the widest [texels]; known when compiling, as a software OpenGL fetches weights by a variable slowly
+// One direction of up to four Gaussian blurs of an image's luminance, one per component.
+//   SOURCE  0: radiance; 1: the x component, for all four; 2: each component separately
+//   RADIUS  of the widest [texels]; a constant, as a software OpenGL is slow at indexing weights by a variable
 #version 450
 #include "lib/tone.glsl"
 #include "tone_gpu.h"
@@ -17,7 +17,7 @@ layout(location = 0) out vec4 blurred;
 vec4 fetch(ivec2 at) {
     vec4 texel = texelFetch(source, at, 0);
 #if SOURCE == 0
-    return vec4(luminance(clean_light(texel.rgb, kMostLight)));
+    return vec4(luminance(sanitize_light(texel.rgb, kMaxHalf)));
 #elif SOURCE == 1
     return texel.xxxx;
 #else
@@ -30,7 +30,7 @@ void main() {
     ivec2 last = textureSize(source, 0) - 1;
     blurred = weights.weight[0] * fetch(at);
     for (int i = 1; i <= RADIUS; ++i) {
-        // Beyond the edge the picture goes on as it is there.
+        // Clamps to the edge.
         vec4 both = fetch(max(at - i * direction, ivec2(0))) + fetch(min(at + i * direction, last));
         blurred += weights.weight[i] * both;
     }

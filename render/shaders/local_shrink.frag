@@ -1,4 +1,4 @@
-// The widest blur of a smaller picture: each texel is the mean of the four about its middle.
+// Downsamples the widest blur: each texel is the mean of the four about its center.
 #version 450
 
 layout(binding = 0) uniform sampler2D source;

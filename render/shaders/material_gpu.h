@@ -12,7 +12,7 @@ struct MaterialRecord {
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
     vec4 specular;    // ks of Blinn, Phong and Skin; w: shininess
     vec4 uv_map[10];  // of texture i: 2 i = rows (u: xy, v: zw) of its 2x3 map, 2 i + 1 = offset xy, uv set z
-    vec4 skin;        // color of Skin's rim; w: 1 = it is wide
+    vec4 skin;        // color of Skin's rim; w: 1 = wide rim
     vec4 unused;
 };
 

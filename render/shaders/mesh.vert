@@ -1,12 +1,12 @@
 // Every mesh instance, for the G-buffer and for the passes that shade while drawing. Definitions of
 // lib/mesh_vertex.glsl, and
-//   VELOCITY  also where each point was the moment before
-//   DEFORMED  with VELOCITY: points moved in the mesh's own space, too
-//   OBJECT_LIGHTS  also the instance's place
-//   CLIPPED  only on the side of a plane that is seen
+//   VELOCITY  also the position in the previous frame
+//   DEFORMED  with VELOCITY: vertices also move in mesh space
+//   OBJECT_LIGHTS  also the index of the instance
+//   CLIPPED  only on one side of view.clip_plane
 #version 450
 #include "lib/mesh_vertex.glsl"
-#include "lib/vertex_before.glsl"
+#include "lib/previous_vertex.glsl"
 #include "lib/view.glsl"
 
 layout(location = 0) out vec3 normal_ws;   // not unit
@@ -15,7 +15,7 @@ layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;
 layout(location = 4) flat out uvec2 material_and_flags;
 #ifdef VELOCITY
-layout(location = 5) out vec3 before;  // clip x, y, w
+layout(location = 5) out vec3 previous_clip;  // clip x, y, w
 #endif
 #ifdef OBJECT_LIGHTS
 layout(location = 6) flat out uint object;
@@ -23,7 +23,7 @@ layout(location = 6) flat out uint object;
 #ifdef CLIPPED
 out float gl_ClipDistance[1];
 #endif
-invariant gl_Position;  // passes that draw again what is nearest ask for the same depth
+invariant gl_Position;  // passes that redraw the nearest surface test for equal depth
 
 void main() {
     gl_Position = view.clip_from_world * vec4(vertex_ws(), 1.0);
@@ -41,6 +41,6 @@ void main() {
 #endif
 
 #ifdef VELOCITY
-    before = (view.previous_from_world * vec4(vertex_before_ws(), 1.0)).xyw;
+    previous_clip = (view.previous_clip_from_world * vec4(previous_vertex_ws(), 1.0)).xyw;
 #endif
 }

@@ -1,4 +1,4 @@
-// Light that a mirror sends to a plane, added where triangles of it land.
+// Light that a mirror reflects to a plane, added where its triangles land.
 #version 450
 
 uniform vec3 color;
@@ -8,6 +8,6 @@ layout(location = 1) in float dark;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    // A triangle with a vertex that faces away would lie across the plane as a fan.
+    // A triangle with a vertex that faces away would spread across the plane.
     radiance = vec4(dark > 0.0 ? vec3(0.0) : color * lit, 0.0);
 }

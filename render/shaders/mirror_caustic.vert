@@ -1,4 +1,4 @@
-// A mirror's vertices where they send the light (lib/caustic_landing.glsl).
+// A mirror's vertices, moved to where they reflect the light (lib/caustic_landing.glsl).
 #version 450
 #include "lib/caustic_landing.glsl"
 #include "lib/view.glsl"
@@ -9,14 +9,14 @@ layout(location = 1) in vec3 normal_ms;
 uniform vec4 row_x;  // world_from_mesh
 uniform vec4 row_y;
 uniform vec4 row_z;
-uniform vec4 light;  // a place and 1, or the direction toward it and 0
+uniform vec4 light;  // position and 1, or the direction toward it and 0
 uniform vec4 plane;
 uniform vec4 look;   // mirror_vertex()
 
 layout(location = 0) out float lit;
-layout(location = 1) out float dark;  // > 0 in triangles of which a vertex is not lit
+layout(location = 1) out float dark;  // > 0 in triangles with an unlit vertex
 
-const float kNearer = 1.0005;  // in depth, than the plane on which it lies
+const float kNearer = 1.0005;  // depth bias toward the camera, against the plane on which it lies
 
 void main() {
     vec4 p = vec4(position_ms, 1.0);

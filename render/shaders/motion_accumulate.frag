@@ -1,21 +1,21 @@
-// The mean of the last pictures (post.motion-blur-accumulation). Summed up as differences from the newest: where they
-// are equal, so is their mean, to the bit.
+// The mean of the last frames (post.motion-blur-accumulation). Sums differences from the newest, so that the mean of
+// equal frames is bit-identical.
 #version 450
 
-layout(binding = 0) uniform sampler2DArray pictures;
+layout(binding = 0) uniform sampler2DArray frames;
 
 uniform int newest;  // layer
-uniform int count;   // of pictures, in the layers before it, round the end
-uniform int window;  // layers
+uniform int count;   // of frames, including the newest, in the layers of the ring before it
+uniform int window;  // layers of the ring
 
 layout(location = 0) out vec4 mean;
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    vec4 last = texelFetch(pictures, ivec3(at, newest), 0);
+    vec4 last = texelFetch(frames, ivec3(at, newest), 0);
     vec4 sum = vec4(0.0);
     for (int i = 1; i < count; ++i) {
-        sum += texelFetch(pictures, ivec3(at, (newest - i + window) % window), 0) - last;
+        sum += texelFetch(frames, ivec3(at, (newest - i + window) % window), 0) - last;
     }
     mean = last + sum / float(count);
 }

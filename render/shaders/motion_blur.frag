@@ -1,4 +1,4 @@
-// What each pixel sees while the shutter is open, guessed from the one moment that was drawn. See motion_blur_pass.h.
+// Motion blur of a single frame by its velocities. See motion_blur_pass.h.
 #version 450
 #include "lib/motion.glsl"
 #include "lib/noise.glsl"
@@ -8,12 +8,12 @@ layout(binding = 1) uniform sampler2D motion_map;  // motion_pack.frag
 layout(binding = 2) uniform sampler2D neighbors;   // motion_neighbor.frag
 
 uniform int side;     // of a tile [px]
-uniform int samples;  // along a smear
+uniform int samples;  // along the motion
 
 layout(location = 0) out vec4 blurred;
 
 const float kStill = 0.5;       // less than this [px] to either side is no motion
-const float kSameDepth = 0.02;  // share of the distance; within it the faster one is in front
+const float kSameDepth = 0.02;  // relative; within it, the faster one counts as in front
 
 struct Pixel {
     vec2 motion;
@@ -21,13 +21,13 @@ struct Pixel {
     float speed;
 };
 
-// What was found on the way, in pixels of length along a line unless it says otherwise.
+// Sums along a line, in pixels of its length unless noted.
 struct Found {
-    vec3 front;         // radiance of what passes before this pixel, times share of the exposure
+    vec3 front;         // radiance of what passes in front of this pixel, times share of the exposure
     float front_share;  // of the exposure
-    vec3 own;           // the pixel's own layer: what moves with it
+    vec3 own;           // the pixel's own layer: surfaces that move with it
     float own_length;
-    float gap;          // of the same stretch, where the layer behind shows
+    float gap;          // of the same length, where the layer behind is visible
     vec3 behind;
     float behind_weight;
 };
@@ -36,16 +36,17 @@ vec4 fetch_motion(ivec2 at) {
     return texelFetch(motion_map, at, 0);
 }
 
-// Samples one line through the pixel, `reach` [px] to either side, where it crosses columns or rows of pixels: all
-// of them if `most` are enough, else one in so many. as_front: what passes from elsewhere counts; as_own: the
-// pixel's own layer and what is behind it do.
+// Samples one line through the pixel, `reach` [px] to either side, where it crosses columns or rows of pixels: at most
+// about `max_samples` of them, at a regular stride. as_front: gathers what passes in front; as_own: gathers the
+// pixel's own layer and what is behind it.
 void gather(
-    inout Found found, Pixel here, vec2 direction, float reach, int most, float jitter, bool as_front, bool as_own) {
+    inout Found found, Pixel here, vec2 direction, float reach, int max_samples, float jitter, bool as_front,
+    bool as_own) {
     ivec2 last = textureSize(radiance, 0) - 1;
     float major = max(abs(direction.x), abs(direction.y));
     vec2 pace = direction / major;
     int far = int(reach * major + 0.5);
-    int stride = (2 * far + most) / most;
+    int stride = (2 * far + max_samples) / max_samples;
     float spacing = float(stride) / major;
     float own_reach = abs(dot(here.motion, direction));
     for (int k = int(jitter * float(stride)) - far; k <= far; k += stride) {
@@ -54,7 +55,7 @@ void gather(
         vec3 color = texelFetch(radiance, there, 0).rgb;
         float distance_px = abs(float(k)) / major;
 
-        // What moves alike is one layer, however deep: nothing in it hides more than before.
+        // Pixels with the same motion are one layer at any depth: their mutual occlusion does not change.
         float apart = distance(texel.xy, here.motion);
         float alike = clamp(1.5 - apart / (0.5 + 0.2 * max(texel.w, here.speed)), 0.0, 1.0);
         float nearer = (texel.z - here.depth) / (kSameDepth * max(max(texel.z, here.depth), 1e-9));
@@ -96,26 +97,26 @@ void main() {
     Pixel here = Pixel(texel.xy, texel.z, texel.w);
 
     if (neighbor.xy == neighbor.zw) {
-        // All that is near moves alike.
+        // Uniform motion in the neighborhood.
         blurred.rgb = mean_along(radiance, gl_FragCoord.xy, here.motion, 2 * samples + 1, jitter);
         return;
     }
 
     Found found = Found(vec3(0.0), 0.0, 1e-3 * color.rgb, 1e-3, 0.0, vec3(0.0), 0.0);
     bool moves = here.speed > kStill;
-    vec2 main_way = neighbor.xy / longest;
-    // A pixel that moves like the fastest: one line says it all.
+    vec2 main_direction = neighbor.xy / longest;
+    // For a pixel that moves like the fastest one, a single line is enough.
     bool one_line = moves && distance(here.motion, neighbor.xy) < 0.2 * longest + 0.5;
     float other = length(neighbor.zw);
     bool crossing = other > kStill;
     int lines = (moves && !one_line ? 2 : 1) + (crossing ? 1 : 0);
-    int most = lines == 1 ? 2 * samples : samples;
-    gather(found, here, main_way, longest, most, jitter, true, one_line);
+    int max_samples = lines == 1 ? 2 * samples : samples;
+    gather(found, here, main_direction, longest, max_samples, jitter, true, one_line);
     if (moves && !one_line) {
-        gather(found, here, here.motion / here.speed, here.speed, most, jitter, false, true);
+        gather(found, here, here.motion / here.speed, here.speed, max_samples, jitter, false, true);
     }
     if (crossing) {
-        gather(found, here, neighbor.zw / other, other, most, jitter, true, false);
+        gather(found, here, neighbor.zw / other, other, max_samples, jitter, true, false);
     }
 
     vec3 own = found.own / found.own_length;

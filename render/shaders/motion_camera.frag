@@ -1,4 +1,4 @@
-// A picture convolved with the way that the camera's motion moves each of its points (post.motion-blur-camera-psf).
+// Convolves the image with the motion of each point due to the camera (post.motion-blur-camera-psf).
 #version 450
 #include "lib/motion.glsl"
 #include "lib/noise.glsl"
@@ -7,22 +7,22 @@
 layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1) uniform sampler2D depth_map;
 
-uniform float half_exposure;  // share of the time between two pictures
+uniform float half_exposure;  // share of the frame time
 uniform float longest;        // [px]
 uniform int samples;
 
 layout(location = 0) out vec4 blurred;
 
-const float kStill = 0.02;  // [px]; rounding is less
+const float kStill = 0.02;  // [px]; above rounding errors
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float depth = texelFetch(depth_map, pixel, 0).r;
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    // The sky has a direction and no place.
+    // The sky is at infinity: w = 0.
     vec4 point = depth > 0.0 ? vec4(world_position(gl_FragCoord.xy, depth), 1.0) : vec4(view_ray(gl_FragCoord.xy), 0.0);
-    vec3 before = (view.previous_from_world * point).xyw;
-    vec2 moved = 0.5 * (now_ndc - before.xy / max(before.z, 1e-6)) * view.size.xy;
+    vec3 previous_clip = (view.previous_clip_from_world * point).xyw;
+    vec2 moved = 0.5 * (now_ndc - previous_clip.xy / max(previous_clip.z, 1e-6)) * view.size.xy;
     vec2 motion = bounded_motion(half_exposure * moved, longest);
     blurred = texelFetch(radiance, pixel, 0);
     if (dot(motion, motion) > kStill * kStill) {

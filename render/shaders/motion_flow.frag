@@ -1,7 +1,7 @@
-// One step of optic-flow motion blur: the picture, half mixed with itself warped along the field.
+// One step of optic-flow motion blur: blends the image half and half with itself warped along the field.
 #version 450
 
-layout(binding = 0) uniform sampler2D picture;
+layout(binding = 0) uniform sampler2D image;
 layout(binding = 1) uniform sampler2D field_map;
 
 uniform float scale;  // of the field; negative: against it
@@ -11,9 +11,9 @@ layout(location = 0) out vec4 mixed;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 field = texelFetch(field_map, pixel, 0).xy;
-    mixed = texelFetch(picture, pixel, 0);
+    mixed = texelFetch(image, pixel, 0);
     if (field != vec2(0.0)) {
-        vec2 from = (gl_FragCoord.xy - scale * field) / vec2(textureSize(picture, 0));
-        mixed = mix(mixed, textureLod(picture, from, 0.0), 0.5);
+        vec2 from = (gl_FragCoord.xy - scale * field) / vec2(textureSize(image, 0));
+        mixed = mix(mixed, textureLod(image, from, 0.0), 0.5);
     }
 }

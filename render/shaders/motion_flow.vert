@@ -1,16 +1,16 @@
 // The field along which optic-flow motion blur warps, at the vertices. Definitions of lib/mesh_vertex.glsl and
-// lib/vertex_before.glsl.
+// lib/previous_vertex.glsl.
 #version 450
 #include "lib/mesh_vertex.glsl"
 #include "lib/motion.glsl"
-#include "lib/vertex_before.glsl"
+#include "lib/previous_vertex.glsl"
 #include "lib/view.glsl"
 
-layout(location = 0) out vec3 tail;  // clip x, y, w of where the offset begins that ends here
-invariant gl_Position;               // as mesh.vert has it
+layout(location = 0) out vec3 tail;  // clip x, y, w of the start of the offset that ends here
+invariant gl_Position;               // as in mesh.vert
 
 void main() {
     gl_Position = view.clip_from_world * vec4(vertex_ws(), 1.0);
-    vec3 offset_ws = flow_offset(vertex_normal_ws(), vertex_ws() - vertex_before_ws());
+    vec3 offset_ws = flow_offset(vertex_normal_ws(), vertex_ws() - previous_vertex_ws());
     tail = (view.clip_from_world * vec4(vertex_ws() - offset_ws, 1.0)).xyw;
 }

@@ -1,7 +1,7 @@
-// What may smear into each tile: the longest motion of the tiles from which it gets here, and the longest that
-// goes another way, for where two things cross.
+// Motion that may reach each tile: the longest motion of the tiles from which it does, and the longest in a different
+// direction, for objects that cross.
 //   xy  longest [px]
-//   zw  the other; the same again where all that is near moves alike; 0 without one
+//   zw  the other; equal to xy for uniform motion in the neighborhood; 0 if there is none
 #version 450
 
 layout(binding = 0) uniform sampler2D tiles;
@@ -12,7 +12,7 @@ uniform int radius;  // of the neighborhood [tiles]
 layout(location = 0) out vec4 neighbor;
 
 const float kDiagonal = 1.4142136;
-const float kAlike = 0.12;   // differences that do not show, as a share of the motion; by eye
+const float kAlike = 0.12;   // invisible differences, as a share of the motion; by eye
 const float kAlikePx = 0.3;  // [px]
 
 // Whether a tile that lies `offset` [px] away and moves by +-motion touches this one.
@@ -42,18 +42,18 @@ void main() {
         }
     }
     vec2 other = vec2(0.0);
-    float most_across = 0.25 * longest_squared;  // sine of 15 degrees at equal length
+    float max_across = 0.25 * longest_squared;  // sine of 15 degrees at equal length
     float apart = 0.0;
     for (int y = low.y; y <= high.y; ++y) {
         for (int x = low.x; x <= high.x; ++x) {
             vec3 tile = texelFetch(tiles, ivec2(x, y), 0).xyz;
             vec2 offset = vec2(x - here.x, y - here.y) * float(side);
-            // Slow ones reach this tile only from next door, but there they count.
+            // Slow motions reach this tile only from adjacent tiles, but matter there.
             if (reaches(offset, longest) || reaches(offset, tile.xy)) {
                 apart = max(apart, distance(tile.xy, longest) + tile.z);
                 float across = abs(longest.x * tile.y - longest.y * tile.x);
-                if (across > most_across && reaches(offset, tile.xy)) {
-                    most_across = across;
+                if (across > max_across && reaches(offset, tile.xy)) {
+                    max_across = across;
                     other = tile.xy;
                 }
             }

@@ -1,5 +1,5 @@
-// What motion blur knows of a pixel, in one texel:
-//   xy  how far it gets in half the exposure [px]
+// Input of motion blur for a pixel, in one texel:
+//   xy  motion in half the exposure [px]
 //   z   its depth, reversed; 0 for the sky
 //   w   length of xy
 #version 450
@@ -9,7 +9,7 @@
 layout(binding = 0) uniform sampler2D velocity_map;
 layout(binding = 1) uniform sampler2D depth_map;
 
-uniform float half_exposure;  // share of the time between two pictures
+uniform float half_exposure;  // share of the frame time
 uniform float longest;        // [px]
 
 layout(location = 0) out vec4 motion;

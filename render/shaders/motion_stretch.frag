@@ -1,21 +1,21 @@
-// The layer of stretched objects: each pixel is the mean of the picture before, walked back along the motion, and of
-// this one, walked ahead. The listing has the signs the other way round, which shows two half objects side by side.
+// The layer of stretched objects: each pixel is the mean of the previous frame, sampled backward along the motion, and
+// of this one, sampled forward. The listing has opposite signs, which shows two half objects side by side.
 #version 450
 #include "lib/motion.glsl"
 #include "lib/view.glsl"
 
-layout(binding = 0) uniform sampler2D radiance;         // of this picture
-layout(binding = 1) uniform sampler2D radiance_before;  // of the one before
-layout(binding = 2) uniform sampler2D depth_map;        // of this picture
+layout(binding = 0) uniform sampler2D radiance;         // of this frame
+layout(binding = 1) uniform sampler2D previous_radiance;  // of the previous frame
+layout(binding = 2) uniform sampler2D depth_map;        // of this frame
 
 uniform int samples;     // >= 2
-uniform float exposure;  // share of the way
+uniform float exposure;  // share of the motion
 uniform float longest;   // [px]
 
-noperspective layout(location = 0) in vec2 way;
+noperspective layout(location = 0) in vec2 motion;
 layout(location = 0) out vec4 blurred;
 
-const float kBehind = 1.02;  // times as far away: behind what the picture shows
+const float kBehind = 1.02;  // ratio of distances from which the layer is hidden
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -24,13 +24,13 @@ void main() {
     float depth = texelFetch(depth_map, pixel, 0).r;
     blurred = texelFetch(radiance, pixel, 0);
     if (depth > 0.0 && view_distance(depth) * kBehind < layer_distance) {
-        return;  // something stands before the layer
+        return;  // the layer is hidden
     }
-    vec2 v = bounded_motion(way * exposure, longest);
+    vec2 v = bounded_motion(motion * exposure, longest);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < samples; ++i) {
         float t = float(i) / float(samples - 1);
-        sum += textureLod(radiance_before, (gl_FragCoord.xy - t * v) * per_pixel, 0.0).rgb;
+        sum += textureLod(previous_radiance, (gl_FragCoord.xy - t * v) * per_pixel, 0.0).rgb;
         sum += textureLod(radiance, (gl_FragCoord.xy + t * v) * per_pixel, 0.0).rgb;
     }
     blurred.rgb = sum / float(2 * samples);

@@ -1,13 +1,13 @@
-// The longest motion of each tile, and how far the others are from it. Two passes, along x and along y.
+// The longest motion in each tile, and the spread of the others. Two passes, along x and along y.
 //   xy  longest motion [px]
-//   z   largest distance of another motion from it [px]
+//   z   largest difference of another motion from it [px]
 #version 450
 
 layout(binding = 0) uniform sampler2D source;
 
 uniform ivec2 along;  // (1, 0), (0, 1)
 uniform int side;     // of a tile [texels of the source]
-uniform int first;    // 1: the source is motion_pack.frag's, whose z means something else
+uniform int first;    // 1: the source is that of motion_pack.frag, whose z has another meaning
 
 layout(location = 0) out vec4 tile;
 

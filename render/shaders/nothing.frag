@@ -1,4 +1,4 @@
-// Colors nothing: for passes that only count in depth or stencil.
+// Writes no color: for passes that only write depth or stencil.
 #version 450
 
 void main() {}

@@ -1,5 +1,5 @@
-// The second half of the ocean's transform, over the numbers along x: a work group a row of one cascade. Writes what
-// OceanFields describes.
+// The second half of the ocean's transform, along x: one work group per row of a cascade. Writes the textures of
+// OceanFields.
 #version 450
 #include "lib/fft_line.glsl"
 

@@ -1,11 +1,11 @@
-// Waves at this moment and the first half of their transform, over the numbers along z (water.fft-synthesis): a work
-// group a line of one cascade. Spectra of two real fields a and b are one complex line a + i b; the pairs are those of
+// Current wave spectrum and the first half of its transform, along z (water.fft-synthesis): one work group per line of
+// a cascade. Spectra of two real fields a and b are packed in one complex line a + i b; the pairs are those of
 // systems/water/ocean_kernels.h.
 #version 450
 #include "lib/fft_line.glsl"
 
-// Wave (n, m) of cascade c, with n waves across the patch along x and m along z, is at (c * SIZE + n) * SIZE + m; the
-// numbers from SIZE / 2 on are those from -SIZE / 2 on.
+// Wave (n, m) of cascade c, with n periods across the patch along x and m along z, is at (c * SIZE + n) * SIZE + m;
+// indices from SIZE / 2 on are negative wave numbers from -SIZE / 2 on.
 layout(std430, binding = 0) readonly buffer Waves {
     vec4 waves[];  // height ahead.xy e^(-i omega t) + behind.zw e^(i omega t) [m]
 };
@@ -19,15 +19,15 @@ layout(std430, binding = 2) writeonly buffer Lines {
 
 uniform vec4 patches;         // sides of the cascades [m]
 uniform float choppiness;
-uniform vec2 time_in_turns;   // t / 2 pi [s/rad]: a float and what it lacks
+uniform vec2 time_in_periods;   // t / 2 pi [s/rad]: a float and its rounding error
 
 float signed_number(uint place) {
     return float(int(place) - (place < SIZE / 2u ? 0 : int(SIZE)));
 }
 
-/// Sine and cosine of omega t, whose turns are counted in double precision.
+/// Sine and cosine of omega t, reduced to one period in double precision.
 vec2 phase_of(float frequency) {
-    double turns = double(frequency) * (double(time_in_turns.x) + double(time_in_turns.y));
+    double turns = double(frequency) * (double(time_in_periods.x) + double(time_in_periods.y));
     float angle = kFullTurn * float(turns - floor(turns));
     return vec2(sin(angle), cos(angle));
 }

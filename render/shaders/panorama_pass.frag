@@ -1,17 +1,17 @@
-// One face of the cube map that a panorama becomes: the mean of four points of each texel.
+// Converts a panorama to one face of a cube map, with four samples per texel.
 #version 450
 #include "lib/cube_map.glsl"
 #include "lib/panorama.glsl"
 #include "lib/tone.glsl"
 
-layout(binding = 5) uniform sampler2D panorama;  // its first row is the upper one
+layout(binding = 5) uniform sampler2D panorama;  // its first row is the top one
 
 uniform int face;
 uniform float size;       // side of the face [px]
 uniform int mapping;      // PanoramaMapping
 uniform float half_angle;
 uniform vec2 turn;        // cosine and sine of its rotation about the vertical
-uniform float level;      // whose texels are about as large as the face's
+uniform float level;      // mip level whose texels are about as large as the face's
 uniform float intensity;
 
 layout(location = 0) out vec4 radiance;
@@ -25,7 +25,7 @@ void main() {
         vec3 d = cube_direction(face, (gl_FragCoord.xy + corner) / size);
         d.xz = vec2(turn.x * d.x - turn.y * d.z, turn.y * d.x + turn.x * d.z);
         vec2 uv = panorama_uv(mapping, d, half_angle);
-        sum += clean_light(intensity * textureLod(panorama, vec2(uv.x, 1.0 - uv.y), level).rgb, kMaxRadiance);
+        sum += sanitize_light(intensity * textureLod(panorama, vec2(uv.x, 1.0 - uv.y), level).rgb, kMaxRadiance);
     }
     radiance = vec4(0.25 * sum, 1.0);
 }

@@ -1,4 +1,4 @@
-// What a probe sees toward one face, as its cube map keeps it: without what would spoil every mean.
+// One face of a probe's cube map, without negative, infinite and NaN radiance, which would spoil every mean.
 #version 450
 
 layout(binding = 5) uniform sampler2D scene_radiance;

@@ -1,7 +1,7 @@
-// Blurs the surroundings for one roughness: one level of a reflection map. The mean of radiance over GGX half
-// vectors, weighted by n.l, for a view along the normal (Karis 2013). A cube map is read at the mip level whose
-// texels are as large as what each sample stands for: few samples then see even a small sun, and none of them
-// alone (Krivanek and Colbert, "Real-time Shading with Filtered Importance Sampling", 2008).
+// Prefilters the environment for one roughness: one mip level of a reflection map. The mean of radiance over GGX half
+// vectors, weighted by n.l, for a view along the normal (Karis 2013). A cube map is read at the mip level that matches
+// the solid angle of each sample: few samples then catch even a small sun, without fireflies (Krivanek and Colbert,
+// "Real-time Shading with Filtered Importance Sampling", 2008).
 #version 450
 #include "lib/sky.glsl"
 #include "lib/reflection_map.glsl"
@@ -14,7 +14,7 @@ layout(location = 0) out vec4 radiance;
 
 const float kTwoPi = 6.28318530718;
 
-// Mean radiance from about `l`, over a solid angle where the surroundings are a cube map.
+// Radiance from `l`, averaged over the solid angle if the environment is a cube map.
 vec3 radiance_about(vec3 l, float solid_angle) {
 #if SKY_KIND == 3
     float face = float(textureSize(sky_cube, 0).x);
@@ -45,7 +45,7 @@ void main() {
         float n_h = sqrt(c2);
         vec3 l = 2.0 * n_h * h - n;
         float n_l = max(dot(n, l), 0.0);
-        // The density of h is D(h) n.h; that of l, which turns twice as fast, a quarter of D.
+        // The density of h is D(h) n.h; that of l is D / 4.
         float lobe = (alpha2 - 1.0) * c2 + 1.0;
         float density = alpha2 / (2.0 * kTwoPi * lobe * lobe);
         sum += radiance_about(l, max(1.0 / (float(samples) * density), texel)) * n_l;

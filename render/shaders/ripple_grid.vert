@@ -1,8 +1,8 @@
-// post.scene-ripple at the points of a grid over the picture, whose cells are two triangles each.
+// post.scene-ripple at the points of a grid over the image, with two triangles per cell.
 #version 450
 #include "lib/ripple.glsl"
 
-uniform int points;  // a side
+uniform int points;  // per side
 uniform vec2 center;
 uniform float radius;
 uniform float amplitude;

@@ -1,4 +1,4 @@
-// Hot air in a box or ball: the way of a ray through it, and the eddies in the middle of that way.
+// Heat haze in a box or ball: the path of a ray through it, and the eddies at the middle of that path.
 #version 450
 #include "lib/noise.glsl"
 #include "lib/view.glsl"
@@ -7,15 +7,15 @@ layout(binding = 6) uniform sampler2D scene_depth;
 
 uniform mat4 local_from_world;  // half-extent 1
 uniform bool is_ball;
-uniform float most;    // largest shift [px]
+uniform float max_shift;    // largest shift [px]
 uniform float scale;   // of an eddy [m]
-uniform float raised;  // how far the air has risen [eddies]
+uniform float raised;  // distance that the air has risen [eddies]
 uniform uint seed;
 
-layout(location = 0) out vec4 shift;  // [px]; alpha: the depth behind which it reads
+layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
 
-// Where `from + t along` enters and leaves [t]; leaves before it enters: passes by.
-vec2 way_through_box(vec3 from, vec3 along) {
+// Parameters t at which `from + t along` enters and leaves; it misses the box if the second is smaller.
+vec2 box_span(vec3 from, vec3 along) {
     vec3 a = (-1.0 - from) / along;
     vec3 b = (1.0 - from) / along;
     vec3 low = min(a, b);
@@ -23,7 +23,7 @@ vec2 way_through_box(vec3 from, vec3 along) {
     return vec2(max(low.x, max(low.y, low.z)), min(high.x, min(high.y, high.z)));
 }
 
-vec2 way_through_ball(vec3 from, vec3 along) {
+vec2 ball_span(vec3 from, vec3 along) {
     float a = dot(along, along);
     float b = dot(from, along);
     float root = b * b - a * (dot(from, from) - 1.0);
@@ -38,10 +38,10 @@ void main() {
     along = mix(along, vec3(1e-9), lessThan(abs(along), vec3(1e-9)));
 
     // t is the distance along the view axis [m].
-    vec2 way = is_ball ? way_through_ball(from, along) : way_through_box(from, along);
-    float enter = max(way.x, view.camera_ws.w);
-    float hidden = min(way.y, view.camera_ws.w / max(depth, 1e-20));
-    float whole = way.y - enter;
+    vec2 span = is_ball ? ball_span(from, along) : box_span(from, along);
+    float enter = max(span.x, view.camera_ws.w);
+    float hidden = min(span.y, view.camera_ws.w / max(depth, 1e-20));
+    float whole = span.y - enter;
     float share = whole > 0.0 ? max(hidden - enter, 0.0) / whole : 0.0;
 
     float t = enter + 0.5 * max(hidden - enter, 0.0);
@@ -51,9 +51,9 @@ void main() {
 
     vec3 place = (view.camera_ws.xyz + t * ray) / scale - vec3(0.0, raised, 0.0);
     vec2 eddy = vec2(gradient_noise(place, seed), gradient_noise(place, seed + 0x9e37u));
-    vec2 moved = 0.70710678 * most * share * fade * eddy;
+    vec2 moved = 0.70710678 * max_shift * share * fade * eddy;
     if (moved == vec2(0.0)) {
-        discard;  // what does not ripple asks for no depth
+        discard;  // leaves the depth of other effects
     }
     shift = vec4(moved, 0.0, view.camera_ws.w / enter);
 }

@@ -1,4 +1,4 @@
-// A rectangle of the picture: four corners of a strip, without vertex data.
+// A rectangle on screen: a strip of four corners, without vertex data.
 #version 450
 
 uniform vec4 rect;  // NDC: lower left, upper right corner

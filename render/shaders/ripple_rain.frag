@@ -1,19 +1,19 @@
-// Drops on the lens. Each is a small lens itself and shows the picture turned over; some run down and leave beads.
+// Drops on the lens. Each is a small lens that shows the image inverted; some run down and leave beads.
 // Everything by eye.
 #version 450
 #include "lib/noise.glsl"
 #include "lib/view.glsl"
 
 uniform float amount;
-uniform float size;  // of a cell, in heights of the picture
+uniform float size;  // of a cell [image heights]
 uniform float speed;
 uniform float strength;
 uniform uint seed;
 uniform float time;
 
-layout(location = 0) out vec4 shift;  // [px]; alpha: the depth behind which it reads
+layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
 
-// What a round drop does to a place `from_middle` [radii]: nothing outside, and inside it turns the picture over.
+// Shift by a round drop at `from_middle` [radii]: 0 outside, inverts the image inside.
 vec2 refract_drop(vec2 from_middle, float radius) {
     float inside = 1.0 - min(dot(from_middle, from_middle), 1.0);
     return -4.0 * strength * radius * from_middle * inside * (2.0 - inside);
@@ -28,7 +28,7 @@ vec2 resting_drops(vec2 at, float cell_size, uint salt) {
     ivec2 cell = ivec2(floor(at / cell_size));
     vec4 random = random_of(cell, salt);
     float life = time * mix(0.05, 0.2, random.x) + random.y;
-    // Each life is lived at a place of its own.
+    // A new position for each life.
     vec4 now = random_of(cell, salt + 1u + uint(life));
     bool wet = now.x < amount;
     float age = fract(life);
@@ -37,13 +37,13 @@ vec2 resting_drops(vec2 at, float cell_size, uint salt) {
     return wet ? refract_drop((at - middle) / max(radius, 1e-6), radius) : vec2(0.0);
 }
 
-// A column down which one drop after the other runs, faster and slower, with beads in its wake.
+// A column down which drops run one after another at varying speed, with beads in their wake.
 vec2 running_drop(vec2 at, float width, uint salt) {
     int column = int(floor(at.x / width));
     vec4 random = random_of(ivec2(column, 0), salt);
     float run = time * speed * mix(0.4, 1.0, random.x) + random.y;
-    float way = fract(run);
-    float halting = way - 0.9 * sin(way * 37.7) / 37.7;  // 2 pi 6: six stops
+    float progress = fract(run);
+    float halting = progress - 0.9 * sin(progress * 37.7) / 37.7;  // 2 pi 6: six stops
     float head = 1.2 - 1.5 * halting;
 
     vec4 now = random_of(ivec2(column, int(run)), salt + 1u);
@@ -64,7 +64,7 @@ vec2 running_drop(vec2 at, float width, uint salt) {
 }
 
 void main() {
-    vec2 at = gl_FragCoord.xy * view.size.w;  // heights of the picture
+    vec2 at = gl_FragCoord.xy * view.size.w;  // [image heights]
     vec2 moved = running_drop(at, 2.0 * size, 100u);
     moved = moved == vec2(0.0) ? resting_drops(at, size, 200u) : moved;
     moved = moved == vec2(0.0) ? resting_drops(at + 0.37, 0.4 * size, 300u) : moved;

@@ -1,5 +1,5 @@
-// The picture at the shifted places. Of the four texels between which such a place lies, those in front of what
-// ripples do not count; where all are, and where nothing ripples, the pixel stays as it is, to the bit.
+// The image at shifted positions. Of the four texels around a position, those in front of the rippling region are
+// ignored; where all are, and where nothing ripples, the pixel stays bit-identical.
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_radiance;
@@ -19,7 +19,7 @@ void main() {
     vec2 corner = floor(place);
     vec2 share = place - corner;
     vec4 sum = vec4(0.0);
-    // A loop that no pixel of a group enters costs a software OpenGL nothing; a branch does.
+    // On a software OpenGL, a loop that no pixel of a group enters is free; a branch is not.
     for (int i = 0; i < (moved ? 4 : 0); ++i) {
         ivec2 step = ivec2(i & 1, i >> 1);
         ivec2 at = clamp(ivec2(corner) + step, ivec2(0), last);

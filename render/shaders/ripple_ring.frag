@@ -1,4 +1,4 @@
-// A shell that turns the rays which graze it.
+// A spherical shell that bends the rays which graze it.
 #version 450
 #include "lib/view.glsl"
 
@@ -9,10 +9,10 @@ uniform float radius;      // [m]
 uniform float wavelength;  // [m]
 uniform float amplitude;   // [rad]
 
-layout(location = 0) out vec4 shift;  // [px]; alpha: the depth behind which it reads
+layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
 
-// How far a pixel moves [px] when its ray, as long as view_ray() makes it, changes by `turn`.
-vec2 picture_shift(vec3 ray, vec3 turn) {
+// Shift of a pixel [px] when its ray (of the length of view_ray()) changes by `turn`.
+vec2 screen_shift(vec3 ray, vec3 turn) {
     float farther = dot(turn, view.ray_forward.xyz);
     vec3 aside = (turn - farther * ray) / (1.0 + farther);
     vec2 ndc = vec2(
@@ -33,14 +33,14 @@ void main() {
     float s = (near - radius) / wavelength;
     float window = 1.0 - min(s * s, 1.0);
     float wave = sin(6.283185307 * s) * window * window;
-    // What is seen just behind the shell is shifted little, what is far behind it all of the turn.
+    // Surfaces just behind the shell shift little, those far behind it fully.
     float distance = max(dot(to_center, view.ray_forward.xyz), view.camera_ws.w);
     float shell_depth = view.camera_ws.w / distance;
     float behind = clamp(1.0 - depth / shell_depth, 0.0, 1.0);
 
     float turn = reach > 0.0 && near > 0.0 ? amplitude * wave * behind * length(ray) / near : 0.0;
     if (turn == 0.0) {
-        discard;  // what does not ripple asks for no depth
+        discard;  // leaves the depth of other effects
     }
-    shift = vec4(picture_shift(ray, turn * out_of), 0.0, shell_depth);
+    shift = vec4(screen_shift(ray, turn * out_of), 0.0, shell_depth);
 }

@@ -8,7 +8,7 @@ uniform float radius;
 uniform float amplitude;
 uniform float aspect;
 
-layout(location = 0) out vec4 shift;  // [px]; alpha: the depth behind which it reads
+layout(location = 0) out vec4 shift;  // [px]; alpha: maximum depth to read
 
 void main() {
     vec2 uv = gl_FragCoord.xy * view.size.zw;

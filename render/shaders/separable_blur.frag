@@ -1,12 +1,12 @@
-// One axis of a blur of 7 x 7 pixels. Edges are repeated.
+// One axis of a blur of 7 x 7 pixels. Clamps to the edge.
 #version 450
 
 layout(binding = 0) uniform sampler2D source;
 
 uniform ivec2 axis;  // (1, 0) or (0, 1)
-uniform vec3 before;  // weights of the pixels -3, -2, -1
+uniform vec3 negative_weights;  // weights of the pixels -3, -2, -1
 uniform float middle;
-uniform vec3 behind;  // 1, 2, 3
+uniform vec3 positive_weights;  // 1, 2, 3
 
 layout(location = 0) out vec4 blurred;
 
@@ -16,6 +16,6 @@ vec4 fetch(int offset) {
 }
 
 void main() {
-    blurred = before.x * fetch(-3) + before.y * fetch(-2) + before.z * fetch(-1) + middle * fetch(0)
-              + behind.x * fetch(1) + behind.y * fetch(2) + behind.z * fetch(3);
+    blurred = negative_weights.x * fetch(-3) + negative_weights.y * fetch(-2) + negative_weights.z * fetch(-1) + middle * fetch(0)
+              + positive_weights.x * fetch(1) + positive_weights.y * fetch(2) + positive_weights.z * fetch(3);
 }

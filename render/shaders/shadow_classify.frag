@@ -1,7 +1,7 @@
-// What the map of a light says of each pixel: 0 shadow, 1 light, and 0.5 where its texels near the point disagree
-// and volumes must decide (shadow.hybrid-edge). The filter spans more texels than the map's own bias can move an
-// edge. Volumes decide, too, where the light grazes: there the bias hides that a facet of a round thing is turned
-// away, though its smooth normal is not.
+// Classifies each pixel by the shadow map of a light: 0 shadow, 1 lit, and 0.5 where nearby texels disagree and shadow
+// volumes must decide (shadow.hybrid-edge). The filter spans more texels than the map's bias can move an edge. Volumes
+// also decide at grazing incidence: there the bias hides that a facet of a round object faces away, though its smooth
+// normal does not.
 #version 450
 #include "lib/gbuffer.glsl"
 #include "lib/view.glsl"
@@ -19,7 +19,7 @@ uniform vec4 map;  // LightRecord::shadow
 
 layout(location = 0) out float mask;
 
-const float kAgree = 1e-3;   // rounding of the filter's weights
+const float kAgree = 1e-3;   // rounding error of the filter's weights
 const float kGrazing = 0.2;  // cosine; the facets of 32 around a column are turned by 0.1
 
 void main() {

@@ -1,4 +1,4 @@
-// One more layer of a shadow volume (shadow.density-view).
+// Counts layers of shadow volumes (shadow.density-view).
 #version 450
 
 layout(location = 0) out vec4 layers;

@@ -1,4 +1,4 @@
-// Keeps the pixels that shadow_classify.frag left open, for the stencil.
+// Keeps the pixels that shadow_classify.frag left undecided, for the stencil.
 #version 450
 
 layout(binding = 17) uniform sampler2DArray shadow_masks;

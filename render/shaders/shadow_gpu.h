@@ -10,13 +10,13 @@ struct ShadowViewRecord {
     vec4 row_s;     // shadow_from_world: dot with (position, 1) gives texel x times q,
     vec4 row_t;     // texel y times q,
     vec4 row_r;     // depth times q
-    vec4 row_q;     // and q, which is > 0 before the light
-    vec4 plane_s;   // columns of world_from_shadow: dot with a plane of the world gives the plane's
+    vec4 row_q;     // and q, which is > 0 in front of the light
+    vec4 plane_s;   // columns of world_from_shadow: dot with a plane in world space gives the plane's
     vec4 plane_t;   // components in shadow space
     vec4 plane_r;
     vec4 rect;      // texels that may be read: left, bottom, right, top
-    vec4 settings;  // ShadowFilter, scale of the bias, penumbra [texels] for a depth of 1, its greatest radius
-    vec4 splits;    // of the first cascade: where each ends [m along the camera's axis], INFINITY after the last
+    vec4 settings;  // ShadowFilter, scale of the bias, penumbra for a depth of 1 and its maximum radius [texels]
+    vec4 splits;    // of the first cascade: far ends of all [m along the camera's axis], INFINITY after the last
 };
 
 const uint kShadowViewTexels = 10u;

@@ -1,4 +1,4 @@
-// Depth of what casts shadows. Definitions of lib/material.glsl, and
+// Depth of shadow casters. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff let light through
 #version 450
 #ifdef ALPHA_MASK

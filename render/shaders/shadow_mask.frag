@@ -1,4 +1,4 @@
-// What the mask of a light says where the stencil test lets it.
+// Writes a light's shadow mask where the stencil test passes.
 #version 450
 
 uniform float lit;

@@ -1,4 +1,4 @@
-// Nothing: the stencil counts.
+// Writes no color: the stencil counts.
 #version 450
 
 void main() {}

@@ -1,7 +1,7 @@
-// A shadow volume: every corner of a caster's triangles stays where it is or goes away from the light
+// A shadow volume: every corner of a caster's triangles stays in place or is extruded away from the light
 // (shadow.vol-extrude).
-//   PRISMS  a volume a triangle: the corner says which cap it belongs to; else the side of its triangle that the
-//           light sees decides (shadow.vol-per-edge)
+//   PRISMS  one volume per triangle: the corner holds its cap; else it depends on whether its triangle faces the light
+//           (shadow.vol-per-edge)
 #version 450
 #include "lib/view.glsl"
 #include "shadow_volume_gpu.h"
@@ -10,14 +10,14 @@ layout(binding = 2, std140) uniform Volume {
     VolumeBlock volume;
 };
 
-layout(location = 0) in vec4 corner;      // mesh space; w = 1: of the far cap
+layout(location = 0) in vec4 corner;      // mesh space; w: 1 = far cap
 layout(location = 1) in vec4 plane;       // of its triangle, mesh space
 layout(location = 2) in vec4 world_row0;  // world_from_mesh
 layout(location = 3) in vec4 world_row1;
 layout(location = 4) in vec4 world_row2;
 layout(location = 5) in vec4 light;       // mesh space, homogeneous
 
-// How far the light is from the corner's triangle [m]. Planes go by the cofactor matrix.
+// Distance of the light from the plane of the corner's triangle [m]. Planes transform by the cofactor matrix.
 float light_height(vec3 position_ws) {
     vec3 normal_ws = vec3(
         dot(cross(world_row1.xyz, world_row2.xyz), plane.xyz),

@@ -1,5 +1,5 @@
-// Where the corners of a shadow volume go (shadow.vol-extrude, shadow.extrusion-distance), for the vertex shader
-// and its tests, and what it reads. A light is homogeneous: its position and 1, or the direction toward it and 0.
+// Extrusion of shadow volumes (shadow.vol-extrude, shadow.extrusion-distance), shared by the vertex shader and its
+// tests, and its input. A light is homogeneous: its position and 1, or the direction toward it and 0.
 
 #ifdef __cplusplus
 #pragma once
@@ -13,27 +13,27 @@ using std::max;
 #define LIMN_SHARED
 #endif
 
-// One caster before one light, as instance-rate attributes.
+// One caster of one light, as instance-rate attributes.
 struct VolumeInstance {
     vec4 row[3];  // world_from_mesh
-    vec4 light;   // in the caster's own space
+    vec4 light;   // in mesh space
 };
 
 // One light.
 struct VolumeBlock {
     vec4 light;      // world, homogeneous
-    vec4 extrusion;  // kExtrude*, distance [m], bias of the near cap [m], how far the light reaches [m]
+    vec4 extrusion;  // kExtrude*, distance [m], bias of the near cap [m], range of the light [m]
 };
 
-const float kExtrudeInfinite = 0.0;  // to the end of the world
-const float kExtrudeConstant = 1.0;  // by the distance: ends in a cap that follows the caster
-const float kExtrudeRadius = 2.0;    // to the distance from the light: the cap cuts into the light's sphere
-const float kExtrudePlane = 3.0;     // until the whole cap is that far: prisms only, sides would part
+const float kExtrudeInfinite = 0.0;  // to infinity
+const float kExtrudeConstant = 1.0;  // by the distance: the far cap has the shape of the caster
+const float kExtrudeRadius = 2.0;    // to that distance from the light: the far cap cuts into the light's sphere
+const float kExtrudePlane = 3.0;     // until the whole cap is that far away: prisms only, shared sides would split
 
 // From the light to `p`, not unit.
 LIMN_SHARED vec3 away_from_light(vec3 p, vec4 light) {
     vec3 away = p * light.w - vec3(light.x, light.y, light.z);
-    return dot(away, away) > 1e-20f ? away : vec3(0.0f, -1.0f, 0.0f);  // a corner in the light itself
+    return dot(away, away) > 1e-20f ? away : vec3(0.0f, -1.0f, 0.0f);  // a corner at the light itself
 }
 
 LIMN_SHARED vec3 shift_from_light(vec3 p, vec4 light, float distance) {

@@ -1,9 +1,9 @@
-// What is seen where no surface is. Definition SKY_KIND of lib/sky.glsl.
+// The background. Definition SKY_KIND of lib/sky.glsl.
 #version 450
 #include "lib/sky.glsl"
 #include "lib/view.glsl"
 
-uniform bool for_light;  // what lights the scene, instead of what is to be seen: no sun, but the studio's lamps
+uniform bool for_light;  // for lighting instead of display: no sun, but the studio's lamps
 
 layout(location = 0) out vec4 radiance;
 

@@ -1,4 +1,4 @@
-// A streak of light over the picture.
+// A streak of light over the image.
 #version 450
 
 layout(location = 0) in vec4 color;

@@ -1,4 +1,4 @@
-// A line as a quad that faces the camera, from SpeedLine records of three texels (speed_line_list.h).
+// A line as a quad that faces the camera, from SpeedLine records of three texels (speed_line_pass.h).
 #version 450
 #include "lib/view.glsl"
 
@@ -17,7 +17,7 @@ void main() {
     vec4 tail = view.clip_from_world * vec4(texelFetch(lines, 3 * line + 1).xyz, 1.0);
     vec4 ink = texelFetch(lines, 3 * line + 2);
 
-    // What is behind the near plane is cut off there.
+    // Clips at the near plane.
     float near = view.camera_ws.w;
     if (tail.w < near && head.w > near) {
         tail = mix(head, tail, (head.w - near) / (head.w - tail.w));

@@ -1,4 +1,4 @@
-// One picture more, laid over those before it. See temporal_pass.h.
+// Blends the current frame into the history. See temporal_pass.h.
 #version 450
 #include "lib/view.glsl"
 
@@ -6,19 +6,19 @@ layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1) uniform sampler2D history;
 layout(binding = 2) uniform sampler2D velocity_map;
 layout(binding = 3) uniform sampler2D depth_map;
-layout(binding = 4) uniform sampler2D moments;  // x: pictures in history, y: variance in time where nothing moves
+layout(binding = 4) uniform sampler2D moments;  // x: frames in history, y: temporal variance of static pixels
 
-uniform int any_history;
+uniform int has_history;
 
 layout(location = 0) out vec4 resolved;
 layout(location = 1) out vec2 resolved_moments;
 
 const float kStill = 0.02;          // motion less than this [px] is rounding
-const float kMostStill = 32.0;      // pictures that count where nothing moves
-const float kMostMoving = 10.0;     // and where something does: reading between texels softens
-const float kSpread = 1.0;          // standard deviations that history may be off by where it moved
-const float kSpreadStill = 2.0;     // and where it did not, of the neighborhood's and its own in time, as thin
-                                    // things come and go with the jitter
+const float kMaxFramesStill = 32.0;      // maximum frames in history for static pixels
+const float kMaxFramesMoving = 10.0;     // and for moving ones, as resampling softens
+const float kSpread = 1.0;          // clamp of history [standard deviations of the neighborhood] for moving pixels
+const float kSpreadStill = 2.0;     // and for static ones, plus its temporal deviation, as thin objects come and go
+                                    // with the jitter
 
 vec3 to_ycocg(vec3 c) {
     return vec3(
@@ -30,11 +30,11 @@ vec3 from_ycocg(vec3 c) {
     return vec3(base + c.y, c.x + c.z, base - c.y);
 }
 
-vec3 clean(vec3 c) {
+vec3 sanitize(vec3 c) {
     return mix(vec3(0.0), clamp(c, vec3(0.0), vec3(65504.0)), not(isnan(c)));
 }
 
-// Bicubic (Catmull-Rom), its corners left out: five reads between texels (Jimenez 2016).
+// Bicubic (Catmull-Rom) without its corners: five bilinear fetches (Jimenez 2016).
 vec3 read_history(vec2 at) {
     vec2 size = vec2(textureSize(history, 0));
     vec2 center = floor(at - 0.5) + 0.5;
@@ -64,8 +64,8 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(radiance, 0) - 1;
 
-    // What the picture says about this place: mean and spread of the neighborhood, and what is nearest in it, whose
-    // edge is smooth only if it takes its surroundings along.
+    // Mean and deviation of the neighborhood, and its nearest pixel, whose velocity is used so that edges of moving
+    // objects stay smooth.
     vec3 center = vec3(0.0);
     vec3 mean = vec3(0.0);
     vec3 squares = vec3(0.0);
@@ -74,7 +74,7 @@ void main() {
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
-            vec3 color = to_ycocg(clean(texelFetch(radiance, at, 0).rgb));
+            vec3 color = to_ycocg(sanitize(texelFetch(radiance, at, 0).rgb));
             mean += color;
             squares += color * color;
             if (x == 0 && y == 0) {
@@ -93,9 +93,9 @@ void main() {
     vec2 velocity = texelFetch(velocity_map, nearest_at, 0).xy;
     vec2 moved = velocity * view.size.xy;
     vec2 from = gl_FragCoord.xy - moved;
-    // NaN is outside, too.
+    // NaN counts as outside.
     bool inside = all(greaterThanEqual(from, vec2(0.0))) && all(lessThanEqual(from, view.size.xy));
-    if (any_history == 0 || !inside) {
+    if (has_history == 0 || !inside) {
         resolved = vec4(from_ycocg(center), 1.0);
         resolved_moments = vec2(1.0, 0.0);
         return;
@@ -103,27 +103,27 @@ void main() {
 
     bool still = dot(moved, moved) < kStill * kStill;
     vec3 past = still ? texelFetch(history, pixel, 0).rgb : read_history(from);
-    vec3 kept = to_ycocg(clean(past));
+    vec3 kept = to_ycocg(sanitize(past));
     vec2 moment = texelFetch(moments, clamp(ivec2(from), ivec2(0), last), 0).xy;
-    float count = clamp(moment.x, 1.0, still ? kMostStill : kMostMoving);
+    float count = clamp(moment.x, 1.0, still ? kMaxFramesStill : kMaxFramesMoving);
 
     float variance = still ? moment.y : 0.0;
     vec3 apart = abs(center - kept);
     float deviation = max(max(apart.x, apart.y), apart.z);
 
-    // History that the neighborhood knows nothing of is drawn toward its mean, as far as it has to be.
+    // Clamps history toward the mean of the neighborhood.
     vec3 allowed = kSpread * spread;
     if (still) {
         allowed = kSpreadStill * (spread + sqrt(variance));
     }
     vec3 off = (kept - mean) / max(allowed, vec3(1e-4 * mean.x + 1e-6));
-    float most = max(max(abs(off.x), abs(off.y)), abs(off.z));
-    if (most > 1.0) {
-        kept = mean + (kept - mean) / most;
-        count = max(count / most, 1.0);
+    float excess = max(max(abs(off.x), abs(off.y)), abs(off.z));
+    if (excess > 1.0) {
+        kept = mean + (kept - mean) / excess;
+        count = max(count / excess, 1.0);
     }
 
-    // Few pictures: bright ones count less, or they flicker; many are a mean.
+    // With little history, bright frames are weighted less to prevent flicker; with more, it approaches a mean.
     float share = 1.0 / (count + 1.0);
     float calm = 3.0 * share;
     float weight_now = share / (1.0 + calm * center.x);

@@ -1,4 +1,4 @@
-// Two copies of water that move, under a grating: kd = (kd1 + kd2) a + kd3 (1 - a), a the grating's alpha.
+// Two scrolling copies of water under a grating: kd = (kd1 + kd2) a + kd3 (1 - a), with a the grating's alpha.
 #version 450
 #include "lib/tone.glsl"
 
@@ -6,7 +6,7 @@ layout(binding = 0) uniform sampler2D water;    // repeats
 layout(binding = 1) uniform sampler2D grating;  // repeats
 
 uniform vec2 size;     // of the target [px]
-uniform vec2 offset;   // of one copy along u, of the other along v, 0 .. 1
+uniform vec2 offset;   // of the first copy along u, of the second along v, 0 .. 1
 uniform float gain;    // of the sum
 uniform bool encoded;  // the target is sRGB
 

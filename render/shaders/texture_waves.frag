@@ -1,5 +1,5 @@
-// Waves that fit into a tile, as slopes: by x, by z, and the sum of their squares, whose mean tells how much of them a
-// smaller level has lost.
+// Slopes of the waves that fit into a tile: by x, by z, and the sum of their squares, from whose mean follows the
+// variance that mip levels lose.
 #version 450
 #include "water_detail_gpu.h"
 
@@ -7,7 +7,7 @@ layout(binding = 0) uniform samplerBuffer waves;  // TextureWaveRecord
 
 uniform int first;
 uniform int count;
-uniform float texels;  // of a side
+uniform float texels;  // per side
 
 layout(location = 0) out vec4 slopes;
 
@@ -18,7 +18,7 @@ void main() {
     vec2 slope = vec2(0.0);
     for (int i = first; i < first + count; ++i) {
         vec4 wave = texelFetch(waves, i);
-        // Whole turns are left out, for the sake of the cosine.
+        // Reduced to one period, for the precision of the cosine.
         slope += wave.w * wave.xy * cos(kTurn * fract(dot(wave.xy, place)) + wave.z);
     }
     slopes = vec4(slope, dot(slope, slope), 0.0);

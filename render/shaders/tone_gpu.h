@@ -1,5 +1,5 @@
-// What the passes between radiance and display share: the statistics of a picture and the weights of the blurs
-// that dodge and burn. C++ and GLSL read the same text; std430, the blocks std140 too.
+// Layouts of the passes between radiance and display: the statistics of an image and the blur weights of dodging
+// and burning. Shared by C++ and GLSL; std430, the blocks std140 too.
 
 #ifdef __cplusplus
 #pragma once
@@ -9,38 +9,38 @@ namespace limn::layout {
 
 /// Of the pixels of one invocation.
 struct StatisticsPart {
-    vec4 sum;       // mean color times pixels; w: log2 of luminance + kLogDelta, summed
-    float least;    // luminance of a pixel that has any; kNoLuminance if none has
-    float largest;  // luminance
-    uint finite;    // pixels counted
-    uint broken;    // pixels with NaN or infinity in them, in nothing else here
+    vec4 sum;       // of color; w: of log2(luminance + kLogDelta)
+    float least;    // minimum luminance above 0; kNoLuminance if there is none
+    float largest;  // maximum luminance
+    uint finite;    // number of pixels counted
+    uint broken;    // number of pixels with NaN or infinity, which the rest ignores
 };
 
-/// Of the whole picture, and what follows from it.
-struct PictureMeasure {
-    vec4 mean_scale;  // mean color; w: by which exposure multiplies besides 2^ev
-    vec4 luminance;   // log-average; the same as adapted to; least that is not 0; largest
-    vec4 clipped;     // least and largest luminance without the outermost of a histogram, if one was made
-    uvec4 pixels;     // finite; broken; w: 1 once there is something adapted to
+/// Of the whole image, and the exposure that follows from it.
+struct ImageStatistics {
+    vec4 mean_scale;  // mean color; w: exposure factor besides 2^ev
+    vec4 luminance;   // log-average; adapted log-average; minimum above 0; maximum
+    vec4 clipped;     // minimum and maximum luminance without the outliers of the histogram, if there is one
+    uvec4 pixels;     // finite; broken; w: 1 once there is an adapted luminance
 };
 
-/// Weights of a blur by distance [texels of the target], one blur a component.
+/// Blur weights by distance [texels of the target], one blur per component.
 struct BlurWeights {
     vec4 weight[16];
 };
 
 const float kLogDelta = 1e-4f;       // keeps the logarithm of black finite
 const float kNoLuminance = 1e9;      // more than any luminance
-const float kMostLight = 65504.0;    // the largest half: what is brighter counts as this
-const int kHistogramBins = 1024;     // of log2 luminance, from the least half to 2^16
+const float kMaxHalf = 65504.0;    // the largest half; brighter light is clamped to it
+const int kHistogramBins = 1024;     // of log2 luminance, from the smallest half to 2^16
 const float kHistogramLow = -24.0;
 const float kBinsPerStop = 25.6f;
-const int kStatisticsTile = 64;      // side of what one group of stage 1 sums up [px], an invocation's share each
-const int kStatisticsGroup = 8;      // side of that group
+const int kStatisticsTile = 64;      // side of the tile that one work group of stage 1 sums up [px]
+const int kStatisticsGroup = 8;      // side of that group [invocations]
 
 #ifdef __cplusplus
 static_assert(sizeof(StatisticsPart) == 32);
-static_assert(sizeof(PictureMeasure) == 64);
+static_assert(sizeof(ImageStatistics) == 64);
 static_assert(sizeof(BlurWeights) == 256);
 }  // namespace limn::layout
 #endif

@@ -6,17 +6,17 @@
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(std140, binding = 2) uniform Measure {
-    PictureMeasure measure;
+    ImageStatistics measure;
 };
 
 uniform float exposure;      // 2^ev
 uniform float defog;         // share of the mean color
-uniform float per_white;     // Reinhard: 1 / luminance shown as 1
+uniform float inverse_white;     // Reinhard: 1 / luminance shown as 1
 uniform float contrast;      // Knee
 uniform float gamma;         // Knee, or instead of sRGB; 0 = sRGB
 uniform float dither_codes;  // amplitude
 
-const float kMaxExposed = 1e6;     // white by any curve, and far from overflow
+const float kMaxExposed = 1e6;     // white with any curve, and far from overflow
 const float kKneeScale = 0.3333;   // of codes: linear 1 lies some 3.5 stops below white, as in exrdisplay
 
 layout(location = 0) out vec4 display;
@@ -31,10 +31,10 @@ uniform float key;
 const int kScales = 9;
 const float kScaleRatio = 1.6;
 const float kSharpness = 256.0;  // 2^phi with phi = 8
-const float kEven = 0.05;        // activity below which a region is even; more makes halos
+const float kEven = 0.05;        // maximum activity of an even region; more makes halos
 
-// Mean luminance, after exposure, of the largest region about the pixel over which light is even: the first scale
-// whose two Gaussians differ ends it. Reinhard et al. 2002 (hdr.dodge-burn).
+// Mean luminance, after exposure, of the largest region around the pixel with even light, up to the first scale whose
+// two Gaussians differ. Reinhard et al. 2002 (hdr.dodge-burn).
 float even_surround(vec2 pixel, float scale) {
     vec2 uv = pixel / vec2(textureSize(scene_radiance, 0));
     vec4 fine = texelFetch(local_fine, ivec2(pixel), 0);
@@ -56,7 +56,7 @@ float even_surround(vec2 pixel, float scale) {
 #endif
 
 void main() {
-    vec3 light = clean_light(texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0).rgb, 1e30);
+    vec3 light = sanitize_light(texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0).rgb, 1e30);
     float scale = exposure * measure.mean_scale.w;
     vec3 color = min(max(light - defog * measure.mean_scale.rgb, 0.0) * scale, kMaxExposed);
 #if TONE_CURVE == 0
@@ -65,7 +65,7 @@ void main() {
     color = tone_aces(color);
 #elif TONE_CURVE == 3
     float scaled = luminance(color);
-    color = with_luminance(color, scaled, compress(scaled, per_white));
+    color = with_luminance(color, scaled, compress(scaled, inverse_white));
 #elif TONE_CURVE == 4
     float scaled = luminance(color);
     color = with_luminance(color, scaled, scaled / (1.0 + even_surround(gl_FragCoord.xy, scale)));

@@ -1,4 +1,4 @@
-// The camera, as every pass sees it. C++ and GLSL read the same text; std140.
+// The camera, for every pass. Shared by C++ and GLSL; std140.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,15 +8,15 @@ namespace limn::layout {
 
 struct ViewBlock {
     mat4 clip_from_world;      // with the jitter
-    mat4 previous_from_world;  // without the jitter, of the moment before
+    mat4 previous_clip_from_world;  // previous frame's clip_from_world, without the jitter
     vec4 camera_ws;            // w: near plane [m]
     vec4 ray_right;            // world direction by which one unit of NDC x turns the view ray; w: jitter, NDC x
     vec4 ray_up;               // the same for y; w: jitter, NDC y
-    vec4 ray_forward;          // unit; w: 1 where shading takes the viewer to be infinitely far away
+    vec4 ray_forward;          // unit; w: 1 = shading assumes an infinitely distant viewer
     vec4 size;                 // width, height [px], 1 / width, 1 / height
     vec4 grid_cells;           // columns, rows, slices of the light clusters; w: side of a tile [px]
-    vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first light
-                               // with a shadow or an image that is not directional
+    vec4 grid_depth;           // slice = x log2(distance) + y; z: number of directional lights; w: first point or
+                               // spot light with a shadow or a cookie
     vec4 clip_plane;           // world: CLIPPED surfaces are drawn where dot(xyz, p) + w >= 0
 };
 

@@ -1,9 +1,9 @@
-// The surface of water, seen from above or from below: what it mirrors and what is seen through it, by the Fresnel
-// equations; light is lost and scattered on its way through the water (Beer-Lambert). Definitions VELOCITY; ATTRIBUTES:
-// of the G-buffer, too; FROM_BELOW: the camera may see the surface from below (a software OpenGL runs both sides of
-// every if); and those of lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
+// Water surface, seen from above or from below: reflection and refraction by the Fresnel equations; light is absorbed
+// and scattered in the water (Beer-Lambert). Definitions VELOCITY; ATTRIBUTES: also writes the G-buffer; FROM_BELOW:
+// the camera may see the surface from below (a software OpenGL executes both sides of every if); and those of
+// lib/water_detail.glsl, lib/water_reflection.glsl and lib/water_refraction.glsl.
 #version 450
-#define UNMASKED  // the masks of shadow volumes are of the surfaces behind
+#define UNMASKED  // shadow masks are of the surfaces behind
 #define ON_WATER
 #include "lib/lighting.glsl"
 #include "lib/optics.glsl"
@@ -23,7 +23,7 @@ layout(location = 1) flat in int body;
 layout(location = 3) in vec4 wave_by_x;
 layout(location = 4) in vec3 wave_by_z;
 #ifdef VELOCITY
-layout(location = 2) in vec3 clip_before;
+layout(location = 2) in vec3 previous_clip;
 layout(location = 1) out vec2 velocity;
 #endif
 #ifdef ATTRIBUTES
@@ -35,8 +35,8 @@ layout(location = 1) out uvec4 surface;
 #endif
 layout(location = 0) out vec4 radiance;
 
-const float kSmooth = 1e-5;  // variance of the slopes of ripples that nothing else has
-const float kThrough = 0.54;    // of upwelling radiance the surface lets out (Mobley 1999)
+const float kSmooth = 1e-5;  // minimum slope variance, for ripples that are not modeled
+const float kSurfaceTransmittance = 0.54;    // transmittance of the surface for upwelling radiance (Mobley 1999)
 
 void main() {
     WaterRecord water = water_record(body);
@@ -44,7 +44,7 @@ void main() {
     vec3 to_camera = normalize(view.camera_ws.xyz - position);
     vec2 across = dFdx(rest);
     vec2 along = dFdy(rest);
-    // Where a pixel is longer than wide, blurred along less than it takes: grazing views stay crisp.
+    // For elongated footprints less blur than needed, so that grazing views stay crisp.
     float footprint = sqrt(sqrt(dot(across, across) * dot(along, along)));
     WaterBend bend = field_bend(water, rest, footprint);
     bend.by_x += wave_by_x.xyz;
@@ -59,14 +59,14 @@ void main() {
     const bool above = true;
 #endif
     vec3 normal = above ? up : -up;
-    // Waves that turn away from the camera are seen edge on.
+    // Waves that face away from the camera count as grazing.
     float facing = dot(normal, to_camera);
     normal = facing < 0.02 ? normalize(normal + (0.02 - facing) * to_camera) : normal;
     float cosine = max(dot(normal, to_camera), 1e-3);
     float index = above ? water.shape.w : 1.0 / water.shape.w;
     float share = water_share(water, above, cosine);
 
-    // Light that falls on the water, to be scattered in it or mirrored as glints.
+    // Light on the water, to be scattered in it or reflected as glints.
     SurfaceSample s = SurfaceSample(normal, vec3(0.0), vec3(0.0), 1.0, roughness, 0.0, 0u, kModelPbr);
     Reflector r = make_reflector(s, to_camera);
     float head_on = (water.shape.w - 1.0) / (water.shape.w + 1.0);
@@ -81,33 +81,33 @@ void main() {
     vec3 falling = sum.diffuse / kPi + irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 
     vec3 extinction = water_extinction(water);
-    vec3 glow = falling * (kUpwelling * kThrough) * water.scattering.rgb / max(extinction, vec3(1e-6));
+    vec3 glow = falling * (kUpwelling * kSurfaceTransmittance) * water.scattering.rgb / max(extinction, vec3(1e-6));
 
     vec3 bent = share < 1.0 ? refract(-to_camera, normal, 1.0 / index) : -normal;
     float depth = water.absorption.w + position.y - water.origin.y;
-    float most = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kEndless;
-    Seen through = look_through(water, position, normal, bent, most, above);
-    vec3 left = exp(-extinction * through.way);
+    float max_distance = above && water.absorption.w > 0.0 ? 1.05 * depth / max(-bent.y, 0.05) : kInfiniteDistance;
+    RayHit through = refracted_light(water, position, normal, bent, max_distance, above);
+    vec3 left = exp(-extinction * through.path);
     vec3 seen = through.color * left + glow * (1.0 - left);
     vec3 away = reflect(-to_camera, normal);
-    vec3 around = light_from_around(position, normal, away, roughness).mirrored;
+    vec3 around = environment_light(position, normal, away, roughness).mirrored;
     Side side = Side(water.origin.y - 0.02, 1.0);
 #ifdef FROM_BELOW
     vec3 scattered = scattered_light(water, 0.0, away);
     if (!above) {
-        vec3 sky = light_from_around(position, normal, bent, roughness).mirrored;
-        seen = through.way < kEndless ? through.color : sky;
-        vec3 ground = mix(scattered, ground_light(water), exp(-extinction * way_to_ground(water, away)));
+        vec3 sky = environment_light(position, normal, bent, roughness).mirrored;
+        seen = through.path < kInfiniteDistance ? through.color : sky;
+        vec3 ground = mix(scattered, bottom_light(water), exp(-extinction * distance_to_bottom(water, away)));
         around = water.absorption.w > 0.0 ? ground : scattered;
         side = Side(water.origin.y + 0.02, -1.0);
     }
 #endif
-    Seen found = Seen(around, kEndless);
-#if defined(FROM_BELOW) || !defined(UNTRACED)
-    found = mirrored(position, away, around, side);
+    RayHit found = RayHit(around, kInfiniteDistance);
+#if defined(FROM_BELOW) || !defined(NO_SCREEN_REFLECTION)
+    found = trace_reflection(position, away, around, side);
 #endif
 #ifdef LOOKS
-    bool traced = !above || reflection_of(water) == kPictureReflection;
+    bool traced = !above || reflection_of(water) == kScreenReflection;
     vec3 mirror = traced ? found.color : around;
 #else
     vec3 mirror = found.color;
@@ -119,7 +119,7 @@ void main() {
 #endif
 #ifdef FROM_BELOW
     if (!above) {
-        mirror = found.way < kEndless ? mix(scattered, found.color, exp(-extinction * found.way)) : around;
+        mirror = found.path < kInfiniteDistance ? mix(scattered, found.color, exp(-extinction * found.path)) : around;
     }
 #endif
 #ifdef OCEAN
@@ -135,6 +135,6 @@ void main() {
 #endif
 #ifdef VELOCITY
     vec2 now = 2.0 * gl_FragCoord.xy * view.size.zw - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
-    velocity = velocity_from(now, clip_before);
+    velocity = velocity_from(now, previous_clip);
 #endif
 }

@@ -1,4 +1,4 @@
-// A body of water as patches of its rest surface (water_patches.h), displaced. Definition VELOCITY.
+// A body of water as displaced patches of its rest surface (water_patches.h). Definition VELOCITY.
 #version 450
 #include "lib/view.glsl"
 const float kPi = 3.14159265358979;
@@ -6,15 +6,15 @@ const float kPi = 3.14159265358979;
 
 layout(binding = 0) uniform samplerBuffer patches;  // WaterPatch
 
-layout(location = 0) out vec2 rest;           // x and z at rest, in the water's own space
+layout(location = 0) out vec2 rest;           // x and z at rest, in water space
 layout(location = 1) flat out int body;
-layout(location = 3) out vec4 wave_by_x;  // of waves of closed form; w: variance of slopes too fine to be seen
+layout(location = 3) out vec4 wave_by_x;  // derivative of analytic waves; w: variance of unresolved slopes
 layout(location = 4) out vec3 wave_by_z;
 #ifdef VELOCITY
-layout(location = 2) out vec3 clip_before;    // x, y, w
+layout(location = 2) out vec3 previous_clip;    // previous clip x, y, w
 #endif
 
-const int kCorners = kWaterGrid + 1;  // of a patch, along a side
+const int kCorners = kWaterGrid + 1;  // along a side of a patch
 
 vec3 surface_ws(WaterRecord water, vec2 q, vec3 offset) {
     return water.origin.xyz + water_to_world(water, vec3(q.x, 0.0, q.y) + offset);
@@ -45,7 +45,7 @@ void main() {
     vec3 offset = waves.offset + field_offset(water, q, spacing, false);
     gl_Position = view.clip_from_world * vec4(surface_ws(water, q, offset), 1.0);
 #ifdef VELOCITY
-    vec3 offset_before = water_offset(water, q, spacing, true);
-    clip_before = (view.previous_from_world * vec4(surface_ws(water, q, offset_before), 1.0)).xyw;
+    vec3 previous_offset = water_offset(water, q, spacing, true);
+    previous_clip = (view.previous_clip_from_world * vec4(surface_ws(water, q, previous_offset), 1.0)).xyw;
 #endif
 }

@@ -1,5 +1,5 @@
-// The scene before the water: its radiance and, in w and beside it, its distance along the view axis [m], 0 where
-// nothing is.
+// The scene without water: its radiance and, in w and in a second target, its distance along the view axis [m], 0
+// where there is no surface.
 #version 450
 #include "lib/view.glsl"
 

@@ -1,5 +1,4 @@
-// What tilts the normals of water, as water.frag and texture_waves.frag read it: texels of buffer textures. C++ and
-// GLSL read the same text.
+// Normal detail of water, for water.frag and texture_waves.frag: texels of buffer textures. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,13 +7,13 @@ namespace limn::layout {
 #endif
 
 struct WaterDetailRecord {
-    vec4 waves;      // layer of their texture, -1 = none; 1 / side of its tile [1/m]; variance of the slopes of waves
-                     // that found no place in it; number of layers of the normal map
-    vec4 layers[4];  // 1 / side of a copy [1/m]; where it is, in copies; strength
+    vec4 waves;      // layer of their texture, -1 = none; 1 / side of its tile [1/m]; slope variance of the waves
+                     // that do not fit in it; number of layers of the normal map
+    vec4 layers[4];  // 1 / side of a copy [1/m]; its offset [copies]; strength
 };
 
 struct TextureWaveRecord {
-    vec4 wave;  // whole waves along x and along z of the tile; phase at the moment shown [rad]; amplitude 2 pi / tile
+    vec4 wave;  // periods along x and z of the tile; current phase [rad]; amplitude 2 pi / tile
 };
 
 const uint kWaterDetailTexels = 5u;

@@ -1,4 +1,4 @@
-// Bodies of water, as water.vert and water.frag read them: texels of buffer textures. C++ and GLSL read the same text.
+// Bodies of water, for water.vert and water.frag: texels of buffer textures. Shared by C++ and GLSL.
 
 #ifdef __cplusplus
 #pragma once
@@ -8,28 +8,29 @@ namespace limn::layout {
 
 struct WaterRecord {
     vec4 origin;      // world [m]; w: x of the water's x axis in the world
-    vec4 shape;       // z of that axis; half extents along x and z [m], 0 = endless; w: refractive index
-    vec4 absorption;  // [1/m]; w: depth of the bottom [m], 0 = deep
-    vec4 scattering;  // back to the eye [1/m]; w: how it is drawn (pack_look)
+    vec4 shape;       // z of that axis; half extents along x and z [m], 0 = unbounded; w: refractive index
+    vec4 absorption;  // [1/m]; w: depth of the bottom [m], 0 = bottomless
+    vec4 scattering;  // backscatter [1/m]; w: rendering options (pack_look)
     vec4 waves;       // first line and number of lines, first ring and number of rings
     vec4 ripples;     // texture coordinates = xz * xy + zw
-    vec4 rippling;    // half extents of the grid [m], 0 = none; zw: seconds from the last step to the moment
-                      // shown and to the moment before
-    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; w: how far waves
-                      // shift a planar reflection or what is seen through
+    vec4 rippling;    // half extents of the grid [m], 0 = none; zw: time from the last step to the current and to
+                      // the previous frame [s]
+    vec4 ocean;       // first layer and number of patches, 0 = none; points along a side; w: strength of the shift
+                      // of planar reflection and refraction by waves
     vec4 patches;     // 1 / side of each patch [1/m]
-    vec4 variance;    // of the slopes of each patch
+    vec4 variance;    // slope variance of each patch
 };
 
 struct WaveLineRecord {
-    vec4 run;    // k [rad/m]; sideways B d [m]
-    vec4 phase;  // phase at the moment shown and at the moment before [rad]; amplitude [m]; lean
+    vec4 run;    // wave vector k [rad/m]; horizontal amplitude B d [m]
+    vec4 phase;  // current and previous phase [rad]; amplitude [m]; lean
 };
 
 struct WaveRingRecord {
     vec4 place;  // center [m], first and last radius [m]
-    vec4 phase;  // at the center, at the moment shown and at the moment before [rad]; k [rad/m]; amplitude [m]
-    vec4 fade;   // radius from which it fades [m], 0 = none; 1: smooth edges; zw: front's way between the moments [m], 0
+    vec4 phase;  // at the center, current and previous [rad]; k [rad/m]; amplitude [m]
+    vec4 fade;   // radius from which it fades [m], 0 = none; 1: smooth edges; offset of its radii in the previous
+                 // frame [m]; 0
 };
 
 const int kWaterGrid = 8;  // cells along a side of a patch; even

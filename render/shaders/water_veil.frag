@@ -1,5 +1,5 @@
-// What a camera in the water sees through it: light is lost on the way, and light that falls in is scattered toward it.
-// At the surface, only below the line at which it meets the lens. Where waves gather light, the sun's comes in shafts.
+// Absorption and in-scattering between the scene and a camera under water. At the surface, only below the water line on
+// the lens. With caustics, the sun forms light shafts.
 #version 450
 #define UNMASKED
 #include "lib/noise.glsl"
@@ -20,7 +20,7 @@ uniform bool at_surface;  // its waves may reach the camera
 layout(location = 0) out vec4 radiance;
 
 const int kSearchSteps = 3;
-const float kEndless = 1e4;  // [m]
+const float kInfiniteDistance = 1e4;  // [m]
 
 bool is_under(WaterRecord water, vec3 lens) {
     vec3 p = world_to_water(water, lens - water.origin.xyz);
@@ -36,13 +36,13 @@ bool is_under(WaterRecord water, vec3 lens) {
     return p.y < offset.y;
 }
 
-// Way on which a ray from the camera stays between the sides of the water [m]: past them it is in the air.
-float way_to_side(WaterRecord water, vec3 direction) {
+// Distance over which a ray from the camera stays between the sides of the water [m].
+float distance_to_side(WaterRecord water, vec3 direction) {
     vec3 p = world_to_water(water, view.camera_ws.xyz - water.origin.xyz);
     vec3 d = world_to_water(water, direction);
-    vec2 ways = (water.shape.yz - sign(d.xz) * p.xz) / max(abs(d.xz), vec2(1e-6));
-    ways = mix(vec2(kEndless), ways, greaterThan(water.shape.yz, vec2(0.0)));
-    return max(min(ways.x, ways.y), 0.0);
+    vec2 paths = (water.shape.yz - sign(d.xz) * p.xz) / max(abs(d.xz), vec2(1e-6));
+    paths = mix(vec2(kInfiniteDistance), paths, greaterThan(water.shape.yz, vec2(0.0)));
+    return max(min(paths.x, paths.y), 0.0);
 }
 
 void main() {
@@ -52,19 +52,19 @@ void main() {
     WaterRecord water = water_record(body);
     vec3 ray = view_ray(gl_FragCoord.xy);
     vec3 lens = view.camera_ws.xyz + ray * view.camera_ws.w;
-    float way = depth > 0.0 ? view_distance(depth) * length(ray) : kEndless;
-    way = min(way, way_to_side(water, normalize(ray)));
-    vec3 left = exp(-water_extinction(water) * way);
+    float path = depth > 0.0 ? view_distance(depth) * length(ray) : kInfiniteDistance;
+    path = min(path, distance_to_side(water, normalize(ray)));
+    vec3 left = exp(-water_extinction(water) * path);
     float below = max(water.origin.y - view.camera_ws.y, 0.0);
 #ifdef UNDER_WATER
-    Sunken around = sunken_at(lens);
+    Underwater around = underwater_at(lens);
     vec3 to_sun = texelFetch(lights, max(int(around.maps.z), 0) * int(kLightTexels)).xyz;
     vec3 bent = bent_to_light(around, to_sun);
-    float shafts = shafts_along(around, bent, normalize(ray), way, water_extinction(water), gl_FragCoord.xy);
-    vec3 falling_in = light_falling_in(water, int(around.maps.z), shafts);
+    float shafts = shafts_along(around, bent, normalize(ray), path, water_extinction(water), gl_FragCoord.xy);
+    vec3 downwelling = downwelling_light(water, int(around.maps.z), shafts);
 #else
-    vec3 falling_in = light_falling_in(water);
+    vec3 downwelling = downwelling_light(water);
 #endif
-    vec3 veiled = seen * left + scattered_light(water, falling_in, below, normalize(ray)) * (1.0 - left);
+    vec3 veiled = seen * left + scattered_light(water, downwelling, below, normalize(ray)) * (1.0 - left);
     radiance = vec4(is_under(water, lens) ? veiled : seen, 1.0);
 }

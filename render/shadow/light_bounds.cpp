@@ -19,7 +19,7 @@ struct PixelRange {
     int count;
 };
 
-/// Pixels of slopes: the picture spans -tangent .. tangent, moved by `jitter` [px].
+/// Converts slopes to pixels: the image spans -tangent .. tangent, shifted by `jitter` [px].
 PixelRange to_pixels(const SlopeRange& slopes, float tangent, float jitter, int size) {
     const auto extent = static_cast<float>(size);
     const auto pixel = [&](float slope) {
@@ -42,8 +42,8 @@ SlopeRange sphere_slopes(float x, float z, float radius, float near) {
     const double half = std::sqrt(std::max(cut, 0.0));
     const auto edge = [&](double sign) {
         if (d2 > r2) {
-            // The tangent from the eye touches at t along the middle's direction turned by the
-            // angle of sine r / d.
+            // The tangent from the eye touches at distance t, in the direction of the center
+            // rotated by the angle of sine r / d.
             const double t2 = d2 - r2;
             const double scale = std::sqrt(t2) / d2;
             const double tx = scale * (std::sqrt(t2) * x - sign * radius * z);
@@ -54,7 +54,7 @@ SlopeRange sphere_slopes(float x, float z, float radius, float near) {
         }
         return (x + sign * half) / n;
     };
-    // Rounding may not cut off what is seen.
+    // Rounding must not cut off visible parts.
     const double low = edge(-1);
     const double high = edge(1);
     return {
@@ -80,7 +80,7 @@ LightBounds light_bounds(const RenderView& view, const Vec3& center, float radiu
     bounds.depth_max = view.near / std::max(nearest, view.near);
     bounds.depth_min = view.near / farthest;
     if (glm::dot(c, c) <= square(radius)) {
-        return bounds;  // from inside the light is all around
+        return bounds;  // the eye is inside the sphere
     }
     const PixelRange across = to_pixels(
         sphere_slopes(c.x, c.z, radius, view.near), view.tangent.x, view.jitter.x, view.width);
@@ -97,8 +97,8 @@ LightBounds light_bounds(const RenderView& view, const Vec3& center, float radiu
 }
 
 ReachSphere reach_sphere(const LightReach& reach) {
-    // A sector of half angle up to 45 degrees fits into the sphere through tip and rim; a wider one
-    // into the sphere around the rim, up to 90 degrees.
+    // A sector of half angle up to 45 degrees fits into the sphere through its apex and rim; a
+    // wider one, up to 90 degrees, into the sphere around the rim.
     const bool cone = reach.axis != Vec3(0) && reach.cosine > 0 && std::isfinite(reach.radius);
     if (!cone) {
         return {reach.center, reach.radius};
@@ -120,8 +120,8 @@ bool reaches_box(const LightReach& reach, const Bounds& box) {
     if (reach.axis == Vec3(0) || reach.cosine <= 0) {
         return true;
     }
-    // The sphere around the box against the cone, pushed back along its axis by what the sphere's
-    // radius makes of it.
+    // The sphere around the box against the cone, moved back along its axis to account for the
+    // sphere's radius.
     const Vec3 to_box = center(box) - reach.center;
     const float radius = glm::length(half_extent(box));
     const float along = glm::dot(to_box, reach.axis);

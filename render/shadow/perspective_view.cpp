@@ -18,12 +18,12 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-constexpr double kParallel = 1e-7;    ///< a light's w below which it is a direction
-constexpr double kLeastCosine = 0.5;  ///< of the light's axis and a receiver
-constexpr double kSpare = 0.01;       ///< of the range of depths, at its far end
-constexpr int kShifts = 8;            ///< of the virtual camera that are tried, each four times
+constexpr double kParallel = 1e-7;  ///< w of a light below which it is directional
+constexpr double kMinCosine = 0.5;  ///< between the light's axis and a receiver
+constexpr double kSpare = 0.01;     ///< spare fraction of the depth range, at the far end
+constexpr int kShifts = 8;          ///< of the virtual camera to try, each 4 times the previous
 
-/// Axes of a view along `forward`: far and near of the camera are above each other in the map.
+/// Axes of a view along `forward`, with the camera's depth axis vertical in the map.
 struct ViewAxes {
     dvec3 right;
     dvec3 up;
@@ -52,8 +52,8 @@ dvec4 plane(const dvec3& axis, double offset) {
     return {axis, offset};
 }
 
-/// Clip space of four linear functions: those of the picture's sides are centered and scaled, so
-/// that its share of q is -1 .. 1.
+/// Clip matrix from four linear functions: s and t are centered and scaled so that s / q and t / q
+/// span -1 .. 1.
 dmat4 clip_from_rows(
     const dvec4& s, const Range& range_s, const dvec4& t, const Range& range_t, const dvec4& depth,
     const dvec4& q, double widening) {
@@ -65,7 +65,7 @@ dmat4 clip_from_rows(
     return glm::transpose(rows);
 }
 
-/// A light that is a direction in distorted space.
+/// For a light at infinity in distorted space.
 dmat4 fit_parallel(const dvec3& to_light, std::span<const dvec3> points, double widening) {
     const ViewAxes axes = view_axes(-to_light);
     Range s;
@@ -83,9 +83,9 @@ dmat4 fit_parallel(const dvec3& to_light, std::span<const dvec3> points, double 
         plane(axes.right, 0), s, plane(axes.up, 0), t, depth, plane({0, 0, 0}, 1), widening);
 }
 
-/// One that is a place; `inverted`: what is farther from it is nearer to the light.
+/// For a light at a finite position; `inverted`: farther in distorted space is nearer to the light.
 std::optional<dmat4>
-fit_place(const dvec3& place, bool inverted, std::span<const dvec3> points, double widening) {
+fit_position(const dvec3& place, bool inverted, std::span<const dvec3> points, double widening) {
     dvec3 middle(0);
     for (const dvec3& p : points) {
         middle += p / static_cast<double>(points.size());
@@ -101,7 +101,7 @@ fit_place(const dvec3& place, bool inverted, std::span<const dvec3> points, doub
     for (const dvec3& p : points) {
         const dvec3 from = p - place;
         const double along = glm::dot(axes.forward, from);
-        if (!(along > kLeastCosine * glm::length(from))) {
+        if (!(along > kMinCosine * glm::length(from))) {
             return std::nullopt;
         }
         s.grow(glm::dot(axes.right, from) / along);
@@ -166,7 +166,7 @@ std::optional<dmat4> fit_light_view(
     if (std::abs(l.w) <= kParallel * size) {
         view = fit_parallel(dvec3(l) / size, points, widening);
     } else {
-        view = fit_place(dvec3(l) / l.w, l.w < 0, points, widening);
+        view = fit_position(dvec3(l) / l.w, l.w < 0, points, widening);
     }
     return view ? std::optional(*view * distorted_from_world) : std::nullopt;
 }
@@ -185,7 +185,7 @@ std::optional<ShadowView> make_perspective_view(
         const dmat4 distorted = virtual_camera(camera, slice.near, slice.far, shift);
         const auto clip_from_world = fit_light_view(distorted, dvec4(light), corners, widening);
         if (clip_from_world) {
-            // Of size 1 where it matters, so that floats hold it.
+            // Normalized at the receivers, for float precision.
             const dvec4 row_q = glm::transpose(*clip_from_world)[3];
             ShadowView view;
             view.clip_from_world =

@@ -53,4 +53,20 @@ void ShadowAtlas::release(const AtlasRect& rect) {
     }
 }
 
+void ShadowAtlas::grow() {
+    const int old = size_;
+    std::vector<AtlasRect>& whole = free_of(old);
+    const bool unused = !whole.empty();  // only the root has this size
+    if (unused) {
+        whole.clear();
+    } else {
+        whole = {{old, old, old}, {0, old, old}, {old, 0, old}};
+    }
+    size_ = 2 * old;
+    free_.emplace_back();
+    if (unused) {
+        free_.back().push_back({0, 0, size_});
+    }
+}
+
 }  // namespace limn

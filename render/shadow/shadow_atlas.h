@@ -13,16 +13,18 @@ struct AtlasRect {
     bool operator==(const AtlasRect&) const = default;
 };
 
-/// Places for squares whose sides are powers of two: a buddy allocator in two dimensions. What was
-/// handed out stays where it is until it is released; four free neighbors become one again.
+/// Allocates squares whose sides are powers of two: a two-dimensional buddy allocator. A square
+/// stays in place until it is released; four free siblings are merged.
 class ShadowAtlas {
   public:
     /// `size`: a power of two.
     explicit ShadowAtlas(int size);
 
-    /// Of side `size`, a power of two; none if there is no room.
+    /// A square of side `size`, a power of two; nullopt if there is no room.
     [[nodiscard]] std::optional<AtlasRect> allocate(int size);
     void release(const AtlasRect& rect);
+    /// Doubles the side; what was handed out stays where it is.
+    void grow();
 
     [[nodiscard]] int size() const { return size_; }
 

@@ -16,14 +16,14 @@ namespace limn {
 CasterVolume make_caster_volume(const ShadowView& view) {
     CasterVolume volume = {make_frustum(view.clip_from_world), view.shading, view.eye, view.reach};
     if (view.clamp_depth) {
-        // Before the near plane casters count; beyond the far one, depth 0, they shade nothing.
+        // Casters in front of the near plane count; beyond the far one (depth 0) they do not.
         const Mat4 rows = glm::transpose(view.clip_from_world);
         volume.frustum.planes[4] = rows[2] / std::max(glm::length(Vec3(rows[2])), 1e-20f);
     }
     return volume;
 }
 
-void sign_casters(
+void hash_casters(
     const World& world, float alpha, const MeshPool& meshes, const MaterialPool& materials,
     const DeformedList& shapes, std::span<const CasterVolume> volumes,
     std::span<std::uint64_t> signatures) {
@@ -53,15 +53,15 @@ void sign_casters(
             const std::uint32_t own = rows.shape(i);
             const std::uint64_t what =
                 own != DeformedList::kNone ? hash_combine(drawn, shapes[own].shape) : drawn;
-            const float swollen = inflate.empty() ? 0.0f : inflate[i].distance;
+            const float inflation = inflate.empty() ? 0.0f : inflate[i].distance;
             const bool casts = !materials.batch(materials.batch_of(material)).blend;
             hashes[i] =
-                casts ? hash_bytes(&a, sizeof a, hash_bytes(&swollen, sizeof swollen, what)) | 1
-                      : 0;  // of a caster never 0
+                casts ? hash_bytes(&a, sizeof a, hash_bytes(&inflation, sizeof inflation, what)) | 1
+                      : 0;  // never 0 for a caster
         }
         for (std::size_t v = 0; v < count; ++v) {
             cull_boxes(volumes[v].frustum, boxes, rows_here, visible);
-            cull_boxes_further(volumes[v].shading, boxes, rows_here, visible);
+            cull_visible_boxes(volumes[v].shading, boxes, rows_here, visible);
             cull_boxes_by_distance(volumes[v].eye, volumes[v].reach, boxes, rows_here, visible);
             std::uint64_t sum = 0;
             for (std::size_t i = 0; i < chunk.size(); ++i) {

@@ -13,17 +13,17 @@
 namespace limn {
 namespace {
 
-constexpr int kFirstAtlasSize = 1024;
-constexpr int kLargestAtlasSize = 8192;
-constexpr float kLeastNear = 0.02f;  ///< of a view from a light [m]
-/// Share of a cascade over which the next one takes its place.
+constexpr int kMinAtlasSize = 1024;
+constexpr int kMaxAtlasSize = 8192;
+constexpr float kMinNear = 0.02f;  ///< of a view from a light [m]
+/// Fraction of a cascade over which it blends into the next one.
 constexpr float kCascadeBlend = 0.1f;  // as in lib/shadow.glsl
 
 float finite_or(float x, float fallback) {
     return std::isfinite(x) ? x : fallback;
 }
 
-/// Texels around a view that its filter may reach.
+/// Border texels that the filter of a view may sample.
 int guard_of(const Shadow& shadow) {
     switch (shadow.filter) {
     case ShadowFilter::Hard:
@@ -37,12 +37,12 @@ int guard_of(const Shadow& shadow) {
     return 2;
 }
 
-/// What shines has a size; what lies within it casts no shadow.
+/// The near plane lies outside the light source, inside of which nothing casts a shadow.
 float near_of(const Shadow& shadow) {
-    return std::max(0.5f * shadow.source_size, kLeastNear);
+    return std::max(0.5f * shadow.source_size, kMinNear);
 }
 
-/// What the light can reach of what the camera sees; none if that is nothing.
+/// The part of the camera's view that the light can reach; nullopt if it is empty.
 std::optional<ViewSlice>
 slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
     const Vec2 widest = widest_tangent(view);
@@ -55,14 +55,14 @@ slice_of(const RenderView& view, const ShadowedLight& light, float distance) {
         reach.axis = light.axis;
         reach.cosine = std::cos(std::clamp(light.outer_angle, 0.0f, 0.5f * kPi));
     }
-    const ReachSphere ball = reach_sphere(reach);
-    const LightBounds bounds = light_bounds(view, ball.center, ball.radius);
+    const ReachSphere sphere = reach_sphere(reach);
+    const LightBounds bounds = light_bounds(view, sphere.center, sphere.radius);
     if (is_empty(bounds)) {
         return std::nullopt;
     }
     const auto slope = [](int pixel, float jitter, int size, float tangent) {
-        const float steady = static_cast<float>(pixel) - jitter;
-        return (2 * steady / static_cast<float>(size) - 1) * tangent;
+        const float unjittered = static_cast<float>(pixel) - jitter;
+        return (2 * unjittered / static_cast<float>(size) - 1) * tangent;
     };
     const Vec2 jitter = view.jitter;
     slice.low.x = slope(bounds.x - 1, jitter.x, view.width, view.tangent.x);
@@ -80,23 +80,23 @@ std::uint64_t key_of(Entity entity) {
 
 }  // namespace
 
-Shadow make_sane(const Shadow& shadow) {
-    Shadow sane = shadow;
+Shadow sanitize(const Shadow& shadow) {
+    Shadow valid = shadow;
     const auto resolution = static_cast<unsigned>(std::clamp(shadow.resolution, 16, 4096));
-    sane.resolution = static_cast<int>(std::bit_ceil(resolution));
-    sane.source_size = std::clamp(finite_or(shadow.source_size, 0.0f), 0.0f, 100.0f);
-    sane.cascades = std::clamp(shadow.cascades, 1, kMaxCascades);
-    sane.distance = finite_or(shadow.distance, 40.0f);
-    sane.distance = sane.distance > 0 ? sane.distance : 40.0f;
-    sane.bias = std::clamp(finite_or(shadow.bias, 1.0f), 0.0f, 8.0f);
-    if (sane.method == ShadowMethod::Perspective && sane.filter > ShadowFilter::Soft) {
-        sane.filter = ShadowFilter::Soft;  // a meter has no one depth in such a map
+    valid.resolution = static_cast<int>(std::bit_ceil(resolution));
+    valid.source_size = std::clamp(finite_or(shadow.source_size, 0.0f), 0.0f, 100.0f);
+    valid.cascades = std::clamp(shadow.cascades, 1, kMaxCascades);
+    valid.distance = finite_or(shadow.distance, 40.0f);
+    valid.distance = valid.distance > 0 ? valid.distance : 40.0f;
+    valid.bias = std::clamp(finite_or(shadow.bias, 1.0f), 0.0f, 8.0f);
+    if (valid.method == ShadowMethod::Perspective && valid.filter > ShadowFilter::Soft) {
+        valid.filter = ShadowFilter::Soft;  // depth per meter is not constant in such a map
     }
-    return sane;
+    return valid;
 }
 
-void ShadowCollector::want_cascades(const RenderView& view, LightViews& wanted) {
-    const Shadow& settings = wanted.settings;
+void ShadowCollector::request_cascades(const RenderView& view, LightViews& request) {
+    const Shadow& settings = request.settings;
     const float far = settings.distance;
     const float near = std::min(std::max(view.near, 0.01f * far), 0.5f * far);
     const auto ends = split_cascades(near, far, settings.cascades);
@@ -104,99 +104,107 @@ void ShadowCollector::want_cascades(const RenderView& view, LightViews& wanted) 
     for (int i = 0; i < settings.cascades; ++i) {
         const float end = ends[static_cast<std::size_t>(i)];
         views_.push_back(make_cascade_view(
-            view, -wanted.light->axis, begin, end, settings.resolution, guard_of(settings)));
+            view, -request.light->axis, begin, end, settings.resolution, guard_of(settings)));
         begin = (1 - kCascadeBlend) * end;
     }
-    wanted.kind = layout::kShadowCascades;
-    wanted.splits = {ends[0], ends[1], ends[2], ends[3]};
+    request.kind = layout::kShadowCascades;
+    request.splits = {ends[0], ends[1], ends[2], ends[3]};
 }
 
-/// False if the light stands where no such view is.
-bool ShadowCollector::want_perspective(const RenderView& view, LightViews& wanted) {
-    const ShadowedLight& light = *wanted.light;
-    const float distance = wanted.settings.distance;
+/// False if no such view exists for the light.
+bool ShadowCollector::request_perspective(const RenderView& view, LightViews& request) {
+    const ShadowedLight& light = *request.light;
+    const float distance = request.settings.distance;
     const std::optional<ViewSlice> slice = slice_of(view, light, distance);
     if (!slice) {
         return false;
     }
     const bool sun = light.kind == LightKind::Directional;
     const Vec4 place = sun ? Vec4(-light.axis, 0) : Vec4(light.position, 1);
-    const int guard = guard_of(wanted.settings);
+    const int guard = guard_of(request.settings);
     const auto found =
-        make_perspective_view(view, place, *slice, wanted.settings.resolution, guard);
+        make_perspective_view(view, place, *slice, request.settings.resolution, guard);
     if (!found) {
         return false;
     }
     views_.push_back(*found);
-    wanted.kind = layout::kShadowCascades;  // a single one
+    request.kind = layout::kShadowCascades;  // a single one
     if (sun || !std::isfinite(light.radius)) {
-        wanted.splits.x = distance;
+        request.splits.x = distance;
     }
     return true;
 }
 
-/// Every light's views, in the order of the lights.
-void ShadowCollector::want_views(
-    const RenderView& view, const LightList& lights, ShadowList& list) {
+/// Requests every light's views, in the order of the lights.
+void ShadowCollector::request_views(
+    const RenderView& view, ViewKind kind, const LightList& lights, ShadowList& list) {
     views_.clear();
-    wanted_.clear();
+    requests_.clear();
     for (const ShadowedLight& light : lights.shadowed) {
-        LightViews wanted = {
-            .light = &light, .key = key_of(light.entity), .settings = make_sane(light.settings)};
-        wanted.first_view = views_.size();
-        const Shadow& settings = wanted.settings;
+        LightViews request = {
+            .light = &light, .key = key_of(light.entity), .settings = sanitize(light.settings)};
+        request.first_view = views_.size();
+        const Shadow& settings = request.settings;
         const bool perspective =
-            settings.method == ShadowMethod::Perspective && want_perspective(view, wanted);
+            settings.method == ShadowMethod::Perspective && request_perspective(view, request);
         const int resolution = settings.resolution;
         const int guard = guard_of(settings);
         if (perspective) {
-            // has its one view
+            // already has its single view
         } else if (light.kind == LightKind::Directional) {
-            want_cascades(view, wanted);
-        } else if (light.kind == LightKind::Spot && light.outer_angle <= kWidestSpotView) {
-            wanted.kind = layout::kShadowView;
+            request_cascades(view, request);
+        } else if (light.kind == LightKind::Spot && light.outer_angle <= kMaxSpotViewAngle) {
+            request.kind = layout::kShadowView;
             views_.push_back(make_spot_view(
                 light.position, light.axis, light.outer_angle, near_of(settings), resolution, guard,
                 light.right));
         } else {
-            wanted.kind = layout::kShadowCube;
+            request.kind = layout::kShadowCube;
             for (int face = 0; face < 6; ++face) {
                 views_.push_back(
                     make_cube_view(light.position, face, near_of(settings), resolution, guard));
             }
         }
-        wanted.count = views_.size() - wanted.first_view;
-        for (std::size_t i = wanted.first_view; i < views_.size(); ++i) {
+        request.count = views_.size() - request.first_view;
+        request.view_kind = request.kind == layout::kShadowCascades ? kind : 0u;
+        for (std::size_t i = request.first_view; i < views_.size(); ++i) {
             views_[i].reach = light.radius;
         }
-        wanted_.push_back(wanted);
+        requests_.push_back(request);
     }
     for (WaterShadow& water : list.waters) {
         water.record = -1;
-        constexpr std::uint64_t kWaters = std::uint64_t{1} << 63;  // apart from lights
-        LightViews wanted = {
+        constexpr std::uint64_t kWaters = std::uint64_t{1}
+                                          << 63;  // distinguishes waters from lights
+        LightViews request = {
             .water = &water,
             .key = key_of(water.water) | kWaters | water.part << 60,
+            .view_kind = kind,
             .settings = {.filter = ShadowFilter::Bilinear, .resolution = water.view.resolution},
             .kind = layout::kShadowView,
             .first_view = views_.size(),
             .count = 1};
         views_.push_back(water.view);
-        wanted_.push_back(wanted);
+        requests_.push_back(request);
     }
 }
 
-ShadowCollector::Kept& ShadowCollector::kept(const LightViews& wanted, std::size_t number) {
-    return kept_.at({wanted.key, static_cast<int>(number)});
+ShadowCollector::CachedMapKey
+ShadowCollector::key_of_map(const LightViews& request, std::size_t number) const {
+    return {request.key, request.view_kind, static_cast<int>(number)};
+}
+
+ShadowCollector::CachedMap&
+ShadowCollector::cached_map(const LightViews& request, std::size_t number) {
+    return maps_.at(key_of_map(request, number));
 }
 
 /// False if there is no room for all of the light's views.
-bool ShadowCollector::place_light(LightViews& wanted) {
-    for (std::size_t i = 0; i < wanted.count; ++i) {
-        const int size = wanted.settings.resolution;
-        const auto [found, fresh] =
-            kept_.try_emplace(KeptKey(wanted.key, static_cast<int>(i)), Kept{});
-        Kept& view = found->second;
+bool ShadowCollector::place_light(LightViews& request) {
+    for (std::size_t i = 0; i < request.count; ++i) {
+        const int size = request.settings.resolution;
+        const auto [found, fresh] = maps_.try_emplace(key_of_map(request, i), CachedMap{});
+        CachedMap& view = found->second;
         view.used = true;
         if (!fresh && view.place.size == size) {
             continue;
@@ -206,100 +214,108 @@ bool ShadowCollector::place_light(LightViews& wanted) {
         }
         const std::optional<AtlasRect> place = atlas_.allocate(size);
         if (!place) {
-            kept_.erase(found);
+            maps_.erase(found);
             return false;
         }
         view = {.place = *place, .used = true};
     }
-    wanted.placed = true;
+    request.placed = true;
     return true;
 }
 
-void ShadowCollector::release_light(const LightViews& wanted) {
-    auto it = kept_.lower_bound({wanted.key, 0});
-    while (it != kept_.end() && it->first.first == wanted.key) {
-        atlas_.release(it->second.place);
-        it = kept_.erase(it);
+void ShadowCollector::release_light(const LightViews& request) {
+    for (std::size_t i = 0; i < request.count; ++i) {
+        if (const auto found = maps_.find(key_of_map(request, i)); found != maps_.end()) {
+            atlas_.release(found->second.place);
+            maps_.erase(found);
+        }
     }
 }
 
-/// Finds room for every view, in an atlas twice as large if need be.
-void ShadowCollector::place_views() {
-    for (auto& [key, view] : kept_) {
-        view.used = false;
+void ShadowCollector::begin_frame() {
+    for (auto& [key, map] : maps_) {
+        map.used = false;
     }
-    for (const LightViews& wanted : wanted_) {
-        for (std::size_t i = 0; i < wanted.count; ++i) {
-            const auto found = kept_.find({wanted.key, static_cast<int>(i)});
-            if (found != kept_.end()) {
+}
+
+bool ShadowCollector::evict_unused() {
+    return std::erase_if(
+               maps_,
+               [&](const auto& entry) {
+                   const bool unused = !entry.second.used;
+                   if (unused) {
+                       atlas_.release(entry.second.place);
+                   }
+                   return unused;
+               })
+           > 0;
+}
+
+/// Allocates space for every view: free, then that of maps no longer used, then in an atlas twice
+/// as large, in which all others keep their places and depths.
+void ShadowCollector::place_views() {
+    for (const LightViews& request : requests_) {
+        for (std::size_t i = 0; i < request.count; ++i) {
+            if (const auto found = maps_.find(key_of_map(request, i)); found != maps_.end()) {
                 found->second.used = true;
             }
         }
     }
-    for (auto it = kept_.begin(); it != kept_.end();) {
-        if (it->second.used) {
-            ++it;
-        } else {
-            atlas_.release(it->second.place);
-            it = kept_.erase(it);
-        }
+    while (atlas_.size() < kMinAtlasSize && !requests_.empty()) {
+        atlas_.grow();
     }
-    if (atlas_.size() < kFirstAtlasSize && !wanted_.empty()) {
-        atlas_ = ShadowAtlas(kFirstAtlasSize);
-    }
-    for (std::size_t i = 0; i < wanted_.size();) {
-        if (place_light(wanted_[i])) {
+    for (std::size_t i = 0; i < requests_.size();) {
+        if (place_light(requests_[i])) {
             ++i;
-        } else if (atlas_.size() < kLargestAtlasSize) {
-            // The larger one is empty: all views are placed, and drawn, anew.
-            atlas_ = ShadowAtlas(2 * atlas_.size());
-            kept_.clear();
-            i = 0;
+        } else if (evict_unused()) {
+            // once more
+        } else if (atlas_.size() < kMaxAtlasSize) {
+            atlas_.grow();
         } else {
-            release_light(wanted_[i]);
+            release_light(requests_[i]);
             ++i;
         }
     }
 }
 
 void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
-    for (const LightViews& wanted : wanted_) {
-        if (!wanted.placed) {
+    for (const LightViews& request : requests_) {
+        if (!request.placed) {
             ++list.unserved;
             continue;
         }
         lights.shadows = true;
-        list.cubes = list.cubes || wanted.kind == layout::kShadowCube;
-        list.cascades = list.cascades || wanted.kind == layout::kShadowCascades;
-        const bool soft = wanted.settings.filter >= ShadowFilter::Soft;
-        const bool lights_by_it = wanted.water != nullptr || !wanted.light->for_volumes;
-        list.soft = list.soft || (soft && lights_by_it);
-        if (wanted.water != nullptr) {
-            wanted.water->record = static_cast<int>(list.records.size());
+        list.cubes = list.cubes || request.kind == layout::kShadowCube;
+        list.cascades = list.cascades || request.kind == layout::kShadowCascades;
+        const bool soft = request.settings.filter >= ShadowFilter::Soft;
+        const bool used_for_lighting = request.water != nullptr || !request.light->for_volumes;
+        list.soft = list.soft || (soft && used_for_lighting);
+        if (request.water != nullptr) {
+            request.water->record = static_cast<int>(list.records.size());
         } else {
-            lights.records[wanted.light->record].shadow = {
-                static_cast<float>(list.records.size()), wanted.kind,
-                static_cast<float>(wanted.count), 0};
+            lights.records[request.light->record].shadow = {
+                static_cast<float>(list.records.size()), request.kind,
+                static_cast<float>(request.count), 0};
         }
-        for (std::size_t i = 0; i < wanted.count; ++i) {
+        for (std::size_t i = 0; i < request.count; ++i) {
             list.records.push_back(make_shadow_record(
-                views_[wanted.first_view + i], kept(wanted, i).place,
-                static_cast<float>(wanted.settings.filter), wanted.settings.source_size,
-                wanted.settings.bias));
-            list.records.back().splits = wanted.splits;
+                views_[request.first_view + i], cached_map(request, i).place,
+                static_cast<float>(request.settings.filter), request.settings.source_size,
+                request.settings.bias));
+            list.records.back().splits = request.splits;
         }
     }
 }
 
 void ShadowCollector::collect(
-    const World& world, const RenderView& view, const MeshPool& meshes,
-    const MaterialPool& materials, DeformedList& shapes, std::uint64_t assets,
-    gpu::RingBuffer& ring, LightList& lights, ShadowList& list) {
+    const FrameData& frame, const ViewData& view, std::span<const WaterShadow> waters,
+    LightList& lights, ShadowList& list) {
+    list.waters.assign(waters.begin(), waters.end());
     list.records.clear();
     list.due.clear();
     list.unserved = 0;
     list.cubes = list.cascades = list.soft = false;
-    want_views(view, lights, list);
+    request_views(view.camera, view.kind, lights, list);
     place_views();
     write_records(lights, list);
     list.atlas_size = list.records.empty() ? 0 : atlas_.size();
@@ -319,12 +335,14 @@ void ShadowCollector::collect(
         volumes_.push_back(make_caster_volume(one));
     }
     signatures_.resize(views_.size());
-    sign_casters(world, view.alpha, meshes, materials, shapes, volumes_, signatures_);
-    for (const LightViews& wanted : wanted_) {
-        for (std::size_t i = 0; wanted.placed && i < wanted.count; ++i) {
-            const std::size_t v = wanted.first_view + i;
-            Kept& map = kept(wanted, i);
-            const std::uint64_t signature = hash_combine(signatures_[v], assets);
+    hash_casters(
+        *frame.world, view.camera.alpha, *frame.meshes, *frame.materials, *frame.shapes, volumes_,
+        signatures_);
+    for (const LightViews& request : requests_) {
+        for (std::size_t i = 0; request.placed && i < request.count; ++i) {
+            const std::size_t v = request.first_view + i;
+            CachedMap& map = cached_map(request, i);
+            const std::uint64_t signature = hash_combine(signatures_[v], frame.assets_identity);
             if (map.drawn && map.signature == signature
                 && map.clip_from_world == views_[v].clip_from_world) {
                 continue;
@@ -337,9 +355,10 @@ void ShadowCollector::collect(
             ShadowDraw& draw = list.due.emplace_back();
             draw.place = map.place;
             draw.clamp_depth = views_[v].clamp_depth;
-            draw.view_block = ring.push_value(block);
+            draw.view_block = frame.ring->push_value(block);
             collector_.collect_casters(
-                world, volumes_[v], view.alpha, meshes, materials, shapes, ring, draw.casters);
+                *frame.world, volumes_[v], view.camera.alpha, *frame.meshes, *frame.materials,
+                *frame.shapes, *frame.ring, draw.casters);
         }
     }
 }

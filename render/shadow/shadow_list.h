@@ -1,23 +1,25 @@
 #pragma once
 
+#include "render/frame_data.h"
 #include "render/instance_list.h"
 #include "render/light_list.h"
 #include "render/shadow/shadow_casters.h"
 #include "render/shadow/shadow_view.h"
 
 #include <map>
+#include <span>
+#include <tuple>
 #include <vector>
 
 namespace limn {
 
-// All shadow maps of a frame: which views there are, where each lies in the one atlas, and which of
-// them must be drawn again. A view keeps its place and its depths as long as neither its light nor
-// a caster in it changes; a light that is gone gives its places back.
+// All shadow maps of a frame: their views, their places in the shared atlas, and which of them must
+// be redrawn. A view keeps its place and its cached depths as long as neither its light nor a
+// caster in it changes; a removed light releases its places.
 //
-//     collector.collect(world, view, meshes, materials, shapes, assets, ring, scene.lights,
-//         scene.shadows);
+//     collector.collect(frame, view, water_requests, lights, shadows);
 
-/// A view to be drawn in this frame.
+/// A view to be redrawn in this frame.
 struct ShadowDraw {
     AtlasRect place;
     bool clamp_depth = false;
@@ -25,75 +27,88 @@ struct ShadowDraw {
     InstanceList casters;
 };
 
-/// A view that belongs to no light: of what lies below the surface of a water, as light comes down
-/// that flat water bends, or above it, as light goes up that it mirrors.
+/// A view that belongs to a water instead of a light: below its surface along sunlight refracted by
+/// flat water, or above it along reflected sunlight.
 struct WaterShadow {
     Entity water;
-    std::uint64_t part = 0;  ///< tells apart those of the same water, 0 .. 7
+    std::uint64_t part = 0;  ///< key among the views of the same water, 0 .. 7
     ShadowView view;
     int record = -1;  ///< index into ShadowList::records; -1: the atlas is full
 };
 
+/// Requests of the waters of a view, published before its shadows are collected.
+struct WaterShadows {
+    std::vector<WaterShadow> requests;
+};
+
 struct ShadowList {
-    std::vector<WaterShadow> waters;  ///< asked for before collect(), which sets their records
+    std::vector<WaterShadow> waters;  ///< as requested, with their records
     std::vector<layout::ShadowViewRecord> records;
     std::vector<ShadowDraw> due;
     bool cubes = false;     ///< some light has six faces
     bool cascades = false;  ///< some light has cascades
-    bool soft = false;      ///< some filter that lights is wider than 2x2
+    bool soft = false;      ///< some map used for lighting has a filter wider than 2x2
     int atlas_size = 0;     ///< side [texels]; 0: no shadow maps
-    int unserved = 0;       ///< lights that found no room in the atlas: they cast no shadow
+    int unserved = 0;       ///< lights without room in the atlas: they cast no shadow
 };
 
-/// A Shadow whose numbers can be used, whatever was asked for: resolution a power of two.
-[[nodiscard]] Shadow make_sane(const Shadow& shadow);
+/// Clamps all settings to valid ranges; rounds the resolution up to a power of two.
+[[nodiscard]] Shadow sanitize(const Shadow& shadow);
 
-/// Keeps its memory, and what it knows of the maps, from frame to frame.
+/// Reuses its memory, and caches the maps, from frame to frame.
 class ShadowCollector {
   public:
-    /// Sets LightRecord::shadow and LightList::shadows of the lights that are served.
+    /// Call once a frame, before its views. Maps that a frame does not use stay until their space
+    /// is needed.
+    void begin_frame();
+    /// Sets LightRecord::shadow and LightList::shadows for the lights that got maps. Views of
+    /// different kinds have cascades of their own, views of one kind share them in turn.
     void collect(
-        const World& world, const RenderView& view, const MeshPool& meshes,
-        const MaterialPool& materials, DeformedList& shapes, std::uint64_t assets,
-        gpu::RingBuffer& ring, LightList& lights, ShadowList& list);
+        const FrameData& frame, const ViewData& view, std::span<const WaterShadow> waters,
+        LightList& lights, ShadowList& list);
 
   private:
-    /// A view that has a place, by light and number.
-    struct Kept {
+    /// A cached map, keyed by light, by the kind of the view if it depends on that, and by number.
+    struct CachedMap {
         AtlasRect place;
-        Mat4 clip_from_world{0.0f};  ///< as it was drawn
+        Mat4 clip_from_world{0.0f};  ///< as last drawn
         std::uint64_t signature = 0;
         bool drawn = false;
         bool used = false;  ///< in this frame
     };
-    using KeptKey = std::pair<std::uint64_t, int>;
+    using CachedMapKey = std::tuple<std::uint64_t, std::uint32_t, int>;
     /// The views of a light in this frame, at first_view of views_.
     struct LightViews {
-        const ShadowedLight* light = nullptr;  ///< or
+        const ShadowedLight* light = nullptr;  ///< either this or `water`
         WaterShadow* water = nullptr;
         std::uint64_t key = 0;
-        Shadow settings;  ///< sane
-        float kind = 0;   ///< layout::kShadow*
+        std::uint32_t view_kind = 0;  ///< 0: the same maps for all views
+        Shadow settings;              ///< clamped
+        float kind = 0;               ///< layout::kShadow*
         std::size_t first_view = 0;
         std::size_t count = 0;
         Vec4 splits = Vec4(INFINITY);
         bool placed = false;
     };
 
-    void want_views(const RenderView& view, const LightList& lights, ShadowList& list);
-    void want_cascades(const RenderView& view, LightViews& wanted);
-    [[nodiscard]] bool want_perspective(const RenderView& view, LightViews& wanted);
+    void request_views(
+        const RenderView& camera, ViewKind kind, const LightList& lights, ShadowList& list);
+    void request_cascades(const RenderView& view, LightViews& request);
+    [[nodiscard]] bool request_perspective(const RenderView& view, LightViews& request);
+    [[nodiscard]] CachedMapKey key_of_map(const LightViews& request, std::size_t number) const;
     void place_views();
-    [[nodiscard]] bool place_light(LightViews& wanted);
-    void release_light(const LightViews& wanted);
-    [[nodiscard]] Kept& kept(const LightViews& wanted, std::size_t number);
+    /// Frees the maps that this frame has not used; false if there are none.
+    bool evict_unused();
+    [[nodiscard]] bool place_light(LightViews& request);
+    void release_light(const LightViews& request);
+    [[nodiscard]] CachedMap& cached_map(const LightViews& request, std::size_t number);
     void write_records(LightList& lights, ShadowList& list);
 
     InstanceCollector collector_;
     ShadowAtlas atlas_{1};
-    std::map<KeptKey, Kept> kept_;
+    std::map<CachedMapKey, CachedMap> maps_;
     std::vector<ShadowView> views_;
-    std::vector<LightViews> wanted_;
+    std::vector<LightViews> requests_;
     std::vector<CasterVolume> volumes_;
     std::vector<std::uint64_t> signatures_;
     bool reported_ = false;

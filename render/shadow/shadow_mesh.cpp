@@ -18,7 +18,7 @@ bool is_finite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// Gives every position the index of the first one that lies within the tolerance.
+/// Maps every position to the index of the first one within the tolerance.
 class Welder {
   public:
     explicit Welder(const Bounds& bounds)
@@ -51,7 +51,7 @@ class Welder {
     }
 
   private:
-    /// A cell's number along an axis is below 2^20; one below zero is possible.
+    /// Cell coordinates are -1 .. 2^20 - 1.
     static std::uint64_t key_of(const DVec3& cell) {
         const auto part = [](double x) { return static_cast<std::uint64_t>(x + 1.0) & 0x1fffff; };
         return part(cell.x) | part(cell.y) << 21 | part(cell.z) << 42;
@@ -123,9 +123,9 @@ int count_duplicates(const ShadowMesh& mesh) {
     return count;
 }
 
-/// One side of a triangle; those of one edge become neighbors when sorted.
+/// One side of a triangle; sorting groups the sides of each edge.
 struct Side {
-    std::uint64_t edge;  // the smaller vertex above, the larger below
+    std::uint64_t edge;  // the smaller vertex in the high bits, the larger in the low bits
     std::uint32_t triangle;
     bool rising;  // runs from the smaller vertex to the larger
 };
@@ -166,7 +166,7 @@ void find_edges(ShadowMesh& mesh) {
     }
 }
 
-/// Which corner of the triangle lies at the position.
+/// Corner of the triangle at the position.
 std::uint32_t corner_of(const ShadowMesh& mesh, std::uint32_t triangle, std::uint32_t position) {
     const std::array<std::uint32_t, 3>& t = mesh.triangles[triangle];
     const auto k = static_cast<std::uint32_t>(t[0] == position ? 0 : t[1] == position ? 1 : 2);
@@ -191,12 +191,12 @@ std::string describe(const ManifoldReport& report) {
     std::string text;
     append_count(text, report.open_edges, "open edge", "open edges");
     append_count(
-        text, report.crowded_edges, "edge of more than two triangles",
-        "edges of more than two triangles");
+        text, report.crowded_edges, "edge with more than two triangles",
+        "edges with more than two triangles");
     append_count(
         text, report.inconsistent_edges, "edge between triangles that face opposite ways",
         "edges between triangles that face opposite ways");
-    append_count(text, report.duplicated, "triangle twice", "triangles twice");
+    append_count(text, report.duplicated, "duplicate triangle", "duplicate triangles");
     if (text.empty()) {
         text = report.triangles > 0 ? "closed" : "no triangles";
     }
@@ -240,8 +240,8 @@ VolumeGeometry make_edge_volume(const ShadowMesh& mesh) {
     }
     volume.cap_indices = static_cast<std::uint32_t>(volume.indices.size());
     for (const ShadowEdge& edge : mesh.edges) {
-        // Begins with the triangle that runs the other way: so the quad looks outward whichever of
-        // the two is extruded.
+        // Starting with the triangle that traverses it backward, the quad faces outward whichever
+        // of the two is extruded.
         const std::uint32_t a = corner_of(mesh, edge.against, edge.begin);
         const std::uint32_t b = corner_of(mesh, edge.against, edge.end);
         const std::uint32_t c = corner_of(mesh, edge.along, edge.end);
@@ -252,7 +252,7 @@ VolumeGeometry make_edge_volume(const ShadowMesh& mesh) {
 }
 
 VolumeGeometry make_triangle_volume(const ShadowMesh& mesh) {
-    // Corners 0 1 2 of the near cap and 3 4 5 beneath them.
+    // Corners 0 1 2 of the near cap and 3 4 5 of the far cap.
     constexpr std::array<std::uint32_t, 6> kCaps = {0, 1, 2, 5, 4, 3};
     constexpr std::array<std::uint32_t, 18> kSides = {0, 3, 4, 0, 4, 1, 1, 4, 5,
                                                       1, 5, 2, 2, 5, 3, 2, 3, 0};

@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kFirstVertices = 1 << 14;
-constexpr std::size_t kFirstIndices = 1 << 16;
+constexpr std::size_t kInitialVertices = 1 << 14;
+constexpr std::size_t kInitialIndices = 1 << 16;
 
 constexpr gpu::VertexAttribute kVolumeAttributes[] = {
     {.location = 0, .stream = kVolumeCornerStream, .components = 4},
@@ -67,7 +67,7 @@ const VolumeRange& ShadowMeshPool::triangle_volume(const Assets& assets, MeshId 
 
 void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
     if (vertices > vertex_capacity_) {
-        const std::size_t capacity = std::max({vertices, 2 * vertex_capacity_, kFirstVertices});
+        const std::size_t capacity = std::max({vertices, 2 * vertex_capacity_, kInitialVertices});
         corners_ = gpu::grown_buffer(
             "volume corners", corners_, vertex_count_ * sizeof(VolumeVertex),
             capacity * sizeof(VolumeVertex));
@@ -75,7 +75,7 @@ void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
         vertices_.set_vertices(kVolumeCornerStream, corners_, 0, sizeof(VolumeVertex));
     }
     if (indices > index_capacity_) {
-        const std::size_t capacity = std::max({indices, 2 * index_capacity_, kFirstIndices});
+        const std::size_t capacity = std::max({indices, 2 * index_capacity_, kInitialIndices});
         indices_ = gpu::grown_buffer("volume indices", indices_, index_count_ * 4, capacity * 4);
         index_capacity_ = capacity;
         vertices_.set_indices(indices_);

@@ -10,11 +10,10 @@
 
 namespace limn {
 
-// The meshes that cast shadow volumes, on the GPU: examined and uploaded when the first light asks
-// for them, all in one pair of buffers. A mesh per edge takes 144 bytes a triangle, per triangle
-// 288.
+// GPU meshes of shadow volumes: checked and uploaded on first use by a light, all in one pair of
+// buffers. A per-edge mesh takes 144 bytes per triangle, a per-triangle one 288.
 
-/// Where a volume lies: caps first, then sides.
+/// Range of a volume in the buffers: caps first, then sides.
 struct VolumeRange {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
@@ -26,12 +25,12 @@ class ShadowMeshPool {
   public:
     ShadowMeshPool();
 
-    /// What keeps the mesh from being closed.
+    /// Whether the mesh is closed, and if not, why.
     [[nodiscard]] const ManifoldReport& report(const Assets& assets, MeshId mesh);
     /// The mesh must be closed.
     [[nodiscard]] const VolumeRange& edge_volume(const Assets& assets, MeshId mesh);
     [[nodiscard]] const VolumeRange& triangle_volume(const Assets& assets, MeshId mesh);
-    /// Forgets all meshes; the buffers stay.
+    /// Removes all meshes; the buffers stay allocated.
     void clear();
 
     [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
@@ -57,7 +56,7 @@ class ShadowMeshPool {
     std::size_t index_capacity_ = 0;
 };
 
-/// Streams of shadow_volume.vert.
+/// Vertex buffer bindings of shadow_volume.vert.
 inline constexpr unsigned kVolumeCornerStream = 0;
 inline constexpr unsigned kVolumeInstanceStream = 1;
 

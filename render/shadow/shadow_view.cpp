@@ -9,29 +9,29 @@
 namespace limn {
 namespace {
 
-/// Where a view looks, unit vectors.
+/// Orthonormal axes of a view.
 struct Axes {
     Vec3 right;
     Vec3 up;
     Vec3 forward;
 };
 
-Axes axes_along(const Vec3& forward, const Vec3& wanted = {0, 0, 0}) {
-    const Vec3 across = wanted - forward * glm::dot(forward, wanted);
+Axes axes_along(const Vec3& forward, const Vec3& preferred_right = {0, 0, 0}) {
+    const Vec3 across = preferred_right - forward * glm::dot(forward, preferred_right);
     const float size = glm::length(across);
     const Vec3 right = size > 1e-3f ? across / size : any_perpendicular(forward);
     return {right, glm::cross(right, forward), forward};
 }
 
-/// How much wider a view gets for its border.
+/// Scale factor of a view for its border.
 float widening(int resolution, int guard) {
     return static_cast<float>(resolution) / static_cast<float>(resolution - 2 * guard);
 }
 
-/// `tangent` of half the angle shown.
+/// `tangent`: tan(fov / 2).
 ShadowView perspective_view(
     const Vec3& eye, const Axes& axes, float tangent, float near, int resolution, int guard) {
-    Mat4 rows(0.0f);  // its columns are the rows of what is wanted
+    Mat4 rows(0.0f);  // transposed: columns are rows of the result
     const auto row = [&](const Vec3& axis, float scale) {
         return Vec4(axis, -glm::dot(axis, eye)) * scale;
     };
@@ -54,7 +54,7 @@ ShadowView perspective_view(
 ShadowView make_spot_view(
     const Vec3& eye, const Vec3& axis, float half_angle, float near, int resolution, int guard,
     const Vec3& right) {
-    const float tangent = std::tan(std::min(half_angle, kWidestSpotView));
+    const float tangent = std::tan(std::min(half_angle, kMaxSpotViewAngle));
     return perspective_view(
         eye, axes_along(axis, right), std::max(tangent, 1e-3f) * widening(resolution, guard), near,
         resolution, guard);
@@ -85,7 +85,7 @@ std::array<float, kMaxCascades> split_cascades(float near, float far, int count)
 ShadowView make_cascade_view(
     const RenderView& camera, const Vec3& to_sun, float slice_near, float slice_far, int resolution,
     int guard) {
-    // The smallest ball about the slice of the pyramid: its middle lies on the axis.
+    // The smallest sphere around the slice of the frustum: its center lies on the axis.
     const Vec2 tangent = widest_tangent(camera);
     const double t2 = glm::dot(tangent, tangent);
     const double along =
@@ -101,7 +101,7 @@ ShadowView make_cascade_view(
     for (int i = 0; i < 3; ++i) {
         middle[i] = pose[i].w - along * pose[i].z;
     }
-    // In whole texels along all three axes, so that the depths repeat too.
+    // Snapped to whole texels along all three axes, so that depths repeat, too.
     const auto snapped = [&](const Vec3& axis) {
         return std::floor(glm::dot(glm::dvec3(axis), middle) / texel) * texel;
     };
@@ -109,7 +109,7 @@ ShadowView make_cascade_view(
     const double up = snapped(axes.up);
     const double forward = snapped(axes.forward);
 
-    // From well before the ball, for what stands between it and the sun, to its far side.
+    // From well in front of the sphere, to include casters toward the sun, to its far side.
     constexpr double kBefore = 200;
     const double far = forward + half;
     const double range = 2 * half + kBefore;
@@ -127,7 +127,7 @@ ShadowView make_cascade_view(
     view.guard = guard;
     view.clamp_depth = true;
     view.penumbra = static_cast<float>(range / texel);
-    // Filters look around within the guard, from places that are shifted along normals.
+    // Filters sample within the guard, at positions offset along normals.
     view.shading = shading_planes(camera, to_sun, slice_near, slice_far, (guard + 8) * texel);
     return view;
 }
@@ -161,7 +161,7 @@ Frustum shading_planes(
         glm::dvec3 point;
         glm::dvec3 along;
     };
-    // An outline has at most six edges, those of the near side last: they bound the least.
+    // A silhouette has at most six edges; those of the near side come last, as they bound least.
     const Edge edges[] = {
         {kLeft, kBottom, eye, to_left + to_bottom - forward},
         {kLeft, kTop, eye, to_left + to_top - forward},
@@ -205,7 +205,7 @@ double texels_per_pixel(
     const glm::dvec4 place(glm::dvec3(point), 1);
     const double q = glm::dot(rows[3], place);
 
-    // How the texel moves when the ray through the pixel's middle goes on to the next pixel.
+    // Motion in the map when the ray through the pixel's center moves on to the next pixel.
     const auto texels = [&](const glm::dvec3& step) {
         const glm::dvec3 along = step - ray * (glm::dot(n, step) / glm::dot(n, ray));
         glm::dvec2 moved(0);
@@ -224,7 +224,7 @@ double texels_per_pixel(
 
 layout::ShadowViewRecord make_shadow_record(
     const ShadowView& view, const AtlasRect& place, float filter, float source_size, float bias) {
-    // From clip space to texels of the atlas: the bias matrix, for depths that are 0 .. 1 already.
+    // From clip space to texels of the atlas: the bias matrix; depths are 0 .. 1 already.
     const double half = 0.5 * place.size;
     glm::dmat4 texels_from_clip(1.0);
     texels_from_clip[0][0] = half;

@@ -18,7 +18,7 @@ constexpr std::uint32_t kPrism = 4;
 constexpr std::uint32_t kZFail = 2;
 constexpr std::uint32_t kMirrored = 1;
 
-/// A light of finite radius ends a little later, so that rounding at the rim is no shadow.
+/// Enlarges a finite light range slightly, so that rounding at the rim gives no false shadow.
 constexpr float kRim = 1.001f;
 
 LightReach reach_of(const ShadowedLight& light) {
@@ -51,7 +51,7 @@ layout::VolumeBlock make_block(const ShadowVolume& settings, const Vec4& light, 
         distance = radius;
         break;
     case Extrusion::Plane:
-        // Where volumes share corners, one corner cannot follow several planes.
+        // With shared corners, one corner cannot be extruded to several planes.
         extrusion = std::isfinite(radius) && settings.kind == VolumeKind::PerTriangle
                         ? layout::kExtrudePlane
                         : extrusion;
@@ -72,8 +72,8 @@ Interval project(const Bounds& box, const Vec3& n) {
     return {middle - half, middle + half};
 }
 
-/// What has no finite place or size is not drawn (fill_boxes) and casts nothing.
-bool is_somewhere(const Bounds& box, const Affine& world_from_mesh) {
+/// Instances with non-finite bounds or transforms are not drawn (fill_boxes) and cast nothing.
+bool is_finite(const Bounds& box, const Affine& world_from_mesh) {
     const Vec3 sum = box.min + box.max;
     const glm::mat3 linear = glm::mat3(to_mat4(world_from_mesh));
     return std::isfinite(sum.x + sum.y + sum.z + glm::determinant(linear));
@@ -81,39 +81,39 @@ bool is_somewhere(const Bounds& box, const Affine& world_from_mesh) {
 
 }  // namespace
 
-ShadowMethod choose_shadow_method(ShadowMethod wanted, bool has_volume) {
-    if (wanted != ShadowMethod::Auto) {
-        return wanted;
+ShadowMethod choose_shadow_method(ShadowMethod requested, bool has_volume) {
+    if (requested != ShadowMethod::Auto) {
+        return requested;
     }
     return has_volume ? ShadowMethod::Volume : ShadowMethod::Map;
 }
 
-bool shade_may_hold(const Bounds& box, const Vec4& light, const Vec3& middle, float radius) {
-    // What is shaded by the box lies behind it, seen from the light: does the way from the ball to
-    // the light pass the box, made larger by the ball?
+bool shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& middle, float radius) {
+    // The shadow of the box lies behind it as seen from the light: test whether the segment from
+    // the sphere's center to the light hits the box, enlarged by the radius.
     const Vec3 low = box.min - Vec3(radius);
     const Vec3 high = box.max + Vec3(radius);
-    const Vec3 way = Vec3(light) - middle * light.w;
+    const Vec3 to_light = Vec3(light) - middle * light.w;
     float enter = 0;
     float leave = light.w > 0 ? 1.0f : INFINITY;
     for (int i = 0; i < 3; ++i) {
-        if (std::abs(way[i]) < 1e-20f) {
+        if (std::abs(to_light[i]) < 1e-20f) {
             if (middle[i] < low[i] || middle[i] > high[i]) {
                 return false;
             }
             continue;
         }
-        const float a = (low[i] - middle[i]) / way[i];
-        const float b = (high[i] - middle[i]) / way[i];
+        const float a = (low[i] - middle[i]) / to_light[i];
+        const float b = (high[i] - middle[i]) / to_light[i];
         enter = std::max(enter, std::min(a, b));
         leave = std::min(leave, std::max(a, b));
     }
     return enter <= leave * 1.00001f + 1e-6f;
 }
 
-bool shade_is_outside(const Bounds& box, const Vec4& light, const Frustum& frustum) {
+bool shadow_is_outside(const Bounds& box, const Vec4& light, const Frustum& frustum) {
     for (const Vec4& plane : frustum.planes) {
-        // Outside of the plane, and carried away from it by the light.
+        // Outside the plane, with the shadow extending away from it.
         const Vec3 n = Vec3(plane);
         const Interval along = project(box, n);
         const bool away = along.high * light.w <= glm::dot(n, Vec3(light));
@@ -137,7 +137,7 @@ void VolumeCollector::collect(
     }
     find_casters(world, view, shapes);
 
-    // Layers in the order of the records. Lights that reach nothing, or that nothing shades, need
+    // Layers in the order of the records. Lights without a visible range or without casters need
     // none.
     std::vector<std::size_t> taken;
     std::vector<std::uint32_t> layer_of(candidates_.size(), ~0u);
@@ -156,7 +156,7 @@ void VolumeCollector::collect(
             && list.lights.size() == static_cast<std::size_t>(kMaxVolumeLights)) {
             refuse(
                 candidate, "shadow volumes: more than " + std::to_string(kMaxVolumeLights)
-                               + " lights have them; the others get maps");
+                               + " lights use them; the others use shadow maps");
         }
         if (!candidate.served) {
             light.settings.method = ShadowMethod::Map;
@@ -174,7 +174,7 @@ void VolumeCollector::collect(
         }
         if (hybrid && needed) {
             light.settings.method = ShadowMethod::Map;
-            light.settings.filter = ShadowFilter::Soft;  // so wide is an edge: shadow_classify.frag
+            light.settings.filter = ShadowFilter::Soft;  // edge width of shadow_classify.frag
             light.for_volumes = true;
         } else {
             if (needed) {
@@ -195,7 +195,7 @@ void VolumeCollector::collect(
     write_draws(*assets, ring, list);
 }
 
-void VolumeCollector::take_over_hybrids(LightList& lights, VolumeList& list) {
+void VolumeCollector::assign_hybrid_masks(LightList& lights, VolumeList& list) {
     for (std::size_t i = 0; i < list.lights.size(); ++i) {
         VolumeLight& light = list.lights[i];
         if (!light.hybrid) {
@@ -203,7 +203,7 @@ void VolumeCollector::take_over_hybrids(LightList& lights, VolumeList& list) {
         }
         Vec4& shadow = lights.records[light.record].shadow;
         light.map = shadow;
-        light.hybrid = shadow.y != layout::kShadowNone;  // no room for its map: volumes alone
+        light.hybrid = shadow.y != layout::kShadowNone;  // no room for its map: volumes only
         shadow = {static_cast<float>(i), layout::kShadowMask, 1, 0};
         lights.shadows = true;
     }
@@ -257,7 +257,7 @@ void VolumeCollector::find_casters(
             const bool deformed = shape != DeformedList::kNone;
             const Bounds& own = deformed ? shapes[shape].bounds : mesh.bounds;
             const Bounds box = transform_bounds(a, inflate ? inflated(own, *inflate) : own);
-            if (!is_somewhere(box, a)) {
+            if (!is_finite(box, a)) {
                 return;
             }
             for (Candidate& candidate : candidates_) {
@@ -267,8 +267,8 @@ void VolumeCollector::find_casters(
                 if (inflate != nullptr || deformed) {
                     refuse(
                         candidate, "shadow volumes: mesh " + mesh.name
-                                       + (deformed ? " changes its shape" : " is inflated")
-                                       + "; lights that reach it get maps");
+                                       + (deformed ? " is deformed" : " is inflated")
+                                       + "; lights that reach it use shadow maps");
                 } else {
                     add_caster(candidate, view, frustum, assets, surface, a, box);
                 }
@@ -290,7 +290,7 @@ void VolumeCollector::add_caster(
             refuse(
                 candidate, "shadow volumes: mesh " + assets.meshes[surface.mesh.index].name
                                + " is not closed (" + describe(report)
-                               + "); lights that reach it get maps");
+                               + "); lights that reach it use shadow maps");
             return;
         }
         if (surface.material.index < assets.materials.size()
@@ -298,29 +298,30 @@ void VolumeCollector::add_caster(
             refuse(
                 candidate, "shadow volumes: material "
                                + assets.materials[surface.material.index].name
-                               + " has holes, which cannot cast; lights that reach it get maps");
+                               + " is alpha-tested and cannot cast volumes; lights that reach it "
+                                 "use shadow maps");
             return;
         }
     }
     const glm::dmat4 world_matrix = to_mat4(world_from_mesh);
     const double determinant = glm::determinant(world_matrix);
-    if (determinant == 0 || shade_is_outside(box, candidate.light, frustum)) {
+    if (determinant == 0 || shadow_is_outside(box, candidate.light, frustum)) {
         return;
     }
     const auto& camera = view.world_from_camera.row;
     const Vec3 eye = {camera[0].w, camera[1].w, camera[2].w};
     const float to_corner = view.near * glm::length(Vec3(widest_tangent(view), 1));
-    const bool may_hold_eye = shade_may_hold(
+    const bool may_contain_eye = shadow_may_contain(
         box, candidate.light, eye, 1.01f * to_corner + std::max(settings.cap_bias, 0.0f));
-    const bool z_fail =
-        settings.mode == StencilMode::ZFail || (settings.mode == StencilMode::Auto && may_hold_eye);
+    const bool z_fail = settings.mode == StencilMode::ZFail
+                        || (settings.mode == StencilMode::Auto && may_contain_eye);
     const bool prism = settings.kind == VolumeKind::PerTriangle || !closed;
 
     Caster& caster = casters_.emplace_back();
     caster.light = static_cast<std::uint32_t>(&candidate - candidates_.data());
     caster.state = (prism ? kPrism : 0) | (z_fail ? kZFail : 0) | (determinant < 0 ? kMirrored : 0);
     caster.mesh = surface.mesh.index;
-    // From the eye's side nobody sees the caps of an endless volume: the caster hides them.
+    // With z-pass the caps of an infinite volume are never visible: the caster hides them.
     caster.caps = z_fail || prism || settings.extrusion != Extrusion::Infinite;
     for (int i = 0; i < 3; ++i) {
         caster.instance.row[i] = world_from_mesh.row[i];

@@ -14,74 +14,75 @@
 
 namespace limn {
 
-// Which lights have stencil volumes in this frame, and the draws that count them. A light with the
-// method volume or hybrid gets a layer of the screen's mask; it gets a map instead, and the log
-// says so once, if kMaxVolumeLights others come before it or if a caster in its reach cannot have a
-// volume: a mesh that is not closed or changes its shape, or a material with holes
-// (shadow.selection). What only needs
-// to be asked of casters near the light is asked of those (shadow.caster-cull); of these, casters
-// whose volume lies beside the picture are left out, those outside of the picture are not.
+// Which lights use stencil shadow volumes in this frame, and the draws that count them. A light
+// with the method volume or hybrid gets a layer of the shadow mask. It gets a shadow map instead,
+// logged once, if kMaxVolumeLights others come before it or if a caster in its range cannot have a
+// volume: a mesh that is not closed or is deformed, or a material with holes (shadow.selection).
+// Only casters within the light's range are considered (shadow.caster-cull); of these, casters
+// whose volume lies off screen are skipped, but not casters that are themselves off screen.
 //
-// Closed casters whose volume cannot hold the eye count by z-pass, from the eye, where an endless
-// volume needs no caps; the others by z-fail, from behind.
+// Closed casters whose volume cannot contain the eye are counted by z-pass, where an infinite
+// volume needs no caps; the others by z-fail.
 
 inline constexpr int kMaxVolumeLights = 8;
 
-/// Draws in one state.
+/// Draws that share a pipeline state.
+struct ShadowVolumePass;
+
 struct VolumeRun {
-    bool prisms = false;  ///< a volume a triangle
+    bool prisms = false;  ///< one volume per triangle
     bool z_fail = false;
-    bool mirrored = false;  ///< front faces turn clockwise
+    bool mirrored = false;  ///< front faces are clockwise
     std::uint32_t first_command = 0;
     std::uint32_t command_count = 0;
 };
 
 struct VolumeLight {
     std::uint32_t record = 0;     ///< index into LightList::records
-    bool hybrid = false;          ///< a map decides away from its edges
+    bool hybrid = false;          ///< the shadow map is used away from its edges
     Vec4 map = {0, 0, 0, 0};      ///< LightRecord::shadow of that map
-    LightBounds bounds;           ///< what it reaches in the picture
+    LightBounds bounds;           ///< its range on screen
     gpu::RingSlice block;         ///< layout::VolumeBlock
-    std::uint32_t first_run = 0;  ///< of VolumeList::runs
+    std::uint32_t first_run = 0;  ///< index into VolumeList::runs
     std::uint32_t run_count = 0;
 };
 
-/// Light i has layer i of the mask.
+/// Light i uses layer i of the shadow mask.
 struct VolumeList {
     std::vector<VolumeLight> lights;
     std::vector<VolumeRun> runs;
     gpu::RingSlice commands;
     gpu::RingSlice instances;    ///< layout::VolumeInstance
-    int casters = 0;             ///< volumes drawn, of all lights
+    int casters = 0;             ///< volumes drawn for all lights
     std::int64_t triangles = 0;  ///< submitted
     int unserved = 0;            ///< lights that have maps instead
     ShadowMeshPool* meshes = nullptr;
+    const ShadowVolumePass* pass = nullptr;  ///< that draws them; null until it has
 };
 
-/// What ShadowMethod::Auto means for a light with, or without, a ShadowVolume beside it
-/// (shadow.selection): who says what its volumes are like wants volumes, all others the maps that
-/// every caster suits.
-[[nodiscard]] ShadowMethod choose_shadow_method(ShadowMethod wanted, bool has_volume);
+/// Resolves ShadowMethod::Auto for a light with, or without, a ShadowVolume component
+/// (shadow.selection): shadow volumes with it, else shadow maps, which suit every caster.
+[[nodiscard]] ShadowMethod choose_shadow_method(ShadowMethod requested, bool has_volume);
 
-/// Whether what a caster in `box` shades can hold a point of the ball. Never false if it does.
+/// Whether the shadow of a caster in `box` may contain a point of the sphere; conservative.
 [[nodiscard]] bool
-shade_may_hold(const Bounds& box, const Vec4& light, const Vec3& middle, float radius);
+shadow_may_contain(const Bounds& box, const Vec4& light, const Vec3& middle, float radius);
 
-/// Whether the caster and all that it shades lie outside of the picture. Never true if not.
-[[nodiscard]] bool shade_is_outside(const Bounds& box, const Vec4& light, const Frustum& frustum);
+/// Whether the caster and its shadow lie wholly outside the frustum; conservative.
+[[nodiscard]] bool shadow_is_outside(const Bounds& box, const Vec4& light, const Frustum& frustum);
 
-/// Keeps its memory, and what it reported, from frame to frame.
+/// Reuses its memory, and remembers what it logged, from frame to frame.
 class VolumeCollector {
   public:
-    /// Before the maps: takes over lights with the method volume, sets their LightRecord::shadow
-    /// and removes them from LightList::shadowed; makes those it cannot serve, and the maps of
-    /// hybrid ones, lights with maps.
+    /// Call before the shadow maps. Claims lights with the method volume: sets their
+    /// LightRecord::shadow and removes them from LightList::shadowed. Lights it cannot serve, and
+    /// the maps of hybrid ones, become lights with maps.
     void collect(
         const World& world, const RenderView& view, const DeformedList& shapes,
         gpu::RingBuffer& ring, LightList& lights, VolumeList& list);
-    /// After the maps: hybrid lights read the mask, too.
-    static void take_over_hybrids(LightList& lights, VolumeList& list);
-    /// Other assets: meshes are examined anew.
+    /// Call after the shadow maps: switches hybrid lights to the mask.
+    static void assign_hybrid_masks(LightList& lights, VolumeList& list);
+    /// Forgets all meshes, for other assets.
     void forget() { meshes_.clear(); }
 
   private:
@@ -94,7 +95,7 @@ class VolumeCollector {
     };
     struct Caster {
         std::uint32_t light = 0;
-        std::uint32_t state = 0;  ///< prism, z_fail, mirrored: what is drawn together
+        std::uint32_t state = 0;  ///< prism, z_fail, mirrored: pipeline state bits
         std::uint32_t mesh = 0;
         bool caps = true;
         layout::VolumeInstance instance;

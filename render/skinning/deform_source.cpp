@@ -27,7 +27,8 @@ DeformSource find_deform_source(
     }
     if (settings.skin.index >= assets.skins.size()) {
         source.fault = fmt::format(
-            "deformed mesh {}: skin {} of {}", name, settings.skin.index, assets.skins.size());
+            "deformed mesh {}: skin {} out of range, there are {}", name, settings.skin.index,
+            assets.skins.size());
         return source;
     }
     const SkinData& skin = assets.skins[settings.skin.index];
@@ -36,13 +37,13 @@ DeformSource find_deform_source(
         skin.joints.begin(), skin.joints.end(), [&](std::uint16_t j) { return j >= joints; });
     if (beyond != skin.joints.end()) {
         source.fault = fmt::format(
-            "deformed mesh {}: skin {} follows joint {}, its character's pose has {}", name,
+            "deformed mesh {}: skin {} uses joint {}, but its character's pose has {}", name,
             skin.name, *beyond, joints);
         return source;
     }
     if (skin.joint_from_mesh.size() != skin.joints.size() || skin.joints.size() < joint_count) {
         source.fault = fmt::format(
-            "deformed mesh {}: its weights name {} joints, skin {} has {} and {} matrices", name,
+            "deformed mesh {}: its weights use {} joints, but skin {} has {} and {} matrices", name,
             joint_count, skin.name, skin.joints.size(), skin.joint_from_mesh.size());
         return source;
     }

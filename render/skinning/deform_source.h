@@ -9,15 +9,15 @@ namespace limn {
 
 class World;
 
-/// What a deformed instance follows; good until the world changes.
+/// Inputs of a deformed instance; valid until the world changes.
 struct DeformSource {
-    const SkinData* skin = nullptr;        ///< null: no joints move it
-    const Pose* pose = nullptr;            ///< has all joints of the skin
-    const MorphWeights* morphs = nullptr;  ///< null: no morph target is on
-    std::string fault;                     ///< why it is drawn at rest; empty if it is not
+    const SkinData* skin = nullptr;        ///< null: not skinned
+    const Pose* pose = nullptr;            ///< contains all joints of the skin
+    const MorphWeights* morphs = nullptr;  ///< null: no morph targets
+    std::string fault;  ///< why it is drawn in rest pose; empty if it is deformed
 };
 
-/// `joint_count`: how many joints the mesh's weights name. The mesh itself must be whole
+/// `joint_count`: number of joints that the mesh's weights refer to. The mesh itself must be valid
 /// (check_deformable).
 [[nodiscard]] DeformSource find_deform_source(
     const World& world, const Assets& assets, MeshId mesh, std::uint32_t joint_count,

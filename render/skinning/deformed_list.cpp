@@ -19,23 +19,24 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kReckonGrain = 16;
+constexpr std::size_t kEvaluateGrain = 16;
 
-/// A number for what `now` and `before` are at the moment `alpha`; equal bytes, equal numbers.
+/// Hash of the state between `before` and `now` at time `alpha`; equal bytes give equal hashes.
 template <typename T>
-std::uint64_t sign_moment(const std::vector<T>& before, const std::vector<T>& now, float alpha) {
-    const auto hash = [](const std::vector<T>& values) {
+std::uint64_t hash_at(const std::vector<T>& before, const std::vector<T>& now, float alpha) {
+    const auto hash_values = [](const std::vector<T>& values) {
         return hash_bytes(values.data(), values.size() * sizeof(T), values.size());
     };
     const bool still = before.size() != now.size()
                        || std::memcmp(before.data(), now.data(), now.size() * sizeof(T)) == 0;
     if (still || alpha == 1.0f) {
-        return hash(now);
+        return hash_values(now);
     }
     if (alpha == 0.0f) {
-        return hash(before);
+        return hash_values(before);
     }
-    return hash_combine(hash_combine(hash(before), hash(now)), std::bit_cast<std::uint32_t>(alpha));
+    return hash_combine(
+        hash_combine(hash_values(before), hash_values(now)), std::bit_cast<std::uint32_t>(alpha));
 }
 
 bool is_finite(const Bounds& box) {
@@ -52,7 +53,7 @@ DeformedList::Entry& DeformedList::entry_of(Entity entity) {
         return entries_[index];
     }
     if (index != kNone) {
-        release(entries_[index]);  // the same slot of the world, another tenant
+        release(entries_[index]);  // the entity index was recycled
         free_.push_back(index);
     }
     if (free_.empty()) {
@@ -72,7 +73,7 @@ void DeformedList::release(Entry& entry) {
     }
     entry.placed = false;
     entry.drawn = 0;
-    entry.drawn_before = 0;
+    entry.drawn_previous = 0;
 }
 
 void DeformedList::forget() {
@@ -87,7 +88,7 @@ void DeformedList::forget() {
 
 void DeformedList::report(const std::string& fault) {
     if (reported_.insert(fault).second) {
-        log_warn("{}; it is drawn at rest", fault);
+        log_warn("{}; drawn in rest pose", fault);
     }
 }
 
@@ -108,28 +109,27 @@ bool DeformedList::resolve(
     return fault.empty();
 }
 
-void DeformedList::reckon(Entry& entry) const {
+void DeformedList::evaluate(Entry& entry) const {
     const Deformed& settings = entry.settings;
-    const auto sign = [&](float alpha) {
+    const auto hash_shape = [&](float alpha) {
         std::uint64_t shape = hash_combine(entry.mesh.index, settings.skin.index);
         shape = hash_combine(shape, static_cast<std::uint64_t>(settings.skinning));
         shape = hash_combine(shape, settings.first_morph);
         if (entry.skin != nullptr) {
-            shape =
-                hash_combine(shape, sign_moment(entry.pose->previous, entry.pose->joints, alpha));
+            shape = hash_combine(shape, hash_at(entry.pose->previous, entry.pose->joints, alpha));
         }
         if (entry.morphs != nullptr) {
-            shape = hash_combine(
-                shape, sign_moment(entry.morphs->previous, entry.morphs->weights, alpha));
+            shape =
+                hash_combine(shape, hash_at(entry.morphs->previous, entry.morphs->weights, alpha));
         }
         return shape | 1;
     };
-    entry.shape = sign(alpha_);
-    entry.before = sign(alpha_before_);
-    if (entry.reckoned == entry.shape) {
+    entry.shape = hash_shape(alpha_);
+    entry.previous_shape = hash_shape(previous_alpha_);
+    if (entry.evaluated == entry.shape) {
         return;
     }
-    entry.reckoned = entry.shape;
+    entry.evaluated = entry.shape;
     make_palette(entry.skin, entry.pose, settings.skinning, alpha_, entry.palette);
     make_morph_weights(
         entry.morphs, settings.first_morph, entry.rest->bounds.morphs.size(), alpha_,
@@ -139,16 +139,16 @@ void DeformedList::reckon(Entry& entry) const {
 }
 
 void DeformedList::update(
-    const World& world, const MeshPool& meshes, float alpha, float alpha_before) {
+    const World& world, const MeshPool& meshes, float alpha, float previous_alpha) {
     meshes_ = &meshes;
     alpha_ = alpha;
-    alpha_before_ = alpha_before;
+    previous_alpha_ = previous_alpha;
     active_.clear();
     for (Entry& entry : entries_) {
-        entry.seen = false;
+        entry.found = false;
         entry.active = false;
-        entry.wanted = false;
-        entry.wanted_before = false;
+        entry.requested = false;
+        entry.previous_requested = false;
     }
     const auto* assets = world.find_resource<Assets>();
     if (assets == nullptr) {
@@ -164,7 +164,7 @@ void DeformedList::update(
             if (entry.mesh != instance.mesh) {
                 release(entry);
             }
-            entry.seen = true;
+            entry.found = true;
             entry.mesh = instance.mesh;
             entry.settings = settings;
             std::string fault;
@@ -175,7 +175,7 @@ void DeformedList::update(
                 report(fault);
             }
         });
-    // A mesh that is seen for the first time may have moved the others.
+    // Adding a mesh may have reallocated the pool.
     for (const std::uint32_t i : active_) {
         entries_[i].rest = &rest_.get(*assets, entries_[i].mesh);
     }
@@ -184,15 +184,15 @@ void DeformedList::update(
         if (!entry.active) {
             release(entry);
         }
-        if (!entry.seen && !entry.entity.is_null()) {
+        if (!entry.found && !entry.entity.is_null()) {
             index_of_[entry.entity.index] = kNone;
             entry = {};
             free_.push_back(i);
         }
     }
-    parallel_for(active_.size(), kReckonGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(active_.size(), kEvaluateGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            reckon(entries_[active_[i]]);
+            evaluate(entries_[active_[i]]);
         }
     });
     for (const std::uint32_t i : active_) {
@@ -201,7 +201,7 @@ void DeformedList::update(
             entry.active = false;
             release(entry);
             report(fmt::format(
-                "deformed mesh {}: its character's pose or morph weights are not finite",
+                "deformed mesh {}: pose or morph weights of its character are not finite",
                 assets->meshes[entry.mesh.index].name));
         }
     }
@@ -215,24 +215,25 @@ std::int32_t DeformedList::request(std::uint32_t index, bool before) {
             vertices_.allocate(*meshes_, meshes_->meshes()[entry.mesh.index], entry.vertex_count);
         entry.placed = true;
     }
-    entry.wanted = true;
-    entry.wanted_before = entry.wanted_before || before;
+    entry.requested = true;
+    entry.previous_requested = entry.previous_requested || before;
     if (before) {
-        vertices_.need_before();
+        vertices_.require_previous_positions();
     }
     return static_cast<std::int32_t>(entry.first_vertex);
 }
 
-/// What is to be done for a shape; none of kDeformNow, Before and CopyBefore: nothing.
+/// What must be recomputed for a shape; 0 if nothing.
 std::uint32_t DeformedList::flags_of(const Entry& entry) {
     std::uint32_t flags = 0;
     if (entry.drawn != entry.shape) {
-        flags |= layout::kDeformNow;
+        flags |= layout::kDeformCurrent;
     }
-    if (entry.wanted_before && entry.drawn_before != entry.before) {
-        flags |= entry.drawn == entry.before ? layout::kDeformCopyBefore : layout::kDeformBefore;
+    if (entry.previous_requested && entry.drawn_previous != entry.previous_shape) {
+        flags |=
+            entry.drawn == entry.previous_shape ? layout::kDeformCopyPrevious : layout::kDeformPrevious;
     }
-    if (!entry.wanted || flags == 0) {
+    if (!entry.requested || flags == 0) {
         return 0;
     }
     if (entry.skin != nullptr) {
@@ -258,20 +259,20 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
     job.vertex_count = entry.vertex_count;
     job.slot = entry.first_vertex;
     job.first_group = static_cast<std::uint32_t>(groups_.size());
-    if ((flags & layout::kDeformBefore) != 0) {
+    if ((flags & layout::kDeformPrevious) != 0) {
         const Deformed& settings = entry.settings;
         std::vector<Affine> palette;
         std::vector<float> weights;
-        make_palette(entry.skin, entry.pose, settings.skinning, alpha_before_, palette);
+        make_palette(entry.skin, entry.pose, settings.skinning, previous_alpha_, palette);
         make_morph_weights(
-            entry.morphs, settings.first_morph, entry.weights.size(), alpha_before_, weights);
-        job.palette_before = add_palette(palette);
-        job.weights_before = add_weights(weights);
+            entry.morphs, settings.first_morph, entry.weights.size(), previous_alpha_, weights);
+        job.previous_palette = add_palette(palette);
+        job.previous_weights = add_weights(weights);
     }
-    if ((flags & (layout::kDeformBefore | layout::kDeformCopyBefore)) != 0) {
-        entry.drawn_before = entry.before;
+    if ((flags & (layout::kDeformPrevious | layout::kDeformCopyPrevious)) != 0) {
+        entry.drawn_previous = entry.previous_shape;
     }
-    if ((flags & layout::kDeformNow) != 0) {
+    if ((flags & layout::kDeformCurrent) != 0) {
         job.palette = add_palette(entry.palette);
         job.weights = add_weights(entry.weights);
         entry.drawn = entry.shape;
@@ -281,11 +282,11 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
     groups_.insert(groups_.end(), groups, static_cast<std::uint32_t>(jobs_.size()));
     jobs_.push_back(job);
 
-    // As many as a storage block can show in one dispatch.
+    // As many per dispatch as fit into one storage block.
     const std::uint32_t end = job.slot + job.vertex_count;
-    const auto most = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedVertex));
+    const auto max_vertices = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedVertex));
     if (work_.batches.empty() || work_.batches.back().flags != flags
-        || end - work_.batches.back().first_vertex > most) {
+        || end - work_.batches.back().first_vertex > max_vertices) {
         const std::uint32_t aligned = job.slot / layout::kDeformGroup * layout::kDeformGroup;
         work_.batches.push_back(
             {.flags = flags, .first_group = job.first_group, .first_vertex = aligned});

@@ -19,26 +19,26 @@ namespace limn {
 class MeshPool;
 class World;
 
-// Which instances have a shape of their own in this frame, where it lies, and which of them must be
-// reckoned anew. Once a frame every Deformed is looked at: its box and the number of its shape are
-// known before anything is culled. Whoever draws one asks for its vertices; only what was asked for
-// is reckoned, once for all views, and only if its shape changed. What cannot be deformed - a
-// character that is gone, joints that are missing or not finite - is no part of the list: it is
-// drawn as it is at rest, and the log says so once.
+// Tracks the deformed instances of a frame, where their vertices are stored, and which must be
+// recomputed. Once per frame update() visits every Deformed: its bounds and a hash of its shape are
+// known before anything is culled. Whoever draws an instance requests its vertices; only requested
+// ones are computed, once for all views, and only if the shape changed. Instances that cannot be
+// deformed (the character is gone, joints are missing or not finite) are not in the list: they are
+// drawn in rest pose, which is logged once.
 //
-//     shapes.update(world, meshes, view.alpha, view.alpha_before);
+//     shapes.update(world, meshes, view.alpha, view.previous_alpha);
 //     collector.collect(world, view, meshes, shapes, ...);    // and shadows, probes
 //     shapes.write_jobs(ring);                                // then deform_meshes(graph, ...)
 
-/// An instance whose vertices lie apart.
+/// An instance with vertices of its own.
 struct DeformedInstance {
-    Bounds bounds;            ///< of the shape, in the mesh's space; never too small
-    std::uint64_t shape = 0;  ///< equal numbers, equal shapes; never 0
+    Bounds bounds;            ///< of the shape, in mesh space; conservative
+    std::uint64_t shape = 0;  ///< hash: equal for equal shapes; never 0
     MeshId mesh;
 };
 
-/// Jobs that are one dispatch: they are of one kind, and their vertices lie within what a storage
-/// block can show.
+/// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
+/// storage block can bind.
 struct DeformBatch {
     std::uint32_t flags = 0;  ///< layout::kDeform*
     std::uint32_t first_group = 0;
@@ -47,31 +47,31 @@ struct DeformBatch {
     std::uint32_t end_vertex = 0;
 };
 
-/// This frame's work; of no batches where no shape changed.
+/// This frame's work; no batches if no shape changed.
 struct DeformWork {
     std::vector<DeformBatch> batches;
     gpu::RingSlice jobs;      ///< layout::DeformJob
-    gpu::RingSlice groups;    ///< a job a work group
-    gpu::RingSlice palettes;  ///< texels
+    gpu::RingSlice groups;    ///< job index of each work group
+    gpu::RingSlice palettes;  ///< texels of deform.comp
     gpu::RingSlice weights;
     int instances = 0;
     std::int64_t vertices = 0;
 };
 
-/// Keeps its memory, and the shapes, from frame to frame.
+/// Reuses its memory, and caches the shapes, from frame to frame.
 class DeformedList {
   public:
     static constexpr std::uint32_t kNone = ~0u;
 
-    /// `storage_bytes`: the most that a storage block can show.
+    /// `storage_bytes`: maximum size of a storage block.
     explicit DeformedList(std::size_t storage_bytes) : storage_bytes_(storage_bytes) {}
 
-    /// Looks at the world at the moment `alpha` (RenderView). Frees the vertices of what is gone.
-    void update(const World& world, const MeshPool& meshes, float alpha, float alpha_before);
-    /// Other assets: all shapes are gone.
+    /// Visits the world at time `alpha` (RenderView). Frees the vertices of removed instances.
+    void update(const World& world, const MeshPool& meshes, float alpha, float previous_alpha);
+    /// Discards all shapes, for other assets.
     void forget();
 
-    /// Index of an instance; kNone of what has no shape of its own.
+    /// Index of an instance; kNone if it is not deformed.
     [[nodiscard]] std::uint32_t find(Entity entity) const {
         const std::uint32_t i = entity.index < index_of_.size() ? index_of_[entity.index] : kNone;
         return i != kNone && entries_[i].active && entries_[i].entity == entity ? i : kNone;
@@ -80,10 +80,10 @@ class DeformedList {
         return entries_[index];
     }
 
-    /// Its vertices will be drawn, `before`: with their positions before. Returns the first of
-    /// them.
+    /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
+    /// vertex.
     std::int32_t request(std::uint32_t index, bool before);
-    /// The work that makes all requested shapes what they should be.
+    /// Fills work() with the jobs that bring all requested shapes up to date.
     void write_jobs(gpu::RingBuffer& ring);
 
     [[nodiscard]] const DeformWork& work() const { return work_; }
@@ -95,20 +95,20 @@ class DeformedList {
     struct Entry : DeformedInstance {
         Entity entity;
         Deformed settings;
-        bool seen = false;    ///< in this update
-        bool active = false;  ///< has a shape
-        bool wanted = false;  ///< requested in this frame
-        bool wanted_before = false;
-        bool placed = false;  ///< has vertices
+        bool found = false;      ///< found by this update
+        bool active = false;     ///< deformed in this frame
+        bool requested = false;  ///< in this frame
+        bool previous_requested = false;
+        bool placed = false;  ///< has vertices allocated
         std::uint32_t first_vertex = 0;
         std::uint32_t vertex_count = 0;
-        std::uint64_t drawn = 0;         ///< the shape that its vertices have; 0: none
-        std::uint64_t drawn_before = 0;  ///< the shape of the positions before
-        std::uint64_t before = 0;        ///< the shape of the moment before
-        std::uint64_t reckoned = 0;      ///< the shape that bounds and palette are of
-        std::vector<Affine> palette;     ///< mesh from mesh at rest, a joint each
+        std::uint64_t drawn = 0;           ///< shape of its vertices; 0: none
+        std::uint64_t drawn_previous = 0;  ///< shape of its previous positions
+        std::uint64_t previous_shape = 0;  ///< shape of the previous frame
+        std::uint64_t evaluated = 0;       ///< shape of the bounds and palette
+        std::vector<Affine> palette;       ///< mesh from rest pose, one per joint
         std::vector<float> weights;
-        // Good until the world changes.
+        // Valid until the world changes.
         const SkinData* skin = nullptr;
         const Pose* pose = nullptr;
         const MorphWeights* morphs = nullptr;
@@ -116,9 +116,9 @@ class DeformedList {
     };
 
     Entry& entry_of(Entity entity);
-    /// False, and why, if it is drawn at rest.
+    /// False, with the reason in `fault`, if it is drawn in rest pose.
     bool resolve(const World& world, const Assets& assets, Entry& entry, std::string& fault);
-    void reckon(Entry& entry) const;
+    void evaluate(Entry& entry) const;
     void release(Entry& entry);
     void report(const std::string& fault);
     [[nodiscard]] static std::uint32_t flags_of(const Entry& entry);
@@ -126,7 +126,7 @@ class DeformedList {
 
     std::size_t storage_bytes_;
     float alpha_ = 1;
-    float alpha_before_ = 0;
+    float previous_alpha_ = 0;
     std::vector<Entry> entries_;
     std::vector<std::uint32_t> free_;
     std::vector<std::uint32_t> index_of_;  ///< by Entity::index
@@ -135,7 +135,7 @@ class DeformedList {
     RestPool rest_;
     DeformedVertices vertices_;
     std::set<std::string> reported_;
-    // Of write_jobs().
+    // Scratch of write_jobs().
     DeformWork work_;
     struct Due {
         std::uint32_t flags = 0;

@@ -8,7 +8,7 @@
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kFirstVertices = 1 << 12;
+constexpr std::uint32_t kInitialVertices = 1 << 12;
 
 void copy_vertices(
     const gpu::Buffer& from, const gpu::Buffer& to, std::uint32_t from_first,
@@ -21,7 +21,7 @@ void copy_vertices(
 }  // namespace
 
 DeformedVertices::DeformedVertices() : vertices_("deformed meshes", mesh_attributes()) {
-    grow(kFirstVertices);
+    grow(kInitialVertices);
 }
 
 std::uint32_t
@@ -46,19 +46,20 @@ void DeformedVertices::grow(std::uint32_t needed) {
     grow_stream(positions_, "deformed positions", sizeof(Vec3));
     grow_stream(attributes_, "deformed attributes", sizeof(PackedVertex));
     if (before_) {
-        grow_stream(before_, "deformed positions before", sizeof(Vec3));
+        grow_stream(before_, "previous deformed positions", sizeof(Vec3));
     }
     slots_.grow(capacity);
     vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
     vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
-    vertices_.set_vertices(kVertexBeforeStream, before_ ? before_ : positions_, 0, sizeof(Vec3));
+    vertices_.set_vertices(kPreviousPositionStream, before_ ? before_ : positions_, 0, sizeof(Vec3));
 }
 
-void DeformedVertices::need_before() {
+void DeformedVertices::require_previous_positions() {
     if (!before_) {
         before_ = gpu::Buffer(
-            "deformed positions before", slots_.capacity() * sizeof(Vec3), gpu::BufferUse::GpuOnly);
-        vertices_.set_vertices(kVertexBeforeStream, before_, 0, sizeof(Vec3));
+            "previous deformed positions", slots_.capacity() * sizeof(Vec3),
+            gpu::BufferUse::GpuOnly);
+        vertices_.set_vertices(kPreviousPositionStream, before_, 0, sizeof(Vec3));
     }
 }
 

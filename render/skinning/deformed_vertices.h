@@ -11,24 +11,24 @@ namespace limn {
 class MeshPool;
 struct MeshRange;
 
-// The vertices of meshes that change their shape: each instance has its own, so that every pass
-// draws it as any other mesh. They lie beside the MeshPool in buffers of the same format and are
-// drawn with its indices; deform_pass writes positions, normals and tangents, the rest is the
-// mesh's. A further stream says where each vertex was the moment before; it is there once somebody
-// asked for velocity. Buffers grow and never shrink.
+// Vertex storage of deformed meshes: each instance has its own copy, so that every pass draws it
+// like any other mesh. The buffers have the MeshPool's format and are drawn with its indices;
+// deform_pass writes positions, normals and tangents, the rest is copied from the mesh. A further
+// stream holds the positions of the previous frame, created when velocity is first requested.
+// Buffers grow and never shrink.
 
 class DeformedVertices {
   public:
     DeformedVertices();
 
-    /// Place of a copy of the mesh's `count` vertices, as at rest.
+    /// Copies the mesh's `count` vertices in rest pose; returns the first.
     [[nodiscard]] std::uint32_t
     allocate(const MeshPool& meshes, const MeshRange& mesh, std::uint32_t count);
     void release(std::uint32_t first, std::uint32_t count) { slots_.release(first, count); }
     void clear() { slots_.clear(); }
-    /// From now on there is a stream of positions before; its contents are undefined.
-    void need_before();
-    /// The mesh pool's indices, which move when it grows.
+    /// Creates the stream of previous positions, with undefined contents.
+    void require_previous_positions();
+    /// Binds the mesh pool's index buffer, which is replaced when it grows.
     void use_indices_of(const MeshPool& meshes);
 
     [[nodiscard]] const gpu::Buffer& positions() const { return positions_; }

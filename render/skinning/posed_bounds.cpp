@@ -16,8 +16,8 @@ Bounds widened(const Bounds& box, const Bounds& by) {
     return is_empty(box) ? box : Bounds{box.min + by.min, box.max + by.max};
 }
 
-/// The farthest apart that two joints take a point of the box: at one of its corners.
-float widest_part(const Affine& a, const Affine& b, const Bounds& box) {
+/// Largest distance between the images of a point of the box under two joints: at a corner.
+float max_separation(const Affine& a, const Affine& b, const Bounds& box) {
     float widest = 0;
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner = {
@@ -29,7 +29,7 @@ float widest_part(const Affine& a, const Affine& b, const Bounds& box) {
     return widest;
 }
 
-/// What the targets' offsets add up to at most.
+/// Bounds of the sum of the targets' offsets.
 Bounds sum_of_morphs(const std::vector<Bounds>& morphs, std::span<const float> weights) {
     Bounds sum = {Vec3(0), Vec3(0)};
     for (std::size_t i = 0; i < std::min(morphs.size(), weights.size()); ++i) {
@@ -93,14 +93,14 @@ Bounds posed_bounds(
         grow(posed, there);
     }
     if (!std::isfinite(sum.x + sum.y + sum.z)) {
-        return {Vec3(NAN), Vec3(NAN)};  // the smaller of NaN and a number may be the number
+        return {Vec3(NAN), Vec3(NAN)};  // min and max may drop a NaN
     }
     if (skinning == Skinning::DualQuaternion) {
         for (const SkinBounds::Pair& pair : bounds.pairs) {
             const Bounds box = widened(pair.box, morphs);
             const Affine& a = palette[pair.a];
             const Affine& b = palette[pair.b];
-            const float apart = widest_part(a, b, box);
+            const float apart = max_separation(a, b, box);
             const Vec3 beside = Vec3(bounds.many ? apart : 0.5f * apart);
             for (const Affine* joint : {&a, &b}) {
                 const Bounds there = transform_bounds(*joint, box);
@@ -129,7 +129,7 @@ std::string check_deformable(const MeshData& mesh) {
         }
         for (const float weight : skin.weights) {
             if (!std::isfinite(weight)) {
-                return "has a weight that is not finite";
+                return "has a non-finite weight";
             }
         }
     }
@@ -139,12 +139,12 @@ std::string check_deformable(const MeshData& mesh) {
         };
         if (target.positions.size() != target.vertices.size() || !fits(target.normals)
             || !fits(target.tangents)) {
-            return fmt::format("has a morph target {} whose arrays differ in length", target.name);
+            return fmt::format("has morph target {}, whose arrays differ in length", target.name);
         }
         for (const std::uint32_t vertex : target.vertices) {
             if (vertex >= vertices) {
                 return fmt::format(
-                    "has a morph target {} of vertex {}, there are {}", target.name, vertex,
+                    "has morph target {} of vertex {}, but only {} vertices", target.name, vertex,
                     vertices);
             }
         }

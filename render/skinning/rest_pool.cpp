@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kFirstTexels = 1 << 14;
+constexpr std::size_t kInitialTexels = 1 << 14;
 constexpr std::size_t kTexelBytes = 16;
 
 using Texels = std::vector<layout::uvec4>;
@@ -19,23 +19,23 @@ layout::uint bits(float x) {
     return std::bit_cast<layout::uint>(std::isfinite(x) ? x : 0.0f);
 }
 
-/// Two shares of kLargestTurn.
-layout::uint pack_turn(float x, float y) {
+/// Two components as 16-bit snorm fractions of kMaxUnitDifference.
+layout::uint pack_snorm(float x, float y) {
     const auto one = [](float v) {
-        const float share = std::isfinite(v) ? v / layout::kLargestTurn : 0.0f;
+        const float share = std::isfinite(v) ? v / layout::kMaxUnitDifference : 0.0f;
         const long number = std::lround(std::clamp(share, -1.0f, 1.0f) * 32767.0f);
         return static_cast<layout::uint>(number) & 0xffffu;
     };
     return one(x) | one(y) << 16;
 }
 
-/// One target's move of one vertex.
+/// One target's offset of one vertex.
 struct Offset {
     std::uint32_t target = 0;
     std::size_t entry = 0;
 };
 
-/// By vertex, which targets move it, in their order.
+/// For each vertex, the targets that move it, in order.
 std::vector<std::vector<Offset>> offsets_of_vertices(const MeshData& mesh) {
     std::vector<std::vector<Offset>> offsets(mesh.positions.size());
     for (std::uint32_t t = 0; t < mesh.morphs.size(); ++t) {
@@ -47,7 +47,7 @@ std::vector<std::vector<Offset>> offsets_of_vertices(const MeshData& mesh) {
     return offsets;
 }
 
-/// The influences of all vertices; `first` gets the place of each vertex's own, and the end.
+/// The influences of all vertices; `first` receives the start of each vertex's, and the end.
 Texels
 influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std::size_t>& first) {
     Texels texels;
@@ -55,7 +55,7 @@ influence_texels(const SkinWeights& skin, std::size_t vertices, std::vector<std:
         first.push_back(texels.size());
         const std::uint32_t end = skin.empty() ? 0 : skin.first[v + 1];
         for (std::uint32_t i = skin.empty() ? 0 : skin.first[v]; i < end; i += 2) {
-            // An odd one out shares its texel with itself and no weight.
+            // An odd last influence is paired with weight 0.
             const bool alone = i + 1 == end;
             texels.push_back(
                 {skin.joints[i], bits(skin.weights[i]), skin.joints[alone ? i : i + 1],
@@ -79,7 +79,7 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
             const Vec3 n = at(target.normals, offset.entry);
             const Vec3 t = at(target.tangents, offset.entry);
             texels.push_back({bits(p.x), bits(p.y), bits(p.z), offset.target});
-            texels.push_back({pack_turn(n.x, n.y), pack_turn(n.z, t.x), pack_turn(t.y, t.z), 0});
+            texels.push_back({pack_snorm(n.x, n.y), pack_snorm(n.z, t.x), pack_snorm(t.y, t.z), 0});
         }
     }
     first.push_back(texels.size());
@@ -134,7 +134,7 @@ RestMesh RestPool::upload(const MeshData& mesh) {
     texels.insert(texels.end(), offsets.begin(), offsets.end());
 
     if (used_ + texels.size() > capacity_) {
-        capacity_ = std::max({used_ + texels.size(), 2 * capacity_, kFirstTexels});
+        capacity_ = std::max({used_ + texels.size(), 2 * capacity_, kInitialTexels});
         buffer_ = gpu::grown_buffer(
             "meshes at rest", buffer_, used_ * kTexelBytes, capacity_ * kTexelBytes);
     }

@@ -11,23 +11,25 @@
 
 namespace limn {
 
-/// A mesh at rest, as deform.comp reads it.
+/// A mesh in rest pose, as deform.comp reads it.
 struct RestMesh {
     std::uint32_t first_texel = 0;
     std::uint32_t vertex_count = 0;
-    std::uint32_t joint_count = 0;  ///< that its skin must have; 0: it has no joints
+    std::uint32_t joint_count = 0;  ///< required of its skin; 0: not skinned
     SkinBounds bounds;
     std::string fault;  ///< why it cannot be deformed; empty if it can
 };
 
-/// The meshes that change their shape, on the GPU: one buffer of texels (deform_gpu.h), appended to
-/// when the first instance of a mesh is drawn.
+/// Rest poses of deformable meshes on the GPU: one buffer of texels (deform_gpu.h), appended to
+/// when the first instance of a mesh appears.
 class RestPool {
   public:
     [[nodiscard]] const RestMesh& get(const Assets& assets, MeshId mesh);
     void clear();
 
-    [[nodiscard]] const gpu::Buffer& texels() const { return buffer_; }  ///< null: none yet
+    [[nodiscard]] const gpu::Buffer& texels() const {
+        return buffer_;
+    }  ///< null until the first mesh
 
   private:
     RestMesh upload(const MeshData& mesh);

@@ -16,8 +16,8 @@ Vec3 translation_of(const Affine& a) {
     return {a.row[0].w, a.row[1].w, a.row[2].w};
 }
 
-Quat turn_of(const Affine& a) {
-    return rotation_in(linear_part(a)).value_or(Quat(1, 0, 0, 0));
+Quat rotation_of(const Affine& a) {
+    return extract_rotation(linear_part(a)).value_or(Quat(1, 0, 0, 0));
 }
 
 }  // namespace
@@ -35,11 +35,11 @@ void make_palette(
         const std::uint16_t j = skin->joints[i];
         const Affine joint =
             moves ? mix_affine(pose->previous[j], pose->joints[j], alpha) : pose->joints[j];
-        const Affine taken = joint * skin->joint_from_mesh[i];
+        const Affine posed = joint * skin->joint_from_mesh[i];
         palette.push_back(
             skinning == Skinning::Linear
-                ? taken
-                : affine_from(translation_of(taken), turn_of(taken), Vec3(1)));
+                ? posed
+                : affine_from(translation_of(posed), rotation_of(posed), Vec3(1)));
     }
 }
 
@@ -66,10 +66,10 @@ void append_texels(
             texels.insert(texels.end(), {joint.row[0], joint.row[1], joint.row[2]});
             continue;
         }
-        const Quat turn = turn_of(joint);
-        const Quat way = 0.5f * (Quat(0, translation_of(joint)) * turn);
-        texels.emplace_back(turn.x, turn.y, turn.z, turn.w);
-        texels.emplace_back(way.x, way.y, way.z, way.w);
+        const Quat rotation = rotation_of(joint);
+        const Quat dual = 0.5f * (Quat(0, translation_of(joint)) * rotation);
+        texels.emplace_back(rotation.x, rotation.y, rotation.z, rotation.w);
+        texels.emplace_back(dual.x, dual.y, dual.z, dual.w);
     }
 }
 

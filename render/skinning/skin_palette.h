@@ -6,23 +6,23 @@
 
 namespace limn {
 
-// Where joints take a mesh: K = joint * joint_from_mesh, one matrix a joint of the skin
-// (char.skin-bone-offset), at a moment between two steps.
+// Skinning matrices K = joint * joint_from_mesh, one per joint of the skin (char.skin-bone-offset),
+// interpolated between two steps.
 
-/// `palette` gets the joints of `skin` at the moment `alpha`: the way from the pose before to the
-/// one now, componentwise (mix_affine). For dual quaternions without scale and shear. Empty without
-/// a skin or a pose. Joints must be there.
+/// Fills `palette` with the joints of `skin` at time `alpha`, interpolated componentwise from the
+/// previous pose to the current one (mix_affine); without scale and shear for dual quaternions.
+/// Empty without a skin or a pose. All joints must exist in the pose.
 void make_palette(
     const SkinData* skin, const Pose* pose, Skinning skinning, float alpha,
     std::vector<Affine>& palette);
 
-/// `weights` gets `count` weights from place `first` on, at the moment `alpha`; 0 where there is
-/// none, or none that is finite.
+/// Fills `weights` with `count` weights starting at `first`, at time `alpha`; 0 for missing and
+/// non-finite ones.
 void make_morph_weights(
     const MorphWeights* morphs, std::size_t first, std::size_t count, float alpha,
     std::vector<float>& weights);
 
-/// As deform.comp reads them: three rows a joint, or a unit dual quaternion in two.
+/// As deform.comp reads them: per joint three matrix rows, or a unit dual quaternion in two texels.
 void append_texels(
     const std::vector<Affine>& palette, Skinning skinning, std::vector<Vec4>& texels);
 

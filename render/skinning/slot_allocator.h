@@ -6,21 +6,21 @@
 
 namespace limn {
 
-/// Ranges of one long array, given out and given back. First fit, and neighbors that are free
-/// become one: the same requests in the same order get the same places.
+/// First-fit allocator of ranges in one long array; adjacent free ranges are merged. The same
+/// requests in the same order return the same ranges.
 class SlotAllocator {
   public:
-    /// The first item of `count` > 0 in a row; none if nowhere so many are free: grow().
+    /// First of `count` > 0 consecutive items; nullopt if no free range is large enough: grow().
     [[nodiscard]] std::optional<std::uint32_t> allocate(std::uint32_t count);
-    /// Gives back what allocate(count) gave.
+    /// Frees a range returned by allocate(count).
     void release(std::uint32_t first, std::uint32_t count);
-    /// Adds free items at the end; `capacity` is no less than before.
+    /// Adds free items at the end; `capacity` must not shrink.
     void grow(std::uint32_t capacity);
     void clear();
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     [[nodiscard]] std::uint32_t used() const { return used_; }
-    /// How many ranges the free items are in.
+    /// Number of free ranges.
     [[nodiscard]] std::size_t gaps() const { return free_.size(); }
 
   private:

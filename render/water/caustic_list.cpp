@@ -18,17 +18,17 @@
 namespace limn {
 namespace {
 
-constexpr float kLowestSun = 0.02f;    ///< sine of the height above the horizon
-constexpr float kRim = 0.03f;          ///< of the map, beyond a rectangle of water
-constexpr float kEndlessRim = 0.1f;    ///< of the map of endless water
-constexpr float kBelowBottom = 0.05f;  ///< how far below the bottom light still lands [m]
-constexpr int kLeastSide = 32;         ///< of maps that are far away [texels]
-constexpr float kFullWithin = 2;  ///< sides of its window: nearer, a map is as large as asked for
-constexpr int kMostCells = 64;    ///< of the grid over the world, along a side
-constexpr std::size_t kFewWaters = 4;  ///< need no grid
-constexpr float kCascadeRatio = 4;     ///< of the windows of endless water
-constexpr int kMostCascades = 3;
-constexpr float kMirrorRim = 0.2f;  ///< of the cells of a map of mirrored light, on each side
+constexpr float kMinSunSine = 0.02f;       ///< sine of the height above the horizon
+constexpr float kRim = 0.03f;              ///< of the map, around a rectangle of water
+constexpr float kUnboundedRim = 0.1f;      ///< of the map of unbounded water
+constexpr float kBelowBottom = 0.05f;      ///< how far below the bottom light still lands [m]
+constexpr int kMinMapSide = 32;            ///< of distant maps [texels]
+constexpr float kFullResolutionRange = 2;  ///< in window sides; nearer maps have full size
+constexpr int kMaxGridSide = 64;           ///< cells of the world grid per side
+constexpr std::size_t kMaxWatersWithoutGrid = 4;  ///< fewer bounded waters need no grid
+constexpr float kCascadeRatio = 4;                ///< of the windows of unbounded water
+constexpr int kMaxCausticCascades = 3;
+constexpr float kMirrorRim = 0.2f;  ///< fraction of the cells of a reflection map, on each side
 
 WaterFrame frame_of(const layout::WaterRecord& body) {
     return {Vec3(body.origin), {body.origin.w, body.shape.x}};
@@ -37,12 +37,12 @@ WaterFrame frame_of(const layout::WaterRecord& body) {
 /// Index of the brightest directional light that is above the horizon, or -1.
 int brightest_sun(const LightList& lights) {
     int found = -1;
-    float most = 0;
+    float brightest = 0;
     for (int i = 0; i < lights.directional; ++i) {
         const layout::LightRecord& light = lights.records[static_cast<std::size_t>(i)];
-        const float bright = light.color.x + light.color.y + light.color.z;
-        if (light.position.y > kLowestSun && bright > most) {
-            most = bright;
+        const float brightness = light.color.x + light.color.y + light.color.z;
+        if (light.position.y > kMinSunSine && brightness > brightest) {
+            brightest = brightness;
             found = i;
         }
     }
@@ -62,26 +62,26 @@ float finite_or(float x, float fallback) {
     return std::isfinite(x) ? x : fallback;
 }
 
-std::int32_t power_of_two(std::int32_t side, std::int32_t least) {
+std::int32_t power_of_two(std::int32_t side, std::int32_t min_side) {
     return static_cast<std::int32_t>(
-        std::bit_ceil(static_cast<unsigned>(std::clamp(side, least, 1024))));
+        std::bit_ceil(static_cast<unsigned>(std::clamp(side, min_side, 1024))));
 }
 
-Caustics make_sane(const Caustics& caustics) {
-    Caustics sane = caustics;
-    sane.resolution = power_of_two(caustics.resolution, 64);
-    sane.mirror_resolution = power_of_two(caustics.mirror_resolution, 32);
-    sane.cascades = std::clamp(caustics.cascades, 1, kMostCascades);
-    sane.shaft_steps = std::clamp(caustics.shaft_steps, 0, 64);
-    sane.mirror_reach = std::clamp(finite_or(caustics.mirror_reach, 0.0f), 0.0f, 1000.0f);
-    sane.spacing = std::clamp(caustics.spacing, 1, 8);
-    sane.strength = std::clamp(finite_or(caustics.strength, 1.0f), 0.0f, 4.0f);
-    sane.reach = std::clamp(finite_or(caustics.reach, 20.0f), 0.01f, 1000.0f);
-    sane.window = std::clamp(finite_or(caustics.window, 40.0f), 0.1f, 10000.0f);
-    return sane;
+Caustics sanitize(const Caustics& caustics) {
+    Caustics valid = caustics;
+    valid.resolution = power_of_two(caustics.resolution, 64);
+    valid.mirror_resolution = power_of_two(caustics.mirror_resolution, 32);
+    valid.cascades = std::clamp(caustics.cascades, 1, kMaxCausticCascades);
+    valid.shaft_steps = std::clamp(caustics.shaft_steps, 0, 64);
+    valid.mirror_reach = std::clamp(finite_or(caustics.mirror_reach, 0.0f), 0.0f, 1000.0f);
+    valid.spacing = std::clamp(caustics.spacing, 1, 8);
+    valid.strength = std::clamp(finite_or(caustics.strength, 1.0f), 0.0f, 4.0f);
+    valid.reach = std::clamp(finite_or(caustics.reach, 20.0f), 0.01f, 1000.0f);
+    valid.window = std::clamp(finite_or(caustics.window, 40.0f), 0.1f, 10000.0f);
+    return valid;
 }
 
-/// The part of the surface that a map is of, in the water's own space.
+/// The part of the surface that a map covers, in the water's own space.
 struct Window {
     Vec2 corner = {0, 0};
     Vec2 size = {0, 0};
@@ -100,27 +100,28 @@ window_of(const layout::WaterRecord& body, const Caustics& caustics, const Vec3&
             window.corner[axis] = -0.5f * window.size[axis];
             window.rim = std::min(window.rim, 2 * half * kRim);
         } else {
-            // In whole steps, so that it does not swim when the camera moves.
+            // Snapped, so that it does not swim when the camera moves.
             const float step = caustics.window / static_cast<float>(side) * 8;
             const float middle = std::floor((axis == 0 ? at.x : at.z) / step) * step;
             window.size[axis] = caustics.window;
             window.corner[axis] = middle - 0.5f * caustics.window;
-            window.rim = std::min(window.rim, kEndlessRim * caustics.window);
+            window.rim = std::min(window.rim, kUnboundedRim * caustics.window);
         }
     }
     return window;
 }
 
-/// The same of light that is mirrored and followed up to `height`: the rim of a rectangle lies in
-/// the middle of cells, which so hold the light that they should.
+/// The same for reflected light, followed up to `height`: the border of a rectangle lies at cell
+/// centers, so that border cells get the right amount of light.
 Window mirror_window(
     const layout::WaterRecord& body, const Caustics& caustics, const Vec3& camera,
     const Vec2& slant, int cells) {
-    // Of endless water, what throws light to the camera's surroundings.
+    // For unbounded water, the part that reflects light to the camera's surroundings.
     Window window = window_of(
         body, caustics,
         camera
-            - frame_of(body).turned_out(Vec3(slant.x, 0, slant.y)) * 0.5f * caustics.mirror_reach,
+            - frame_of(body).direction_to_world(Vec3(slant.x, 0, slant.y)) * 0.5f
+                  * caustics.mirror_reach,
         caustics.mirror_resolution);
     const auto count = static_cast<float>(cells);
     const float inner = count - 2 * (std::floor(kMirrorRim * count) + 0.5f);
@@ -134,22 +135,25 @@ Window mirror_window(
     return window;
 }
 
-/// The world as light of flat water sees it, from the surface on and `depth` down: up if negative.
+/// View of the world along light in flat water, from the surface to `depth` below it; above it if
+/// negative.
 ShadowView make_water_view(
     const WaterFrame& frame, const Window& window, const Vec2& slant, float depth, int resolution) {
-    // Rows of a matrix of the water's own space, then turned and moved there. On a meter along y
-    // the light goes so far aside:
-    const Vec2 aside = depth > 0 ? slant : -slant;
+    // Rows of a matrix in the water's own space. Horizontal displacement of the light per meter
+    // along y:
+    const Vec2 displacement = depth > 0 ? slant : -slant;
     Mat4 rows(0.0f);
-    rows[0] = Vec4(1, aside.x, 0, -window.corner.x - 0.5f * window.size.x) * (2 / window.size.x);
-    rows[1] = Vec4(0, aside.y, 1, -window.corner.y - 0.5f * window.size.y) * (2 / window.size.y);
+    rows[0] =
+        Vec4(1, displacement.x, 0, -window.corner.x - 0.5f * window.size.x) * (2 / window.size.x);
+    rows[1] =
+        Vec4(0, displacement.y, 1, -window.corner.y - 0.5f * window.size.y) * (2 / window.size.y);
     rows[2] = {0, 1 / depth, 0, 1};
     rows[3] = {0, 0, 0, 1};
     Mat4 local_from_world(1.0f);
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 unit(0);
         unit[axis] = 1;
-        local_from_world[axis] = Vec4(frame.turned_in(unit), 0);
+        local_from_world[axis] = Vec4(frame.direction_to_local(unit), 0);
     }
     local_from_world[3] = Vec4(frame.local(Vec3(0)), 1);
     ShadowView view;
@@ -160,7 +164,7 @@ ShadowView make_water_view(
     return view;
 }
 
-layout::SunkenRecord sunken_of(const layout::WaterRecord& body) {
+layout::UnderwaterRecord sunken_of(const layout::WaterRecord& body) {
     return {
         .origin = body.origin,
         .shape = body.shape,
@@ -169,22 +173,22 @@ layout::SunkenRecord sunken_of(const layout::WaterRecord& body) {
         .bent = Vec4(0)};
 }
 
-/// A water whose light is followed, and the light.
+/// A water with caustics, and the light that causes them.
 struct Source {
     const WaterList& waters;
     std::size_t body;
-    Caustics caustics;  ///< sane
+    Caustics caustics;  ///< clamped
     const layout::LightRecord& light;
     Vec3 to_sun;  ///< in the water's own space
 };
 
-/// Number of a map of its water: cascades below the surface, or
-constexpr int kAbove = kMostCascades;
+/// Map index within its water: cascades below the surface, or kAbove.
+constexpr int kAbove = kMaxCausticCascades;
 
-/// A map, its place and its view.
+/// Appends a map, its place and its view.
 void add_map(
-    const Source& source, int part, const Window& window, const Vec2& slant, float way, bool make,
-    CausticList& list, ShadowList& shadows) {
+    const Source& source, int part, const Window& window, const Vec2& slant, float depth_range,
+    bool make, CausticList& list, std::vector<WaterShadow>& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const bool above = part == kAbove;
     const int side = above ? source.caustics.mirror_resolution : source.caustics.resolution;
@@ -193,11 +197,11 @@ void add_map(
     list.places.push_back(
         {.window = Vec4(window.corner, 1.0f / window.size),
          .rect = {0, 0, static_cast<float>(side), make ? 1.0f : 0.0f},
-         .view = {-1, window.rim / std::max(window.size.x, window.size.y), way, 0}});
+         .view = {-1, window.rim / std::max(window.size.x, window.size.y), depth_range, 0}});
     list.maps.push_back(
         {.window = Vec4(window.corner, window.size),
          .to_sun = Vec4(source.to_sun, static_cast<float>(source.body)),
-         .bent = Vec4(slant, way, (above ? share : 1 - share) * source.to_sun.y),
+         .bent = Vec4(slant, depth_range, (above ? share : 1 - share) * source.to_sun.y),
          .shadows = Vec4(0),
          .world = Vec4(Vec3(source.light.position), -1),
          .grid =
@@ -208,22 +212,22 @@ void add_map(
              {body.shape.y > 0 ? body.shape.y : 1e6f, body.shape.z > 0 ? body.shape.z : 1e6f,
               heights.x, 1 / std::max(heights.y - heights.x, 1e-4f)},
          .place = {0, 0, 0, source.caustics.strength}});
-    shadows.waters.push_back(
+    shadows.push_back(
         {source.waters.entities[source.body], static_cast<std::uint64_t>(part),
-         make_water_view(frame_of(body), window, slant, above ? -way : way, side)});
+         make_water_view(frame_of(body), window, slant, above ? -depth_range : depth_range, side)});
 }
 
-/// The light that goes down from this water.
+/// Appends the maps of light refracted into this water.
 void add_below(
-    const Source& source, const Vec3& camera, int light, bool make, layout::SunkenRecord& sunken,
-    CausticList& list, ShadowList& shadows) {
+    const Source& source, const Vec3& camera, int light, bool make,
+    layout::UnderwaterRecord& sunken, CausticList& list, std::vector<WaterShadow>& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const Caustics& caustics = source.caustics;
-    const Vec2 slant = flat_slant(source.to_sun, body.shape.w);
+    const Vec2 slant = refracted_slope(source.to_sun, body.shape.w);
     const float bottom = body.absorption.w > 0 ? body.absorption.w + kBelowBottom : 1e9f;
     const float depth = std::min(bottom, caustics.reach);
-    const bool endless = body.shape.y <= 0 || body.shape.z <= 0;
-    const int count = endless ? caustics.cascades : 1;
+    const bool unbounded = body.shape.y <= 0 || body.shape.z <= 0;
+    const int count = unbounded ? caustics.cascades : 1;
     sunken.maps = {
         static_cast<float>(list.places.size()), static_cast<float>(count),
         static_cast<float>(light), 0.999f * depth};
@@ -236,12 +240,13 @@ void add_below(
     }
 }
 
-/// The light that it mirrors.
+/// Appends the map of light that it reflects.
 void add_above(
-    const Source& source, const Vec3& camera, int light, CausticList& list, ShadowList& shadows) {
+    const Source& source, const Vec3& camera, int light, CausticList& list,
+    std::vector<WaterShadow>& shadows) {
     const layout::WaterRecord& body = source.waters.bodies[source.body];
     const Caustics& caustics = source.caustics;
-    const Vec2 slant = mirrored_slant(source.to_sun);
+    const Vec2 slant = reflected_slope(source.to_sun);
     const int cells = caustics.mirror_resolution / caustics.spacing;
     list.mirrors.push_back(
         {.origin = body.origin,
@@ -253,8 +258,8 @@ void add_above(
     add_map(source, kAbove, window, slant, caustics.mirror_reach, true, list, shadows);
 }
 
-/// Gives every map its square of the atlas and its rays: the largest first, along a curve of Z, so
-/// that none is wasted between them.
+/// Assigns every map its square of the atlas: largest first, along a Z-order curve, so that no
+/// space is wasted between them.
 void place_maps(CausticList& list) {
     std::vector<std::size_t> order(list.maps.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -277,7 +282,7 @@ void place_maps(CausticList& list) {
     }
 }
 
-/// A copy of the bytes of records, as texels.
+/// Appends the bytes of records as texels.
 template <typename Record>
 void append(std::vector<Vec4>& texels, const std::vector<Record>& records) {
     const std::size_t first = texels.size();
@@ -287,7 +292,7 @@ void append(std::vector<Vec4>& texels, const std::vector<Record>& records) {
     }
 }
 
-/// The rays of all maps, as work groups find them.
+/// Builds the work group list of the rays of all maps.
 void list_rays(CausticList& list) {
     list.jobs.clear();
     list.rays = 0;
@@ -305,30 +310,30 @@ void list_rays(CausticList& list) {
 
 }  // namespace
 
-Vec2 flat_slant(const Vec3& to_sun, float index) {
+Vec2 refracted_slope(const Vec3& to_sun, float index) {
     const Vec3 ray = refract_ray({0, 1, 0}, to_sun, 1 / index);
     return Vec2(ray.x, ray.z) / std::max(-ray.y, 0.1f);
 }
 
-Vec2 mirrored_slant(const Vec3& to_sun) {
-    return -Vec2(to_sun.x, to_sun.z) / std::max(to_sun.y, kLowestSun);
+Vec2 reflected_slope(const Vec3& to_sun) {
+    return -Vec2(to_sun.x, to_sun.z) / std::max(to_sun.y, kMinSunSine);
 }
 
 namespace {
 
-/// Smaller by halves for what is far away for its size.
+/// Halves the resolution repeatedly for waters that are far away for their size.
 void adapt(Caustics& caustics, const layout::WaterRecord& body, float distance) {
     const float across = 2 * std::max(body.shape.y, body.shape.z);
-    float within = kFullWithin * (across > 0 ? across : INFINITY);
-    while (distance > within && caustics.resolution > kLeastSide) {
+    float range = kFullResolutionRange * (across > 0 ? across : INFINITY);
+    while (distance > range && caustics.resolution > kMinMapSide) {
         caustics.resolution /= 2;
-        caustics.mirror_resolution = std::max(caustics.mirror_resolution / 2, kLeastSide);
-        within *= 2;
+        caustics.mirror_resolution = std::max(caustics.mirror_resolution / 2, kMinMapSide);
+        range *= 2;
     }
 }
 
-/// Whether anything that lies in the water may be.
-bool may_be_seen(const layout::WaterRecord& body, const Frustum& frustum) {
+/// Whether anything in the water may be visible.
+bool may_be_visible(const layout::WaterRecord& body, const Frustum& frustum) {
     if (body.shape.y <= 0 || body.shape.z <= 0 || body.absorption.w <= 0) {
         return true;
     }
@@ -337,39 +342,40 @@ bool may_be_seen(const layout::WaterRecord& body, const Frustum& frustum) {
     const Vec3 middle = frame.world({0, -0.5f * body.absorption.w, 0});
     return std::none_of(
         std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
-            const Vec3 normal = frame.turned_in(Vec3(plane));
+            const Vec3 normal = frame.direction_to_local(Vec3(plane));
             const float reach = glm::dot(glm::abs(normal), half);
             return glm::dot(Vec3(plane), middle) + plane.w < -reach;
         });
 }
 
-/// Waters with maps, the nearest first, with as many texels as all may have.
-struct Wanted {
+/// Waters with maps, nearest first, with resolutions reduced to the texel budget.
+struct ChosenWater {
     std::size_t body = 0;
     Caustics caustics;
 };
-std::vector<Wanted> choose_waters(
+std::vector<ChosenWater> choose_waters(
     const WaterList& waters, const std::vector<std::size_t>& order, const Vec3& camera,
     const Frustum& frustum) {
-    std::vector<Wanted> chosen;
+    std::vector<ChosenWater> chosen;
     std::int64_t texels = 0;
     const auto size_of = [](const Caustics& c) {
         return std::int64_t{c.resolution} * c.resolution * c.cascades;
     };
     for (const std::size_t i : order) {
         if (waters.caustics[i] != nullptr && chosen.size() < kMaxCausticMaps
-            && (waters.caustics[i]->mirror_reach > 0 || may_be_seen(waters.bodies[i], frustum))) {
-            Wanted wanted = {i, make_sane(*waters.caustics[i])};
-            adapt(wanted.caustics, waters.bodies[i], distance_to(waters.bodies[i], camera));
-            texels += size_of(wanted.caustics);
-            chosen.push_back(wanted);
+            && (waters.caustics[i]->mirror_reach > 0
+                || may_be_visible(waters.bodies[i], frustum))) {
+            ChosenWater choice = {i, sanitize(*waters.caustics[i])};
+            adapt(choice.caustics, waters.bodies[i], distance_to(waters.bodies[i], camera));
+            texels += size_of(choice.caustics);
+            chosen.push_back(choice);
         }
     }
-    for (bool more = true; texels > kMostCausticTexels && more;) {
+    for (bool more = true; texels > kMaxCausticTexels && more;) {
         more = false;
-        for (std::size_t i = chosen.size(); i-- > 0 && texels > kMostCausticTexels;) {
+        for (std::size_t i = chosen.size(); i-- > 0 && texels > kMaxCausticTexels;) {
             Caustics& caustics = chosen[i].caustics;
-            if (caustics.resolution > kLeastSide) {
+            if (caustics.resolution > kMinMapSide) {
                 texels -= size_of(caustics);
                 caustics.resolution /= 2;
                 texels += size_of(caustics);
@@ -380,13 +386,13 @@ std::vector<Wanted> choose_waters(
     return chosen;
 }
 
-/// The grid over the world, and the waters that each cell may be in.
+/// The world grid, and the waters that may overlap each cell.
 void append_grid(CausticList& list) {
     Vec2 low(1e9f);
     Vec2 high(-1e9f);
     std::vector<std::array<Vec2, 2>> boxes;
     std::size_t bounded = 0;
-    for (const layout::SunkenRecord& sunken : list.sunken) {
+    for (const layout::UnderwaterRecord& sunken : list.sunken) {
         const Vec2 middle(finite_or(sunken.origin.x, 0), finite_or(sunken.origin.z, 0));
         const Vec2 axis = glm::abs(Vec2(sunken.origin.w, sunken.shape.x));
         const Vec2 half(sunken.shape.y, sunken.shape.z);
@@ -402,9 +408,9 @@ void append_grid(CausticList& list) {
         }
     }
     const int side =
-        bounded <= kFewWaters
+        bounded <= kMaxWatersWithoutGrid
             ? 1
-            : std::min(kMostCells, static_cast<int>(2 * std::sqrt(static_cast<float>(bounded))));
+            : std::min(kMaxGridSide, static_cast<int>(2 * std::sqrt(static_cast<float>(bounded))));
     const Vec2 origin = bounded > 0 ? low : Vec2(0);
     const Vec2 extent = bounded > 0 ? glm::max(high - low, Vec2(1e-3f)) : Vec2(1);
     const Vec2 per_meter = static_cast<float>(side) / extent;
@@ -443,7 +449,7 @@ void append_grid(CausticList& list) {
 
 void collect_caustics(
     const WaterList& waters, const LightList& lights, const RenderView& view, bool maps,
-    CausticList& list, ShadowList& shadows) {
+    CausticList& list, std::vector<WaterShadow>& shadows) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 camera(pose[0].w, pose[1].w, pose[2].w);
     list.sunken.clear();
@@ -451,26 +457,26 @@ void collect_caustics(
     list.places.clear();
     list.maps.clear();
     list.atlas = {0, 0};
-    shadows.waters.clear();
+    shadows.clear();
     std::vector<std::size_t> order(waters.bodies.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return distance_to(waters.bodies[a], camera) < distance_to(waters.bodies[b], camera);
     });
     const int sun = brightest_sun(lights);
-    const std::vector<Wanted> chosen =
+    const std::vector<ChosenWater> chosen =
         sun >= 0 ? choose_waters(waters, order, camera, make_frustum(view.clip_from_world))
-                 : std::vector<Wanted>{};
+                 : std::vector<ChosenWater>{};
     std::size_t next = 0;
     for (const std::size_t i : order) {
-        layout::SunkenRecord& sunken = list.sunken.emplace_back(sunken_of(waters.bodies[i]));
+        layout::UnderwaterRecord& sunken = list.sunken.emplace_back(sunken_of(waters.bodies[i]));
         if (next == chosen.size() || chosen[next].body != i) {
             continue;
         }
         const layout::LightRecord& light = lights.records[static_cast<std::size_t>(sun)];
         const Source source = {
             waters, i, chosen[next++].caustics, light,
-            frame_of(waters.bodies[i]).turned_in(Vec3(light.position))};
+            frame_of(waters.bodies[i]).direction_to_local(Vec3(light.position))};
         add_below(source, camera, sun, maps, sunken, list, shadows);
         if (maps && source.caustics.mirror_reach > 0 && list.mirrors.size() < kMaxMirrorMaps) {
             add_above(source, camera, sun, list, shadows);
@@ -488,9 +494,9 @@ void place_caustics(const LightList& lights, const ShadowList& shadows, CausticL
         list.maps[i].world.w = list.places[i].view.x = static_cast<float>(shadows.waters[i].record);
     }
     list_rays(list);
-    std::reverse(list.sunken.begin(), list.sunken.end());  // of several, the last one counts
+    std::reverse(list.sunken.begin(), list.sunken.end());  // where they overlap, the last wins
     list.texels.clear();
-    const layout::WaterLightHead head = {
+    const layout::WaterLightHeader head = {
         .counts =
             {static_cast<float>(list.sunken.size()), static_cast<float>(list.mirrors.size()),
              static_cast<float>(list.places.size()), 0},

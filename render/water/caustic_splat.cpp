@@ -12,31 +12,31 @@
 namespace limn {
 namespace {
 
-constexpr int kMostStripes = 4;      ///< of a grid, whatever the number of threads
-constexpr int kStripe = 64;          ///< cells across a stripe, or more
-constexpr float kWhole = 524288.0f;  ///< what a texel counts for the light of flat water
-constexpr float kMost = 48;          ///< rays along a side of a cell
-constexpr float kPerTexel = 2;       ///< rays along a texel
-constexpr float kMostMirrored = 12;  ///< the same above the water
-constexpr float kMirroredPerTexel = 1;
-constexpr int kAside = 8;  ///< texels around a map that rays may land on
+constexpr int kMaxStripes = 4;               ///< per grid, independent of the thread count
+constexpr int kStripe = 64;                  ///< minimum cells across a stripe
+constexpr float kFixedPointOne = 524288.0f;  ///< fixed-point value of the light under flat water
+constexpr float kMaxRays = 48;               ///< maximum rays along a side of a cell
+constexpr float kRaysPerTexel = 2;           ///< rays along a texel
+constexpr float kMaxRaysMirrored = 12;       ///< the same above the water
+constexpr float kRaysPerTexelMirrored = 1;
+constexpr int kBorder = 8;  ///< texels around a map for rays that land outside
 
-/// A map with texels around it, so that nobody asks whether a ray is in it.
+/// A map with a border, so that rays need no bounds test.
 struct Sheet {
     std::uint32_t* texels = nullptr;
     int stride = 0;
-    float most = 0;  ///< of a ray's place, from the sheet's corner
+    float limit = 0;  ///< maximum coordinate of a ray, from the sheet's corner
 };
 
-/// How a map's cells are cut into rays.
+/// How a map's cells are subdivided into rays.
 struct Cut {
-    float texels = 1;  ///< from ray to ray of the grid
+    float texels = 1;  ///< spacing of the grid's rays
     bool by_area = false;
-    float per_texel = kPerTexel;
-    float most = kMost;
+    float per_texel = kRaysPerTexel;
+    float max_rays = kMaxRays;
 };
 
-/// To two texels at once: neither sum reaches 2^32.
+/// Adds to two texels at once; neither sum overflows 32 bits.
 void add_pair(std::uint32_t* texels, float left, float right) {
     std::uint64_t both = 0;
     std::memcpy(&both, texels, sizeof(both));
@@ -49,9 +49,9 @@ void add_pair(std::uint32_t* texels, float left, float right) {
 }
 
 void add(const Sheet& sheet, float x, float y, float amount) {
-    // What is not a number goes to the corner, too.
-    const float u = std::min(std::max(0.0f, x + (kAside - 0.5f)), sheet.most);
-    const float v = std::min(std::max(0.0f, y + (kAside - 0.5f)), sheet.most);
+    // NaN lands in the corner, too.
+    const float u = std::min(std::max(0.0f, x + (kBorder - 0.5f)), sheet.limit);
+    const float v = std::min(std::max(0.0f, y + (kBorder - 0.5f)), sheet.limit);
     const int column = static_cast<int>(u);
     const int row = static_cast<int>(v);
     const float s = u - static_cast<float>(column);
@@ -63,17 +63,18 @@ void add(const Sheet& sheet, float x, float y, float amount) {
     add_pair(at + sheet.stride, above - above * s, above * s);
 }
 
-/// The cell with rays a, b and, a row on, c, d.
+/// Splats the cell with rays a, b and, in the next row, c, d.
 void add_cell(
     const Sheet& sheet, const Vec4& a, const Vec4& b, const Vec4& c, const Vec4& d,
     const Cut& cut) {
-    const auto rays_along =
-        [&cut](const Vec4& one_end, const Vec4& one, const Vec4& other_end, const Vec4& other) {
-            const Vec2 longest = glm::max(
-                glm::abs(Vec2(one) - Vec2(one_end)), glm::abs(Vec2(other) - Vec2(other_end)));
-            return static_cast<int>(std::clamp(
-                std::ceil(cut.per_texel * std::max(longest.x, longest.y) - 0.01f), 1.0f, cut.most));
-        };
+    const auto rays_along = [&cut](
+                                const Vec4& one_end, const Vec4& one, const Vec4& other_end,
+                                const Vec4& other) {
+        const Vec2 longest =
+            glm::max(glm::abs(Vec2(one) - Vec2(one_end)), glm::abs(Vec2(other) - Vec2(other_end)));
+        return static_cast<int>(std::clamp(
+            std::ceil(cut.per_texel * std::max(longest.x, longest.y) - 0.01f), 1.0f, cut.max_rays));
+    };
     const int columns = rays_along(a, b, c, d);
     const int rows = rays_along(a, c, b, d);
     const float across = 1 / static_cast<float>(columns);
@@ -81,7 +82,7 @@ void add_cell(
     const float area = cut.by_area
                            ? 0.5f * std::abs((d.x - a.x) * (c.y - b.y) - (d.y - a.y) * (c.x - b.x))
                            : cut.texels * cut.texels;
-    const float whole = kWhole * area * across * down;
+    const float whole = kFixedPointOne * area * across * down;
     for (int j = 0; j < rows; ++j) {
         const float v = (static_cast<float>(j) + 0.5f) * down;
         const Vec3 left = Vec3(a) + v * (Vec3(c) - Vec3(a));
@@ -93,22 +94,22 @@ void add_cell(
     }
 }
 
-/// A part of a map's grid of rays, and where it is summed.
+/// A range of rows of a map's ray grid, and the buffer of its sums.
 struct Stripe {
     std::size_t map = 0;
     int first = 0;  ///< row of cells
     int last = 0;
-    std::size_t sums = 0;  ///< of CausticSums::parts
+    std::size_t sums = 0;  ///< offset in CausticSums::parts
 };
 
 int side_of(const layout::CausticRecord& record) {
     return static_cast<int>(record.grid.y);
 }
 int stripes_of(const layout::CausticRecord& record) {
-    return std::clamp(static_cast<int>(record.grid.x) / kStripe, 1, kMostStripes);
+    return std::clamp(static_cast<int>(record.grid.x) / kStripe, 1, kMaxStripes);
 }
 std::size_t sheet_size(const layout::CausticRecord& record) {
-    const auto stride = static_cast<std::size_t>(side_of(record) + 2 * kAside);
+    const auto stride = static_cast<std::size_t>(side_of(record) + 2 * kBorder);
     return stride * stride;
 }
 
@@ -116,13 +117,13 @@ void sum_stripe(
     const layout::CausticRecord& record, std::span<const Vec4> rays, const Stripe& stripe,
     std::uint32_t* texels) {
     const int cells = static_cast<int>(record.grid.x);
-    const int stride = side_of(record) + 2 * kAside;
+    const int stride = side_of(record) + 2 * kBorder;
     const Sheet sheet = {texels, stride, static_cast<float>(stride) - 1.01f};
     std::fill_n(texels, sheet_size(record), 0u);
     const bool mirrored = record.grid.w == layout::kCausticsMirrored;
     const Cut cut = {
         record.grid.y / record.grid.x, record.grid.w == layout::kCausticsPool,
-        mirrored ? kMirroredPerTexel : kPerTexel, mirrored ? kMostMirrored : kMost};
+        mirrored ? kRaysPerTexelMirrored : kRaysPerTexel, mirrored ? kMaxRaysMirrored : kMaxRays};
     for (int z = stripe.first; z < stripe.last; ++z) {
         const Vec4* const row = rays.data() + z * (cells + 1);
         const Vec4* const next = row + cells + 1;
@@ -132,19 +133,19 @@ void sum_stripe(
     }
 }
 
-/// A row of a map, of the sums of its stripes, the first of which are at `parts`.
+/// Writes a row of a map by adding the sums of its stripes, which start at `parts`.
 void write_row(
     const layout::CausticRecord& record, const std::uint32_t* parts, int row, float* texels) {
     const int side = side_of(record);
     const int stripes = stripes_of(record);
     const std::size_t apart = sheet_size(record);
-    const std::uint32_t* const from = parts + (row + kAside) * (side + 2 * kAside) + kAside;
+    const std::uint32_t* const from = parts + (row + kBorder) * (side + 2 * kBorder) + kBorder;
     for (int x = 0; x < side; ++x) {
         std::uint32_t sum = 0;
         for (int stripe = 0; stripe < stripes; ++stripe) {
             sum += from[static_cast<std::size_t>(stripe) * apart + static_cast<std::size_t>(x)];
         }
-        texels[x] = static_cast<float>(sum) * (1 / kWhole);
+        texels[x] = static_cast<float>(sum) * (1 / kFixedPointOne);
     }
 }
 

@@ -9,17 +9,17 @@
 
 namespace limn {
 
-// The sum of the light of a map on the CPU, as caustics_splat.comp has it for GPUs: where the CPU
-// draws, atomic sums of a shader take ten times as long.
+// CPU counterpart of caustics_splat.comp, for OpenGL that runs on the CPU: there, shader atomics
+// take ten times as long.
 
-/// Keeps its memory.
+/// Scratch memory, reused.
 struct CausticSums {
-    std::vector<std::uint32_t> parts;  ///< of stripes of the grids, one after the other
+    std::vector<std::uint32_t> parts;  ///< sums of the stripes of all grids, consecutively
 };
 
-/// Where the rays of all maps land and their light, (cells + 1)^2 a map, to the texels of the atlas
-/// that has `width` of them along x: light that arrives over that of flat water. The same for any
-/// number of threads. Texels of no map are left alone.
+/// Sums the light of all maps: `rays` are landing points and light, (cells + 1)^2 per map; `atlas`,
+/// `width` texels wide, receives irradiance relative to that under flat water. Deterministic for
+/// any number of threads. Texels outside the maps are not written.
 void splat_caustics(
     std::span<const layout::CausticRecord> records, std::span<const Vec4> rays, int width,
     CausticSums& sums, std::span<float> atlas);

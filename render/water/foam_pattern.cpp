@@ -10,7 +10,7 @@ namespace limn {
 
 namespace {
 
-/// One point in each cell of a square lattice that repeats.
+/// One random point in each cell of a tiling square lattice.
 class CellPoints {
   public:
     CellPoints(int cells, std::uint64_t seed) : cells_(cells) {
@@ -22,8 +22,8 @@ class CellPoints {
         }
     }
 
-    /// How much nearer the nearest point is than the second; 0 on the walls between cells. `p` in
-    /// cells.
+    /// Worley F2 - F1: distance to the second nearest point minus that to the nearest; 0 on the
+    /// walls between cells. `p` in cells.
     [[nodiscard]] float depth_in_cell(const Vec2& p) const {
         const IVec2 home = IVec2(glm::floor(p));
         float nearest = 1e9f;
@@ -48,8 +48,8 @@ class CellPoints {
     std::vector<Vec2> points_;
 };
 
-/// 0 .. 255 by rank, the deepest first.
-std::vector<std::uint8_t> make_even(const std::vector<float>& depths) {
+/// Equalizes to 0 .. 255 by rank, largest depth first.
+std::vector<std::uint8_t> equalize(const std::vector<float>& depths) {
     std::vector<std::uint32_t> order(depths.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -62,7 +62,7 @@ std::vector<std::uint8_t> make_even(const std::vector<float>& depths) {
     return even;
 }
 
-/// The mean of each four texels of a square, in place; nothing of one texel.
+/// Downsamples a square by 2 x 2 averaging, in place; empty for a single texel.
 void halve(int side, std::vector<float>& texels) {
     const auto from = static_cast<std::size_t>(side);
     const std::size_t to = from / 2;
@@ -91,7 +91,7 @@ std::vector<std::vector<std::uint8_t>> make_foam_pattern() {
     }
     std::vector<std::vector<std::uint8_t>> levels;
     for (int side = kFoamPatternSide; side > 0; side /= 2) {
-        levels.push_back(make_even(depths));
+        levels.push_back(equalize(depths));
         halve(side, depths);
     }
     return levels;

@@ -5,15 +5,15 @@
 
 namespace limn {
 
-// How foam breaks up: a tile whose texels say how long foam stays there while the water's cover
-// fades. Bubbles gather in the walls between cells, large and small ones (after S. Worley, "A
-// Cellular Texture Basis Function", 1996). Every value is as frequent as any other, so that of a
-// cover c the share c of all texels exceeds 1 - c.
+// Foam dissolve pattern: a tile whose texels are thresholds, so that foam breaks up as coverage
+// decreases. Bubbles gather along the walls between cells, large and small ones (after S. Worley,
+// "A Cellular Texture Basis Function", 1996). Values are uniformly distributed, so that at coverage
+// c the fraction c of all texels exceeds 1 - c.
 
 inline constexpr int kFoamPatternSide = 256;  ///< [texels]
 
-/// Squares of kFoamPatternSide texels a side, half as many and so on to one, 0 .. 255: each is the
-/// mean of the one before, with values made even again. They repeat without a seam.
+/// Full mip chain from kFoamPatternSide texels per side down to one, values 0 .. 255: each level
+/// averages the previous one and is equalized again. Tiles seamlessly.
 [[nodiscard]] std::vector<std::vector<std::uint8_t>> make_foam_pattern();
 
 }  // namespace limn

@@ -83,13 +83,13 @@ synthesize_ocean(FrameGraph& graph, const OceanFft& fft, float choppiness, doubl
 
     const double turns = time / 6.283185307179586;
     const float whole = static_cast<float>(turns);
-    const Vec2 time_in_turns = {whole, static_cast<float>(turns - static_cast<double>(whole))};
+    const Vec2 time_in_periods = {whole, static_cast<float>(turns - static_cast<double>(whole))};
     graph.add_pass("ocean waves", {}, {lines}, [=, &fft](PassContext& context) {
         gpu::Device& device = context.device();
         device.use(*fft.waves_program);
         fft.waves_program->set("patches", fft.patches);
         fft.waves_program->set("choppiness", choppiness);
-        fft.waves_program->set("time_in_turns", time_in_turns);
+        fft.waves_program->set("time_in_periods", time_in_periods);
         device.bind_storage(kWavesBinding, fft.waves);
         device.bind_storage(kFrequenciesBinding, fft.frequencies);
         context.bind_storage(kLinesBinding, lines);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kRowGrain = 32;
 
-/// Reads a plane of `from` points a side as one of `to`, a multiple of it.
+/// Samples a plane of `from` points per side at a resolution of `to`, a multiple of it.
 class PlaneReader {
   public:
     PlaneReader(const std::vector<float>& plane, int from, int to)
@@ -41,7 +41,7 @@ class PlaneReader {
     int ratio_;
 };
 
-/// Writes texel(x, z) of a square of this side, rows on all threads.
+/// Writes texel(x, z) of a square with side `size`, rows in parallel.
 template <typename Texel, typename T>
 void fill(int size, std::vector<T>& texels, Texel&& texel) {
     const auto side = static_cast<std::size_t>(size);
@@ -55,7 +55,7 @@ void fill(int size, std::vector<T>& texels, Texel&& texel) {
     });
 }
 
-/// The mean of each four texels of a square of even side, in place.
+/// Downsamples a square of even side by 2 x 2 averaging, in place.
 template <typename T>
 void halve(int size, std::vector<T>& texels) {
     const auto side = static_cast<std::size_t>(size);
@@ -71,8 +71,8 @@ void halve(int size, std::vector<T>& texels) {
     texels.resize(half * half);
 }
 
-/// Uploads a square, and what it is when seen from afar; leaves the last in `texels`. A software
-/// OpenGL takes several times as long to make these levels itself.
+/// Uploads a square and its mip levels; leaves the last in `texels`. A software OpenGL takes
+/// several times as long to generate them.
 template <typename T>
 void upload_levels(
     gpu::Texture& texture, int size, int layer, GLenum format, std::vector<T>& texels) {
@@ -98,14 +98,14 @@ void make_array(
     texture.set_wrap(GL_REPEAT);
 }
 
-/// shift_x, height, shift_z at `share` of the way from the step before to the last.
+/// shift_x, height, shift_z, interpolated from the previous step (0) to the last one (1).
 void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>& texels) {
     const PlaneReader now[3] = {
         {c.shift_x, c.size, size}, {c.height, c.size, size}, {c.shift_z, c.size, size}};
     const PlaneReader last[3] = {
-        {c.last_shift_x, c.size, size},
-        {c.last_height, c.size, size},
-        {c.last_shift_z, c.size, size}};
+        {c.previous_shift_x, c.size, size},
+        {c.previous_height, c.size, size},
+        {c.previous_shift_z, c.size, size}};
     if (share == 1.0f) {
         fill(size, texels, [&](int x, int z) {
             return Vec4(now[0].at(x, z), now[1].at(x, z), now[2].at(x, z), 0);
@@ -122,14 +122,14 @@ void fill_shift(const OceanCascade& c, int size, float share, std::vector<Vec4>&
 }
 
 Vec3 reach_of(const OceanCascade& c) {
-    const auto most = [](const std::vector<float>& plane) {
+    const auto max_abs = [](const std::vector<float>& plane) {
         float largest = 0;
         for (const float v : plane) {
             largest = std::max(largest, std::abs(v));
         }
         return largest;
     };
-    return {most(c.shift_x), most(c.height), most(c.shift_z)};
+    return {max_abs(c.shift_x), max_abs(c.height), max_abs(c.shift_z)};
 }
 
 float slope_variance(const OceanCascade& c) {
@@ -142,7 +142,7 @@ float slope_variance(const OceanCascade& c) {
 
 }  // namespace
 
-void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) {
+void OceanTextures::update(std::span<const OceanSource> seas, bool with_previous) {
     places_.assign(seas.size(), {});
     size_ = 0;
     layers_ = 0;
@@ -163,8 +163,8 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) 
     make_array(shift_, "ocean shift", GL_RGBA32F, size_, layers_, 0);
     make_array(slope_, "ocean slope", GL_RGBA32F, size_, layers_, 0);
     make_array(foam_, "ocean foam", GL_RG32F, size_, layers_, 0);
-    if (with_before) {
-        make_array(shift_before_, "ocean shift before", GL_RGBA32F, size_, layers_, 0);
+    if (with_previous) {
+        make_array(previous_shift_, "previous ocean shift", GL_RGBA32F, size_, layers_, 0);
     }
     for (std::size_t i = 0; i < seas.size(); ++i) {
         const OceanSource& sea = seas[i];
@@ -175,9 +175,9 @@ void OceanTextures::update(std::span<const OceanSource> seas, bool with_before) 
             const auto share = [&](float seconds) { return step > 0 ? 1 + seconds / step : 1.0f; };
             fill_shift(c, size_, share(sea.now), texels_);
             upload_levels(shift_, size_, layer, GL_RGBA, texels_);
-            if (with_before) {
+            if (with_previous) {
                 fill_shift(c, size_, share(sea.before), texels_);
-                upload_levels(shift_before_, size_, layer, GL_RGBA, texels_);
+                upload_levels(previous_shift_, size_, layer, GL_RGBA, texels_);
             }
             const PlaneReader planes[5] = {
                 {c.slope_x, c.size, size_},

@@ -13,7 +13,7 @@ constexpr int kBorder = 1;
 void fill_row(const RippleState& state, int z, Vec4* texels) {
     const int row = std::clamp(z, 0, state.cells.y - 1);
     const float* const here = state.height.data() + state.at(0, row);
-    const float* const before = state.before.data() + state.at(0, row);
+    const float* const before = state.previous.data() + state.at(0, row);
     const float* const above = state.height.data() + state.at(0, std::max(row - 1, 0));
     const float* const below =
         state.height.data() + state.at(0, std::min(row + 1, state.cells.y - 1));
@@ -32,14 +32,14 @@ void fill_row(const RippleState& state, int z, Vec4* texels) {
 
 }  // namespace
 
-int place_on_shelves(std::span<const IVec2> sizes, int width, std::span<IVec2> corners) {
+int pack_shelves(std::span<const IVec2> sizes, int width, std::span<IVec2> corners) {
     std::vector<std::size_t> order(sizes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return sizes[a].y > sizes[b].y;
     });
     IVec2 next(0);
-    int shelf = 0;  // height of the one being filled
+    int shelf = 0;  // height of the current shelf
     for (const std::size_t i : order) {
         if (next.x + sizes[i].x > width) {
             next = {0, next.y + shelf};
@@ -76,7 +76,7 @@ void RippleAtlas::update(std::span<const RippleState* const> states, int max_sid
     const int square = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(area))));
     const int width = std::min(std::max(widest, square), max_side);
     std::vector<IVec2> corners(sizes.size());
-    const int height = std::min(place_on_shelves(sizes, width, corners), max_side);
+    const int height = std::min(pack_shelves(sizes, width, corners), max_side);
     texels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     for (std::size_t i = 0; i < states.size(); ++i) {
         const bool fits = sizes[i].x > 0 && corners[i].y + sizes[i].y <= height;

@@ -8,23 +8,23 @@
 
 namespace limn {
 
-// The ripples of all bodies of water in one texture: each has a rectangle of it, a texel a cell,
-// with one texel more around that repeats the outermost. A texel is height [m], velocity up [m/s]
-// and the slopes by x and z.
+// The ripples of all bodies of water in one texture: a rectangle per body, one texel per cell, with
+// a border texel that repeats the edge. A texel holds height [m], upward velocity [m/s] and the
+// slopes along x and z.
 
-/// Where the cells of one body are.
+/// Location of the cells of one body.
 struct AtlasPlace {
     IVec2 corner = {0, 0};  ///< of the first cell [texels]
-    bool fits = false;      ///< otherwise it is not in the texture
+    bool fits = false;      ///< false: not in the texture
 };
 
 class RippleAtlas {
   public:
-    /// Places all and uploads their texels. `max_side`: of a texture [px].
+    /// Packs all bodies and uploads their texels. `max_side`: maximum texture size [px].
     void update(std::span<const RippleState* const> states, int max_side);
 
     [[nodiscard]] const std::vector<AtlasPlace>& places() const { return places_; }
-    /// Not there before the first update; of no meaning where no body ripples.
+    /// Null before the first update; meaningless if no body has ripples.
     [[nodiscard]] const gpu::Texture& texture() const { return texture_; }
 
   private:
@@ -33,9 +33,8 @@ class RippleAtlas {
     gpu::Texture texture_;
 };
 
-/// Rectangles of these sizes next to and above each other, the tallest first, in a sheet `width`
-/// wide; writes their corners and returns the height of the sheet.
-[[nodiscard]] int
-place_on_shelves(std::span<const IVec2> sizes, int width, std::span<IVec2> corners);
+/// Shelf packing of rectangles, tallest first, into a sheet `width` wide; writes their corners and
+/// returns the height of the sheet.
+[[nodiscard]] int pack_shelves(std::span<const IVec2> sizes, int width, std::span<IVec2> corners);
 
 }  // namespace limn

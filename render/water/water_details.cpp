@@ -17,7 +17,7 @@ float slope_variance(const WaveLine& line) {
     return 0.5f * square(line.amplitude) * glm::dot(line.k, line.k);
 }
 
-/// How far a layer has moved, in copies.
+/// Scroll offset of a layer, in tiles.
 Vec2 moved(const DetailLayer& layer, double time) {
     const double copies = time * static_cast<double>(layer.speed / layer.tile);
     const auto along = [&](double share) {
@@ -32,10 +32,10 @@ Vec2 moved(const DetailLayer& layer, double time) {
 
 WaveSplit split_waves(std::span<const WaveLine> lines, const WaterDetail& detail, float spacing) {
     WaveSplit split;
-    const float least = std::max(detail.split, 2 * spacing);
+    const float min_length = std::max(detail.split, 2 * spacing);
     while (split.geometric < lines.size()
            && split.geometric < static_cast<std::size_t>(kMaxGeometricWaves)
-           && length_of(lines[split.geometric]) >= least) {
+           && length_of(lines[split.geometric]) >= min_length) {
         ++split.geometric;
     }
     const float shortest = kTexelsPerWave * detail.tile / static_cast<float>(kWaveTileSize);

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "ecs/components/caustics.h"
+#include "ecs/components/water.h"
+#include "ecs/components/water_frame.h"
 #include "ecs/components/water_look.h"
+#include "ecs/components/water_waves.h"
 #include "ecs/entity.h"
 #include "render/render_view.h"
 #include "render/shaders/water_gpu.h"
@@ -15,44 +18,63 @@
 
 namespace limn {
 
-// All bodies of water at the moment that a view shows, ready to be drawn.
+// All bodies of water at the time that a view shows, ready to be drawn.
 
-/// The water that the camera is in, or that waves may wash over it.
+/// The water that the camera is in, or may be in because of waves.
 struct WaterAroundView {
     int body = 0;
-    bool at_surface = false;  ///< the surface may cut through the picture
+    bool at_surface = false;  ///< the surface may cross the image
 };
 
-/// How a body is drawn, in WaterRecord::scattering.w: fresnel + 4 reflection + 16 refraction.
+/// Encodes a look for WaterRecord::scattering.w: fresnel + 4 reflection + 16 refraction.
 [[nodiscard]] float pack_look(const WaterLook& look);
+
+/// The bodies of water of the world, whatever the view.
+struct WaterSources {
+    struct Body {
+        Entity entity;
+        const Water* water = nullptr;
+        const WaterLook* look = nullptr;  ///< or null, as the next ones
+        const WaterDetail* detail = nullptr;
+        const WaveTable* table = nullptr;
+        const Caustics* caustics = nullptr;
+        WaterFrame frame;
+    };
+    std::vector<Body> bodies;                 ///< in world order
+    std::vector<const RippleState*> ripples;  ///< per body, or null
+    std::vector<OceanSource> seas;            ///< per body
+    float now = 0;       ///< time shown, relative to the end of the last step [s]
+    float previous = 0;  ///< the same of the previous frame [s]
+    double time = 0;     ///< at the end of the last step [s]
+};
+
+/// Reads the world at the time that `view` shows; pointers are valid until it changes.
+void read_water_sources(const World& world, const RenderView& view, WaterSources& sources);
 
 struct WaterList {
     std::vector<layout::WaterRecord> bodies;  ///< in world order
     std::vector<layout::WaveLineRecord> lines;
     std::vector<layout::WaveRingRecord> rings;
     std::vector<WaterPatch> patches;
-    std::vector<const RippleState*> ripples;  ///< of each body, or null
-    std::vector<OceanSource> seas;            ///< of each body, in the same order
-    std::optional<WaterAroundView> around{};  ///< the first there is
-    bool seen_from_below = false;  ///< some surface may be: the camera is no higher than its waves
+    std::optional<WaterAroundView> around{};  ///< the first found
+    bool seen_from_below = false;  ///< for some surface the camera may be below its waves
     std::vector<Entity> entities;
-    std::vector<const Caustics*> caustics;  ///< of each body, or null
-    std::vector<Vec2> heights;              ///< of each body: how low and high its waves go [m]
+    std::vector<const Caustics*> caustics;  ///< per body, or null
+    std::vector<Vec2> heights;              ///< per body: minimum and maximum wave height [m]
     WaterDetails details;
-    bool looks = false;                ///< some body is not drawn as usual (WaterLook)
-    bool planar = false;               ///< a body has the planar reflection
-    bool traced = false;               ///< some body mirrors what the picture shows
-    bool bent = false;                 ///< some body shows the picture where bent rays go
-    const WaterLook* floor = nullptr;  ///< the first with a map of its floor
+    bool looks = false;                ///< some body has a non-default WaterLook
+    bool planar = false;               ///< some body has the planar reflection
+    bool traced = false;               ///< some body has screen-space reflections
+    bool bent = false;                 ///< some body traces refracted rays in screen space
+    const WaterLook* floor = nullptr;  ///< the first with a floor map
 
     [[nodiscard]] bool empty() const { return patches.empty(); }
 };
 
-/// Everything at the moment that `view` shows; keeps the memory of `list`. The textures get the
-/// ripples and patches of all bodies; `velocity`: also of the moment before. `planar` has the
-/// planar reflection.
-void collect_waters(
-    const World& world, const RenderView& view, bool velocity, Entity planar, int max_texture_size,
-    RippleAtlas& ripples, OceanTextures& seas, WaterList& list);
+/// Everything at the time that `view` shows; reuses the memory of `list`. `planar` is the body with
+/// the planar reflection. `seas` holds what read_water_sources() uploaded.
+void place_waters(
+    const WaterSources& sources, const RenderView& view, Entity planar, const RippleAtlas& ripples,
+    const OceanTextures& seas, WaterList& list);
 
 }  // namespace limn

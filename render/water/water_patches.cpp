@@ -6,7 +6,7 @@ namespace limn {
 
 namespace {
 
-constexpr auto kMost = static_cast<std::size_t>(kMaxWaterPatches);
+constexpr auto kMaxPatches = static_cast<std::size_t>(kMaxWaterPatches);
 
 float distance_to(const Bounds& box, const Vec3& point) {
     return glm::length(glm::max(glm::max(box.min - point, point - box.max), Vec3(0)));
@@ -17,7 +17,7 @@ bool is_beyond(float half, float low, float high) {
     return half > 0 && (low >= half || high <= -half);
 }
 
-bool is_seen(const Frustum& frustum, const Bounds& box) {
+bool is_visible(const Frustum& frustum, const Bounds& box) {
     const Vec3 middle = center(box);
     const Vec3 half = half_extent(box);
     return std::all_of(
@@ -33,15 +33,15 @@ void walk(
     const Bounds box = {
         Vec3(corner.x, 0, corner.y) - source.margin, Vec3(end.x, 0, end.y) + source.margin};
     if (is_beyond(source.half.x, corner.x, end.x) || is_beyond(source.half.y, corner.y, end.y)
-        || !is_seen(source.frustum, box)) {
+        || !is_visible(source.frustum, box)) {
         return;
     }
     const bool near = distance_to(box, source.camera) < source.detail * size;
-    if (near && size > source.finest && patches.size() + 4 < kMost) {
+    if (near && size > source.finest && patches.size() + 4 < kMaxPatches) {
         for (int i = 0; i < 4; ++i) {
             walk(source, corner + 0.5f * size * Vec2(i % 2, i / 2), 0.5f * size, patches);
         }
-    } else if (patches.size() < kMost) {
+    } else if (patches.size() < kMaxPatches) {
         patches.push_back(
             {.corner = corner,
              .size = size,

@@ -14,23 +14,23 @@ namespace limn {
 
 namespace {
 
-constexpr float kWaveMargin = 1.0f;  ///< around the rectangle at rest, for what waves move [m]
+constexpr float kWaveMargin = 1.0f;  ///< around the rest rectangle, for displacement by waves [m]
 
-/// Distance from the camera, where the water may be seen from above.
+/// Distance from the camera; nullopt if the water cannot be visible from above.
 std::optional<float>
-seen_from(const Water& water, const WaterFrame& frame, const RenderView& view) {
+visible_distance(const Water& water, const WaterFrame& frame, const RenderView& view) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 eye = frame.local({pose[0].w, pose[1].w, pose[2].w});
     if (!(eye.y > 0)) {
         return std::nullopt;
     }
-    const Vec2 endless(1e9f);
-    const Vec2 half = glm::mix(endless, 0.5f * water.size, glm::greaterThan(water.size, Vec2(0)));
+    const Vec2 unbounded(1e9f);
+    const Vec2 half = glm::mix(unbounded, 0.5f * water.size, glm::greaterThan(water.size, Vec2(0)));
     const Vec2 beside = glm::max(glm::abs(Vec2(eye.x, eye.z)) - half, Vec2(0));
     const Vec2 reach = glm::min(half + kWaveMargin, Vec2(1e5f));
-    const Frustum seen = make_frustum(view.clip_from_world);
-    for (const Vec4& plane : seen.planes) {
-        const Vec3 normal = frame.turned_in(Vec3(plane));
+    const Frustum frustum = make_frustum(view.clip_from_world);
+    for (const Vec4& plane : frustum.planes) {
+        const Vec3 normal = frame.direction_to_local(Vec3(plane));
         const float furthest =
             glm::dot(glm::abs(Vec2(normal.x, normal.z)), reach) + std::abs(normal.y) * kWaveMargin;
         if (glm::dot(Vec3(plane), frame.origin) + plane.w + furthest < 0) {
@@ -44,16 +44,16 @@ seen_from(const Water& water, const WaterFrame& frame, const RenderView& view) {
 
 std::optional<PlanarWater> find_planar_water(const World& world, const RenderView& view) {
     std::optional<PlanarWater> nearest;
-    float least = 0;
+    float nearest_distance = 0;
     world.query<const Water, const WorldTransform, const WaterLook>().each(
         [&](Entity entity, const Water& water, const WorldTransform& place, const WaterLook& look) {
             if (look.reflection != WaterReflection::Planar) {
                 return;
             }
             const WaterFrame frame = water_frame(place.world);
-            const std::optional<float> distance = seen_from(water, frame, view);
-            if (distance && (!nearest || *distance < least)) {
-                least = *distance;
+            const std::optional<float> distance = visible_distance(water, frame, view);
+            if (distance && (!nearest || *distance < nearest_distance)) {
+                nearest_distance = *distance;
                 nearest = {entity, frame.origin.y, std::clamp(look.map_scale, 0.1f, 1.0f)};
             }
         });
@@ -79,8 +79,8 @@ RenderView make_reflected_view(const RenderView& view, float level, float map_sc
     for (int i = 0; i < 3; ++i) {
         rows[i].y = -rows[i].y;
     }
-    reflected.steady_from_world = upside_down * view.steady_from_world * mirror;
-    reflected.previous_from_world = reflected.steady_from_world;
+    reflected.unjittered_from_world = upside_down * view.unjittered_from_world * mirror;
+    reflected.previous_clip_from_world = reflected.unjittered_from_world;
     reflected.clip_plane = {0, 1, 0, -level};
     reflected.lens = {};
     const Vec2 ratio = Vec2(reflected.width, reflected.height) / Vec2(view.width, view.height);

@@ -9,8 +9,8 @@
 
 namespace limn {
 
-/// Where `player`, a ClipPlayer or a MorphAnimation, is in a clip of this length after `step` [s]:
-/// begins anew at the end, or holds; always 0 .. duration, whatever its fields hold.
+/// Clip time of `player`, a ClipPlayer or a MorphAnimation, after `step` [s]: wraps or holds at the
+/// end; always within 0 .. duration, whatever the values of its fields.
 template <typename Player>
 [[nodiscard]] float step_clip_time(const Player& player, float duration, float step) {
     return clip_time(duration, player.time + player.speed * step, player.loop);

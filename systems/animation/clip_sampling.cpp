@@ -11,7 +11,7 @@ namespace limn {
 
 namespace {
 
-/// What a Hermite curve takes of the keys on both sides and of their slopes.
+/// Weights of the keys on both sides and their tangents in a Hermite curve.
 struct Hermite {
     float from;
     float slope_from;
@@ -84,11 +84,11 @@ void sample_rotations(const ClipSheet& sheet, const SheetRows& rows, std::span<Q
     const std::size_t count = sheet.rotating.size();
     if (sheet.interpolation == Interpolation::Cubic) {
         rows.each_value(sheet.rotations, count, [&](std::size_t i, const Quat& q) {
-            rotations[sheet.rotating[i]] = unit_or_none(q);
+            rotations[sheet.rotating[i]] = normalize_or_identity(q);
         });
         return;
     }
-    // Some at a time on the stack, then to their joints.
+    // In batches on the stack, then scattered to the joints.
     constexpr std::size_t kBatch = 64;
     Quat blended[kBatch];
     for (std::size_t begin = 0; begin < count; begin += kBatch) {
@@ -153,14 +153,14 @@ void add_morph_weights(const ClipData& clip, float time, float weight, std::span
         }
         const SheetRows rows(sheet, time);
         rows.each_value(sheet.weights, sheet.morphing.size(), [&](std::size_t i, float value) {
-            if (value > kLeastMorph) {
+            if (value > kMinMorphWeight) {
                 weights[sheet.morphing[i]] += weight * value;
             }
         });
     }
 }
 
-void find_joint_matrices(
+void compute_joint_matrices(
     const SkeletonData& skeleton, const LocalPose& pose, std::span<Affine> matrices) {
     LIMN_CHECK(pose.size() == skeleton.parents.size() && matrices.size() == pose.size());
     for (std::size_t i = 0; i < matrices.size(); ++i) {

@@ -7,38 +7,37 @@
 
 namespace limn {
 
-// Poses between the keys of a clip (char.pose-eval).
+// Evaluation of clips between keys (char.pose-eval).
 
-/// Two neighboring keys and how far from the first to the second: 0 .. 1.
+/// A key interval and the position within it, 0 .. 1.
 struct KeyPlace {
     std::size_t first = 0;
     float u = 0.0f;
 };
 
-/// The keys around `t` in `times`, which grow (anim.key-lookup). Before the first key, and for NaN:
-/// there; from the last on: its end. A single key: itself, u = 0.
+/// The interval that contains `t` in `times`, which increase (anim.key-lookup). Clamped to the
+/// first key (also for NaN) and the last one. A single key: that key, u = 0.
 [[nodiscard]] KeyPlace find_keys(std::span<const float> times, float t);
 
-/// Where a clip of this duration is at `time` [s]: begun anew after the end, or held at both ends.
-/// Not finite, or no duration: 0.
+/// `time` [s] mapped into a clip of this duration: wrapped, or clamped at both ends. 0 if `time` is
+/// not finite or the clip has no duration.
 [[nodiscard]] float clip_time(float duration, float time, bool loops);
 
-/// Writes the joints that the clip moves, and its morph weights, as they are at `time` [s]; before
-/// the first and after the last key of a sheet, that key. `pose` holds the others already, mostly
-/// the skeleton's rest; all joints of the clip are in it, all weights in `weights`. Rotations come
-/// out with length 1.
+/// Writes the joints and morph weights animated by the clip at `time` [s], clamped to the first and
+/// last key of each sheet. Other joints keep their values, usually the rest pose. `pose` and
+/// `weights` must have all joints and weights of the clip. Rotations are normalized.
 void sample_clip(const ClipData& clip, float time, LocalPose& pose, std::span<float> weights);
 
-/// Below it a morph animation does nothing.
-inline constexpr float kLeastMorph = 1e-4f;
+/// Weight below which a morph animation is ignored.
+inline constexpr float kMinMorphWeight = 1e-4f;
 
-/// Adds what the clip's morph weights are at `time` [s], times `weight`, where they are more than
-/// kLeastMorph (char.morph-anim). Curves of a single key do nothing.
+/// Adds the clip's morph weights at `time` [s], times `weight`, where they exceed kMinMorphWeight
+/// (char.morph-anim). Curves with a single key are ignored.
 void add_morph_weights(const ClipData& clip, float time, float weight, std::span<float> weights);
 
-/// skeleton_from_joint of each joint: the product of all matrices from the root on
-/// (char.local-global). `matrices` has an entry a joint.
-void find_joint_matrices(
+/// skeleton_from_joint of each joint: the product of all matrices from the root
+/// (char.local-global). `matrices` has one entry per joint.
+void compute_joint_matrices(
     const SkeletonData& skeleton, const LocalPose& pose, std::span<Affine> matrices);
 
 }  // namespace limn

@@ -18,15 +18,15 @@ static_assert(sizeof(limn::Quat) == 4 * sizeof(float));
 #define LIMN_POSE_CONSTANTS
 namespace limn::pose {
 
-// acos x = sqrt(1 - x) (a0 + a1 x + ... + a7 x^7), 0 <= x <= 1, off by at most 2e-8 (Abramowitz and
+// acos x = sqrt(1 - x) (a0 + a1 x + ... + a7 x^7), 0 <= x <= 1, error at most 2e-8 (Abramowitz and
 // Stegun 4.4.46).
 inline constexpr float kAcos[] = {1.5707963050f, -0.2145988016f, 0.0889789874f, -0.0501743046f,
                                   0.0308918810f, -0.0170881256f, 0.0066700901f, -0.0012624911f};
-// sin x = x + x^3 (s0 + s1 x^2 + ...), 0 <= x <= pi / 2, the series up to x^9, off by at most 4e-6
+// sin x = x + x^3 (s0 + s1 x^2 + ...), 0 <= x <= pi / 2, the series up to x^9, error at most 4e-6
 // at the end, where the other weight is 0.
 inline constexpr float kSin[] = {-1.0f / 6, 1.0f / 120, -1.0f / 5040, 1.0f / 362880};
-/// Below it the sines are their angles, and their ratio must not be that of zeros [rad].
-inline constexpr float kLeastAngle = 1e-4f;
+/// Below this, sin x = x, which avoids the ratio 0 / 0 [rad].
+inline constexpr float kMinAngle = 1e-4f;
 
 }  // namespace limn::pose
 #endif
@@ -34,7 +34,7 @@ inline constexpr float kLeastAngle = 1e-4f;
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-// Returns how many rotations it has done, from the first on; the rest is for the scalar version.
+// Returns the number of rotations processed; the scalar version handles the remainder.
 
 #if HWY_TARGET == HWY_SCALAR  // no vectors here
 
@@ -91,7 +91,7 @@ std::size_t slerp_rotations_vector(
         const V cosine = hn::Min(hn::Abs(signed_cosine), one);
         const V omega = hn::Max(
             hn::Mul(hn::Sqrt(hn::Sub(one, cosine)), polynomial(pose::kAcos, cosine)),
-            hn::Set(d, pose::kLeastAngle));
+            hn::Set(d, pose::kMinAngle));
         const V weight_from = sine_of(hn::Mul(share_from, omega));
         const V weight_to = hn::CopySign(sine_of(hn::Mul(share_to, omega)), signed_cosine);
         const V x = hn::Add(hn::Mul(weight_from, ax), hn::Mul(weight_to, bx));
@@ -146,7 +146,7 @@ void slerp_rotations_scalar(
         const float signed_cosine = dot(a, b);
         const float cosine = std::min(std::abs(signed_cosine), 1.0f);
         const float omega =
-            std::max(std::sqrt(1.0f - cosine) * polynomial(pose::kAcos, cosine), pose::kLeastAngle);
+            std::max(std::sqrt(1.0f - cosine) * polynomial(pose::kAcos, cosine), pose::kMinAngle);
         const float weight_from = sine_of((1.0f - u) * omega);
         const float weight_to = std::copysign(sine_of(u * omega), signed_cosine);
         const Quat sum(

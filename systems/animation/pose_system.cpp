@@ -11,7 +11,7 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kGrain = 16;  ///< characters a task; each takes some microseconds
+constexpr std::size_t kGrain = 16;  ///< characters per task; each takes some microseconds
 
 bool is_below(const std::vector<std::uint16_t>& numbers, std::size_t count) {
     return std::all_of(
@@ -31,7 +31,7 @@ bool has_weights(const ClipData& clip, std::size_t weights) {
     });
 }
 
-/// Who jumps in this step: an entity with a Teleport, and everything below it.
+/// Entities that teleport in this step: those with a Teleport, and their descendants.
 class Jumps {
   public:
     Jumps(
@@ -67,7 +67,7 @@ const T* find_asset(const std::vector<T>& assets, std::uint32_t index) {
 void step_character(
     const Assets& assets, const SkeletonData& skeleton, const ClipPlayer* player,
     const MorphPlayer* morph_player, bool jumps, Pose& pose, MorphWeights* morph) {
-    thread_local LocalPose scratch;  // keeps its memory from character to character
+    thread_local LocalPose scratch;  // reused between characters
     const bool is_new = pose.joints.size() != skeleton.joints.size();
     if (is_new) {
         pose.joints.resize(skeleton.joints.size());
@@ -94,7 +94,7 @@ void step_character(
     }
 }
 
-/// The same for what has morph targets alone.
+/// The same for an entity with morph targets only.
 void step_weights(
     const Assets& assets, const ClipPlayer* player, const MorphPlayer* morph_player, bool jumps,
     MorphWeights& morph) {
@@ -178,7 +178,7 @@ void update_attachments(Query<const JointAttachment, Transform> attached, Query<
     attached.par_each([&](const JointAttachment& attachment, Transform& transform) {
         const Pose* const pose = poses.find<const Pose>(attachment.character);
         if (pose != nullptr && attachment.joint < pose->joints.size()) {
-            transform = placement_of(pose->joints[attachment.joint]);
+            transform = decompose_affine(pose->joints[attachment.joint]);
         }
     });
 }
@@ -214,7 +214,7 @@ void evaluate_pose(
     if (clip != nullptr && fits(*clip, joints.size(), weights.size())) {
         sample_clip(*clip, time, scratch, weights);
     }
-    find_joint_matrices(skeleton, scratch, joints);
+    compute_joint_matrices(skeleton, scratch, joints);
 }
 
 }  // namespace limn

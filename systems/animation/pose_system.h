@@ -10,19 +10,20 @@
 
 namespace limn {
 
-// Where the joints of characters are, from their clips; and what hangs on the joints.
+// Poses of characters from their clips, and entities attached to joints.
 //
-// `previous` of a Pose and of MorphWeights is what they were one step earlier. In the first step of
-// a character, and in the step of a Teleport of itself or of anything above it, it is what they are
-// now: no velocity. A clip that does not fit its skeleton counts as none: the character rests.
+// `previous` of Pose and MorphWeights holds the values of the previous step. In a character's first
+// step, and in the step of a Teleport of it or of an ancestor, it holds the current ones: no
+// velocity. A clip that does not fit the skeleton is ignored: the character keeps its rest pose.
 
-/// Gives a Pose to every Skeleton that lacks one, and then MorphWeights of 0 to those whose meshes
-/// have morph targets but that have no weights. Before update_poses, with a sync point between.
+/// Adds a Pose to every Skeleton that lacks one, and MorphWeights of 0 to those among them that
+/// lack weights although their meshes have morph targets. Before update_poses, with a sync point in
+/// between.
 void add_poses(
     Query<const Skeleton, Without<Pose>> bare, Query<const Deformed, const MeshInstance> meshes,
     Query<const MorphWeights> weights, Res<const Assets> assets, Commands commands);
 
-/// Samples the clips: writes Pose and MorphWeights. Allocates only when a character is new.
+/// Samples the clips: writes Pose and MorphWeights. Allocates only for new characters.
 void update_poses(
     Query<
         const Skeleton, Optional<const ClipPlayer>, Optional<const MorphPlayer>,
@@ -35,17 +36,16 @@ void update_poses(
     Query<const Transform, With<Teleport>> teleports, Query<const Parent> parents,
     Res<const Assets> assets);
 
-/// Writes the Transform of what is attached to a joint. Where the character has no such joint, it
-/// stays where it is.
+/// Writes the Transform of attached entities, unless the character has no such joint.
 void update_attachments(Query<const JointAttachment, Transform> attached, Query<const Pose> poses);
 
-/// Gives the targets that the animations name the sum of what these make of them now.
+/// Sets the morph targets that the animations control to the sum of their current weights.
 void add_morph_animations(
     const MorphPlayer& player, const std::vector<ClipData>& clips, std::span<float> weights);
 
-/// The joints and weights of a skeleton in `clip` at `time` [s]; at rest without a clip or where it
-/// names joints or weights that are not there. `scratch` keeps its memory from call to call; there
-/// is a matrix for each joint; weights that the clip does not move stay.
+/// Joint matrices and morph weights of a skeleton in `clip` at `time` [s]; the rest pose without a
+/// clip, or if the clip refers to missing joints or weights. `scratch` is reused between calls;
+/// `joints` has one matrix per joint; weights that the clip does not animate are unchanged.
 void evaluate_pose(
     const SkeletonData& skeleton, const ClipData* clip, float time, LocalPose& scratch,
     std::span<Affine> joints, std::span<float> weights);

@@ -14,7 +14,7 @@
 #include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
-// Quaternions are read as x y z w, a dual one as two of them, a matrix as three rows of four.
+// Quaternions are read as x y z w, dual quaternions as two of them, matrices as three rows of four.
 static_assert(sizeof(limn::Quat) == 4 * sizeof(float));
 static_assert(sizeof(limn::DualQuaternion) == 8 * sizeof(float));
 static_assert(sizeof(limn::Affine) == 12 * sizeof(float));
@@ -23,24 +23,24 @@ static_assert(sizeof(limn::Affine) == 12 * sizeof(float));
 #define LIMN_SKIN_CONSTANTS
 namespace limn::skin {
 
-/// Numbers of a joint in the kernels' own palettes: a matrix is filled up to a cache line.
+/// Floats per joint in the kernels' palettes: a matrix is padded to a cache line.
 template <typename Joint>
 inline constexpr std::size_t kStride = std::is_same_v<Joint, Affine> ? 16 : 8;
 
-/// Of joints that change nothing.
+/// Identity transforms.
 template <typename Joint>
 inline constexpr float kNothing[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0};
 template <>
 inline constexpr float kNothing<DualQuaternion>[] = {0, 0, 0, 1, 0, 0, 0, 0};
 
-/// What there is to do.
+/// Input and output of the kernels.
 template <typename Joint>
 struct Work {
     const SkinWeights& skin;
     std::span<const Joint> joints;
-    const float* palette;  ///< the same, kStride numbers a joint
+    const float* palette;  ///< the same, kStride floats per joint
     const RestVertices& rest;
-    const MovedVertices& moved;
+    const SkinnedVertices& moved;
 };
 
 }  // namespace limn::skin
@@ -49,9 +49,10 @@ struct Work {
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-// Both return the first vertex that they have not done; the rest is for the scalar version.
+// Both return the first unprocessed vertex; the scalar version handles the remainder.
 
-#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE  // no vectors, or none that a struct can hold
+// No vectors, or scalable ones, which structs cannot hold.
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
 
 std::size_t skin_linear_vector(const skin::Work<Affine>&, std::size_t begin, std::size_t) {
     return begin;
@@ -70,12 +71,13 @@ constexpr hn::Rebind<std::uint32_t, Floats> words;
 constexpr hn::Rebind<std::uint16_t, Floats> shorts;
 constexpr hn::FixedTag<float, 4> four;
 
-/// Vertices that are moved at a time: a batch.
+/// Vertices per batch.
 constexpr std::size_t kLanes = hn::MaxLanes(d);
 
-// ---- lists of three or four numbers an entry, to and from a lane an entry -----------------------
+// ---- transposition between arrays of 3 or 4 floats per entry and one lane per entry
+// --------------
 
-#if HWY_TARGET <= HWY_AVX3  // any 16 of the 32 lanes of two vectors are one instruction
+#if HWY_TARGET <= HWY_AVX3  // one instruction selects any 16 of the 32 lanes of two vectors
 
 struct Places {
     alignas(64) std::int32_t of[kLanes];
@@ -95,10 +97,12 @@ constexpr Places make_places(Place place) {
     return places;
 }
 
-/// Entry `lane` of the first two of three vectors, number `axis`; any if in the third.
+/// Component `axis` of entry `lane` within the first two of three vectors; arbitrary if it is in
+/// the third.
 template <int kAxis>
 inline constexpr Places kFromTwo = make_places([](int lane) { return (3 * lane + kAxis) % 32; });
-/// The same where it is known of those before, and the third vector is the second table.
+/// Completes that: keeps lanes already found, takes the others from the third vector as second
+/// table.
 template <int kAxis>
 inline constexpr Places kFromThird = make_places([](int lane) {
     return 3 * lane + kAxis < 32 ? lane : 3 * lane + kAxis - 16;
@@ -113,7 +117,7 @@ HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z) {
     z = pick(pick(a, b, kFromTwo<2>), c, kFromThird<2>);
 }
 
-/// x and y of vector `kVector` of three; any for z.
+/// x and y of output vector `kVector` of three; arbitrary for z.
 template <int kVector>
 inline constexpr Places kXy = make_places([](int lane) {
     const int number = 16 * kVector + lane;
@@ -131,7 +135,7 @@ HWY_INLINE void store_entries(V x, V y, V z, float* to) {
     hn::StoreU(pick(pick(x, y, kXy<2>), z, kXyAndZ<2>), d, to + 2 * kLanes);
 }
 
-/// Of two vectors of four entries each: eight numbers x, then eight y; or z and w.
+/// From two vectors of four entries each: eight x, then eight y; or z and w.
 template <int kPair>
 inline constexpr Places kEights = make_places([](int lane) {
     return 4 * (lane % 8) + 2 * kPair + lane / 8;
@@ -157,7 +161,7 @@ HWY_INLINE void load_entries(const float* from, V& x, V& y, V& z, V& w) {
     w = hn::ConcatUpperUpper(d, zw_ce, zw_ab);
 }
 
-/// Of a and b: a0 b0 a1 b1 ..., the lower or upper eight.
+/// Interleaves a and b: a0 b0 a1 b1 ..., the lower or upper eight.
 template <int kHalf>
 inline constexpr Places kZipped = make_places([](int lane) {
     return 8 * kHalf + lane / 2 + 16 * (lane % 2);
@@ -196,14 +200,14 @@ HWY_INLINE void store_entries(V x, V y, V z, V w, float* to) {
 
 #endif
 
-// ---- what joints a batch follows ----------------------------------------------------------------
+// ---- joint influences of a batch ----------------------------------------------------------------
 
 struct Influences {
     const std::uint32_t* first;   ///< of the vertices of the batch, and one past them
     const std::uint16_t* joints;  ///< of the first vertex
     const float* weights;
-    std::uint32_t count;    ///< of every vertex, 1 .. 4; 0: they differ, or there are more
-    bool together = false;  ///< all vertices follow the same joints
+    std::uint32_t count;    ///< per vertex, 1 .. 4; 0: varying or more
+    bool together = false;  ///< all vertices have the same joints
 };
 
 HWY_INLINE Influences find_influences(const SkinWeights& skin, std::size_t at) {
@@ -219,7 +223,7 @@ HWY_INLINE Influences find_influences(const SkinWeights& skin, std::size_t at) {
         const auto one = hn::Set(shorts, joints[0]);
         by.together = hn::AllTrue(shorts, hn::Eq(hn::LoadU(shorts, joints), one));
     } else if (count > 1) {
-        // Each entry is that of the vertex before; the last vectors overlap.
+        // Each entry equals that of the previous vertex; the last vectors overlap.
         auto same = hn::Eq(hn::LoadU(shorts, joints), hn::LoadU(shorts, joints + count));
         const std::uint16_t* last = joints + count * (kLanes - 1) - kLanes;
         for (std::uint32_t i = 1; i < count; ++i) {
@@ -231,9 +235,10 @@ HWY_INLINE Influences find_influences(const SkinWeights& skin, std::size_t at) {
     return by;
 }
 
-// ---- means over a batch that goes together: a lane a vertex, joints are constants ---------------
+// ---- means of a batch with common joints: one lane per vertex, joints are constants
+// --------------
 
-/// Calling it with a number's place in a joint gives the mean of that number.
+/// Called with the index of a float in a joint, returns its weighted mean.
 template <std::size_t kCount>
 struct Common {
     const float* joint[4] = {};
@@ -273,9 +278,10 @@ struct Common {
     }
 };
 
-// ---- means of other batches: a vertex at a time, then turned around -----------------------------
+// ---- means of other batches: vertex by vertex, then transposed
+// -----------------------------------
 
-/// Numbers of a joint that are blended at a time.
+/// Floats of a joint that are blended at once.
 template <typename Joint>
 using Some = hn::CappedTag<float, skin::kStride<Joint>>;
 template <typename Joint>
@@ -284,7 +290,7 @@ using SomeV = hn::Vec<Some<Joint>>;
 HWY_INLINE SomeV<Affine> weight_of(const skin::Work<Affine>&, const Influences& by, std::size_t i) {
     return hn::Set(Some<Affine>(), by.weights[i]);
 }
-/// Negative if its joint turns away from the first.
+/// Negated if its joint is in the opposite hemisphere of the first.
 HWY_INLINE SomeV<DualQuaternion>
 weight_of(const skin::Work<DualQuaternion>& work, const Influences& by, std::size_t i) {
     const auto p = hn::LoadU(four, work.palette + skin::kStride<DualQuaternion> * by.joints[0]);
@@ -319,7 +325,7 @@ mean_of(const skin::Work<Joint>& work, const Influences& by, std::size_t at) {
     }
 }
 
-/// The means of a batch, a joint's numbers for each vertex.
+/// The means of a batch, kStride floats per vertex.
 template <typename Joint>
 struct Rows {
     HWY_ALIGN float of[skin::kStride<Joint> * kLanes];
@@ -337,7 +343,7 @@ HWY_INLINE void find_rows(const skin::Work<Joint>& work, Influences by, Rows<Joi
         by.weights += kCount;
     }
 }
-/// Any number of influences a vertex, none included.
+/// Any number of influences per vertex, including none.
 template <typename Joint>
 HWY_INLINE void find_any_rows(const skin::Work<Joint>& work, Influences by, Rows<Joint>& rows) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -372,11 +378,11 @@ HWY_INLINE void find_rows(const skin::Work<Joint>& work, const Influences& by, R
     }
 }
 
-/// Four numbers of each vertex, from number `at` on: a lane a vertex.
+/// Four floats of each vertex, starting at index `at`, transposed: one lane per vertex.
 template <typename Joint>
 HWY_INLINE void load_four(const Rows<Joint>& rows, std::size_t at, V& x, V& y, V& z, V& w) {
     constexpr std::size_t stride = skin::kStride<Joint>;
-    // Vertices i, i + 4, i + 8 ... : each four of lanes has one of four neighbors then.
+    // Vertices i, i + 4, i + 8 ...: each block of four lanes then has one of four neighbors.
     const auto quad = [&](std::size_t i) HWY_ATTR {
         const float* from = rows.of + i * stride + at;
 #if HWY_MAX_BYTES >= 64
@@ -409,7 +415,7 @@ HWY_INLINE void load_four(const Rows<Joint>& rows, std::size_t at, V& x, V& y, V
 
 // ---- the mean of each vertex of a batch ---------------------------------------------------------
 
-/// A matrix a lane.
+/// One matrix per lane.
 struct Matrices {
     V xx, xy, xz, xt;
     V yx, yy, yz, yt;
@@ -454,7 +460,7 @@ find_means(const skin::Work<Affine>& work, const Influences& by, std::size_t, Ma
     load_four(rows, 8, m.zx, m.zy, m.zz, m.zt);
 }
 
-/// A screw motion a lane, of any length.
+/// One dual quaternion per lane, not normalized.
 struct Motions {
     V x, y, z, w;
     V dx, dy, dz, dw;
@@ -505,7 +511,7 @@ find_motions(const skin::Work<DualQuaternion>& work, const Influences& by, Motio
     load_four(rows, 4, q.dx, q.dy, q.dz, q.dw);
 }
 
-/// The same by the scalar version, which knows what to do where they cancel each other.
+/// The same by the scalar version, which handles dual quaternions that cancel.
 HWY_INLINE void
 find_motions_again(const skin::Work<DualQuaternion>& work, std::size_t at, Motions& q) {
     Rows<DualQuaternion> rows;
@@ -525,7 +531,7 @@ HWY_INLINE void find_means(
     if (!hn::AllTrue(d, hn::Gt(squared_length(q), least))) {
         find_motions_again(work, at, q);
     }
-    // 2 / |real|^2 takes the length out of all products.
+    // 2 / |real|^2 normalizes all products.
     const V s = hn::Div(hn::Set(d, 2.0f), squared_length(q));
     const V xx = hn::Mul(s, hn::Mul(q.x, q.x));
     const V yy = hn::Mul(s, hn::Mul(q.y, q.y));
@@ -554,7 +560,7 @@ HWY_INLINE void find_means(
     m.zt = hn::Mul(s, tz);
 }
 
-// ---- where a batch's vertices go ----------------------------------------------------------------
+// ---- transformation of a batch ------------------------------------------------------------------
 
 template <typename Joint>
 HWY_INLINE void move_batch(const skin::Work<Joint>& work, const Matrices& m, std::size_t at) {
@@ -650,7 +656,7 @@ HWY_EXPORT(skin_dual_vector);
 namespace {
 
 void check_spans(
-    const SkinWeights& skin, const RestVertices& rest, const MovedVertices& moved,
+    const SkinWeights& skin, const RestVertices& rest, const SkinnedVertices& moved,
     std::size_t end) {
     const std::size_t count = rest.positions.size();
     LIMN_CHECK(rest.normals.size() == count && rest.tangents.size() == count);
@@ -660,7 +666,7 @@ void check_spans(
     LIMN_CHECK(skin.first.size() == count + 1 && end <= count);
 }
 
-/// kStride numbers a joint, from the start of a cache line on.
+/// kStride floats per joint, aligned to a cache line.
 template <typename Joint>
 hwy::AlignedFreeUniquePtr<float[]> make_palette(std::span<const Joint> joints) {
     constexpr std::size_t stride = skin::kStride<Joint>;
@@ -676,7 +682,7 @@ hwy::AlignedFreeUniquePtr<float[]> make_palette(std::span<const Joint> joints) {
 
 void skin_linear(
     const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end) {
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
     const auto numbers = make_palette(palette);
     const skin::Work<Affine> work = {skin, palette, numbers.get(), rest, moved};
@@ -686,7 +692,7 @@ void skin_linear(
 
 void skin_dual(
     const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end) {
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     check_spans(skin, rest, moved, end);
     const auto numbers = make_palette(palette);
     const skin::Work<DualQuaternion> work = {skin, palette, numbers.get(), rest, moved};

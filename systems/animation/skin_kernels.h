@@ -8,69 +8,69 @@
 
 namespace limn {
 
-// Vertices that follow joints and morph targets, on the CPU: the reference of the renderer's, and
-// for picking and tests (char.skin-cpu). First the offsets of morph targets are added, in the
-// mesh's own space; then a vertex goes where the mean of its joints' matrices takes it
-// (char.skin-bone-offset), or the mean of their screw motions (L. Kavan et al., "Geometric Skinning
-// with Approximate Dual Quaternion Blending", 2008), which keeps the volume of twisted joints but
-// knows no scale. Normals go by the inverse transpose of the mean; where that flattens all to a
-// line, the joint with the largest weight turns them.
+// Skinning and morph targets on the CPU: the reference for the renderer's, and for picking and
+// tests (char.skin-cpu). Morph offsets are added first, in the mesh's local space; then each vertex
+// is transformed by the weighted mean of its joint matrices (char.skin-bone-offset), or of their
+// dual quaternions (L. Kavan et al., "Geometric Skinning with Approximate Dual Quaternion
+// Blending", 2008), which preserves the volume of twisted joints but does not support scale.
+// Normals use the inverse transpose of the mean; if that is degenerate, the rotation of the joint
+// with the largest weight.
 //
-// The inner loops come twice, as those of pose_kernels.h: with the widest vectors of the machine
-// and as plain C++, `_scalar`. Both give the same bits, for any cut into ranges. The vectors do a
-// batch of vertices at once: quickest where neighbors follow the same joints, at most four, slower
-// where they follow different ones, and slowest where they also differ in how many.
+// Like those of pose_kernels.h, the inner loops have a SIMD version and a plain C++ one, `_scalar`,
+// with bit-identical results for any split into ranges. SIMD processes a batch of vertices at once:
+// fastest where neighbors have the same joints, at most four, slower where they have different
+// ones, and slowest where their number differs as well.
 
-/// Vertices at rest; all of one length.
+/// Undeformed vertices; all spans have the same length.
 struct RestVertices {
     std::span<const Vec3> positions;
     std::span<const Vec3> normals;   ///< unit
     std::span<const Vec4> tangents;  ///< unit; w is kept
 };
 
-/// Where moved vertices go; as many, and possibly the same.
-struct MovedVertices {
+/// Destination of deformed vertices; the same length, possibly the same memory.
+struct SkinnedVertices {
     std::span<Vec3> positions;
     std::span<Vec3> normals;
     std::span<Vec4> tangents;
 };
 
-/// A screw motion: a unit quaternion and half its way times that.
+/// A rigid transform: a unit quaternion `real`, and `dual` = half the translation times `real`.
 struct DualQuaternion {
     Quat real = {1, 0, 0, 0};
     Quat dual = {0, 0, 0, 0};
 };
 
-/// palette[i] = joints[skin.joints[i]] * joint_from_mesh[i]: from the mesh at rest to where the
-/// joint takes it.
-void find_palette(const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette);
+/// Skinning matrices palette[i] = joints[skin.joints[i]] * joint_from_mesh[i].
+void compute_skin_palette(
+    const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette);
 
-/// The same motions without scale and shear.
-void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion> duals);
+/// The same as dual quaternions, without scale and shear.
+void compute_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion> duals);
 
-/// Moves the vertices begin .. end by the mean of matrices. Those without influences stay.
+/// Linear blend skinning of the vertices begin .. end. Those without influences are not moved.
 void skin_linear(
     const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end);
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end);
 void skin_linear_scalar(
     const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end);
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end);
 
-/// Moves them by the mean of screw motions.
+/// Dual quaternion skinning, likewise.
 void skin_dual(
     const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end);
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end);
 void skin_dual_scalar(
     const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end);
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end);
 
-/// Adds weights[i] times target i to vertices, which hold those at rest; targets beyond the weights
-/// are off. Normals and tangents are left as long as they become: unit again after skinning.
+/// Adds weights[i] times target i to vertices, which hold the undeformed ones; targets without a
+/// weight are off. Normals and tangents are not normalized here but by skinning.
 void add_morphs(
     std::span<const MorphTarget> morphs, std::span<const float> weights,
-    const MovedVertices& vertices);
+    const SkinnedVertices& vertices);
 
-/// The `most` largest influences of each vertex, made to sum to 1 again (char.skin-limits).
+/// Keeps the `most` largest influences of each vertex, renormalized (char.skin-limits).
 [[nodiscard]] SkinWeights limit_influences(const SkinWeights& skin, std::size_t most);
 
 }  // namespace limn

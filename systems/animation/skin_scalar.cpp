@@ -23,7 +23,7 @@ Vec3 turn(const Affine& m, const Vec3& v) {
     return {dot3(Vec3(m.row[0]), v), dot3(Vec3(m.row[1]), v), dot3(Vec3(m.row[2]), v)};
 }
 
-/// Of any length; none: `real` has no length.
+/// Matrix of a dual quaternion, which need not be normalized; `real` must not be 0.
 Affine matrix_of(const DualQuaternion& motion) {
     const auto [w, x, y, z] =
         std::tuple(motion.real.w, motion.real.x, motion.real.y, motion.real.z);
@@ -70,7 +70,7 @@ mean_matrix(const SkinWeights& skin, std::span<const DualQuaternion> palette, st
     return matrix_of(mean_motion(skin, palette, v));
 }
 
-/// Turns `rest` by the joint with the largest weight alone.
+/// Rotates `rest` by the joint with the largest weight only.
 template <typename Joint>
 Vec3 turn_by_strongest(
     const SkinWeights& skin, std::span<const Joint> palette, const Vec3& rest, std::size_t v) {
@@ -83,7 +83,7 @@ Vec3 turn_by_strongest(
     return normalize_or(turn(matrix_of(palette[joint]), rest), rest);
 }
 
-/// By the inverse transpose of `mean`, that of vertex `v`.
+/// Transforms a normal by the inverse transpose of `mean`, the matrix of vertex `v`.
 template <typename Joint>
 Vec3 turn_normal(
     const Affine& mean, const SkinWeights& skin, std::span<const Joint> palette, const Vec3& rest,
@@ -109,7 +109,7 @@ Vec4 turn_tangent(const Affine& mean, const Vec4& rest) {
 template <typename Joint>
 void move_vertices(
     const SkinWeights& skin, std::span<const Joint> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end) {
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
         const Affine mean = mean_matrix(skin, palette, v);
         moved.normals[v] = turn_normal(mean, skin, palette, rest.normals[v], v);
@@ -156,14 +156,15 @@ Vec3 moved_normal(
 
 }  // namespace skin
 
-void find_palette(const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette) {
+void compute_skin_palette(
+    const SkinData& skin, std::span<const Affine> joints, std::span<Affine> palette) {
     LIMN_CHECK(palette.size() == skin.joints.size());
     for (std::size_t i = 0; i < palette.size(); ++i) {
         palette[i] = joints[skin.joints[i]] * skin.joint_from_mesh[i];
     }
 }
 
-void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion> duals) {
+void compute_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion> duals) {
     LIMN_CHECK(palette.size() == duals.size());
     for (std::size_t i = 0; i < palette.size(); ++i) {
         const Affine& m = palette[i];
@@ -171,7 +172,7 @@ void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion
         for (int k = 0; k < 3; ++k) {
             axes[k] = Vec3(m.row[0][k], m.row[1][k], m.row[2][k]);
         }
-        const Quat real = rotation_in(axes).value_or(Quat(1, 0, 0, 0));
+        const Quat real = extract_rotation(axes).value_or(Quat(1, 0, 0, 0));
         const Quat way(0, m.row[0].w, m.row[1].w, m.row[2].w);
         duals[i] = {real, 0.5f * (way * real)};
     }
@@ -179,19 +180,19 @@ void find_dual_palette(std::span<const Affine> palette, std::span<DualQuaternion
 
 void skin_linear_scalar(
     const SkinWeights& skin, std::span<const Affine> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end) {
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     skin::move_vertices(skin, palette, rest, moved, begin, end);
 }
 
 void skin_dual_scalar(
     const SkinWeights& skin, std::span<const DualQuaternion> palette, const RestVertices& rest,
-    const MovedVertices& moved, std::size_t begin, std::size_t end) {
+    const SkinnedVertices& moved, std::size_t begin, std::size_t end) {
     skin::move_vertices(skin, palette, rest, moved, begin, end);
 }
 
 void add_morphs(
     std::span<const MorphTarget> morphs, std::span<const float> weights,
-    const MovedVertices& vertices) {
+    const SkinnedVertices& vertices) {
     const std::size_t count = std::min(morphs.size(), weights.size());
     for (std::size_t t = 0; t < count; ++t) {
         const MorphTarget& morph = morphs[t];

@@ -2,7 +2,6 @@
 
 #include "ecs/base/jobs.h"
 #include "systems/water/floating_body.h"
-#include "systems/water/water_query.h"
 
 #include <optional>
 #include <vector>
@@ -11,52 +10,52 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kGrain = 4;  ///< bodies a task
+constexpr std::size_t kGrain = 4;  ///< bodies per task
 
 struct Body {
     const WaterTouch* touch = nullptr;
-    Floating* floating = nullptr;
+    const Floating* floating = nullptr;
+    FloatingState* state = nullptr;
     Transform* transform = nullptr;
     std::optional<Splash> splash{};
 };
 
 }  // namespace
 
+void add_floating_states(Query<const Floating, Without<FloatingState>> bodies, Commands commands) {
+    bodies.each([&](Entity entity, const Floating& floating) {
+        commands.add(entity, FloatingState{.velocity = floating.velocity, .spin = floating.spin});
+    });
+}
+
 void update_floating_bodies(
-    Query<
-        const Water, const WorldTransform, Optional<const OceanState>, Optional<const WaveTable>,
-        Optional<RippleState>>
-        waters,
-    Query<const WaterTouch, Floating, Transform, Without<Parent>> bodies,
+    WaterQuery waters, Query<RippleState> ripples,
+    Query<const WaterTouch, const Floating, FloatingState, Transform, Without<Parent>> bodies,
     Res<const FrameTime> time) {
-    thread_local std::vector<WaterSurface> surface_memory;  // kept from step to step
-    thread_local std::vector<Body> body_memory;
-    std::vector<RippleState*> ripples;
-    std::vector<WaterSurface>& surfaces = surface_memory;
+    thread_local std::vector<Body> body_memory;  // reused between steps
     std::vector<Body>& afloat = body_memory;
-    surfaces.clear();
     afloat.clear();
-    bodies.each([&](const WaterTouch& touch, Floating& floating, Transform& transform) {
-        afloat.push_back({&touch, &floating, &transform});
+    bodies.each([&](const WaterTouch& touch, const Floating& floating, FloatingState& state,
+                    Transform& transform) {
+        afloat.push_back({&touch, &floating, &state, &transform});
     });
     if (afloat.empty()) {
         return;
     }
-    waters.each([&](const Water& water, const WorldTransform& place, const OceanState* ocean,
-                    const WaveTable* waves, RippleState* state) {
-        surfaces.push_back({water_frame(place.world), water, ocean, waves, state});
-        ripples.push_back(state);
-    });
+    const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
     parallel_for(afloat.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Body& body = afloat[i];
             body.splash = step_floating_body(
-                surfaces, *body.touch, time->step, *body.floating, *body.transform);
+                surfaces, *body.touch, *body.floating, time->step, *body.state, *body.transform);
         }
     });
-    for (const Body& body : afloat) {  // in their order, whoever was the first to fall
-        if (body.splash && ripples[body.splash->surface] != nullptr) {
-            ripples[body.splash->surface]->impulses.push_back(body.splash->impulse);
+    for (const Body& body : afloat) {  // in their order, for determinism
+        if (!body.splash) {
+            continue;
+        }
+        if (auto* const hit = ripples.find<RippleState>(surfaces[body.splash->surface].entity)) {
+            hit->impulses.push_back(body.splash->impulse);
         }
     }
 }

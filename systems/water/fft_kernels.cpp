@@ -16,7 +16,7 @@ namespace limn::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A complex number in each lane.
+/// One complex number per lane.
 template <typename D>
 struct Complex {
     hn::Vec<D> re;
@@ -66,7 +66,7 @@ HWY_INLINE Complex<D> unit_root(D d, const FftPlan& plan, std::size_t turn) {
     return {hn::Set(d, plan.cosines[turn]), hn::Set(d, plan.sines[turn])};
 }
 
-/// One step of radix 4: the columns are `stride` interleaved sequences of `length` each.
+/// One radix-4 step: the columns are `stride` interleaved sequences of `length` each.
 template <typename D>
 void radix4_pass(
     D d, const FftPlan& plan, std::size_t length, std::size_t stride, const FftColumns& from,
@@ -99,7 +99,7 @@ void radix4_pass(
     }
 }
 
-/// The last step of sizes that are no power of four: pairs.
+/// The final radix-2 step of sizes that are not a power of four.
 template <typename D>
 void radix2_pass(D d, std::size_t stride, const FftColumns& from, const FftColumns& to) {
     for (std::size_t q = 0; q < stride; ++q) {
@@ -130,12 +130,12 @@ void inverse_columns(
             radix2_pass(d, stride, read, write);
         }
         read = write;
-        length /= 4;  // 0 after pairs
+        length /= 4;  // 0 after the radix-2 step
         stride *= 4;
     }
 }
 
-/// As wide as the machine allows, but not wider than a block.
+/// The widest vectors of the machine, limited to the width of a block.
 using WideFloats = hn::CappedTag<float, kFftColumns>;
 
 void inverse_columns_vector(
@@ -148,7 +148,7 @@ void inverse_columns_one_lane(
     inverse_columns(hn::FixedTag<float, 1>(), plan, from, to, scratch);
 }
 
-/// Squares of four by four.
+/// In 4 x 4 blocks.
 void transpose_columns_vector(const float* block, std::size_t rows, float* to, std::size_t pitch) {
 #if HWY_TARGET == HWY_SCALAR
     for (std::size_t row = 0; row < rows; ++row) {
@@ -235,7 +235,7 @@ void inverse_fft_2d(
         thread_local std::vector<float> memory;
         memory.resize(2 * plane + fft_scratch_size(size));
         const std::size_t first = begin * kFftColumns;
-        // The transform reads, but never writes, what it is given.
+        // The transform only reads its input.
         const FftColumns from = {
             const_cast<float*>(spectrum_re.data()) + first,
             const_cast<float*>(spectrum_im.data()) + first, size};

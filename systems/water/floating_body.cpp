@@ -15,34 +15,36 @@ namespace limn {
 namespace {
 
 constexpr auto kWeight = static_cast<float>(kGravity);  ///< [m/s^2]
-constexpr float kCalm = 1.5f;        ///< depth in which waves fade to an e-th [m]; by eye
-constexpr float kSteepest = 1.0f;    ///< slope of water that a body feels
-constexpr float kPhaseStep = 0.25f;  ///< of a bob, that a sub-step may be [rad]
-constexpr int kMostSubsteps = 8;
-constexpr float kSpinDrag = 0.375f;  ///< of a cube that turns, of its coefficient along an axis
-constexpr float kFriction = 0.5f;    ///< on the bottom and along walls
-constexpr float kRolling = 2.0f;     ///< rate at which spin fades there [1/s]; by eye
+constexpr float kCalm = 1.5f;        ///< depth at which wave motion has decayed to 1/e [m]; by eye
+constexpr float kMaxSlope = 1.0f;    ///< limit of the water's slope that acts on a body
+constexpr float kPhaseStep = 0.25f;  ///< largest phase of a bobbing oscillation per substep [rad]
+constexpr int kMaxSubsteps = 8;
+constexpr float kSpinDrag =
+    0.375f;  ///< rotational drag of a cube, relative to its coefficient along an axis
+constexpr float kFriction = 0.5f;  ///< coefficient on the bottom and along walls
+constexpr float kRolling = 2.0f;   ///< decay rate of spin in contact [1/s]; by eye
 constexpr int kContactPasses = 6;
-constexpr float kTouching = 1e-3f;     ///< distance at which a wall is met [m]
-constexpr float kFastest = 200.0f;     ///< [m/s]
-constexpr float kFastestSpin = 60.0f;  ///< [rad/s]
-constexpr float kDeepest = -1e4f;      ///< where nothing falls on [m]
-constexpr float kSplashSpeed = 0.3f;   ///< below which a body dips in quietly [m/s]
+constexpr float kTouching = 1e-3f;    ///< contact distance [m]
+constexpr float kMaxSpeed = 200.0f;   ///< [m/s]
+constexpr float kMaxSpin = 60.0f;     ///< [rad/s]
+constexpr float kMinHeight = -1e4f;   ///< bodies below are no longer simulated [m]
+constexpr float kSplashSpeed = 0.3f;  ///< smallest impact speed that splashes [m/s]
 
-/// A body's measures, as large as its transform makes it.
+/// Dimensions and mass of a body, including its scale.
 struct Hull {
     TouchShape shape = TouchShape::Ball;
-    Vec3 half = {0, 0, 0};     ///< of a ball its radius, thrice [m]
-    Vec3 middle = {0, 0, 0};   ///< of the shape, from the center of mass in its own axes [m]
-    Vec3 origin = {0, 0, 0};   ///< of the entity, likewise
-    Vec3 face = {0, 0, 0};     ///< area across each axis [m^2]
+    Vec3 half = {0, 0, 0};  ///< half extents; three times the radius of a ball [m]
+    Vec3 middle = {
+        0, 0, 0};  ///< center of the shape relative to the center of mass, local axes [m]
+    Vec3 origin = {0, 0, 0};   ///< the entity's origin, likewise
+    Vec3 face = {0, 0, 0};     ///< cross section perpendicular to each axis [m^2]
     float volume = 0;          ///< [m^3]
     float mass = 0;            ///< [kg]
-    Vec3 inertia = {0, 0, 0};  ///< about its own axes [kg m^2]
-    float radius = 0;          ///< of a ball of the same volume [m]
+    Vec3 inertia = {0, 0, 0};  ///< about local axes [kg m^2]
+    float radius = 0;          ///< of a ball of equal volume [m]
 };
 
-/// Nothing where it is less, or not a number.
+/// max(x, 0); 0 for NaN.
 float positive(float x) {
     return x > 0 ? x : 0.0f;
 }
@@ -51,9 +53,9 @@ bool is_finite(const Vec3& v) {
     return std::isfinite(v.x + v.y + v.z);
 }
 
-Vec3 no_longer(const Vec3& v, float most) {
+Vec3 limit_length(const Vec3& v, float limit) {
     const float length = glm::length(v);
-    return length > most ? v * (most / length) : v;
+    return length > limit ? v * (limit / length) : v;
 }
 
 Hull make_hull(const WaterTouch& touch, const Floating& floating, const Vec3& scale) {
@@ -61,7 +63,7 @@ Hull make_hull(const WaterTouch& touch, const Floating& floating, const Vec3& sc
     hull.shape = touch.shape;
     hull.half = glm::abs(touch.half * scale);
     if (touch.shape == TouchShape::Ball) {
-        // As large as the ellipsoid that the scale makes of it.
+        // Same volume as the scaled ellipsoid.
         hull.half = Vec3(std::abs(touch.half.x) * std::cbrt(std::abs(scale.x * scale.y * scale.z)));
         hull.volume = 4.0f / 3.0f * kPi * hull.half.x * hull.half.x * hull.half.x;
         hull.face = Vec3(kPi * hull.half.x * hull.half.x);
@@ -77,21 +79,21 @@ Hull make_hull(const WaterTouch& touch, const Floating& floating, const Vec3& sc
         hull.mass
         * (touch.shape == TouchShape::Ball ? 0.4f * h2
                                            : Vec3(h2.y + h2.z, h2.z + h2.x, h2.x + h2.y) / 3.0f);
-    hull.middle = -floating.balance * scale;
+    hull.middle = -floating.center_of_mass * scale;
     hull.origin = hull.middle - touch.offset * scale;
     hull.radius = std::cbrt(hull.volume * 0.75f / kPi);
     return hull;
 }
 
-/// Where a hull is.
+/// Position and orientation of a hull.
 struct Place {
-    Vec3 center = {0, 0, 0};  ///< of mass [m]
+    Vec3 center = {0, 0, 0};  ///< center of mass [m]
     Quat rotation = {1, 0, 0, 0};
 
     [[nodiscard]] Vec3 world(const Vec3& own) const { return center + rotation * own; }
 };
 
-/// The surface about a part of the hull, as a plane.
+/// Plane approximation of the surface near a part of the hull.
 struct LocalWater {
     bool is_water = false;
     Vec2 at = {0, 0};
@@ -111,24 +113,24 @@ LocalWater make_local(const WaterPoint& point) {
     local.height = point.position.y;
     local.slope = point.slope();
     const float steepness = glm::length(local.slope);
-    local.slope *= steepness > kSteepest ? kSteepest / steepness : 1.0f;
+    local.slope *= steepness > kMaxSlope ? kMaxSlope / steepness : 1.0f;
     local.velocity = point.velocity;
     return local;
 }
 
-constexpr std::size_t kSections = 4;  ///< of a long hull, at most
+constexpr std::size_t kSections = 4;  ///< largest number for a long hull
 constexpr std::size_t kColumns = 9 * kSections;
 constexpr std::array<float, 3> kGauss = {-0.7745966692f, 0, 0.7745966692f};
 constexpr std::array<float, 3> kGaussShare = {5.0f / 18, 8.0f / 18, 5.0f / 18};
 
-/// The hull cut along its most upright axis; a ball is not cut.
+/// The hull cut into columns along its most upright axis; a ball is not cut.
 struct Columns {
     std::size_t count = 0;
     int axis = 1;
-    std::array<Vec3, kColumns> middle{};  ///< in the hull's own axes, from the center of mass [m]
+    std::array<Vec3, kColumns> middle{};  ///< in local axes, relative to the center of mass [m]
     std::array<float, kColumns> area{};   ///< [m^2]
     std::array<LocalWater, kColumns> water{};
-    float gap = 0;  ///< between them [m]
+    float gap = 0;  ///< distance between columns [m]
 };
 
 Columns cut_columns(const Hull& hull, const Quat& rotation) {
@@ -148,7 +150,7 @@ Columns cut_columns(const Hull& hull, const Quat& rotation) {
     }
     const float slender = std::round(hull.half[along] / hull.half[across]);
     const float sections = std::clamp(slender, 1.0f, static_cast<float>(kSections));
-    const float reach = hull.half[along] / sections;  // of a section, to both sides
+    const float reach = hull.half[along] / sections;  // half length of a section
     columns.count = 9 * static_cast<std::size_t>(sections);
     columns.gap = std::max(2 * reach, 2 * hull.half[across]) / 3;
     for (std::size_t i = 0; i < columns.count; ++i) {
@@ -163,8 +165,8 @@ Columns cut_columns(const Hull& hull, const Quat& rotation) {
     return columns;
 }
 
-/// About a ball: the plane through four points of it, which a quadratic surface shares the mean
-/// with.
+/// Plane fitted to four points around a ball, placed so that it has the mean height of a quadratic
+/// surface.
 LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, float radius) {
     const float reach = radius * 0.70710678f;
     const Vec2 at = {center.x, center.z};
@@ -189,14 +191,14 @@ LocalWater sample_about_ball(const WaterSurface& surface, const Vec3& center, fl
                            around[2].position.y - around[3].position.y)
                        / (2 * reach);
     const float steepness = glm::length(slope);
-    local.slope = steepness > kSteepest ? slope * (kSteepest / steepness) : slope;
+    local.slope = steepness > kMaxSlope ? slope * (kMaxSlope / steepness) : slope;
     return local;
 }
 
 void sample_columns(
     const Hull& hull, const Place& place, const WaterSurface& water, Columns& columns) {
     WaterSurface surface = water;
-    surface.shortest = 2 * columns.gap;  // what is shorter lifts one part as it drops another
+    surface.min_wavelength = 2 * columns.gap;  // shorter waves average out
     for (std::size_t i = 0; i < columns.count; ++i) {
         const Vec3 at = place.world(columns.middle[i]);
         columns.water[i] = hull.shape == TouchShape::Ball
@@ -205,16 +207,17 @@ void sample_columns(
     }
 }
 
-/// What the water does to a hull.
+/// Buoyancy of a hull.
 struct Lift {
-    float volume = 0;                 ///< under water [m^3]
+    float volume = 0;                 ///< submerged [m^3]
     Vec3 moment = {0, 0, 0};          ///< of that volume, about the center of mass [m^4]
     Vec3 force = {0, 0, 0};           ///< [N]
     Vec3 torque = {0, 0, 0};          ///< about the center of mass [N m]
-    Vec3 water_velocity = {0, 0, 0};  ///< mean of the water about it [m/s]
+    Vec3 water_velocity = {0, 0, 0};  ///< mean velocity of the surrounding water [m/s]
 };
 
-/// Adds the part with `volume`, whose middle is `arm` off the center of mass.
+/// Adds a submerged part with `volume`, centered at `arm` from the center of mass and `over` below
+/// the surface.
 void add_part(const LocalWater& water, float volume, const Vec3& arm, float over, Lift& lift) {
     const float calm = std::exp(-std::max(over, 0.0f) / kCalm);
     const Vec3 up = {-water.slope.x * calm, 1, -water.slope.y * calm};
@@ -232,7 +235,7 @@ void lift_ball(const Hull& hull, const Place& place, const LocalWater& water, Li
     const Vec3 middle = place.center + arm;
     const Vec3 normal = glm::normalize(Vec3(-water.slope.x, 1, -water.slope.y));
     const float depth = (water.height_at(middle) - middle.y) * normal.y;
-    const float height = std::clamp(r + depth, 0.0f, 2 * r);  // of the cap under water
+    const float height = std::clamp(r + depth, 0.0f, 2 * r);  // of the submerged cap
     const float volume = kPi / 3 * height * height * (3 * r - height);
     const float below = 0.75f * square(2 * r - height) / (3 * r - height);
     if (volume > 0) {
@@ -259,7 +262,7 @@ Lift lift_hull(const Hull& hull, const Place& place, const Columns& columns) {
             }
             const Vec3 arm = place.rotation * columns.middle[i];
             const Vec3 middle = place.center + arm;
-            // How far the point s up the column is below the surface: depth - s * rise.
+            // The point at s along the column is at depth - s * rise below the surface.
             const float depth = water.height_at(middle) - middle.y;
             const float rise =
                 std::max(axis.y - water.slope.x * axis.x - water.slope.y * axis.z, 0.1f);
@@ -277,14 +280,14 @@ Lift lift_hull(const Hull& hull, const Place& place, const Columns& columns) {
     return lift;
 }
 
-/// Motion of a hull, with the inertia that it has in this step.
+/// Velocities of a hull, with its inertia in this step.
 struct Motion {
     Vec3 velocity = {0, 0, 0};
     Vec3 spin = {0, 0, 0};
     float mass = 0;
     Vec3 inertia = {0, 0, 0};
 
-    /// Inverse of the inertia times v, in the world.
+    /// Inverse inertia tensor times v, in world space.
     [[nodiscard]] Vec3 turned(const Quat& rotation, const Vec3& v) const {
         return rotation * ((glm::conjugate(rotation) * v) / inertia);
     }
@@ -295,16 +298,16 @@ struct Motion {
         velocity += impulse / mass;
         spin += turned(rotation, glm::cross(arm, impulse));
     }
-    /// Speed along `way` that a unit impulse along it gives to the point at `arm`.
+    /// Change of speed along `way` at the point `arm` per unit impulse along `way`.
     [[nodiscard]] float mobility(const Quat& rotation, const Vec3& arm, const Vec3& way) const {
         const Vec3 spun = turned(rotation, glm::cross(arm, way));
         return 1 / mass + glm::dot(way, glm::cross(spun, arm));
     }
 };
 
-/// Lets the velocity grow by `gained`, against the resistance of the water, linear and quadratic
-/// along the hull's own axes. The latter is that of the velocity before, so that it balances what
-/// makes it grow exactly.
+/// Adds `gained` to the velocity and applies linear and quadratic drag of the water along local
+/// axes. Quadratic drag is linearized at the previous velocity, so that the terminal velocity is
+/// exact.
 void resist(
     const Hull& hull, const Floating& floating, const Quat& rotation, const Lift& lift,
     const Vec3& gained, float step, Motion& motion) {
@@ -328,13 +331,13 @@ void resist(
     motion.spin /= 1 + step * (2 * damping + quadratic);
 }
 
-/// A boundary that keeps points with normal.p >= offset.
+/// A half space: points satisfy normal.p >= offset.
 struct Wall {
     Vec3 normal = {0, 1, 0};
     float offset = 0;
 };
 
-/// The bottom, and the edges where the hull is not to leave.
+/// The bottom and the edges that confine the hull.
 struct Walls {
     std::size_t count = 0;
     std::array<Wall, 5> list{};
@@ -352,20 +355,20 @@ Walls walls_of(const WaterSurface& surface, bool stays) {
     for (const float side : {-1.0f, 1.0f}) {
         if (stays && half.x > 0) {
             walls.add(
-                surface.frame.turned_out({-side, 0, 0}),
+                surface.frame.direction_to_world({-side, 0, 0}),
                 surface.frame.world({side * half.x, 0, 0}));
         }
         if (stays && half.y > 0) {
             walls.add(
-                surface.frame.turned_out({0, 0, -side}),
+                surface.frame.direction_to_world({0, 0, -side}),
                 surface.frame.world({0, 0, side * half.y}));
         }
     }
     return walls;
 }
 
-/// The hull's corners, or the point of a ball that is nearest to the wall, from the center of mass
-/// in the world.
+/// The hull's corners, or the point of a ball nearest to the wall, relative to the center of mass
+/// in world space.
 std::size_t
 corners_of(const Hull& hull, const Quat& rotation, const Vec3& normal, std::array<Vec3, 8>& arms) {
     if (hull.shape == TouchShape::Ball) {
@@ -379,16 +382,17 @@ corners_of(const Hull& hull, const Quat& rotation, const Vec3& normal, std::arra
     return 8;
 }
 
-/// A corner at a wall, and what has stopped it so far.
+/// A corner in contact and its accumulated impulses.
 struct Contact {
     Vec3 arm = {0, 0, 0};
     float stop = 0;             ///< impulse along the normal [N s]
     Vec3 friction = {0, 0, 0};  ///< along the wall [N s]
 };
 
-/// Stops what moves into a wall, with friction along it, and takes the hull out of it. Corners
-/// share the load: they are asked in turn, several times, and may give back what was too much.
-void meet_wall(const Hull& hull, const Wall& wall, float step, Place& place, Motion& motion) {
+/// Resolves contacts with a wall, with friction, and removes penetration. Sequential impulses over
+/// several passes; accumulated impulses are clamped, so that excess can be taken back.
+void resolve_contacts(
+    const Hull& hull, const Wall& wall, float step, Place& place, Motion& motion) {
     std::array<Vec3, 8> arms;
     const std::size_t corners = corners_of(hull, place.rotation, wall.normal, arms);
     const float height = glm::dot(wall.normal, place.center) - wall.offset;
@@ -421,7 +425,7 @@ void meet_wall(const Hull& hull, const Wall& wall, float step, Place& place, Mot
             const float hold =
                 glm::length(along) / motion.mobility(place.rotation, contact.arm, way);
             const Vec3 friction =
-                no_longer(contact.friction - hold * way, kFriction * contact.stop);
+                limit_length(contact.friction - hold * way, kFriction * contact.stop);
             motion.push(place.rotation, contact.arm, friction - contact.friction);
             contact.friction = friction;
         }
@@ -430,7 +434,7 @@ void meet_wall(const Hull& hull, const Wall& wall, float step, Place& place, Mot
     place.center += std::max(deepest - 0.5f * kTouching, 0.0f) * wall.normal;
 }
 
-/// Of the waters over or under the body, the one whose surface is nearest.
+/// The body of water above or below the hull with the nearest surface.
 struct Nearest {
     std::size_t index = 0;
     bool found = false;
@@ -456,16 +460,16 @@ Nearest nearest_water(std::span<const WaterSurface> surfaces, const Vec3& middle
 
 struct Substeps {
     int count = 1;
-    float heavier = 1;  ///< how many times as heavy the body counts when it is moved
+    float heavier = 1;  ///< factor on mass and inertia for stability
 };
 
-/// So many that bobbing is followed: omega^2 = rho g A / m.
+/// Enough substeps to resolve bobbing: omega^2 = rho g A / m.
 Substeps substeps_of(const Hull& hull, float step) {
     const float face = std::max({hull.face.x, hull.face.y, hull.face.z});
     const float omega = std::sqrt(kWaterDensity * kWeight * face / hull.mass);
     const float wanted = std::ceil(omega * step / kPhaseStep);
     Substeps substeps;
-    substeps.count = static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMostSubsteps)));
+    substeps.count = static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxSubsteps)));
     const float phase = omega * step / static_cast<float>(substeps.count);
     substeps.heavier = std::max(1.0f, square(phase / (2 * kPhaseStep)));
     return substeps;
@@ -500,18 +504,18 @@ RippleImpulse splash_of(float mass, float radius, float speed) {
 }
 
 std::optional<Splash> step_floating_body(
-    std::span<const WaterSurface> surfaces, const WaterTouch& touch, float step, Floating& floating,
-    Transform& transform) {
+    std::span<const WaterSurface> surfaces, const WaterTouch& touch, const Floating& floating,
+    float step, FloatingState& state, Transform& transform) {
     const Hull hull = make_hull(touch, floating, transform.scale);
-    const Quat rotation = unit_or_none(transform.rotation);
+    const Quat rotation = normalize_or_identity(transform.rotation);
     Place place = {transform.position - rotation * hull.origin, rotation};
     if (!(hull.volume > 1e-12f && hull.volume < 1e12f) || !is_finite(place.center) || !(step > 0)
-        || !std::isfinite(hull.mass) || transform.position.y < kDeepest) {
+        || !std::isfinite(hull.mass) || transform.position.y < kMinHeight) {
         return std::nullopt;
     }
     Motion motion;
-    motion.velocity = is_finite(floating.velocity) ? floating.velocity : Vec3(0);
-    motion.spin = is_finite(floating.spin) ? floating.spin : Vec3(0);
+    motion.velocity = is_finite(state.velocity) ? state.velocity : Vec3(0);
+    motion.spin = is_finite(state.spin) ? state.spin : Vec3(0);
 
     const Vec3 middle = place.world(hull.middle);
     const float reach = glm::length(hull.half);
@@ -521,7 +525,7 @@ std::optional<Splash> step_floating_body(
     if (nearest.found && middle.y - nearest.point.position.y < 2 * reach + fall) {
         sample_columns(hull, place, surfaces[nearest.index], columns);
     }
-    const bool was_in = floating.under > 0;
+    const bool was_in = state.submerged > 0;
     const float closing = glm::dot(nearest.point.velocity - motion.velocity, nearest.point.normal);
     const Substeps substeps = substeps_of(hull, step);
     const float dt = step / static_cast<float>(substeps.count);
@@ -531,29 +535,29 @@ std::optional<Splash> step_floating_body(
     for (int i = 0; i < substeps.count; ++i) {
         const Lift lift = lift_hull(hull, place, columns);
         dipped = dipped || lift.volume > 0;
-        floating.under = std::min(lift.volume / hull.volume, 1.0f);
-        const bool falls = floating.under == 0;  // and nothing falls the slower for being light
+        state.submerged = std::min(lift.volume / hull.volume, 1.0f);
+        const bool falls = state.submerged == 0;  // light bodies must not fall more slowly
         const float weight = hull.mass * kWeight * (falls ? substeps.heavier : 1.0f);
         const Vec3 gained = dt / motion.mass * (lift.force - Vec3(0, weight, 0));
         motion.spin = motion.turned(
             place.rotation, motion.angular_momentum(place.rotation) + dt * lift.torque);
         resist(hull, floating, place.rotation, lift, gained, dt, motion);
-        motion.velocity = no_longer(motion.velocity, kFastest);
-        motion.spin = no_longer(motion.spin, kFastestSpin);
+        motion.velocity = limit_length(motion.velocity, kMaxSpeed);
+        motion.spin = limit_length(motion.spin, kMaxSpin);
 
         place.center += dt * motion.velocity;
         const Vec3 angular_momentum = motion.angular_momentum(place.rotation);
         place.rotation = glm::normalize(exp_rotation(0.5f * dt * motion.spin) * place.rotation);
         motion.spin = motion.turned(place.rotation, angular_momentum);
-        if (floating.under > 0) {
-            const Walls walls = walls_of(surfaces[nearest.index], floating.stays);
+        if (state.submerged > 0) {
+            const Walls walls = walls_of(surfaces[nearest.index], floating.confined);
             for (std::size_t wall = 0; wall < walls.count; ++wall) {
-                meet_wall(hull, walls.list[wall], dt, place, motion);
+                resolve_contacts(hull, walls.list[wall], dt, place, motion);
             }
         }
     }
-    floating.velocity = motion.velocity;
-    floating.spin = motion.spin;
+    state.velocity = motion.velocity;
+    state.spin = motion.spin;
     transform.rotation = place.rotation;
     transform.position = place.world(hull.origin);
 

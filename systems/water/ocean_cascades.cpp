@@ -22,8 +22,8 @@ float limit(float value, float low, float high) {
     return value > low ? std::min(value, high) : low;
 }
 
-/// Place in the spectrum to the whole number of waves across the patch: 0 .. size / 2 - 1, then
-/// -size / 2 .. -1.
+/// Number of waves across the patch at an index of the spectrum: 0 .. size / 2 - 1, then -size / 2
+/// .. -1.
 int waves_across(int place, int size) {
     return place < size / 2 ? place : place - size;
 }
@@ -32,7 +32,7 @@ int place_of(int waves, int size) {
     return (waves + size) % size;
 }
 
-/// A pair of normal numbers that belongs to one wave of one cascade.
+/// Pair of normally distributed numbers keyed by wave and cascade.
 std::complex<double> draw(const Ocean& ocean, std::size_t cascade, int n, int m) {
     const std::uint64_t wave = std::uint64_t{static_cast<std::uint32_t>(n)} << 32
                                | std::uint64_t{static_cast<std::uint32_t>(m)};
@@ -97,7 +97,7 @@ OceanCascade make_flat_cascade(int size, double patch) {
          {&cascade.frequency, &cascade.ahead_re, &cascade.ahead_im, &cascade.behind_re,
           &cascade.behind_im, &cascade.height, &cascade.shift_x, &cascade.shift_z, &cascade.slope_x,
           &cascade.slope_z, &cascade.shift_xx, &cascade.shift_zz, &cascade.shift_xz,
-          &cascade.last_height, &cascade.last_shift_x, &cascade.last_shift_z}) {
+          &cascade.previous_height, &cascade.previous_shift_x, &cascade.previous_shift_z}) {
         plane->resize(points);
     }
     return cascade;
@@ -105,7 +105,7 @@ OceanCascade make_flat_cascade(int size, double patch) {
 
 }  // namespace
 
-Ocean limit_ocean(const Ocean& ocean) {
+Ocean clamp_ocean(const Ocean& ocean) {
     Ocean limited = ocean;
     limited.wind_speed = limit(ocean.wind_speed, 0.0f, 60.0f);
     limited.wind_direction = limit(ocean.wind_direction, -7.0f, 7.0f);
@@ -127,7 +127,8 @@ Ocean limit_ocean(const Ocean& ocean) {
 }
 
 double waves_at_band_edge(int resolution) {
-    // Six waves leave few of a patch's lengths to chance; the larger grid must still carry them.
+    // With at least six waves per patch, sampling is dense enough; the larger grid must resolve
+    // them.
     return std::min(6.0, 0.45 * resolution / kOceanPatchRatio);
 }
 

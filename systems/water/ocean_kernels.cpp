@@ -21,7 +21,7 @@ struct SinCos {
     hn::Vec<D> cos;
 };
 
-/// Of `turns` full turns, -0.5 .. 0.5. Polynomials of Cephes (S. Moshier).
+/// Of an angle in full turns, -0.5 .. 0.5. Cephes polynomials (S. Moshier).
 template <typename D>
 HWY_INLINE SinCos<D> sin_cos_of_turns(D d, hn::Vec<D> turns) {
     using V = hn::Vec<D>;
@@ -55,7 +55,7 @@ HWY_INLINE SinCos<D> sin_cos_of_turns(D d, hn::Vec<D> turns) {
         hn::IfThenElse(cos_negative, hn::Neg(picked_cos), picked_cos)};
 }
 
-/// `Doubles` says how many lanes; phases need its precision.
+/// `Doubles` determines the number of lanes; phases need double precision.
 template <typename Doubles>
 void evolve(
     Doubles dd, const OceanCascade& cascade, float choppiness, double time,
@@ -65,7 +65,7 @@ void evolve(
     const D d;
     const std::size_t size = static_cast<std::size_t>(cascade.size);
     const std::size_t plane = kFftColumns * size;
-    const auto time_in_turns = hn::Set(dd, time / 6.283185307179586);
+    const auto time_in_periods = hn::Set(dd, time / 6.283185307179586);
     const V lambda = hn::Set(d, choppiness);
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, 1.0f);
@@ -75,7 +75,7 @@ void evolve(
         for (std::size_t column = 0; column < kFftColumns; column += hn::Lanes(d)) {
             const std::size_t at = row * size + first_column + column;
             const auto frequency = hn::PromoteTo(dd, hn::LoadU(d, &cascade.frequency[at]));
-            const auto turns = hn::Mul(frequency, time_in_turns);
+            const auto turns = hn::Mul(frequency, time_in_periods);
             const SinCos<D> phase =
                 sin_cos_of_turns(d, hn::DemoteTo(d, hn::Sub(turns, hn::Round(turns))));
             const V ahead_re = hn::LoadU(d, &cascade.ahead_re[at]);

@@ -7,11 +7,11 @@
 
 namespace limn {
 
-// The inner loops of the ocean beside the transform. As fft_kernels.h: with the widest vectors of
-// the machine and, `_scalar`, with one lane; the same bits.
+// The inner loops of the ocean besides the transform. Like fft_kernels.h: for the machine's widest
+// vectors and, `_scalar`, for one lane, with bit-identical results.
 
-/// Two real fields a and b go through one complex transform as a + i b. In each pair one has a
-/// spectrum of h times something real and the other of h times something imaginary, so that the
+/// Two real fields a and b share one complex transform as a + i b. In each pair the spectrum of one
+/// field is h times a real factor and that of the other h times an imaginary one, so that the
 /// spectrum of the pair is h times a real number.
 inline constexpr std::size_t kOceanPairs = 4;
 enum class OceanPair : std::uint8_t {
@@ -21,9 +21,9 @@ enum class OceanPair : std::uint8_t {
     ShiftXZAndShiftZ,
 };
 
-/// The spectra of the four pairs at `time` [s], of the columns first_column .. + kFftColumns. Pair
-/// p begins at p * 2 * kFftColumns * size: rows of kFftColumns real parts, then the imaginary
-/// ones. Off by at most 2e-7 of |h| for 1e8 radians of phase.
+/// Spectra of the four pairs at `time` [s] for the columns first_column .. + kFftColumns. Pair p
+/// starts at p * 2 * kFftColumns * size: rows of kFftColumns real parts, then the imaginary ones.
+/// Error at most 2e-7 |h| for phases up to 1e8 radians.
 void evolve_waves(
     const OceanCascade& cascade, float choppiness, double time, std::size_t first_column,
     std::span<float> pairs);
@@ -32,9 +32,9 @@ void evolve_waves_scalar(
     std::span<float> pairs);
 
 /// Foam of the points begin .. end: d coverage / dt = growth (1 - coverage) - coverage / decay,
-/// growth = rate * max(threshold - J, 0), where J is the share of its area that is left of the
-/// water: the determinant of d shifted / d rest. `gain` is rate * dt, `fade` e^(-dt / decay).
-/// Implicit in the growth: coverage stays within 0 .. 1 for any dt.
+/// with growth = rate * max(threshold - J, 0), where J is the Jacobian determinant of the
+/// horizontal displacement. `gain` is rate * dt, `fade` is e^(-dt / decay). Implicit in the growth:
+/// coverage stays within 0 .. 1 for any dt.
 void step_foam(
     const OceanCascade& cascade, float threshold, float gain, float fade, std::span<float> coverage,
     std::size_t begin, std::size_t end);

@@ -18,17 +18,17 @@ double log_gamma(double x) {
 constexpr double kTurn = 6.283185307179586;  ///< 2 pi
 
 // Scales of spreadings without closed form are sampled over the logarithm of omega / omega_p,
-// which they follow smoothly but where beta has its kinks.
-constexpr double kLowestLog = -3.0;
-constexpr double kHighestLog = 5.0;
+// over which they vary smoothly, except at the kinks of beta.
+constexpr double kMinLog = -3.0;
+constexpr double kMaxLog = 5.0;
 constexpr int kSamples = 512;
 
 double sech(double x) {
     return 1.0 / std::cosh(x);
 }
 
-/// sech^2 or cos^2, times the swell's cosine; 1 at theta = 0.
-double shape_without_integral(const OceanEnergy& sea, double f_over_peak, double theta) {
+/// sech^2 or cos^2, times the swell factor; 1 at theta = 0.
+double unnormalized_shape(const OceanEnergy& sea, double f_over_peak, double theta) {
     const double swell = swell_power(f_over_peak, sea.swell);
     const double elongation = std::pow(std::abs(std::cos(0.5 * theta)), 2.0 * swell);
     if (sea.spreading == OceanSpreading::DonelanBanner) {
@@ -37,20 +37,20 @@ double shape_without_integral(const OceanEnergy& sea, double f_over_peak, double
     return elongation * square(std::cos(theta));
 }
 
-/// Simpson over half a turn, twice.
+/// Twice Simpson's rule over half the circle.
 double integrate_shape(const OceanEnergy& sea, double f_over_peak) {
     constexpr int kSteps = 400;
     const double step = 0.5 * kTurn / kSteps;
     double sum = 0;
     for (int i = 0; i <= kSteps; ++i) {
         const double weight = i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-        sum += weight * shape_without_integral(sea, f_over_peak, step * i);
+        sum += weight * unnormalized_shape(sea, f_over_peak, step * i);
     }
     return 2.0 * sum * step / 3.0;
 }
 
 double log_of_sample(int i) {
-    return kLowestLog + (kHighestLog - kLowestLog) * i / (kSamples - 1);
+    return kMinLog + (kMaxLog - kMinLog) * i / (kSamples - 1);
 }
 
 bool has_closed_form(OceanSpreading spreading) {
@@ -58,7 +58,7 @@ bool has_closed_form(OceanSpreading spreading) {
 }
 
 double spread_scale(const OceanEnergy& sea, double f_over_peak) {
-    const double at = (std::log(f_over_peak) - kLowestLog) / (kHighestLog - kLowestLog);
+    const double at = (std::log(f_over_peak) - kMinLog) / (kMaxLog - kMinLog);
     const double x = std::clamp(at, 0.0, 1.0) * (kSamples - 1);
     const int i = std::min(static_cast<int>(x), kSamples - 2);
     return sea.spread_scale[i] + (x - i) * (sea.spread_scale[i + 1] - sea.spread_scale[i]);
@@ -87,7 +87,7 @@ double hasselmann_spread_power(double f_over_peak, double wind_over_waves) {
 }
 
 double donelan_banner_beta(double f_over_peak) {
-    const double x = std::max(f_over_peak, 0.56);  // nothing has been measured below
+    const double x = std::max(f_over_peak, 0.56);  // no measurements below
     if (x < 0.95) {
         return 2.61 * std::pow(x, 1.3);
     }
@@ -102,7 +102,7 @@ double swell_power(double f_over_peak, double swell) {
 }
 
 double cosine_power_integral(double p) {
-    // Of logarithms: the gamma functions themselves overflow from p = 85 on.
+    // With logarithms, since the gamma functions overflow for p >= 85.
     return 0.5 * kTurn
            * std::exp(
                (1.0 - 2.0 * p) * std::log(2.0) + log_gamma(2.0 * p + 1.0)
@@ -117,7 +117,7 @@ double jonswap_energy(double omega, double omega_p, double alpha, double gamma) 
 }
 
 double depth_factor(double omega, double depth) {
-    // k^-3 dk / d omega, over the same in deep water.
+    // k^-3 dk / d omega relative to deep water.
     const double k = wave_number(omega, depth);
     if (!(k > 0)) {
         return 0.0;
@@ -191,11 +191,11 @@ double frequency_energy(const OceanEnergy& sea, double omega) {
     return jonswap_energy(omega, sea.peak, sea.alpha, sea.gamma) * depth_factor(omega, sea.depth);
 }
 
-double direction_share(const OceanEnergy& sea, double omega, double theta) {
+double directional_density(const OceanEnergy& sea, double omega, double theta) {
     theta = std::remainder(theta, kTurn);
     const double x = omega / sea.peak;
     if (!has_closed_form(sea.spreading)) {
-        return spread_scale(sea, x) * shape_without_integral(sea, x, theta);
+        return spread_scale(sea, x) * unnormalized_shape(sea, x, theta);
     }
     const double own = sea.spreading == OceanSpreading::WindSea
                            ? wind_sea_spread_power(x)
@@ -212,7 +212,7 @@ double wave_energy(const OceanEnergy& sea, double kx, double kz) {
         return 0.0;
     }
     const double theta = std::atan2(kz, kx) - sea.wind_direction;
-    return over_all * direction_share(sea, omega, theta) * group_speed(k, sea.depth) / k;
+    return over_all * directional_density(sea, omega, theta) * group_speed(k, sea.depth) / k;
 }
 
 }  // namespace limn

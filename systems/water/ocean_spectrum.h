@@ -6,49 +6,49 @@
 
 namespace limn {
 
-// Energy of wind waves over frequency and direction, in double precision. A spectrum S says how
-// much each bit of frequency or wave number adds to the variance of the height: the integral of S
-// is m0 [m^2], and the significant wave height is 4 sqrt(m0).
+// Energy of wind waves over frequency and direction, in double precision. A spectrum S is the
+// density of the height variance over frequency or wave number: its integral is m0 [m^2], and the
+// significant wave height is 4 sqrt(m0).
 //
-// Over all directions, as a function of frequency:
+// Omnidirectional spectra:
 // - Pierson and Moskowitz 1964, as in Mastin et al. 1987 (water.ocean-spectrum): alpha g^2 f^-5
 //   (2 pi)^-4 e^(-5/4 (f_p / f)^4), f_p = 0.13 g / wind
 // - Phillips 1957, as in Tessendorf 2001: alpha / 2 k^-3 e^(-1 / (k L)^2), L = wind^2 / g
 // - JONSWAP (Hasselmann et al. 1973): Pierson and Moskowitz's shape with alpha and peak from the
 //   fetch, times gamma^r about the peak
-// - TMA (Bouws et al. 1985): JONSWAP times the factor of Kitaigorodskii et al. 1975, the exact one
+// - TMA (Bouws et al. 1985): JONSWAP times the exact depth factor of Kitaigorodskii et al. 1975
 //
-// and over directions, each with an integral of 1: cos^2p(theta / 2) after Hasselmann et al. 1980,
-// sech^2(beta theta) after Donelan et al. 1985 and Banner 1990, cos^2; with the swell of Horvath
-// 2015 ("Empirical Directional Wave Spectra for Computer Graphics"), a further cos^2s(theta / 2)
-// that long waves have more of.
+// Directional spreading, normalized to an integral of 1: cos^2p(theta / 2) after Hasselmann et al.
+// 1980, sech^2(beta theta) after Donelan et al. 1985 and Banner 1990, cos^2; with the swell of
+// Horvath 2015 ("Empirical Directional Wave Spectra for Computer Graphics"), an additional factor
+// cos^2s(theta / 2) that is stronger for long waves.
 
 inline constexpr double kPhillipsConstant = 0.0081;  ///< alpha of a fully developed sea
 
-/// Pierson and Moskowitz's F1 at f [Hz] for the peak f_p [m^2/Hz]; 0 at f <= 0.
+/// Pierson and Moskowitz's F1 at f [Hz] with the peak f_p [Hz], in [m^2/Hz]; 0 at f <= 0.
 [[nodiscard]] double wind_sea_energy(double f, double f_p, double alpha = kPhillipsConstant);
 
 /// The exponent p of cos^2p(theta / 2) at f_over_peak = f / f_p; 9.77 at the peak.
 [[nodiscard]] double wind_sea_spread_power(double f_over_peak);
-/// The same with the wind's speed over that of the waves at the peak, wind omega_p / g.
+/// The same with the ratio of wind speed to phase speed at the peak, wind omega_p / g.
 [[nodiscard]] double hasselmann_spread_power(double f_over_peak, double wind_over_waves);
 /// beta of sech^2(beta theta).
 [[nodiscard]] double donelan_banner_beta(double f_over_peak);
-/// What swell 0 .. 1 adds to p.
+/// Increase of p by swell 0 .. 1.
 [[nodiscard]] double swell_power(double f_over_peak, double swell);
 
-/// N_p: integral of cos^2p(theta / 2) over a turn.
+/// N_p: integral of cos^2p(theta / 2) over the circle.
 [[nodiscard]] double cosine_power_integral(double p);
 
-/// JONSWAP over omega [rad/s], with the peak at omega_p [m^2 s].
+/// JONSWAP at omega [rad/s] with the peak omega_p, in [m^2 s].
 [[nodiscard]] double jonswap_energy(double omega, double omega_p, double alpha, double gamma);
-/// What is left of it over water of this depth, 0 .. 1.
+/// Factor on it in water of this depth, 0 .. 1.
 [[nodiscard]] double depth_factor(double omega, double depth);
 
-/// Phillips over all directions at wave number k [m^3]; 0 at k <= 0.
+/// Omnidirectional Phillips spectrum at wave number k, in [m^3]; 0 at k <= 0.
 [[nodiscard]] double phillips_energy(double k, double wind);
 
-/// A sea, made ready for many waves.
+/// Parameters of a sea, precomputed for the evaluation of many waves.
 struct OceanEnergy {
     OceanSpectrum spectrum = OceanSpectrum::WindSea;
     OceanSpreading spreading = OceanSpreading::WindSea;
@@ -59,19 +59,19 @@ struct OceanEnergy {
     double alpha = kPhillipsConstant;
     double gamma = 1;
     double swell = 0;
-    std::vector<double> spread_scale;  ///< 1 / integral over a turn, where it has no closed form
+    std::vector<double> spread_scale;  ///< 1 / integral over the circle, if there is no closed form
 };
 
 [[nodiscard]] OceanEnergy make_ocean_energy(const Ocean& ocean);
 
-/// Over all directions at omega [m^2 s].
+/// Omnidirectional energy density at omega [m^2 s].
 [[nodiscard]] double frequency_energy(const OceanEnergy& sea, double omega);
 
-/// The share of direction theta, from the wind's [1/rad].
-[[nodiscard]] double direction_share(const OceanEnergy& sea, double omega, double theta);
+/// Directional density at the angle theta from the wind [1/rad].
+[[nodiscard]] double directional_density(const OceanEnergy& sea, double omega, double theta);
 
-/// Per area of wave numbers at k = (kx, kz) [m^4]: frequency_energy * direction_share *
-/// (d omega / d k) / k; 0 at k = 0. The amplitude of the Ocean is not in it.
+/// Energy density over wave vectors at k = (kx, kz) [m^4]: frequency_energy * directional_density *
+/// (d omega / d k) / k; 0 at k = 0. Does not include Ocean::amplitude.
 [[nodiscard]] double wave_energy(const OceanEnergy& sea, double kx, double kz);
 
 }  // namespace limn

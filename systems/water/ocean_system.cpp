@@ -16,10 +16,10 @@ namespace limn {
 
 namespace {
 
-constexpr std::size_t kFoamGrain = 16384;  ///< points a task
-constexpr float kShortestBreaker = 2.0f;   ///< shorter waves break without white water [m]
+constexpr std::size_t kFoamGrain = 16384;  ///< points per task
+constexpr float kMinBreakerLength = 2.0f;  ///< shorter waves produce no foam [m]
 
-/// Made once a size; threads that ask at the same time wait for it.
+/// Created once per size; concurrent callers wait for it.
 const FftPlan& plan_of_size(std::size_t size) {
     static std::mutex mutex;
     static std::map<std::size_t, FftPlan> plans;
@@ -29,7 +29,7 @@ const FftPlan& plan_of_size(std::size_t size) {
                                 : plans.emplace(size, make_fft_plan(size)).first->second;
 }
 
-/// Whether the spectra of one are those of the other.
+/// Whether two oceans have the same spectra.
 bool has_waves_of(const Ocean& a, const Ocean& b) {
     Ocean alike = a;
     alike.choppiness = b.choppiness;
@@ -39,7 +39,7 @@ bool has_waves_of(const Ocean& a, const Ocean& b) {
     return alike == b;
 }
 
-/// The fields that each pair of the transform is split into.
+/// The two fields of each transformed pair.
 struct PairPlanes {
     std::vector<float>* re;
     std::vector<float>* im;
@@ -77,15 +77,15 @@ void update_ocean_foam(
 }
 
 void step_ocean(const Ocean& ocean, double time, float step, OceanState& state) {
-    const Ocean limited = limit_ocean(ocean);
+    const Ocean limited = clamp_ocean(ocean);
     const bool is_new = state.cascades.empty() || !has_waves_of(limited, state.made_for);
     if (is_new) {
         if (!(limited == ocean)) {
-            log_warn("ocean: some of its fields are out of range and were limited");
+            log_warn("ocean: some fields are out of range and were clamped");
         }
         state.cascades = make_ocean_cascades(limited);
     }
-    // Whole loops are taken off: after many of them frequencies would be too coarse.
+    // Time is wrapped to one loop, to keep its precision after many of them.
     const auto in_loop = [period = limited.loop_period](double t) {
         return period > 0 ? std::fmod(t, static_cast<double>(period)) : t;
     };
@@ -96,9 +96,9 @@ void step_ocean(const Ocean& ocean, double time, float step, OceanState& state) 
         if (!has_last) {
             synthesize_waves(cascade, limited.choppiness, in_loop(last_time));
         }
-        cascade.height.swap(cascade.last_height);
-        cascade.shift_x.swap(cascade.last_shift_x);
-        cascade.shift_z.swap(cascade.last_shift_z);
+        cascade.height.swap(cascade.previous_height);
+        cascade.shift_x.swap(cascade.previous_shift_x);
+        cascade.shift_z.swap(cascade.previous_shift_z);
         synthesize_waves(cascade, limited.choppiness, in_loop(time));
     }
     state.made_for = limited;
@@ -111,8 +111,8 @@ void synthesize_waves(OceanCascade& cascade, float choppiness, double time) {
     const FftPlan& plan = plan_of_size(size);
     const std::size_t block = kFftColumns * size;
     const std::array<PairPlanes, kOceanPairs> planes = planes_of(cascade);
-    // A block of columns of the spectrum becomes as many rows of the planes. The second transform
-    // then reads and writes the same columns of them: the planes need no copy.
+    // Each block of spectrum columns is transposed into rows of the planes. The second transform
+    // then works in place on columns of the planes, without a copy.
     parallel_for(size / kFftColumns, 1, [&](std::size_t begin, std::size_t) {
         thread_local std::vector<float> memory;
         memory.resize(2 * kOceanPairs * block + fft_scratch_size(size));
@@ -147,14 +147,14 @@ void step_ocean_foam(const Ocean& ocean, const OceanState& state, float step, Oc
     if (foam.coverage.size() != points) {
         foam.coverage.assign(points, 0.0f);
     }
-    const Ocean limited = limit_ocean(ocean);
+    const Ocean limited = clamp_ocean(ocean);
     const float gain = limited.foam_rate * step;
     const float fade = std::exp(-step / limited.foam_decay);
     std::size_t first = 0;
     for (const OceanCascade& cascade : state.cascades) {
         const std::size_t count = cascade.height.size();
         const std::span<float> coverage = std::span(foam.coverage).subspan(first, count);
-        const bool breaks = cascade.band_low * kShortestBreaker < 2 * kPi;
+        const bool breaks = cascade.band_low * kMinBreakerLength < 2 * kPi;
         const float added = breaks ? gain : 0.0f;
         parallel_for(count, kFoamGrain, [&](std::size_t begin, std::size_t end) {
             step_foam(cascade, limited.foam_threshold, added, fade, coverage, begin, end);

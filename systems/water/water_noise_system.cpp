@@ -10,14 +10,14 @@ namespace limn {
 
 namespace {
 
-constexpr std::uint32_t kMostPoints = 1024;
-constexpr std::uint32_t kMostOctaves = 16;
+constexpr std::uint32_t kMaxPoints = 1024;
+constexpr std::uint32_t kMaxOctaves = 16;
 constexpr std::size_t kRowGrain = 8;
 
 }  // namespace
 
 float perlin_noise(const Vec3& at, std::uint32_t seed) {
-    constexpr float kScale = 1.22474487f;  // gradient_noise is 2 / sqrt(3) of a half of the root
+    constexpr float kScale = 1.22474487f;  // from the scale of gradient_noise to Perlin's
     const bool has_fraction =
         std::abs(at.x) < 0x1p23f && std::abs(at.y) < 0x1p23f && std::abs(at.z) < 0x1p23f;
     return has_fraction ? kScale * gradient_noise(at, seed) : 0.0f;
@@ -28,7 +28,7 @@ float noise_height(const NoiseSurface& noise, const Vec2& at, double time) {
     float amplitude = noise.amplitude;
     float frequency = noise.frequency;
     double speed = static_cast<double>(noise.speed);
-    for (std::uint32_t i = 0; i < std::min(noise.octaves, kMostOctaves); ++i) {
+    for (std::uint32_t i = 0; i < std::min(noise.octaves, kMaxOctaves); ++i) {
         const Vec3 place = {at.x * frequency, at.y * frequency, static_cast<float>(time * speed)};
         sum += amplitude * perlin_noise(place, noise.seed + i);
         amplitude *= 0.5f;
@@ -39,7 +39,7 @@ float noise_height(const NoiseSurface& noise, const Vec2& at, double time) {
 }
 
 void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field) {
-    const std::uint32_t points = std::clamp(noise.points, 2u, kMostPoints);
+    const std::uint32_t points = std::clamp(noise.points, 2u, kMaxPoints);
     const std::size_t side = points;
     const std::size_t outer = side + 2;  // with a border, so that every point has neighbors
     const Vec2 cell = noise.size / static_cast<float>(points - 1);

@@ -8,23 +8,21 @@
 
 namespace limn {
 
-/// Perlin's noise of three coordinates (2002): 0 at integer points, twice differentiable, never
-/// beyond 1.04. That of ecs/base/gradient_noise.h, which has the same twelve gradients, in his
-/// scale.
+/// Perlin's 3D noise (2002): 0 at integer points, twice differentiable, absolute value at most
+/// 1.04. Equals ecs/base/gradient_noise.h, which has the same twelve gradients, in Perlin's scale.
 [[nodiscard]] float perlin_noise(const Vec3& at, std::uint32_t seed);
 
-/// The sum of all octaves at (x, z) in the surface's own space at `time` [s]. 0 where a number is
-/// not finite.
+/// The sum of all octaves at (x, z) in the surface's local space at `time` [s]. 0 if not finite.
 [[nodiscard]] float noise_height(const NoiseSurface& noise, const Vec2& at, double time);
 
-/// Fills `field`, keeping its memory. Normals are those of central differences between points.
+/// Fills `field`, reusing its memory. Normals are from central differences between points.
 void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field);
 
-/// Gives a NoiseField to every NoiseSurface that lacks one. Before update_noise_surfaces, with a
-/// sync point between.
+/// Adds a NoiseField to every NoiseSurface that lacks one. Before update_noise_surfaces, with a
+/// sync point in between.
 void add_noise_fields(Query<const NoiseSurface, Without<NoiseField>> bare, Commands commands);
 
-/// Fills all fields for the end of the step.
+/// Fills all fields for the time at the end of the step.
 void update_noise_surfaces(
     Query<const NoiseSurface, NoiseField> surfaces, Res<const FrameTime> time);
 

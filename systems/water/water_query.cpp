@@ -15,12 +15,13 @@ namespace limn {
 
 namespace {
 
-constexpr int kMostEvaluations = 32;
-constexpr float kMiss = 1e-4f;            ///< that is good enough [m]
-constexpr float kRoundedMiss = 2.5e-7f;   ///< the same, of the distance from the origin
-constexpr float kLeastShare = 1.0f / 64;  ///< of a Newton step, that backtracking tries
-constexpr float kCusp = 0.01f;  ///< share of area below which water counts as squeezed to nothing
-constexpr std::size_t kGrain = 64;  ///< points a task
+constexpr int kMaxEvaluations = 32;
+constexpr float kMiss = 1e-4f;           ///< tolerance [m]
+constexpr float kRoundedMiss = 2.5e-7f;  ///< tolerance relative to the distance from the origin
+constexpr float kMinShare =
+    1.0f / 64;                      ///< smallest fraction of a Newton step tried by backtracking
+constexpr float kCusp = 0.01f;      ///< Jacobian below which the surface counts as a cusp
+constexpr std::size_t kGrain = 64;  ///< points per task
 
 WavePoint evaluate_cascade(const OceanCascade& cascade, float step, const Vec2& rest) {
     const auto size = static_cast<float>(cascade.size);
@@ -44,18 +45,19 @@ WavePoint evaluate_cascade(const OceanCascade& cascade, float step, const Vec2& 
     point.by_z = {across, blend(cascade.slope_z), blend(cascade.shift_zz)};
     if (step > 0) {
         const Vec3 last = {
-            blend(cascade.last_shift_x), blend(cascade.last_height), blend(cascade.last_shift_z)};
+            blend(cascade.previous_shift_x), blend(cascade.previous_height),
+            blend(cascade.previous_shift_z)};
         point.velocity = (point.offset - last) / step;
     }
     return point;
 }
 
-/// What is still missing when the water at rest at `rest` is where it is.
+/// Remaining horizontal error for the rest point `rest`.
 struct Trial {
     Vec2 rest{};
     WavePoint point{};
     Vec2 missing{};
-    float miss = 0;
+    float error = 0;
 };
 
 Trial try_rest(const WaterSurface& surface, const Vec2& wanted, const Vec2& rest) {
@@ -63,23 +65,24 @@ Trial try_rest(const WaterSurface& surface, const Vec2& wanted, const Vec2& rest
     trial.rest = rest;
     trial.point = displace_water(surface, rest);
     trial.missing = wanted - rest - Vec2(trial.point.offset.x, trial.point.offset.z);
-    trial.miss = std::sqrt(glm::dot(trial.missing, trial.missing));
+    trial.error = std::sqrt(glm::dot(trial.missing, trial.missing));
     return trial;
 }
 
-/// How far to move at rest so that the water moves by `way`, if derivatives hold.
+/// Newton step: change of the rest point that moves the water by `way` to first order.
 Vec2 newton_step(const WavePoint& point, const Vec2& way) {
     const float xx = 1 + point.by_x.x;
     const float zx = point.by_x.z;
     const float xz = point.by_z.x;
     const float zz = 1 + point.by_z.z;
     const float determinant = xx * zz - xz * zx;
-    // At a cusp it is 0, and to move the water a little, water at rest must be moved far.
+    // At a cusp the determinant is 0, and a small displacement needs a large change of the rest
+    // point.
     const float divisor = std::abs(determinant) > kCusp ? determinant : kCusp;
     return Vec2(zz * way.x - xz * way.y, xx * way.y - zx * way.x) / divisor;
 }
 
-/// The upward normal of the surface with these derivatives, products of them included.
+/// Upward surface normal from these derivatives, including their products.
 Vec3 normal_of(const WavePoint& point) {
     const Vec3 along_x = Vec3(1, 0, 0) + point.by_x;
     const Vec3 along_z = Vec3(0, 0, 1) + point.by_z;
@@ -93,17 +96,26 @@ bool is_finite(const Vec2& v) {
 
 }  // namespace
 
+std::vector<WaterSurface> collect_water_surfaces(WaterQuery waters) {
+    std::vector<WaterSurface> surfaces;
+    waters.each([&](Entity entity, const Water& water, const WorldTransform& place,
+                    const OceanState* ocean, const WaveTable* waves, const RippleState* ripples) {
+        surfaces.push_back({water_frame(place.world), water, ocean, waves, ripples, 0, entity});
+    });
+    return surfaces;
+}
+
 WavePoint displace_water(const WaterSurface& surface, const Vec2& rest) {
     WavePoint sum;
     if (surface.ocean != nullptr) {
         for (const OceanCascade& cascade : surface.ocean->cascades) {
-            if (cascade.band_low * surface.shortest <= 2 * kPi) {
+            if (cascade.band_low * surface.min_wavelength <= 2 * kPi) {
                 sum += evaluate_cascade(cascade, surface.ocean->step, rest);
             }
         }
     }
     if (surface.waves != nullptr) {
-        sum += evaluate_waves(*surface.waves, rest, surface.shortest);
+        sum += evaluate_waves(*surface.waves, rest, surface.min_wavelength);
     }
     if (surface.ripples != nullptr) {
         const RipplePoint ripples = sample_ripples(*surface.ripples, rest);
@@ -125,27 +137,27 @@ WaterPoint sample_water(const WaterSurface& surface, const Vec2& at) {
     const float good = kMiss + kRoundedMiss * (std::abs(wanted.x) + std::abs(wanted.y));
     Trial best = try_rest(surface, wanted, wanted);
     int evaluations = 1;
-    while (best.miss > good && evaluations < kMostEvaluations) {
+    while (best.error > good && evaluations < kMaxEvaluations) {
         const Vec2 step = newton_step(best.point, best.missing);
         float share = 1;
         Trial next = try_rest(surface, wanted, best.rest + step);
         ++evaluations;
-        while (!(next.miss < best.miss) && share > kLeastShare && evaluations < kMostEvaluations) {
+        while (!(next.error < best.error) && share > kMinShare && evaluations < kMaxEvaluations) {
             share *= 0.5f;
             next = try_rest(surface, wanted, best.rest + share * step);
             ++evaluations;
         }
-        if (!(next.miss < best.miss)) {
-            break;  // a fold, and no way out of it downhill
+        if (!(next.error < best.error)) {
+            break;  // stuck in a fold
         }
         best = next;
     }
     found.is_water = true;
     found.position = surface.frame.world(Vec3(best.rest.x, 0, best.rest.y) + best.point.offset);
-    found.normal = surface.frame.turned_out(normal_of(best.point));
-    found.velocity = surface.frame.turned_out(best.point.velocity);
+    found.normal = surface.frame.direction_to_world(normal_of(best.point));
+    found.velocity = surface.frame.direction_to_world(best.point.velocity);
     found.rest = best.rest;
-    found.miss = best.miss;
+    found.error = best.error;
     found.evaluations = evaluations;
     return found;
 }
@@ -185,7 +197,7 @@ hit_water(const WaterSurface& surface, const Vec3& origin, const Vec3& direction
     if (!(direction.y < 0) || !std::isfinite(glm::dot(origin, direction))) {
         return std::nullopt;
     }
-    // From where it meets the surface at rest, Newton along the ray.
+    // Newton's method along the ray, starting at the rest surface.
     float way = (surface.frame.origin.y - origin.y) / direction.y;
     for (int i = 0; i < 12 && way >= 0 && way <= reach; ++i) {
         const Vec3 there = origin + way * direction;

@@ -14,20 +14,20 @@ namespace limn {
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
-constexpr float kSteepestRow = 0.999f;  ///< share of k that may go along a row
-constexpr int kMostSubsteps = 32;       ///< between rows
+constexpr float kMaxAlongRow = 0.999f;  ///< largest component of k along a row, relative to k
+constexpr int kMaxSubsteps = 32;        ///< between rows
 
 float number_of(float period, float depth) {
-    const double deep = static_cast<double>(std::max(depth, kLeastWaveDepth));
+    const double deep = static_cast<double>(std::max(depth, kMinWaveDepth));
     return static_cast<float>(wave_number(kTurn / static_cast<double>(period), deep));
 }
 
-/// The grid as the train meets it: rows from the side that it comes in over, one after another.
+/// The grid in marching order: rows starting at the side where the train enters.
 struct Rows {
     int count = 0;
     int length = 0;
-    bool along_x = false;   ///< the train runs along x, mostly
-    bool backward = false;  ///< toward lesser x or z
+    bool along_x = false;   ///< the train travels mainly along x
+    bool backward = false;  ///< toward smaller x or z
     int width = 0;          ///< of the grid
 
     [[nodiscard]] std::size_t at(int row, int i) const {
@@ -36,14 +36,14 @@ struct Rows {
     }
 };
 
-/// d S from row to row over the square of the greatest d S along it that runs in.
+/// d S / d row from the eikonal equation, with the largest upwind d S along the row (Godunov).
 float rise(float number, float left, float right, float cell) {
     const float along = std::max(std::max(left, 0.0f), std::max(-right, 0.0f)) / cell;
-    const float most = kSteepestRow * number;
-    return std::sqrt(square(number) - square(std::min(along, most)));
+    const float limit = kMaxAlongRow * number;
+    return std::sqrt(square(number) - square(std::min(along, limit)));
 }
 
-/// Depth between points; beyond the edge as at it.
+/// Bilinear depth, clamped at the edges.
 float depth_at(const DepthGrid& grid, const Vec2& at) {
     const Vec2 place = glm::clamp(at / grid.cell, Vec2(0), Vec2(grid.points - 1));
     const IVec2 corner = glm::min(IVec2(place), grid.points - 2);
@@ -86,7 +86,7 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
     for (int i = 0; i < rows.length; ++i) {
         incoming = std::min(incoming, numbers[rows.at(0, i)]);
     }
-    // From point to point of a row; beyond the ends it goes on so.
+    // Phase difference between points of a row, also extrapolated beyond its ends.
     const float aside = incoming * (rows.along_x ? way.y : way.x) * grid.cell;
     const auto length = static_cast<std::size_t>(rows.length);
     std::vector<float> here(length + 2);
@@ -95,7 +95,7 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
         here[i] = aside * (static_cast<float>(i) - 1);
     }
     for (int row = 0; row < rows.count; ++row) {
-        float quickest = 0;  // how far a ray goes along the row while it goes to the next
+        float quickest = 0;  // largest ratio of ray motion along the row to that across it
         for (int i = 0; i < rows.length; ++i) {
             const std::size_t at = rows.at(row, i);
             train.phase[at] = here[static_cast<std::size_t>(i) + 1];
@@ -107,7 +107,7 @@ WaveTrain refract_waves(const DepthGrid& grid, float period, float direction) {
         if (row + 1 == rows.count) {
             break;
         }
-        const int substeps = std::clamp(static_cast<int>(std::ceil(quickest)), 1, kMostSubsteps);
+        const int substeps = std::clamp(static_cast<int>(std::ceil(quickest)), 1, kMaxSubsteps);
         for (int substep = 0; substep < substeps; ++substep) {
             const float share = (static_cast<float>(substep) + 0.5f) / static_cast<float>(substeps);
             for (int i = 0; i < rows.length; ++i) {

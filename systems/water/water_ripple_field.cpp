@@ -15,13 +15,14 @@ namespace limn {
 namespace {
 
 constexpr std::size_t kRowGrain = 32;
-constexpr float kCourant = 0.7f;           ///< of a cell that a wave may go in a sub-step
+constexpr float kCourant = 0.7f;           ///< largest wave motion per substep, in cells
 constexpr std::uint32_t kLevelEvery = 16;  ///< steps between corrections of rounding
-constexpr float kShortestStep = 1e-5f;     ///< a change of heights is lost in rounding else [s]
-constexpr float kLongestSubstep = 0.1f;    ///< of the slowest waves too [s]
-constexpr int kSpongeCells = 40;           ///< narrower ones send long waves back
-constexpr float kSponge = 0.15f;           ///< share that the outermost cell of a sponge takes
-constexpr float kLargestPush = 10.0f;      ///< [m]
+constexpr float kMinStep = 1e-5f;          ///< below, changes of heights are lost to rounding [s]
+constexpr float kMaxSubstep = 0.1f;        ///< even for the slowest waves [s]
+constexpr int kSpongeCells =
+    40;  ///< width of the absorbing layer; narrower ones reflect long waves
+constexpr float kSponge = 0.15f;   ///< fraction absorbed by the outermost cell
+constexpr float kMaxPush = 10.0f;  ///< [m]
 
 Vec2 extent_of(const Water& water, const WaterRipples& ripples) {
     return {
@@ -53,7 +54,7 @@ Grid grid_of(const Water& water, const WaterRipples& ripples) {
     return grid;
 }
 
-/// The border repeats the outermost cells: no water goes through a wall.
+/// The border copies the outermost cells: no flow through a wall.
 void close_border(RippleState& state, std::vector<float>& field) {
     const IVec2 n = state.cells;
     for (int z = 0; z < n.y; ++z) {
@@ -67,8 +68,8 @@ void close_border(RippleState& state, std::vector<float>& field) {
     std::copy_n(row(n.y - 1), n.x + 2, row(n.y));
 }
 
-/// The border carries waves on as they come (Mur 1981, first order): `next` is one sub-step after
-/// `now`, both have their inner cells.
+/// Absorbing border (Mur 1981, first order): `next` is one substep after `now`; the inner cells of
+/// both are known.
 void open_border(
     const RippleState& state, const std::vector<float>& now, std::vector<float>& next,
     float courant) {
@@ -87,7 +88,7 @@ void open_border(
     }
 }
 
-/// Share of their motion that cells of a row or column keep in a sub-step.
+/// Fraction of their motion that cells of a row or column keep in a substep.
 void fill_keep(std::vector<float>& keep, int cells, float base, bool absorbing) {
     keep.assign(static_cast<std::size_t>(cells), base);
     const int width = std::min(kSpongeCells, cells / 4);
@@ -112,7 +113,7 @@ double sum_of(const RippleState& state, const std::vector<float>& field) {
     return sum;
 }
 
-/// Takes off what rounding has added.
+/// Removes volume added by rounding.
 void keep_level(const RippleState& state, std::vector<float>& field) {
     if (state.wet == 0) {
         return;
@@ -123,7 +124,7 @@ void keep_level(const RippleState& state, std::vector<float>& field) {
     }
 }
 
-/// Slope of the field at a cell, by differences to both sides; a wall mirrors what is before it.
+/// Slope of the field at a cell, by central differences, mirrored at walls.
 Vec2 slope_at(const RippleState& state, int x, int z) {
     const auto height = [&](int column, int row) {
         return state.height[state.at(
@@ -148,7 +149,7 @@ RippleState make_ripples(const Water& water, const WaterRipples& ripples, float 
     const auto floats =
         static_cast<std::size_t>(state.stride) * static_cast<std::size_t>(grid.cells.y + 2);
     state.height.resize(floats);
-    state.before.resize(floats);
+    state.previous.resize(floats);
     state.substep = step;
     state.substeps = 1;
     return state;
@@ -163,7 +164,7 @@ bool fits(const RippleState& state, const Water& water, const WaterRipples& ripp
                || floats
                       == static_cast<std::size_t>(state.stride)
                              * static_cast<std::size_t>(state.cells.y + 2))
-           && state.before.size() == floats && (state.body.empty() || state.body.size() == floats)
+           && state.previous.size() == floats && (state.body.empty() || state.body.size() == floats)
            && (state.dry.empty() || state.dry.size() == floats);
 }
 
@@ -176,11 +177,11 @@ std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse) {
     const Vec2 extent = state.size();
     const Vec2 radius(std::clamp(
         impulse.radius, 1.5f * state.cell, std::max(extent.x + extent.y, 1.5f * state.cell)));
-    const float height = std::clamp(impulse.height, -kLargestPush, kLargestPush);
-    // A crater and its rim, (1 - u^2)^2 (1 - 4 u^2), have no volume; what the grid and the walls
-    // make of it is put right by more or less of (1 - u^2)^2.
+    const float height = std::clamp(impulse.height, -kMaxPush, kMaxPush);
+    // A crater with rim, (1 - u^2)^2 (1 - 4 u^2), has no volume; discretization and walls are
+    // compensated by a multiple of (1 - u^2)^2.
     const auto crater = [&](float weight, int x, int z) {
-        const Vec2 from = (middle_of(state, x, z) - impulse.center) / radius;
+        const Vec2 from = (cell_center(state, x, z) - impulse.center) / radius;
         return weight * (1 - 4 * (from.x * from.x + from.y * from.y));
     };
     double weights = 0;
@@ -199,7 +200,7 @@ std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse) {
     each_bump_cell(state, impulse.center, radius, [&](std::size_t at, float weight, int x, int z) {
         const float push = height * (crater(weight, x, z) - excess * weight);
         state.height[at] += push;
-        state.before[at] += push;
+        state.previous[at] += push;
     });
     return cells;
 }
@@ -211,7 +212,7 @@ void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
     if (state.cells.x == 0 || (!any && state.body.empty())) {
         return;
     }
-    thread_local std::vector<float> now;  // keeps its memory from step to step
+    thread_local std::vector<float> now;  // reused between steps
     now.assign(state.height.size(), 0.0f);
     const float area = state.cell * state.cell;
     double volume = 0;
@@ -240,14 +241,14 @@ void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         const float risen = now[i] - state.body[i];
         state.height[i] += risen;
-        state.before[i] += risen;
+        state.previous[i] += risen;
     }
     state.body.assign(now.begin(), now.end());
     if (!any) {
         state.body.clear();
     }
     const double covered = static_cast<double>(area) * state.wet;
-    state.level = state.wet > 0 ? (volume + state.walled) / covered : 0;
+    state.level = state.wet > 0 ? (volume + state.wall_volume) / covered : 0;
 }
 
 namespace {
@@ -274,7 +275,7 @@ void push_all(RippleState& state) {
 }  // namespace
 
 void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
-    if (state.cells.x == 0 || !(step >= kShortestStep) || !std::isfinite(step)) {
+    if (state.cells.x == 0 || !(step >= kMinStep) || !std::isfinite(step)) {
         return;
     }
     push_all(state);
@@ -284,21 +285,21 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
     const float wanted = std::ceil(speed * step / (kCourant * state.cell));
     const int substeps =
         static_cast<int>(std::clamp(wanted, 1.0f, static_cast<float>(kMaxRippleSubsteps)));
-    const float dt = std::min(step / static_cast<float>(substeps), kLongestSubstep);
-    if (dt != state.substep) {  // heights one sub-step earlier, of the new length
-        // In the time of waves, which are slowed down where they would be too quick.
+    const float dt = std::min(step / static_cast<float>(substeps), kMaxSubstep);
+    if (dt != state.substep) {  // rescale the previous heights to the new substep
+        // In wave time, since waves that are too fast are slowed down.
         const float longest = kCourant * state.cell / std::max(speed, 1e-6f);
         const float last = std::min(state.substep, longest);
         const float ratio = last > 0 ? std::min(dt, longest) / last : 0.0f;
         for (std::size_t i = 0; i < state.height.size(); ++i) {
-            state.before[i] = state.height[i] - (state.height[i] - state.before[i]) * ratio;
+            state.previous[i] = state.height[i] - (state.height[i] - state.previous[i]) * ratio;
         }
     }
     state.substeps = substeps;
     state.substep = dt;
 
     const float courant = std::min(speed * dt / state.cell, kCourant);
-    // Friction is that of the mean of both velocities around now: stable however strong it is.
+    // Damping acts on the mean of the velocities before and after: stable for any strength.
     const float fade = std::max(ripples.damping * dt, 0.0f);
     const float base = (1 - fade) / (1 + fade);
     const float courant2 = courant * courant / (1 + fade);
@@ -322,21 +323,21 @@ void step_ripples(RippleState& state, const WaterRipples& ripples, float step) {
                     step_ripple_row(
                         {heights + state.at(0, row - 1), heights + state.at(0, row),
                          heights + state.at(0, row + 1)},
-                        {state.before.data() + state.at(0, row), width}, columns, row_keeps[z],
+                        {state.previous.data() + state.at(0, row), width}, columns, row_keeps[z],
                         courant2);
                 }
-                close_faces(state, begin, end, courant2 / 6.0f);
+                apply_wall_faces(state, begin, end, courant2 / 6.0f);
             });
-        fill_rims(state, state.before);
+        fill_wall_cells(state, state.previous);
         if (absorbing) {
-            open_border(state, state.height, state.before, courant);
+            open_border(state, state.height, state.previous, courant);
         }
-        std::swap(state.height, state.before);
+        std::swap(state.height, state.previous);
     }
     ++state.steps;
     if (!absorbing && state.steps % kLevelEvery == 0) {
         keep_level(state, state.height);
-        keep_level(state, state.before);
+        keep_level(state, state.previous);
     }
 }
 
@@ -358,7 +359,7 @@ RipplePoint sample_ripples(const RippleState& state, const Vec2& at) {
     const std::vector<float>& h = state.height;
     RipplePoint point;
     point.height = blend(h);
-    point.velocity = (point.height - blend(state.before)) / state.substep;
+    point.velocity = (point.height - blend(state.previous)) / state.substep;
     point.slope = glm::mix(
         glm::mix(slope_at(state, corner.x, corner.y), slope_at(state, corner.x + 1, corner.y), u.x),
         glm::mix(

@@ -7,42 +7,41 @@
 
 namespace limn {
 
-// The height field of a body of water, by itself: made, pushed, stepped and asked. With reflecting
-// borders no water is made or lost but for what bodies push up: the sum of heights times the area
-// of a cell is their volume under water.
+// The ripple height field of one body of water: creation, impulses, stepping, sampling. With
+// reflecting borders volume is conserved: the sum of heights times the cell area is the submerged
+// volume of bodies.
 
-/// Cells of a grid, at most; a finer one is made coarser.
+/// Largest number of cells of a grid; finer grids are coarsened.
 inline constexpr int kMaxRippleCells = 2048 * 2048;
-/// Sub-steps of a step, at most; quicker waves are slowed down.
+/// Largest number of substeps per step; faster waves are slowed down.
 inline constexpr int kMaxRippleSubsteps = 16;
-/// Cells that the impulses of a step push, at most, all together; those left then are dropped.
+/// Cell budget of all impulses in a step; impulses beyond it are dropped.
 inline constexpr std::int64_t kMaxPushedCells = 30'000'000;
 
-/// At rest. A Water without end needs a window; without one: no cells.
+/// A field at rest. Unbounded water needs a window, or there are no cells.
 [[nodiscard]] RippleState make_ripples(const Water& water, const WaterRipples& ripples, float step);
 
-/// Whether `state` is the one that make_ripples makes now, but for what has moved in it: as large,
-/// and whole, whatever file it has come from.
+/// Whether `state` has the layout that make_ripples would create, with arrays of consistent size,
+/// as it may come from an untrusted file.
 [[nodiscard]] bool fits(const RippleState& state, const Water& water, const WaterRipples& ripples);
 
-/// Pushes the water as `impulse` says; returns how many cells that were looked at. The middle of it
-/// must be over the grid; numbers that are not finite do nothing; a radius of less than 1.5 cells
-/// is as large.
+/// Applies an impulse and returns the number of cells visited. Ignored if its center is outside the
+/// grid or a number is not finite; the radius is at least 1.5 cells.
 std::int64_t push_ripples(RippleState& state, const RippleImpulse& impulse);
 
-/// What a body pushes up: `volume` [m^3] spread over an ellipse.
+/// Water displaced by a body: `volume` [m^3] spread over an ellipse.
 struct WaterBulge {
-    Vec2 center = {0, 0};  ///< in the water's own space, x and z [m]
+    Vec2 center = {0, 0};  ///< in the water's local space, x and z [m]
     Vec2 radius = {1, 1};  ///< [m]
-    float volume = 0;      ///< under water [m^3]
+    float volume = 0;      ///< submerged [m^3]
 };
 
-/// The water makes room for bodies at new places: it rises where they have come and falls where
-/// they were. Only those whose middle is over the grid count.
+/// Displaces water for bodies at new positions: it rises there and falls at their previous ones.
+/// Only bodies with their center over the grid count.
 void displace_ripples(RippleState& state, std::span<const WaterBulge> bulges);
 
-/// Moves the field on by `step` [s]: impulses first. Without a step, > 0, they wait. A sub-step
-/// is a tenth of a second at most, so a longer step may pass for a shorter one.
+/// Applies queued impulses, then advances the field by `step` [s]; does nothing unless `step` > 0.
+/// Substeps are limited to 0.1 s, so a very long step may advance by less.
 void step_ripples(RippleState& state, const WaterRipples& ripples, float step);
 
 struct RipplePoint {
@@ -50,8 +49,8 @@ struct RipplePoint {
     float velocity = 0;   ///< upward [m/s]
     Vec2 slope = {0, 0};  ///< by x and by z
 };
-/// At (x, z) in the water's own space: bilinear between the middles of cells, of slopes too; as at
-/// the outermost middles between them and the border; 0 outside.
+/// At (x, z) in the water's local space: height and slope bilinear between cell centers, clamped to
+/// the outermost centers near the border; 0 outside.
 [[nodiscard]] RipplePoint sample_ripples(const RippleState& state, const Vec2& at);
 
 /// Sum of heights times the area of a cell [m^3].

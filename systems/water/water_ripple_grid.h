@@ -9,15 +9,15 @@
 
 namespace limn {
 
-// The grid of a RippleState: where its cells are, and which of them are near an ellipse.
+// The grid of a RippleState: positions of its cells, and iteration over the cells of an ellipse.
 
-/// Cells, the last exclusive.
+/// A range of cells, excluding `last`.
 struct CellBox {
     IVec2 first;
     IVec2 last;
 };
 
-/// Those around an ellipse that lie on the grid.
+/// Bounding box of an ellipse, clipped to the grid.
 [[nodiscard]] inline CellBox
 box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
     const Vec2 middle = center / state.cell + 0.5f * Vec2(state.cells) - 0.5f;
@@ -33,8 +33,8 @@ box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
     return box;
 }
 
-/// Of a cell, in the water's own space.
-[[nodiscard]] inline Vec2 middle_of(const RippleState& state, int x, int z) {
+/// Center of a cell, in the water's local space.
+[[nodiscard]] inline Vec2 cell_center(const RippleState& state, int x, int z) {
     return state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
 }
 
@@ -43,26 +43,26 @@ box_around(const RippleState& state, const Vec2& center, const Vec2& radius) {
     return std::abs(at.x) <= half.x && std::abs(at.y) <= half.y;
 }
 
-/// Place in the arrays of the cell that a point over the grid is in.
+/// Array index of the cell that contains a point over the grid.
 [[nodiscard]] inline std::size_t cell_at(const RippleState& state, const Vec2& point) {
     const Vec2 cell = glm::floor(point / state.cell + 0.5f * Vec2(state.cells));
     const IVec2 on = glm::clamp(IVec2(cell), IVec2(0), state.cells - 1);
     return state.at(on.x, on.y);
 }
 
-/// Whether a place in the arrays is a wall's.
+/// Whether the cell at an array index is a wall.
 [[nodiscard]] inline bool is_dry(const RippleState& state, std::size_t at) {
     return !state.dry.empty() && state.dry[at] != 0;
 }
 
-/// (1 - u^2)^2 with u the distance from the middle in radii; 0 outside.
+/// (1 - u^2)^2 with u the distance from the center in radii; 0 outside.
 [[nodiscard]] inline float bump(const Vec2& from_center, const Vec2& radius) {
     const Vec2 u = from_center / radius;
     const float rest = std::max(0.0f, 1.0f - (u.x * u.x + u.y * u.y));
     return rest * rest;
 }
 
-/// body(place, weight, x, z) for each cell around an ellipse that is water, weighted by its bump.
+/// Calls body(index, weight, x, z) for each water cell in an ellipse, with its bump as weight.
 template <typename Body>
 void each_bump_cell(const RippleState& state, const Vec2& center, const Vec2& radius, Body&& body) {
     const CellBox box = box_around(state, center, radius);
@@ -70,7 +70,7 @@ void each_bump_cell(const RippleState& state, const Vec2& center, const Vec2& ra
         for (int x = box.first.x; x < box.last.x; ++x) {
             const std::size_t at = state.at(x, z);
             if (!is_dry(state, at)) {
-                body(at, bump(middle_of(state, x, z) - center, radius), x, z);
+                body(at, bump(cell_center(state, x, z) - center, radius), x, z);
             }
         }
     }

@@ -9,7 +9,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 
-/// Returns how many cells it has done, from the first on; the rest is for the scalar version.
+/// Returns the number of cells processed; the scalar version handles the remainder.
 std::size_t step_ripple_row_vector(
     const RippleRows& rows, std::span<float> before, const float* keep, float keep_row,
     float courant2) {

@@ -16,10 +16,10 @@ namespace limn {
 
 namespace {
 
-constexpr float kDropCells = 3.0f;       ///< radius of what a rain drop disturbs
-constexpr float kMostDrops = 100000.0f;  ///< in a step
+constexpr float kDropCells = 3.0f;      ///< radius of a rain drop's impulse [cells]
+constexpr float kMaxDrops = 100000.0f;  ///< per step
 
-/// Sorted along x of the world, so that a pool looks at those near it alone.
+/// Sorted by world x, so that a pool only visits those near it.
 struct Touching {
     float x = 0;
     std::size_t order = 0;
@@ -32,11 +32,11 @@ struct Wall {
     const Affine* place = nullptr;
 };
 
-/// Of all bodies and walls.
+/// All bodies and walls.
 struct Surroundings {
     std::vector<Touching> bodies;
     std::vector<Wall> walls;
-    float widest = 0;  ///< radius of a wall [m]
+    float widest = 0;  ///< largest radius of a wall [m]
 };
 
 template <typename T>
@@ -62,13 +62,13 @@ std::span<const T> near_x(const std::vector<T>& sorted, float middle, float reac
 struct Pool {
     Entity entity;
     const WaterRipples* ripples = nullptr;
-    WaterSurface surface;  ///< without its ripples
+    WaterSurface surface;  ///< without ripples
     RippleState* state = nullptr;
 };
 
-void let_rain(const WaterRipples& ripples, Random& random, float step, RippleState& state) {
+void add_rain(const WaterRipples& ripples, Random& random, float step, RippleState& state) {
     const Vec2 size = state.size();
-    const float expected = std::min(ripples.rain * step * size.x * size.y, kMostDrops);
+    const float expected = std::min(ripples.rain * step * size.x * size.y, kMaxDrops);
     const int drops = static_cast<int>(std::floor(expected + random.uniform()));
     for (int i = 0; i < drops; ++i) {
         const float x = random.uniform(-0.5f, 0.5f);
@@ -80,7 +80,7 @@ void let_rain(const WaterRipples& ripples, Random& random, float step, RippleSta
     }
 }
 
-void stand_walls(const Pool& pool, std::span<const Wall> walls) {
+void update_walls(const Pool& pool, std::span<const Wall> walls) {
     thread_local std::vector<PlacedWall> placed;
     placed.clear();
     const WaterSurface& surface = pool.surface;
@@ -101,8 +101,8 @@ void step_pool(const Pool& pool, const Surroundings& around, Random& random, flo
     }
     const float x = pool.surface.frame.origin.x;
     const float reach = 0.5f * glm::length(state.size()) + state.cell;
-    stand_walls(pool, near_x(around.walls, x, reach + around.widest));
-    // Open water is too large to rise.
+    update_walls(pool, near_x(around.walls, x, reach + around.widest));
+    // The level of open water does not rise.
     const bool rises = pool.ripples->border == RippleBorder::Reflecting;
     const float level = rises ? static_cast<float>(state.level) : 0.0f;
     thread_local std::vector<WaterBulge> bulges;
@@ -111,7 +111,7 @@ void step_pool(const Pool& pool, const Surroundings& around, Random& random, flo
         bulges.push_back(bulge_of(body.shape, pool.surface, level, state.size()));
     }
     displace_ripples(state, bulges);
-    let_rain(*pool.ripples, random, step, state);
+    add_rain(*pool.ripples, random, step, state);
     step_ripples(state, *pool.ripples, step);
 }
 
@@ -136,7 +136,7 @@ void update_water_ripples(
         bodies,
     Query<const Pose> poses, Query<const WaterWall, const WorldTransform> walls,
     Res<const Assets> assets, Res<const RandomSeed> seed, Res<const FrameTime> time) {
-    thread_local Surroundings surroundings;  // all keep their memory from step to step
+    thread_local Surroundings surroundings;  // memory of all three is reused
     thread_local std::vector<TouchingShape> shapes;
     thread_local std::vector<Pool> pools;
     surroundings.bodies.clear();

@@ -15,14 +15,14 @@
 
 namespace limn {
 
-/// Gives a RippleState at rest to every Water with WaterRipples that lacks one. Before
-/// update_water_ripples, with a sync point between.
+/// Adds a RippleState at rest to every Water with WaterRipples that lacks one. Before
+/// update_water_ripples, with a sync point in between.
 void add_ripple_states(
     Query<const Water, const WaterRipples, Without<RippleState>> bare, Res<const FrameTime> time,
     Commands commands);
 
-/// Walls, what touches the water, rain, then a step of the wave equation. A state whose grid no
-/// longer fits the settings begins anew, at rest.
+/// Applies walls, bodies and rain, then advances the wave equation by a step. A state whose grid no
+/// longer matches the settings is recreated at rest.
 void update_water_ripples(
     Query<
         const Water, const WaterRipples, const WorldTransform, Optional<const OceanState>,

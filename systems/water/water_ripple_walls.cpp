@@ -14,8 +14,9 @@ namespace limn {
 
 namespace {
 
-constexpr float kBulgeReach = 2.0f;  ///< of what a wall raises, in its half extents
-constexpr float kEdge = 4;           ///< share of an edge in the Laplacian, in sixths of a cell^-2
+constexpr float kBulgeReach =
+    2.0f;                   ///< extent of the water raised by a wall, relative to its half extents
+constexpr float kEdge = 4;  ///< weight of an edge in the Laplacian, in sixths of cell^-2
 constexpr float kCorner = 1;
 
 bool same(const PlacedWall& a, const PlacedWall& b) {
@@ -24,7 +25,7 @@ bool same(const PlacedWall& a, const PlacedWall& b) {
            && a.shape_from_water.row[2] == b.shape_from_water.row[2] && a.volume == b.volume;
 }
 
-/// How many of the first `count` walls, or of all, are the same as this one.
+/// Number of walls equal to this one among the first `count`, or among all.
 std::ptrdiff_t
 count_of(std::span<const PlacedWall> walls, const PlacedWall& wall, std::size_t count = SIZE_MAX) {
     const std::span<const PlacedWall> first = walls.first(std::min(count, walls.size()));
@@ -32,7 +33,7 @@ count_of(std::span<const PlacedWall> walls, const PlacedWall& wall, std::size_t 
         first.begin(), first.end(), [&](const PlacedWall& other) { return same(other, wall); });
 }
 
-/// Calls `each` with the walls of `these` that are not among `those`, equal ones one for one.
+/// Calls `each` with the multiset difference `these` - `those`.
 template <typename Each>
 void each_missing(
     std::span<const PlacedWall> these, std::span<const PlacedWall> those, Each&& each) {
@@ -43,8 +44,8 @@ void each_missing(
     }
 }
 
-/// How far from its middle a section counts, along the axes of the shape: 1, or half a cell's
-/// width so that no gap is left between the middles of cells.
+/// Half extents of the section along the axes of the shape: 1, or half a cell so that no gap is
+/// left between cell centers.
 Vec3 widened(const PlacedWall& wall, float cell) {
     Vec3 half(1);
     for (int i = 0; i < 3 && wall.shape == WallShape::Box; ++i) {
@@ -75,7 +76,7 @@ std::vector<std::uint8_t> dry_cells(const RippleState& state, std::span<const Pl
         const CellBox box = box_around(state, wall.center, wall.reach + 2 * state.cell);
         for (int z = box.first.y; z < box.last.y; ++z) {
             for (int x = box.first.x; x < box.last.x; ++x) {
-                if (is_in_wall(wall, half, middle_of(state, x, z))) {
+                if (is_in_wall(wall, half, cell_center(state, x, z))) {
                     dry[state.at(x, z)] = 1;
                     any = true;
                 }
@@ -88,7 +89,7 @@ std::vector<std::uint8_t> dry_cells(const RippleState& state, std::span<const Pl
     return dry;
 }
 
-/// body(x, z, place) for each cell that is water.
+/// Calls body(x, z, index) for each water cell.
 template <typename Body>
 void each_wet(const RippleState& state, Body&& body) {
     for (int z = 0; z < state.cells.y; ++z) {
@@ -100,15 +101,15 @@ void each_wet(const RippleState& state, Body&& body) {
     }
 }
 
-/// The cells around one that are on the grid, those at its edges first.
+/// Offsets to the neighbors of a cell, edge neighbors first.
 constexpr IVec2 kAround[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
 bool is_on_grid(const RippleState& state, const IVec2& cell) {
     return cell.x >= 0 && cell.y >= 0 && cell.x < state.cells.x && cell.y < state.cells.y;
 }
 
-/// How much two neighbors exchange. Beyond the grid there is a wall, or more water; `walls`: with
-/// those that stand in it.
+/// Weight of the exchange between two neighbors. Beyond the grid there is a wall or open water;
+/// `walls`: whether to include the walls in the field.
 float exchange(const RippleState& state, const IVec2& a, const IVec2& b, bool walls) {
     const auto wet = [&](const IVec2& cell) {
         return is_on_grid(state, cell) ? !(walls && is_dry(state, state.at(cell.x, cell.y)))
@@ -133,7 +134,7 @@ void make_faces(RippleState& state, std::span<const IVec2> dry) {
     if (state.dry.empty()) {
         return;
     }
-    std::vector<std::uint8_t> beside(state.dry.size());  // 1 of water beside a wall
+    std::vector<std::uint8_t> beside(state.dry.size());  // 1 for water cells next to a wall
     for (const IVec2& cell : dry) {
         for (const IVec2& to : kAround) {
             const std::size_t other = state.at(cell.x + to.x, cell.y + to.y);
@@ -163,14 +164,14 @@ void make_faces(RippleState& state, std::span<const IVec2> dry) {
     state.row.push_back(static_cast<std::uint32_t>(state.faces.size()));
 }
 
-/// Dry cells beside water repeat the mean of it, those behind them the mean of these. The next are
-/// made level after each sub-step, so that what the kernel does between dry cells goes no farther.
+/// Dry cells next to water copy its mean, those behind them the mean of these. The next layer is
+/// zeroed after each substep, so that the kernel's exchanges between dry cells spread no farther.
 void make_rims(RippleState& state, std::span<const IVec2> dry) {
-    state.rims.clear();
+    state.wall_cells.clear();
     if (state.dry.empty()) {
         return;
     }
-    std::vector<std::uint8_t> layer(state.dry.size(), 1);  // 1 water, 2 beside it ...; 0 inside
+    std::vector<std::uint8_t> layer(state.dry.size(), 1);  // 1 water, 2 next to it ...; 0 inside
     for (const IVec2& cell : dry) {
         layer[state.at(cell.x, cell.y)] = 0;
     }
@@ -184,7 +185,7 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
                 const IVec2 beside = cell + kAround[i];
                 const std::size_t other = state.at(beside.x, beside.y);
                 if (i == 4 && count > 0) {
-                    break;  // has one at an edge
+                    break;  // has edge neighbors
                 }
                 if (is_on_grid(state, beside) && layer[other] == now - 1) {
                     from[count++] = static_cast<std::uint32_t>(other);
@@ -194,9 +195,9 @@ void make_rims(RippleState& state, std::span<const IVec2> dry) {
                 continue;
             }
             layer[at] = now;
-            state.rims.push_back({place, place, 0});
+            state.wall_cells.push_back({place, place, 0});
             for (int i = 0; i < count && now < 4; ++i) {
-                state.rims.push_back({place, from[i], 1.0f / static_cast<float>(count)});
+                state.wall_cells.push_back({place, from[i], 1.0f / static_cast<float>(count)});
             }
         }
     }
@@ -219,9 +220,9 @@ void make_lists(RippleState& state, std::span<const IVec2> dry) {
     make_rims(state, dry);
 }
 
-/// Cells that have become dry lose their water, those that no longer are get it as high as beside
-/// them: the cells beside them share the difference, so that none is made or lost. In `field`,
-/// which has the heights of water between the walls of `was`.
+/// Empties cells that became dry and fills those that are no longer dry to the level of adjacent
+/// water; the adjacent cells share the difference, which conserves volume. `field` has heights for
+/// the dry cells `was`.
 void move_water(
     const RippleState& state, const std::vector<std::uint8_t>& was, std::vector<float>& field) {
     if (was == state.dry) {
@@ -253,23 +254,23 @@ void move_water(
     for (const std::size_t at : beside) {
         level += static_cast<double>(field[at]) / static_cast<double>(beside.size());
     }
-    double homeless = 0;
+    double excess = 0;
     for (const std::size_t at : comes) {
-        homeless += static_cast<double>(std::exchange(field[at], 0.0f));
+        excess += static_cast<double>(std::exchange(field[at], 0.0f));
     }
     for (const std::size_t at : goes) {
         field[at] = static_cast<float>(level);
-        homeless -= static_cast<double>(field[at]);
+        excess -= static_cast<double>(field[at]);
     }
     if (beside.empty()) {
         each_wet(state, [&](int, int, std::size_t at) { beside.push_back(at); });
     }
     for (const std::size_t at : beside) {
-        field[at] += static_cast<float>(homeless / static_cast<double>(beside.size()));
+        field[at] += static_cast<float>(excess / static_cast<double>(beside.size()));
     }
 }
 
-/// Raises the water about a wall by `share` of its volume, or all of it where there is none near.
+/// Raises the water around a wall by `share` of its volume; if there is none nearby, all water.
 void raise(RippleState& state, const PlacedWall& wall, float share) {
     const Vec2 radius = glm::max(kBulgeReach * wall.reach, Vec2(2.5f * state.cell));
     double weights = 0;
@@ -278,10 +279,10 @@ void raise(RippleState& state, const PlacedWall& wall, float share) {
     });
     const double volume = static_cast<double>(share * wall.volume);
     const double height = volume / (static_cast<double>(state.cell) * state.cell);
-    state.walled += volume;
+    state.wall_volume += volume;
     const auto lift = [&](std::size_t at, float by) {
         state.height[at] += by;
-        state.before[at] += by;
+        state.previous[at] += by;
     };
     if (!(weights > 0)) {
         const auto each = static_cast<float>(height / std::max(state.wet, 1));
@@ -294,11 +295,11 @@ void raise(RippleState& state, const PlacedWall& wall, float share) {
     });
 }
 
-/// Takes the rise of bodies back, for displace_ripples to make anew.
+/// Removes the displacement by bodies; displace_ripples adds it again.
 void lower_bodies(RippleState& state) {
     for (std::size_t i = 0; i < state.body.size(); ++i) {
         state.height[i] -= state.body[i];
-        state.before[i] -= state.body[i];
+        state.previous[i] -= state.body[i];
     }
     state.body.clear();
 }
@@ -315,7 +316,7 @@ std::optional<PlacedWall> place_wall(
     if (!std::isfinite(check) || shape.center.y > shape.reach.y) {
         return std::nullopt;
     }
-    // Of what reaches beyond the field, the share that is in it makes room.
+    // Only the fraction inside the field displaces water.
     float share = 1;
     for (const int axis : {0, 2}) {
         const float half = 0.5f * extent[axis / 2];
@@ -345,13 +346,13 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
         || (state.walls.size() == walls.size() && state.wall_border == border
             && std::equal(walls.begin(), walls.end(), state.walls.begin(), same))) {
         if (!state.dry.empty() && state.row.empty()) {
-            make_lists(state, cells_that_are_dry(state));  // it comes from a snapshot
+            make_lists(state, cells_that_are_dry(state));  // restored from a snapshot
         }
         return;
     }
     const double texel = static_cast<double>(state.cell) * state.cell;
     const double displaced =  // by bodies
-        state.wet > 0 ? state.level * texel * state.wet - state.walled : 0;
+        state.wet > 0 ? state.level * texel * state.wet - state.wall_volume : 0;
     lower_bodies(state);
     const std::vector<std::uint8_t> was = std::exchange(state.dry, dry_cells(state, walls));
     const std::int32_t were_wet = state.wet;
@@ -359,18 +360,18 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
     state.wet = state.cells.x * state.cells.y - static_cast<std::int32_t>(dry.size());
     state.wall_border = border;
     move_water(state, was, state.height);
-    move_water(state, was, state.before);
+    move_water(state, was, state.previous);
     if (state.steps > 0) {
         const std::vector<PlacedWall>& old = state.walls;
         each_missing(old, walls, [&](const PlacedWall& wall) { raise(state, wall, -1); });
         each_missing(walls, old, [&](const PlacedWall& wall) { raise(state, wall, 1); });
     }
-    state.level = state.wet > 0 ? (displaced + state.walled) / (texel * state.wet) : 0;
-    for (std::vector<float>* const field : {&state.height, &state.before}) {
+    state.level = state.wet > 0 ? (displaced + state.wall_volume) / (texel * state.wet) : 0;
+    for (std::vector<float>* const field : {&state.height, &state.previous}) {
         for (const IVec2& cell : dry) {
             (*field)[state.at(cell.x, cell.y)] = 0;
         }
-        if (were_wet == 0) {  // there was no water left to keep
+        if (were_wet == 0) {  // there was no water to conserve
             each_wet(state, [&](int, int, std::size_t at) {
                 (*field)[at] = static_cast<float>(state.level);
             });
@@ -378,26 +379,26 @@ void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, Rip
     }
     state.walls.assign(walls.begin(), walls.end());
     make_lists(state, dry);
-    fill_rims(state, state.height);
-    fill_rims(state, state.before);
+    fill_wall_cells(state, state.height);
+    fill_wall_cells(state, state.previous);
 }
 
-void close_faces(RippleState& state, std::size_t begin, std::size_t end, float factor) {
+void apply_wall_faces(RippleState& state, std::size_t begin, std::size_t end, float factor) {
     if (state.faces.empty()) {
         return;
     }
     const float* const height = state.height.data();
-    float* const next = state.before.data();
+    float* const next = state.previous.data();
     for (std::uint32_t i = state.row[begin]; i < state.row[end]; ++i) {
         const RippleLink& face = state.faces[i];
         next[face.at] += factor * face.weight * (height[face.other] - height[face.at]);
     }
 }
 
-void fill_rims(const RippleState& state, std::vector<float>& field) {
-    for (const RippleLink& rim : state.rims) {
-        field[rim.at] =
-            rim.weight > 0 ? field[rim.at] + rim.weight * field[rim.other] : 0.0f;  // 0 is first
+void fill_wall_cells(const RippleState& state, std::vector<float>& field) {
+    for (const RippleLink& rim : state.wall_cells) {
+        field[rim.at] = rim.weight > 0 ? field[rim.at] + rim.weight * field[rim.other]
+                                       : 0.0f;  // weight 0 comes first
     }
 }
 

@@ -8,38 +8,36 @@
 
 namespace limn {
 
-// Walls that stand in a ripple field.
+// Walls in a ripple field.
 //
-// A cell whose middle is in a wall's section with the rest surface is dry. Waves meet no cell
-// beyond: the Laplacian of nine points is the sum of what neighbors exchange, 4 over an edge and 1
-// over a corner, and a wall takes the exchanges with it away. Where two cells lie before a straight
-// wall, the corners behind it mirror theirs, so their edge carries 1 more. Each exchange is the
-// same for both, so walls keep the volume, and the sum of squares too: nothing grows, and nothing
-// is lost. The kernel knows none of it: what it did with cells of walls is taken back along them,
-// by a list that is made anew only when one has moved. Cells of walls repeat the water before them,
-// so that who asks or draws sees it level off at the wall.
+// A cell whose center is in a wall's section with the rest surface is dry. The nine-point Laplacian
+// is a sum of exchanges between neighbors, with weight 4 over an edge and 1 over a corner;
+// exchanges with dry cells are removed. Where two cells lie side by side at a straight wall, the
+// corners behind it are mirrored, so the weight of their common edge grows by 1. Exchanges are
+// symmetric, so walls conserve volume and energy. The kernel ignores walls: its exchanges with dry
+// cells are corrected afterwards by a list that is rebuilt only when a wall moves. Dry cells copy
+// the adjacent water, so that sampling and drawing see it level off at the wall.
 //
-// A wall thinner than a cell is as wide as keeps the water out; columns thinner than a cell may
-// stop nothing. Walls below the rest surface do nothing to waves. Steps of a cell are walls too:
-// a slanted one scatters ripples as short as cells.
+// Walls thinner than a cell are widened until they are tight; columns thinner than a cell may have
+// no effect. Walls below the rest surface do not affect waves. Slanted walls are staircases, which
+// scatter ripples with wavelengths near the cell size.
 
-/// What a wall at `world` is to a field of this extent with a bottom at `depth` (0: none); nothing
-/// if it is not in it, or nowhere.
+/// A wall at `world` in the space of a field of this extent with a bottom at `depth` (0: none);
+/// empty if outside the field or not finite.
 [[nodiscard]] std::optional<PlacedWall> place_wall(
     const WaterWall& wall, const Affine& world, const WaterFrame& frame, float depth,
     const Vec2& extent);
 
-/// Makes these its walls. What stands there before the first step was there before the water;
-/// later the water makes room as it does for bodies: what was in cells that are dry now runs to
-/// those beside them, and the volume of walls that have come is raised about them. After it
-/// displace_ripples has to raise bodies anew.
+/// Sets the walls of a field. Before the first step, walls displace nothing; later, they displace
+/// water like bodies: the content of newly dry cells moves to adjacent ones, and the volume of new
+/// walls is raised around them. displace_ripples must be called afterwards to raise bodies again.
 void set_ripple_walls(RippleState& state, std::span<const PlacedWall> walls, RippleBorder border);
 
-/// Adds to `next` of the rows begin .. end what `faces` change of a sub-step from `height`;
-/// `factor` is what the kernel multiplies the Laplacian with.
-void close_faces(RippleState& state, std::size_t begin, std::size_t end, float factor);
+/// Adds the wall corrections `faces` of a substep from `height` to the next heights (in `before`)
+/// of the rows begin .. end; `factor` is the kernel's factor on the Laplacian.
+void apply_wall_faces(RippleState& state, std::size_t begin, std::size_t end, float factor);
 
-/// Cells of walls in `field` repeat the water before them.
-void fill_rims(const RippleState& state, std::vector<float>& field);
+/// Makes wall cells in `field` copy the adjacent water.
+void fill_wall_cells(const RippleState& state, std::vector<float>& field);
 
 }  // namespace limn

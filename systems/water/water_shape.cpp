@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-/// Share of a ball's volume that is below a plane at `share` of its height.
+/// Fraction of a ball's volume below a plane at the fraction `share` of its height.
 float cap_volume(float share) {
     return share * share * (3 - 2 * share);
 }
@@ -36,7 +36,7 @@ WaterShape place_shape(
     placed.center = frame.local(transform_point(world, offset));
     for (int i = 0; i < 3; ++i) {
         const Vec3 axis(world.row[0][i], world.row[1][i], world.row[2][i]);
-        placed.axes[i] = frame.turned_in(axis) * half[i];
+        placed.axes[i] = frame.direction_to_local(axis) * half[i];
     }
     for (int i = 0; i < 3; ++i) {
         const Vec3 along = glm::abs(Vec3(placed.axes[0][i], placed.axes[1][i], placed.axes[2][i]));

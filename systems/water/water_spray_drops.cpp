@@ -9,17 +9,17 @@ namespace limn {
 
 namespace {
 
-constexpr float kNearCrest = 0.3f;      ///< phase from the crest in which drops begin [rad]
-constexpr float kMostDrops = 10000.0f;  ///< of a wave in a step
+constexpr float kNearCrest = 0.3f;     ///< largest phase offset from the crest [rad]
+constexpr float kMaxDrops = 10000.0f;  ///< per wave and step
 
-/// Phase at a place of the line, and at its crest if it leans: p - lean max(0, sin p).
+/// Phase of a line at a rest position; leaned(): with forward lean, p - lean max(0, sin p).
 float phase_at(const WaveLine& line, const Vec2& rest) {
     return line.k.x * rest.x + line.k.y * rest.y + line.phase;
 }
 float leaned(const WaveLine& line, float phase) {
     return phase - line.lean * std::max(0.0f, std::sin(phase));
 }
-/// The phase that leans to `wanted`, which is about a crest.
+/// Inverse of leaned() near a crest, by Newton's method.
 float unleaned(const WaveLine& line, float wanted) {
     float phase = wanted;
     for (int i = 0; i < 8; ++i) {
@@ -28,7 +28,7 @@ float unleaned(const WaveLine& line, float wanted) {
     return phase;
 }
 
-/// In -pi .. pi.
+/// Wrapped to -pi .. pi.
 float wrapped(float phase) {
     return phase - 2 * kPi * std::round(phase / (2 * kPi));
 }
@@ -37,7 +37,7 @@ Vec3 direction_of(const WaveLine& line) {
     return normalize_or({line.k.x, 0, line.k.y}, Vec3(0));
 }
 
-/// Within `angle` of unit `axis`, all directions alike.
+/// Uniformly distributed direction within `angle` of unit `axis`.
 Vec3 draw_direction(const Vec3& axis, float angle, Random& random) {
     const float cosine = 1 - random.uniform() * (1 - std::cos(std::clamp(angle, 0.0f, kPi)));
     const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
@@ -51,9 +51,9 @@ float draw_speed(float mean, float spread, Random& random) {
     return std::max(mean * (1 + spread * random.normal()), 0.0f);
 }
 
-/// As many as `expected` in the mean.
+/// Random count with the mean `expected`.
 int draw_count(float expected, Random& random) {
-    return expected > 0 ? static_cast<int>(std::min(expected, kMostDrops) + random.uniform()) : 0;
+    return expected > 0 ? static_cast<int>(std::min(expected, kMaxDrops) + random.uniform()) : 0;
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ void spray_crests(
             continue;
         }
         const float k2 = glm::dot(line.k, line.k);
-        const Vec3 along = surface.frame.turned_out(direction_of(line));
+        const Vec3 along = surface.frame.direction_to_world(direction_of(line));
         const int count = draw_count(source.rate * step, random);
         for (int i = 0; i < count; ++i) {
             const float x = random.uniform(-0.5f, 0.5f);
@@ -115,13 +115,14 @@ void spray_impact(
     if (surface.waves == nullptr) {
         return;
     }
-    // The wave that brings most water against the wall.
+    // The wave with the largest orbital speed toward the wall.
     const WaveLine* strongest = nullptr;
-    float most = 1e-4f;
+    float max_speed = 1e-4f;
     for (const WaveLine& line : surface.waves->lines) {
-        const float against = -glm::dot(surface.frame.turned_out(direction_of(line)), normal);
-        if (orbital_speed(line) * against > most) {
-            most = orbital_speed(line) * against;
+        const float against =
+            -glm::dot(surface.frame.direction_to_world(direction_of(line)), normal);
+        if (orbital_speed(line) * against > max_speed) {
+            max_speed = orbital_speed(line) * against;
             strongest = &line;
         }
     }
@@ -130,7 +131,7 @@ void spray_impact(
         return;
     }
     const float phase = wrapped(leaned(*strongest, phase_at(*strongest, top.rest)) - 0.5f * kPi);
-    const Vec3 along = surface.frame.turned_out(direction_of(*strongest));
+    const Vec3 along = surface.frame.direction_to_world(direction_of(*strongest));
     const Vec3 back = along - 2 * glm::dot(along, normal) * normal;
     const int count = draw_count(obstacle.rate * impact_share(phase) * step, random);
     for (int i = 0; i < count; ++i) {

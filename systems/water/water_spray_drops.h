@@ -8,30 +8,31 @@
 
 namespace limn {
 
-// Where water sprays (water.crest-spray, water.impact-spray): of the lines of a WaveTable, whose
-// crests are known. At a crest water moves with Q = pi H C / L along the wave, H its height, L its
-// length, C its speed; it would overtake the wave at H / L = 1 / pi, the steepness of cusps, but
-// waves break from 0.1 on (Peachey 1986).
+// Spray emission (water.crest-spray, water.impact-spray) from the straight-crested waves of a
+// WaveTable, whose crest positions are known. At a crest, water moves along the wave with the speed
+// Q = pi H C / L, where H is the height, L the length and C the speed of the wave. It would
+// overtake the wave at H / L = 1 / pi, the steepness of cusps, but waves break from 0.1 on (Peachey
+// 1986).
 
-/// Q [m/s].
+/// Orbital speed Q [m/s].
 [[nodiscard]] float orbital_speed(float height, float length, float speed);
-/// Of a line.
+/// The same for a wave line.
 [[nodiscard]] float orbital_speed(const WaveLine& line);
-/// H / L.
+/// H / L of a wave line.
 [[nodiscard]] float steepness(const WaveLine& line);
 
-/// Adds the drops that fly in a step from crests of waves steeper than `source` says: from random
-/// places within 5 % of the crest's height, at about Q along the wave.
+/// Adds the drops emitted in a step from crests of waves steeper than `source.steepness`: at random
+/// positions within 5 % of the crest's height, with about the speed Q along the wave.
 void spray_crests(
     const WaterSurface& surface, const SpraySource& source, float step, Random& random,
     std::vector<SprayDrop>& drops);
 
-/// Share of the most spray while the wave is `phase` [rad] away from its crest: cos^4, 0 from a
-/// quarter of a wave on.
+/// Emission relative to its maximum at the phase offset `phase` [rad] from the crest: cos^4, 0
+/// beyond a quarter wave.
 [[nodiscard]] float impact_share(float phase);
 
-/// Adds the drops that fly in a step from where the strongest wave hits a wall at `point`: at about
-/// Q, in a cone about the way that it would be thrown back. `normal` is unit.
+/// Adds the drops emitted in a step where the strongest wave hits a wall at `point`: with about the
+/// speed Q, in a cone about the reflected direction. `normal` is unit.
 void spray_impact(
     const WaterSurface& surface, const SprayObstacle& obstacle, const Vec3& point,
     const Vec3& normal, float step, Random& random, std::vector<SprayDrop>& drops);

@@ -9,7 +9,7 @@ namespace limn {
 
 namespace {
 
-constexpr float kReach = 3.0f;  ///< of water up or down an obstacle [m]
+constexpr float kReach = 3.0f;  ///< largest height of the surface above or below an obstacle [m]
 
 }  // namespace
 
@@ -23,27 +23,22 @@ void add_spray_drops(
 }
 
 void update_spray(
-    Query<
-        const Water, const WorldTransform, const WaveTable, Optional<const OceanState>,
-        Optional<const RippleState>, Optional<const SpraySource>, Optional<SprayDrops>>
-        waters,
+    WaterQuery waters, Query<const SpraySource, SprayDrops> sources,
     Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
     Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const auto random_of = [&](Entity entity) {
         return Random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
     };
-    std::vector<WaterSurface> surfaces;
-    waters.each([&](Entity entity, const Water& water, const WorldTransform& place,
-                    const WaveTable& waves, const OceanState* ocean, const RippleState* ripples,
-                    const SpraySource* source, SprayDrops* drops) {
-        const WaterSurface surface = {water_frame(place.world), water, ocean, &waves, ripples};
-        surfaces.push_back(surface);
-        if (source != nullptr && drops != nullptr) {
+    std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
+    std::erase_if(surfaces, [](const WaterSurface& one) { return one.waves == nullptr; });
+    for (const WaterSurface& surface : surfaces) {
+        if (auto* const drops = sources.find<SprayDrops>(surface.entity)) {
             drops->drops.clear();
-            Random random = random_of(entity);
-            spray_crests(surface, *source, time->step, random, drops->drops);
+            Random random = random_of(surface.entity);
+            const auto& source = *sources.find<const SpraySource>(surface.entity);
+            spray_crests(surface, source, time->step, random, drops->drops);
         }
-    });
+    }
     obstacles.each([&](Entity entity, const SprayObstacle& obstacle, const WorldTransform& place,
                        SprayDrops& drops) {
         drops.drops.clear();

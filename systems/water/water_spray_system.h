@@ -1,31 +1,24 @@
 #pragma once
 
 #include "ecs/commands.h"
-#include "ecs/components/ocean.h"
 #include "ecs/components/time.h"
-#include "ecs/components/transform.h"
-#include "ecs/components/water.h"
-#include "ecs/components/water_ripples.h"
 #include "ecs/components/water_spray.h"
-#include "ecs/components/water_waves.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/water/water_query.h"
 
 namespace limn {
 
-/// Gives SprayDrops to all that sprays. Before update_spray, with a sync point between.
+/// Adds SprayDrops to every spray source and obstacle that lacks them. Before update_spray, with a
+/// sync point in between.
 void add_spray_drops(
     Query<const SpraySource, Without<SprayDrops>> sources,
     Query<const SprayObstacle, Without<SprayDrops>, Without<SpraySource>> obstacles,
     Commands commands);
 
-/// The drops that begin in this step, of crests and of waves that hit obstacles. After
-/// fill_wave_tables.
+/// Emits the drops of this step at crests and at obstacles hit by waves. After fill_wave_tables.
 void update_spray(
-    Query<
-        const Water, const WorldTransform, const WaveTable, Optional<const OceanState>,
-        Optional<const RippleState>, Optional<const SpraySource>, Optional<SprayDrops>>
-        waters,
+    WaterQuery waters, Query<const SpraySource, SprayDrops> sources,
     Query<const SprayObstacle, const WorldTransform, SprayDrops, Without<SpraySource>> obstacles,
     Res<const RandomSeed> seed, Res<const FrameTime> time);
 

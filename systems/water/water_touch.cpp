@@ -13,11 +13,11 @@ namespace limn {
 
 namespace {
 
-constexpr float kBulgeReach = 1.5f;  ///< of the bulge, in half extents of the body
+constexpr float kBulgeReach = 1.5f;  ///< of the bulge, relative to the body's half extents
 constexpr float kUnitBall = 4.0f / 3.0f * kPi;
-constexpr float kThinnest = 1e-4f;  ///< half extent of a part [m]
+constexpr float kMinHalfExtent = 1e-4f;  ///< half extent of a part [m]
 
-/// What its triangles enclose, if they are closed and face outward [m^3].
+/// Volume enclosed by its triangles, if closed and facing outward [m^3].
 double enclosed_volume(const MeshData& mesh) {
     double sum = 0;
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -31,7 +31,7 @@ double enclosed_volume(const MeshData& mesh) {
     return sum;
 }
 
-/// The joint that moves a vertex most; -1: none.
+/// The joint with the largest weight at a vertex; -1: none.
 int main_joint(const SkinWeights& weights, std::size_t vertex) {
     int joint = -1;
     float most = 0;
@@ -64,7 +64,7 @@ TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin) {
     TouchParts parts;
     double held = 0;
     for (const auto& [joint, box] : boxes) {
-        const Vec3 half = glm::max(half_extent(box), Vec3(kThinnest));
+        const Vec3 half = glm::max(half_extent(box), Vec3(kMinHalfExtent));
         if (!std::isfinite(glm::dot(half + glm::abs(center(box)), Vec3(1)))) {
             continue;
         }
@@ -72,7 +72,7 @@ TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin) {
         held += static_cast<double>(kUnitBall * half.x * half.y * half.z);
     }
     const double volume = enclosed_volume(mesh);
-    // No more than the boxes, which hold 6 / pi of their ellipsoids.
+    // At most the volume of the boxes, which is 6 / pi times that of their ellipsoids.
     const bool closed = volume > 1e-3 * held && volume < 2 * held;
     parts.fill = closed ? static_cast<float>(volume / held) : 1.0f;
     return parts;
@@ -140,7 +140,7 @@ WaterBulge bulge_of(
     WaterBulge bulge;
     bulge.center = {shape.center.x, shape.center.z};
     bulge.radius = kBulgeReach * Vec2(shape.reach.x, shape.reach.z);
-    // A place that is not finite is over nothing.
+    // Also rejects positions that are not finite.
     const bool over = std::abs(bulge.center.x) <= 0.5f * extent.x
                       && std::abs(bulge.center.y) <= 0.5f * extent.y
                       && std::isfinite(shape.center.y);
@@ -149,7 +149,7 @@ WaterBulge bulge_of(
     }
     if (surface.ocean != nullptr || surface.waves != nullptr) {
         WaterSurface calm = surface;
-        calm.shortest = 2 * std::max(shape.reach.x, shape.reach.z);
+        calm.min_wavelength = 2 * std::max(shape.reach.x, shape.reach.z);
         const Vec3 middle = frame.world(shape.center);
         const WaterPoint top = sample_water(calm, {middle.x, middle.z});
         level += top.is_water ? top.position.y - frame.origin.y : 0.0f;

@@ -14,45 +14,45 @@
 
 namespace limn {
 
-// What touches the water, as shapes, and what each of them pushes up.
+// Shapes of bodies in water, and the water that each displaces.
 //
-// A body is under water as far as it is below the surface that sea and waves make there, and that
-// all bodies together have raised: so a boat that rides a swell pushes no rings, and a pool rises
-// by what Archimedes says of its level now, not of its level at rest. Its own ripples do not count:
-// they are what it makes, and if they did, its hill would push it under and raise the hill. Waves
-// shorter than the body do not either; they are as often above as below.
+// Submersion is measured against the surface of ocean and waves, raised by the displacement of all
+// bodies: so a boat that rides a swell emits no rings, and a pool rises according to its current
+// level. Ripples are excluded to avoid feedback: a body's own bulge would submerge it and grow.
+// Waves shorter than the body are excluded as well, since they average out.
 //
-// A body with a mesh (TouchShape::Mesh) is an ellipsoid in the bounds of the vertices that each
-// joint moves most, where the pose has the joint. All together they displace what the mesh
-// encloses; one that is open, or inside out, as much as the ellipsoids hold.
+// A mesh (TouchShape::Mesh) is approximated by one ellipsoid per joint, fitted to the bounds of the
+// vertices that the joint influences most, and moved by the pose. Their total displacement is
+// scaled to the volume of the mesh; if it is open or inside out, the volume of the ellipsoids is
+// used.
 
-/// A shape in the world; `half` and `offset` in a space that is at `world`.
+/// A shape in world space; `half` and `offset` are in the local space given by `world`.
 struct TouchingShape {
     WallShape shape = WallShape::Ball;
     Vec3 half = {0, 0, 0};
     Vec3 offset = {0, 0, 0};
     Affine world;
-    float fill = 1;  ///< share of its volume that displaces water
+    float fill = 1;  ///< fraction of its volume that displaces water
 };
 
-/// The ellipsoids of a mesh, by the joints of its skin or, without one, by its bounds.
+/// Ellipsoids of a mesh, one per joint of its skin or, without one, for its bounds.
 [[nodiscard]] TouchParts make_touch_parts(const MeshData& mesh, const SkinData* skin);
 
-/// Gives TouchParts to what touches with its mesh, and others when it has another mesh or skin.
-/// Before update_water_ripples, with a sync point between.
+/// Adds TouchParts to bodies of shape Mesh, and replaces them when mesh or skin changes. Before
+/// update_water_ripples, with a sync point in between.
 void add_touch_parts(
     Query<const WaterTouch, const MeshInstance, Optional<const Deformed>, Optional<TouchParts>>
         bodies,
     Res<const Assets> assets, Commands commands);
 
-/// Adds the shapes of one body to `shapes`. `parts`: of a mesh, or nullptr; the joints of a mesh
-/// without pose or skin are at rest.
+/// Appends the shapes of one body to `shapes`. `parts` are those of a mesh, or nullptr; without
+/// pose or skin, joints are at rest.
 void add_touching_shapes(
     const WaterTouch& touch, const Affine& world, const TouchParts* parts, const SkinData* skin,
     const Pose* pose, std::vector<TouchingShape>& shapes);
 
-/// What `shape` pushes up in water whose surface, without ripples, is `surface`, `level` [m]
-/// higher. Nothing where its middle is not over a field of this extent.
+/// Displacement of `shape` in water whose surface, without ripples, is `surface` raised by `level`
+/// [m]. Empty if its center is not over a field of this extent.
 [[nodiscard]] WaterBulge
 bulge_of(const TouchingShape& shape, const WaterSurface& surface, float level, const Vec2& extent);
 

@@ -13,14 +13,14 @@ namespace limn {
 
 namespace {
 
-constexpr float kAbove = 3.0f;           ///< above or below the water at rest, at most [m]
-constexpr float kJump = 100.0f;          ///< speed beyond which it has jumped [m/s]
-constexpr float kLeastSpeed = 0.2f;      ///< below which there is no wake [m/s]
-constexpr float kLifetime = 3.0f;        ///< of a ring, in decays
-constexpr std::size_t kMostRings = 256;  ///< of a water
-constexpr int kMostAStep = 16;
+constexpr float kAbove = 3.0f;          ///< largest distance above or below the rest surface [m]
+constexpr float kJump = 100.0f;         ///< speed above which motion counts as a teleport [m/s]
+constexpr float kMinSpeed = 0.2f;       ///< below which there is no wake [m/s]
+constexpr float kLifetime = 3.0f;       ///< of a ring, in time constants of its decay
+constexpr std::size_t kMaxRings = 256;  ///< per body of water
+constexpr int kMaxRingsPerStep = 16;
 
-/// A ring that began at `at` of the world some time ago.
+/// Adds a ring of this age at `at` in the world.
 void add_ring(
     const WakeEmitter& wake, const Vec2& at, float speed, float age,
     Query<const Water, const WorldTransform, WaterWaves> waters, float height) {
@@ -28,7 +28,7 @@ void add_ring(
         const WaterFrame frame = water_frame(place.world);
         const Vec3 local = frame.local({at.x, height, at.y});
         if (!is_inside(water, {local.x, local.z}) || std::abs(local.y) > kAbove
-            || waves.packets.size() >= kMostRings) {
+            || waves.packets.size() >= kMaxRings) {
             return;
         }
         waves.packets.push_back(
@@ -48,27 +48,32 @@ float kelvin_length(float speed) {
     return 2 * kPi * square(speed / 3) / static_cast<float>(kGravity);
 }
 
+void add_wake_states(Query<const WakeEmitter, Without<WakeState>> emitters, Commands commands) {
+    emitters.each([&](Entity entity, const WakeEmitter&) { commands.add(entity, WakeState{}); });
+}
+
 void emit_wakes(
-    Query<WakeEmitter, const WorldTransform> emitters,
+    Query<const WakeEmitter, WakeState, const WorldTransform> emitters,
     Query<const Water, const WorldTransform, WaterWaves> waters, Res<const FrameTime> time) {
-    emitters.each([&](WakeEmitter& wake, const WorldTransform& place) {
+    emitters.each([&](const WakeEmitter& wake, WakeState& state, const WorldTransform& place) {
         const Affine& world = place.world;
         const Vec2 now = {world.row[0].w, world.row[2].w};
-        const Vec2 before = std::exchange(wake.before, now);
+        const Vec2 before = std::exchange(state.previous, now);
         const float speed = glm::distance(now, before) / time->step;
-        if (!wake.started || !(speed < kJump) || !(wake.spacing > 0)) {
-            wake.started = std::isfinite(now.x + now.y);
-            wake.last = now;
+        if (!state.started || !(speed < kJump) || !(wake.spacing > 0)) {
+            state.started = std::isfinite(now.x + now.y);
+            state.last_ring = now;
             return;
         }
-        if (speed < kLeastSpeed) {
+        if (speed < kMinSpeed) {
             return;
         }
-        // One where each `spacing` was full, as old as it is since.
-        for (int i = 0; i < kMostAStep && glm::distance(now, wake.last) >= wake.spacing; ++i) {
-            wake.last += glm::normalize(now - wake.last) * wake.spacing;
-            const float age = glm::distance(now, wake.last) / speed;
-            add_ring(wake, wake.last, speed, age, waters, world.row[1].w);
+        // One ring per `spacing` traveled, with the time since then as its age.
+        for (int i = 0; i < kMaxRingsPerStep && glm::distance(now, state.last_ring) >= wake.spacing;
+             ++i) {
+            state.last_ring += glm::normalize(now - state.last_ring) * wake.spacing;
+            const float age = glm::distance(now, state.last_ring) / speed;
+            add_ring(wake, state.last_ring, speed, age, waters, world.row[1].w);
         }
     });
 }

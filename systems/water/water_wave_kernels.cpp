@@ -12,7 +12,7 @@
 #define LIMN_WATER_WAVE_CONSTANTS
 namespace limn::waves {
 
-// A half turn in three parts, the first two of which have few bits (Cody and Waite 1980).
+// Pi in three parts, the first two with few bits, for range reduction (Cody and Waite 1980).
 inline constexpr float kOverPi = 0.318309886183790672f;
 inline constexpr float kPi0 = 3.140625f;
 inline constexpr float kPi1 = 0.0009670257568359375f;
@@ -77,7 +77,7 @@ HWY_INLINE SinCos sin_cos(V angle) {
         hn::Mul(sign, hn::Add(hn::Set(d, 1.0f), hn::Mul(x2, c)))};
 }
 
-/// Returns how many points it has done, from the first on; the rest is for the scalar version.
+/// Returns the number of points processed; the scalar version handles the remainder.
 std::size_t sum_waves_vector(
     std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets) {

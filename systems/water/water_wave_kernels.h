@@ -6,21 +6,21 @@
 
 namespace limn {
 
-// The inner loop of waves of closed form. It comes twice: with the widest vectors of the machine
-// (Highway, chosen at run time) and as plain C++, `_scalar`, which also does the last few points.
-// Both do the same operations in the same order, without fused multiply-add and without libm, so
-// they give the same bits, on every machine.
+// The inner loop of closed-form waves: a SIMD version for the machine's widest vectors (Highway,
+// dispatched at run time) and a plain C++ one, `_scalar`, which also handles the remainder. Both
+// perform the same operations in the same order, without fused multiply-add and libm, so results
+// are bit-identical on every machine.
 
-/// Where points go [m].
+/// Displacements of points [m].
 struct WaveOffsets {
     std::span<float> x;
     std::span<float> height;
     std::span<float> z;
 };
 
-/// The offsets of the points (x, z), in the water's own space, by all lines; rings are not among
-/// them. Off by 1e-6 of the sum of amplitudes within 1e4 waves of the origin. All spans have one
-/// length.
+/// Displacements of the points (x, z), in the water's local space, by all lines, without rings.
+/// Error 1e-6 of the sum of amplitudes within 1e4 wavelengths of the origin. All spans have the
+/// same length.
 void sum_waves(
     std::span<const WaveLine> lines, std::span<const float> x, std::span<const float> z,
     const WaveOffsets& offsets);

@@ -10,15 +10,15 @@
 
 namespace limn {
 
-/// Gives a WaveTable to every Water with WaterWaves that lacks one. Before update_water_waves, with
-/// a sync point between.
+/// Adds a WaveTable to every Water with WaterWaves that lacks one. Before fill_wave_tables, with a
+/// sync point in between.
 void add_wave_tables(
     Query<const Water, const WaterWaves, Without<WaveTable>> bare, Commands commands);
 
-/// Ages packets, and takes away those that have ended.
+/// Ages wave packets and removes expired ones.
 void age_wave_packets(Query<WaterWaves> waters, Res<const FrameTime> time);
 
-/// Fills the tables for the end of the step.
+/// Fills the tables for the time at the end of the step.
 void fill_wave_tables(
     Query<const Water, const WaterWaves, WaveTable, Optional<const WaterDetail>> waters,
     Res<const FrameTime> time);

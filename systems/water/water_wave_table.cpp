@@ -13,16 +13,16 @@ namespace limn {
 namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
-constexpr std::uint32_t kMostWaves = 256;  ///< of a group
-constexpr float kMostLean = 0.99f;
+constexpr std::uint32_t kMaxWaves = 256;  ///< of a group
+constexpr float kMaxLean = 0.99f;
 
-/// Depth for the speed of waves: 0 means deep.
+/// Depth for wave speeds; 0 becomes infinite.
 double depth_of(const Water& water) {
     return water.depth > 0 ? static_cast<double>(water.depth)
                            : std::numeric_limits<double>::infinity();
 }
 
-/// In -pi .. pi.
+/// Wrapped to -pi .. pi.
 float wrapped(double angle) {
     return static_cast<float>(angle - std::round(angle / kTurn) * kTurn);
 }
@@ -43,7 +43,7 @@ void add_line(const WaterWave& wave, double depth, double time, WaveTable& table
     line.side = std::max(wave.sharpness, 0.0f) * wave.amplitude * along;
     line.phase = wrapped(static_cast<double>(wave.phase) - frequency * time);
     line.amplitude = wave.amplitude;
-    line.lean = std::clamp(wave.lean, 0.0f, kMostLean);
+    line.lean = std::clamp(wave.lean, 0.0f, kMaxLean);
     line.frequency = static_cast<float>(frequency);
     table.lines.push_back(line);
 }
@@ -60,7 +60,7 @@ void add_ring(const RadialWave& wave, double depth, double time, WaveTable& tabl
          .phase = wrapped(static_cast<double>(wave.phase) + frequency * time),
          .amplitude = wave.amplitude,
          .frequency = static_cast<float>(frequency),
-         .full = wave.full,
+         .fade_radius = wave.fade_radius,
          .first = 0,
          .last = std::numeric_limits<float>::infinity()});
 }
@@ -87,7 +87,7 @@ void add_packet(const WavePacket& packet, double depth, WaveTable& table) {
          .smooth = packet.smooth});
 }
 
-/// sin^2 over the ring, and its derivative by r.
+/// sin^2 envelope of a ring, and its derivative by r.
 struct Window {
     float share = 1;
     float slope = 0;
@@ -108,7 +108,8 @@ WavePoint evaluate_line(const WaveLine& line, const Vec2& at) {
     const float leaning = sine > 0 ? line.lean : 0.0f;
     const float moved = phase - leaning * sine;
     const float height = line.amplitude * std::sin(moved);
-    const float rise = line.amplitude * std::cos(moved) * (1 - leaning * cosine);  // by phase
+    const float rise =
+        line.amplitude * std::cos(moved) * (1 - leaning * cosine);  // derivative by phase
     const Vec3 by_phase = {-line.side.x * sine, rise, -line.side.y * sine};
     WavePoint point;
     point.offset = {line.side.x * cosine, height, line.side.y * cosine};
@@ -126,12 +127,12 @@ WavePoint evaluate_ring(const WaveRing& ring, const Vec2& at) {
     }
     const float phase = ring.k * r + ring.phase;
     const Window window = window_at(ring, r);
-    const bool fades = ring.full > 0 && r > ring.full;
-    const float fade = fades ? std::sqrt(ring.full / r) : 1.0f;
+    const bool fades = ring.fade_radius > 0 && r > ring.fade_radius;
+    const float fade = fades ? std::sqrt(ring.fade_radius / r) : 1.0f;
     const float amplitude = ring.amplitude * fade;
     const float sine = std::sin(phase);
     const float cosine = std::cos(phase);
-    const float fade_slope = fades ? -0.5f / r : 0.0f;  // of the logarithm
+    const float fade_slope = fades ? -0.5f / r : 0.0f;  // logarithmic derivative
     const float by_r =
         amplitude
         * (ring.k * cosine * window.share + sine * window.slope + sine * window.share * fade_slope);
@@ -157,10 +158,10 @@ WavePoint& WavePoint::operator+=(const WavePoint& other) {
     return *this;
 }
 
-std::vector<WaterWave> draw_waves(const WaveGroup& group) {
+std::vector<WaterWave> generate_waves(const WaveGroup& group) {
     std::vector<WaterWave> waves;
     Random random(group.seed, 0, name_hash("draw_waves"), 0);
-    for (std::uint32_t i = 0; i < std::min(group.count, kMostWaves); ++i) {
+    for (std::uint32_t i = 0; i < std::min(group.count, kMaxWaves); ++i) {
         WaterWave wave;
         wave.amplitude = random.uniform(group.amplitude.x, group.amplitude.y);
         wave.length = random.uniform(group.length.x, group.length.y);
@@ -180,11 +181,11 @@ void fill_wave_table(const Water& water, const WaterWaves& waves, double time, W
         add_line(wave, depth, time, table);
     }
     for (const WaveGroup& group : waves.groups) {
-        for (const WaterWave& wave : draw_waves(group)) {
+        for (const WaterWave& wave : generate_waves(group)) {
             add_line(wave, depth, time, table);
         }
     }
-    // Crests fold over where the sum of B |k| exceeds 1.
+    // Crests fold over if the sum of B |k| exceeds 1.
     float sum = 0;
     for (const WaveLine& line : table.lines) {
         sum += glm::length(line.side) * glm::length(line.k);
@@ -227,7 +228,7 @@ WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest)
     WavePoint sum;
     for (const WaveLine& line : table.lines) {
         if (too_short(glm::length(line.k))) {
-            break;  // as are all that follow
+            break;  // all others are shorter still
         }
         sum += evaluate_line(line, at);
     }

@@ -8,32 +8,31 @@
 
 namespace limn {
 
-// What the waves of a WaveTable do to the water.
+// Creation and evaluation of a WaveTable.
 
-/// What waves do to the water at rest at one point.
+/// Displacement of a rest point by waves, with derivatives.
 struct WavePoint {
     Vec3 offset = {0, 0, 0};    ///< [m]
-    Vec3 by_x = {0, 0, 0};      ///< of the offset, d / dx
+    Vec3 by_x = {0, 0, 0};      ///< derivative of the offset, d / dx
     Vec3 by_z = {0, 0, 0};      ///< d / dz
     Vec3 velocity = {0, 0, 0};  ///< d / dt [m/s]
 
     WavePoint& operator+=(const WavePoint& other);
 };
 
-/// The waves that a group draws; the same for the same group.
-[[nodiscard]] std::vector<WaterWave> draw_waves(const WaveGroup& group);
+/// Random waves of a group; deterministic.
+[[nodiscard]] std::vector<WaterWave> generate_waves(const WaveGroup& group);
 
-/// The table at `time` [s] of all that `waves` has. Depth and gravity say how fast they run
-/// (water_dispersion.h). Where all together would fold crests over, sum Q A k > 1, all are blunter.
-/// Waves without length, or with numbers that are not finite, are left out. Keeps the table's
-/// memory.
+/// Table of all waves of `waves` at `time` [s]. Wave speeds follow from depth and gravity
+/// (water_dispersion.h). If crests would fold over, sum Q A k > 1, all sharpnesses are reduced.
+/// Waves without length or with numbers that are not finite are skipped. Reuses the table's memory.
 void fill_wave_table(const Water& water, const WaterWaves& waves, double time, WaveTable& table);
 
-/// Turns and stretches the waves that are drawn into a texture (WaterDetail::split) a little, so
-/// that all fit into its tile a whole number of times. They run as fast as before.
+/// Slightly rotates and stretches the waves that are rendered into a texture (WaterDetail::split),
+/// so that a whole number of each fits its tile. Their frequencies are unchanged.
 void snap_waves(const WaterDetail& detail, WaveTable& table);
 
-/// Of all waves of at least the length `shortest` [m] at (x, z) in the water's own space.
+/// Sum of all waves with lengths >= `shortest` [m] at (x, z) in the water's local space.
 [[nodiscard]] WavePoint evaluate_waves(const WaveTable& table, const Vec2& at, float shortest = 0);
 
 }  // namespace limn

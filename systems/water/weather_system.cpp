@@ -1,11 +1,5 @@
 #include "systems/water/weather_system.h"
 
-#include "ecs/components/ocean.h"
-#include "ecs/components/ripple.h"
-#include "ecs/components/time.h"
-#include "ecs/components/water_ripples.h"
-#include "ecs/world.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,52 +7,54 @@
 namespace limn {
 namespace {
 
-constexpr float kWindPace = 1.0f;   // [m/s^2]; all by eye
-constexpr float kTurnPace = 0.25f;  // [rad/s]
-// From one drawing of the spectra to the next: it costs some 30 ms.
+constexpr float kWindRate = 1.0f;   // [m/s^2]; all by eye
+constexpr float kTurnRate = 0.25f;  // [rad/s]
+// Steps between regenerations of the spectra, which cost some 30 ms.
 constexpr std::uint64_t kSpectrumSteps = 4;
-constexpr float kRainPace = 0.35f;  // [1/s]
-constexpr float kDrops = 14.0f;     // that a downpour lets fall [1/(m^2 s)]
-constexpr float kWetLens = 0.45f;   // of LensRain::amount
+constexpr float kRainRate = 0.35f;  // [1/s]
+constexpr float kDrops = 14.0f;     // drops of a downpour [1/(m^2 s)]
+constexpr float kWetLens = 0.45f;   // LensRain::amount in a downpour
 
 }  // namespace
 
-Weather turn_weather(const Weather& weather, const Vec3& turn, float step) {
+Weather adjust_weather(const Weather& weather, const Vec3& turn, float step) {
     Weather turned = weather;
     turned.wind_speed = std::clamp(
-        turned.wind_speed + turn.y * kWindPace * step, 0.0f,
-        std::max(turned.wind_speed, kStrongestWind));
+        turned.wind_speed + turn.y * kWindRate * step, 0.0f,
+        std::max(turned.wind_speed, kMaxWindSpeed));
     turned.wind_direction =
-        std::remainder(turned.wind_direction + turn.x * kTurnPace * step, 2 * kPi);
-    turned.rain = std::clamp(turned.rain + turn.z * kRainPace * step, 0.0f, 1.0f);
+        std::remainder(turned.wind_direction + turn.x * kTurnRate * step, 2 * kPi);
+    turned.rain = std::clamp(turned.rain + turn.z * kRainRate * step, 0.0f, 1.0f);
     return turned;
 }
 
-void update_weather(World& world) {
-    const World& settings = world;
-    const auto* weather = settings.find_resource<Weather>();
-    const auto* input = settings.find_resource<Input>();
-    const auto* time = settings.find_resource<FrameTime>();
-    if (weather == nullptr || input == nullptr || time == nullptr) {
+void update_weather(
+    OptionalRes<const Weather> settings, Res<WeatherState> state, Res<const Input> input,
+    Res<const FrameTime> time, Query<Ocean> oceans, Query<WaterRipples> pools,
+    OptionalRes<LensRain> lens) {
+    if (!settings) {
         return;
     }
-    const Vec3& keys = input->weather;
-    if (keys != Vec3(0) && std::isfinite(keys.x + keys.y + keys.z)) {
-        const Vec3 turn = glm::clamp(input->weather, Vec3(-1), Vec3(1));
-        *world.find_resource<Weather>() = turn_weather(*weather, turn, time->step);
+    Weather weather = current_weather(*settings, std::as_const(*state));
+    const Vec3 turn = {
+        action_axis(*input, "wind_veer", "wind_back"),
+        action_axis(*input, "wind_stronger", "wind_weaker"),
+        action_axis(*input, "rain_more", "rain_less")};
+    if (turn != Vec3(0) && std::isfinite(turn.x + turn.y + turn.z)) {
+        weather = adjust_weather(weather, turn, time->step);
+        *state = {
+            weather.wind_speed - settings->wind_speed,
+            weather.wind_direction - settings->wind_direction, weather.rain - settings->rain};
     }
-    const bool draws = time->frame % kSpectrumSteps == 0;
-    world.query<Ocean>().each([&](Ocean& ocean) {
-        if (!draws) {
-            return;
-        }
-        ocean.wind_speed = weather->wind_speed;
-        ocean.wind_direction = weather->wind_direction;
-    });
-    world.query<WaterRipples>().each(
-        [&](WaterRipples& ripples) { ripples.rain = weather->rain * weather->rain * kDrops; });
-    if (auto* lens = world.find_resource<LensRain>()) {
-        lens->amount = weather->rain * kWetLens;
+    if (time->frame % kSpectrumSteps == 0) {
+        oceans.each([&](Ocean& ocean) {
+            ocean.wind_speed = weather.wind_speed;
+            ocean.wind_direction = weather.wind_direction;
+        });
+    }
+    pools.each([&](WaterRipples& ripples) { ripples.rain = weather.rain * weather.rain * kDrops; });
+    if (lens) {
+        lens->amount = weather.rain * kWetLens;
     }
 }
 

@@ -1,19 +1,26 @@
 #pragma once
 
 #include "ecs/components/input.h"
+#include "ecs/components/ocean.h"
+#include "ecs/components/ripple.h"
+#include "ecs/components/time.h"
+#include "ecs/components/water_ripples.h"
 #include "ecs/components/weather.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
 
 namespace limn {
 
-class World;
+/// Applies the player's actions to WeatherState, and the current weather to its dependents: wind to
+/// every Ocean, rain to every WaterRipples and to LensRain. Does nothing without Weather. The
+/// random numbers of ocean waves are kept: existing waves grow with the wind. Before everything
+/// that moves water.
+void update_weather(
+    OptionalRes<const Weather> settings, Res<WeatherState> state, Res<const Input> input,
+    Res<const FrameTime> time, Query<Ocean> oceans, Query<WaterRipples> pools,
+    OptionalRes<LensRain> lens);
 
-/// Lets Input turn the weather, and everything follow it: the waves of every Ocean are those of the
-/// wind, drops fall on every WaterRipples, the lens gets wet. Where a level has no Weather,
-/// nothing. The numbers that each wave of an ocean has drawn stay: as the wind grows, so do the
-/// waves that are there. First of all that moves water.
-void update_weather(World& world);
-
-/// The weather after `step` [s] of Input::weather.
-[[nodiscard]] Weather turn_weather(const Weather& weather, const Vec3& turn, float step);
+/// The weather after `step` [s] of `turn`: direction, speed and rain, -1 .. 1.
+[[nodiscard]] Weather adjust_weather(const Weather& weather, const Vec3& turn, float step);
 
 }  // namespace limn

@@ -16,7 +16,7 @@ using test::TemporaryFolder;
 namespace {
 
 std::vector<bool> shining(World& world, int count) {
-    CHECK(shine_some(world, count) == 100);
+    CHECK(enable_some_lights(world, count) == 100);
     std::vector<bool> result;
     world.query<const PointLight>().each(
         [&](const PointLight& light) { result.push_back(light.enabled); });

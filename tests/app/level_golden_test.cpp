@@ -3,7 +3,7 @@
 // with other roundings, so the comparison is FLIP's, not equality. The target `golden` draws them
 // anew.
 
-#include "bench/oracles/image_compare.h"
+#include "content/bake/image_compare.h"
 #include "content/app/headless.h"
 #include "content/app/stage.h"
 #include "content/load/image_load.h"
@@ -59,7 +59,7 @@ ColorImage color_image(int width, int height, int channels, const std::uint8_t* 
     return image;
 }
 
-void write_picture(const std::string& path, const gpu::ByteImage& image) {
+void write_image_file(const std::string& path, const gpu::ByteImage& image) {
     const Status written = write_png(path, image.width, image.height, image.channels, image.pixels);
     CHECK_MESSAGE(written.ok(), (written ? std::string() : written.error().message));
 }
@@ -69,12 +69,12 @@ void leave_mismatch(
     const std::string& name, const gpu::ByteImage& drawn, const std::vector<float>& errors) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limn-golden";
     std::filesystem::create_directories(folder);
-    write_picture((folder / (name + ".png")).string(), drawn);
+    write_image_file((folder / (name + ".png")).string(), drawn);
     gpu::ByteImage difference{drawn.width, drawn.height, 1, {}};
     for (const float error : errors) {
         difference.pixels.push_back(static_cast<std::uint8_t>(255.0f * std::min(error, 1.0f)));
     }
-    write_picture((folder / (name + ".difference.png")).string(), difference);
+    write_image_file((folder / (name + ".difference.png")).string(), difference);
     MESSAGE("the new picture and the difference are in " << folder.string());
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
         const std::string golden_path =
             std::string(LIMN_SOURCE_DIR) + "/tests/golden/" + level.name + ".png";
         if (update) {
-            write_picture(golden_path, drawn);
+            write_image_file(golden_path, drawn);
             continue;
         }
         const Result<ImageData> golden = load_image(golden_path, true);

@@ -116,7 +116,7 @@ TEST_CASE("pick: the ray through the middle of the picture is where the camera l
         const Ray corner = ray_through(view, {0.0f, 0.0f});
         return corner.origin + corner.direction * 7.0f;
     }();
-    const Vec4 clip = view.steady_from_world * Vec4(point, 1.0f);
+    const Vec4 clip = view.unjittered_from_world * Vec4(point, 1.0f);
     CHECK(clip.x / clip.w == doctest::Approx(-1.0f).epsilon(1e-4));
     CHECK(clip.y / clip.w == doctest::Approx(1.0f).epsilon(1e-4));
 }

@@ -1,4 +1,4 @@
-#include "tests/app/read_picture.h"
+#include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ using test::count_lines;
 using test::Picture;
 using test::Program;
 using test::ProgramRun;
-using test::read_picture;
+using test::read_image;
 using test::run_limn;
 using test::TemporaryFolder;
 
@@ -49,7 +49,7 @@ double mean(const Picture& picture) {
 TEST_CASE("render_command: a PNG has the asked size and shows something") {
     const TemporaryFolder folder;
     check_ok(run_limn(folder, render_words({"-o", "a.png"})));
-    const Picture picture = read_picture(folder.file("a.png"));
+    const Picture picture = read_image(folder.file("a.png"));
     REQUIRE(picture.whole);
     CHECK(picture.width == 64);
     CHECK(picture.height == 36);
@@ -61,7 +61,7 @@ TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by
     const TemporaryFolder folder;
     check_ok(run_limn(
         folder, render_words({"-o", "a.exr", "--aov", "depth,normal,albedo,velocity,emission"})));
-    const Picture picture = read_picture(folder.file("a.exr"));
+    const Picture picture = read_image(folder.file("a.exr"));
     REQUIRE(picture.whole);
     for (const char* name :
          {"R", "G", "B", "depth.Z", "normal.X", "normal.Y", "normal.Z", "albedo.R", "velocity.X",
@@ -105,7 +105,7 @@ TEST_CASE("render_command: the EXR of a matte plane under a point light is the c
     check_ok(run_limn(
         folder, {"render", "plane.level.json", "-o", "a.exr", "--size", "64x36", "--spp", "1",
                  "--aov", "depth,normal,albedo"}));
-    const Picture picture = read_picture(folder.file("a.exr"));
+    const Picture picture = read_image(folder.file("a.exr"));
     REQUIRE(picture.whole);
     REQUIRE(picture.width == kWidth);
     REQUIRE(picture.height == kHeight);
@@ -152,8 +152,8 @@ TEST_CASE("render_command: --set and --time change the picture") {
     check_ok(run_limn(folder, render_words({"-o", "a.png"})));
     check_ok(run_limn(folder, render_words({"-o", "dark.png", "--set", "exposure.ev=-3"})));
     check_ok(run_limn(folder, render_words({"-o", "later.png", "--time", "3"})));
-    const double usual = mean(read_picture(folder.file("a.png")));
-    CHECK(mean(read_picture(folder.file("dark.png"))) < 0.7 * usual);
+    const double usual = mean(read_image(folder.file("a.png")));
+    CHECK(mean(read_image(folder.file("dark.png"))) < 0.7 * usual);
     CHECK(test::read_text(folder.file("later.png")) != test::read_text(folder.file("a.png")));
 }
 
@@ -162,7 +162,7 @@ TEST_CASE("render_command: a range writes one numbered file a frame, the same as
     check_ok(
         run_limn(folder, render_words({"-o", "f_%03d.png", "--frames", "2:4", "--fps", "30"})));
     for (const char* name : {"f_002.png", "f_003.png", "f_004.png"}) {
-        CHECK(read_picture(folder.file(name)).whole);
+        CHECK(read_image(folder.file(name)).whole);
     }
     CHECK_FALSE(std::filesystem::exists(folder.file("f_001.png")));
     CHECK_FALSE(std::filesystem::exists(folder.file("f_005.png")));
@@ -213,7 +213,7 @@ TEST_CASE("render_command: killed at any moment, it leaves whole files only") {
             }
             CAPTURE(name);
             CHECK(name.starts_with("frame_"));
-            CHECK(read_picture(entry.path().string()).whole);
+            CHECK(read_image(entry.path().string()).whole);
             std::filesystem::remove(entry.path());
             ++pictures;
         }
@@ -245,7 +245,7 @@ TEST_CASE("render_command: compare finds a picture equal to itself") {
         run_limn(folder, {"compare", "a.png", "b.png", "--json", "--diff", "d.png"});
     check_ok(other);
     CHECK(other.out.find("\"psnr\"") != std::string::npos);
-    CHECK(read_picture(folder.file("d.png")).whole);
+    CHECK(read_image(folder.file("d.png")).whole);
 }
 
 }  // namespace limn

@@ -1,5 +1,5 @@
 #include "content/app/exposure_samples.h"
-#include "tests/app/read_picture.h"
+#include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@
 namespace limn {
 
 using test::Picture;
-using test::read_picture;
+using test::read_image;
 using test::run_limn;
 using test::TemporaryFolder;
 
@@ -48,7 +48,7 @@ Picture render(
     const auto run = run_limn(folder, words);
     CAPTURE(run.err);
     REQUIRE(run.exit_code == 0);
-    Picture picture = read_picture(folder.file("a.exr"));
+    Picture picture = read_image(folder.file("a.exr"));
     REQUIRE(picture.whole);
     return picture;
 }
@@ -75,14 +75,14 @@ TEST_CASE("exposure samples: time runs on in equal steps about the middle, alone
     for (const int count : {2, 7, 64}) {
         double sum = 0;
         for (int i = 0; i < count; ++i) {
-            const double moment = exposure_sample(i, count).moment;
+            const double moment = exposure_sample(i, count).time;
             CHECK(moment == doctest::Approx((i + 0.5) / count - 0.5));
             sum += moment;
         }
         CHECK(sum == doctest::Approx(0).epsilon(1e-9));
     }
     const ExposureSample one = exposure_sample(0, 1);
-    CHECK(one.moment == 0);
+    CHECK(one.time == 0);
     CHECK(one.jitter == Vec2(0));
     CHECK(one.square == Vec2(0.5f));
 }

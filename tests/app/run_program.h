@@ -39,9 +39,11 @@ inline long count_lines(std::string_view text) {
 /// A started `limn`; both its streams go to files in `folder`, which is its working directory.
 class Program {
   public:
-    Program(const TemporaryFolder& folder, std::vector<std::string> arguments)
+    Program(
+        const TemporaryFolder& folder, std::vector<std::string> arguments,
+        const std::string& program = LIMN_PROGRAM)
         : out_(folder.file("stdout.txt")), err_(folder.file("stderr.txt")) {
-        arguments.insert(arguments.begin(), LIMN_PROGRAM);
+        arguments.insert(arguments.begin(), program);
         std::vector<char*> words;
         for (std::string& argument : arguments) {
             words.push_back(argument.data());

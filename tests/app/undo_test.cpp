@@ -166,7 +166,7 @@ TEST_CASE("undo: remembers a thousand edits, not more") {
     for (int i = 1; i <= 1005; ++i) {
         edit_intensity(world, stack, lamp, static_cast<float>(i));
     }
-    CHECK(stack.undo_count() == UndoStack::kMostEdits);
+    CHECK(stack.undo_count() == UndoStack::kMaxEdits);
     while (!stack.undo(world).empty()) {
     }
     CHECK(world.get<const PointLight>(lamp).intensity == 5);

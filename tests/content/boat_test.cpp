@@ -82,7 +82,7 @@ TEST_CASE("boat: the sail's belly is to port, its boom and gaff point astern") {
         sum += double_area(rig, t);
     }
     CHECK(std::abs(sum.x) < 0.5f);
-    CHECK(mast_place(12).z == doctest::Approx(3.8));
+    CHECK(mast_position(12).z == doctest::Approx(3.8));
 }
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
+#include "tests/support.h"
 
 #include <doctest/doctest.h>
 #include <glm/matrix.hpp>
@@ -83,8 +84,19 @@ void visit_fields(Everything& all, Visitor&& visit) {
     visit("words", all.words);
 }
 
-FindNames some_names() {
-    FindNames names;
+struct Renamed {
+    float size = 1;
+    Mood mood = Mood::Calm;
+};
+
+template <typename Visitor>
+void visit_fields(Renamed& value, Visitor&& visit) {
+    visit("size", value.size, {.min = 0, .renamed = "largeness bigness"});
+    visit("mood", value.mood, {.values = "calm busy wild", .renamed = "temper lazy=calm mad=wild"});
+}
+
+NameResolver some_names() {
+    NameResolver names;
     names.asset = [](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
         return kind == "mesh" && name == "teapot" ? std::optional<std::uint32_t>(7) : std::nullopt;
     };
@@ -271,8 +283,8 @@ TEST_CASE("component json: what is wrong is named with its place, expectation an
         == "t.json:1:12: thing.triple: found an array of 2, expected an array of 3");
     CHECK(
         error_of<Everything>(R"({"mesh": "teapod"})")
-        == "t.json:1:10: thing.mesh: found the mesh \"teapod\", expected the name of one that "
-           "exists (did you mean teapot?)");
+        == "t.json:1:10: thing.mesh: found the mesh \"teapod\", expected an existing name "
+           "(did you mean teapot?)");
     CHECK(error_of<Everything>(R"({"friend_of": "lmap"})").ends_with("(did you mean lamp?)"));
     CHECK(
         error_of<Everything>(R"({"friend_of": 3})").find("the name of an entity, or null")
@@ -319,7 +331,7 @@ TEST_CASE("component json: colors and angles that are none are refused") {
 TEST_CASE("component json: a scale of 0 and a spot light turned inside out are refused") {
     CHECK(
         error_of<Transform>(R"({"scale": [1, 0, 1]})")
-        == "t.json:1:1: thing: found a scale of 0, expected one along each axis");
+        == "t.json:1:1: thing: found a scale of 0, expected a nonzero scale along each axis");
     CHECK(
         error_of<SpotLight>(R"({"inner_angle": 0.6, "outer_angle": 0.5})").find("outer_angle")
         != std::string::npos);
@@ -340,7 +352,7 @@ TEST_CASE("component json: what is written reads back the same, to the bit") {
     all.mesh.index = 7;
     all.knobs = {{1.25f, 1}, {-0.1f, 2}};
     all.words = {"", "b"};
-    GiveNames names;
+    NameProvider names;
     names.asset = [](std::string_view, std::uint32_t) { return "teapot"; };
     names.entity = [](Entity) { return "lamp"; };
     const std::string text = write_json(write_component(component_info<Everything>(), &all, names));
@@ -399,4 +411,21 @@ TEST_CASE("any component: copies own their values") {
     CHECK(AnyComponent().is_empty());
     const AnyComponent tag(component_info<Teleport>());
     CHECK(tag.data() != nullptr);
+}
+
+TEST_CASE("component_json: old names of fields and enumerators are read, with one warning each") {
+    std::vector<std::string> warnings = test::messages_of([] {
+        CHECK(read<Renamed>(R"({"largeness": 2})").size == 2);
+        CHECK(read<Renamed>(R"({"bigness": 3, "temper": "mad"})").size == 3);
+        CHECK(read<Renamed>(R"({"temper": "mad"})").mood == Mood::Wild);
+        CHECK(read<Renamed>(R"({"mood": "lazy"})").mood == Mood::Calm);
+    });
+    CHECK(
+        warnings
+        == std::vector<std::string>{
+            "largeness is renamed to size; the next version rejects the old name",
+            "bigness is renamed to size; the next version rejects the old name",
+            "temper is renamed to mood; the next version rejects the old name",
+            "mad is renamed to wild; the next version rejects the old name",
+            "lazy is renamed to calm; the next version rejects the old name"});
 }

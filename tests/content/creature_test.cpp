@@ -62,7 +62,7 @@ std::vector<Affine> joints_at(const ClipData& clip, float time) {
     std::vector<float> weights(2);
     sample_clip(clip, time, pose, weights);
     std::vector<Affine> joints(pose.size());
-    find_joint_matrices(rig().skeleton, pose, joints);
+    compute_joint_matrices(rig().skeleton, pose, joints);
     return joints;
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("creature: a foot that stands goes with the ground, and does not sink 
                 const float cycles = static_cast<float>(i) / kSteps;
                 const float phase = cycles - std::floor(cycles);
                 const Vec3 foot = place_of(joints_at(clip, phase * clip.duration), kFeet[leg]);
-                const bool stands = stand_share(gait, static_cast<Leg>(leg), phase) >= 0;
+                const bool stands = stance_progress(gait, static_cast<Leg>(leg), phase) >= 0;
                 const float on_ground = foot.z + speed * cycles * gait.period;
                 if (stands && stood) {
                     worst_slide = std::max(worst_slide, std::abs(on_ground - planted));
@@ -215,7 +215,7 @@ TEST_CASE("creature: a walk sets down left hind, left fore, right hind, right fo
         int down = 0;
         for (std::size_t leg = 0; leg < kLegs; ++leg) {
             const float height = place_of(joints, kFeet[leg]).y - creature_joint(kFeet[leg]).y;
-            const bool stands = stand_share(walk, static_cast<Leg>(leg), phase) >= 0;
+            const bool stands = stance_progress(walk, static_cast<Leg>(leg), phase) >= 0;
             down += stands ? 1 : 0;
             CHECK(height > -0.004f);
             if (stands) {
@@ -250,7 +250,7 @@ TEST_CASE("creature: a run sets down both hind feet, then both fore feet, then f
 
 TEST_CASE("creature: a foot in the air rises in a third of its way and comes down in the rest") {
     constexpr float kPiF = kPi;
-    const auto at = [](float x) { return foot_flight(x / (3 * kPi)); };
+    const auto at = [](float x) { return swing_height(x / (3 * kPi)); };
     CHECK(at(0) == 0);
     CHECK(at(0.5f * kPiF) == doctest::Approx(1).epsilon(1e-5));
     CHECK(at(kPiF) == doctest::Approx(2).epsilon(1e-5));
@@ -260,12 +260,12 @@ TEST_CASE("creature: a foot in the air rises in a third of its way and comes dow
     CHECK(std::abs(at(3 * kPiF)) < 1e-5f);
     double sum = 0;
     for (int i = 0; i < 3000; ++i) {
-        sum += static_cast<double>(foot_flight((static_cast<float>(i) + 0.5f) / 3000));
-        CHECK(foot_flight(static_cast<float>(i) / 3000) <= 2.0f);
+        sum += static_cast<double>(swing_height((static_cast<float>(i) + 0.5f) / 3000));
+        CHECK(swing_height(static_cast<float>(i) / 3000) <= 2.0f);
     }
     CHECK(sum / 3000 == doctest::Approx(1).epsilon(1e-4));
-    CHECK(std::abs(foot_flight(1e-3f) - foot_flight(0)) < 1e-4f);  // no slope at the ends
-    CHECK(std::abs(foot_flight(1) - foot_flight(1 - 1e-3f)) < 1e-4f);
+    CHECK(std::abs(swing_height(1e-3f) - swing_height(0)) < 1e-4f);  // no slope at the ends
+    CHECK(std::abs(swing_height(1) - swing_height(1 - 1e-3f)) < 1e-4f);
 
     // The clip's feet follow it.
     const Gait& walk = gait_named("walk");
@@ -275,7 +275,7 @@ TEST_CASE("creature: a foot in the air rises in a third of its way and comes dow
         const float time = (phase - std::floor(phase)) * clip.duration;
         const Vec3 foot = place_of(joints_at(clip, time), CreatureJoint::RightPaw);
         const float height = foot.y - creature_joint(CreatureJoint::RightPaw).y;
-        CHECK(std::abs(height - 0.5f * walk.lift * foot_flight(s)) < 0.002f);
+        CHECK(std::abs(height - 0.5f * walk.lift * swing_height(s)) < 0.002f);
     }
 }
 

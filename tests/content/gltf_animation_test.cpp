@@ -219,7 +219,7 @@ TEST_CASE("gltf animation: what is in no scene or without a node moves nothing, 
     REQUIRE(without->warnings.size() == 1);
     CHECK(
         without->warnings[0]
-        == R"(arm.glb: animations[0].channels[0].target.path: "weights" is left out)");
+        == R"(arm.glb: animations[0].channels[0].target.path: "weights" is ignored)");
 }
 
 TEST_CASE("gltf animation: bad samplers, keys and skins are refused with their place") {
@@ -232,8 +232,7 @@ TEST_CASE("gltf animation: bad samplers, keys and skins are refused with their p
     CHECK(
         error_of([](Arm& a) { a.sizes.resize(9); })
         == "arm.glb: animations[0].samplers[2].output: found 3 values, expected 9 for 3 keys, with "
-           "a "
-           "slope on both sides of each");
+           "in- and out-tangents");
     CHECK(
         error_of([](Arm& a) { a.places.resize(6); })
         == "arm.glb: animations[0].samplers[1].output: found 2 values, expected 3 for 3 keys");
@@ -261,7 +260,7 @@ TEST_CASE("gltf animation: bad samplers, keys and skins are refused with their p
             a.channels = R"([{"sampler": 0, "target": {"node": 1, "path": "rotation"}},
                              {"sampler": 0, "target": {"node": 1, "path": "rotation"}}])";
         })
-        == "arm.glb: animations[0]: clip wave, sheet 0: rotations of number 2 twice");
+        == "arm.glb: animations[0]: clip wave, sheet 0: rotations of index 2 twice");
     CHECK(
         error_of([](Arm& a) {
             a.samplers = replace_once(a.samplers, "CUBICSPLINE", "CUBIC");
@@ -298,7 +297,7 @@ TEST_CASE("gltf animation: Fox has 24 joints in a row of parents, and three ways
     const SkeletonData& skeleton = scene->skeleton;
     const auto bone_lengths = [&](const LocalPose& pose) {
         std::vector<Affine> matrices(skeleton.joints.size());
-        find_joint_matrices(skeleton, pose, matrices);
+        compute_joint_matrices(skeleton, pose, matrices);
         std::vector<float> lengths = {0};
         for (std::size_t i = 1; i < matrices.size(); ++i) {
             const std::size_t parent = static_cast<std::size_t>(skeleton.parents[i]);

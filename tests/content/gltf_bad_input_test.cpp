@@ -102,8 +102,8 @@ TEST_CASE("gltf: a GLB whose lengths disagree is refused") {
         return bad;
     };
     const auto size = static_cast<std::uint32_t>(good.size());
-    check_refused(parse_gltf(with(8, size - 4), "square.glb", ""), "GLB header says");
-    check_refused(parse_gltf(with(8, size + 4), "square.glb", ""), "GLB header says");
+    check_refused(parse_gltf(with(8, size - 4), "square.glb", ""), "as in the GLB header");
+    check_refused(parse_gltf(with(8, size + 4), "square.glb", ""), "as in the GLB header");
     check_refused(parse_gltf(with(4, 1), "square.glb", ""), "version 1");
     check_refused(parse_gltf(with(12, 0xffffffffu), "square.glb", ""), "a GLB chunk of 4294967295");
     check_refused(parse_gltf(with(12, 12), "square.glb", ""), "square.glb");
@@ -111,7 +111,7 @@ TEST_CASE("gltf: a GLB whose lengths disagree is refused") {
         parse_gltf(with(16, 0x12345678), "square.glb", ""), "expected JSON as the first chunk");
     std::vector<std::byte> longer = good;
     longer.resize(good.size() + 5);
-    check_refused(parse_gltf(longer, "square.glb", ""), "GLB header says");
+    check_refused(parse_gltf(longer, "square.glb", ""), "as in the GLB header");
 }
 
 TEST_CASE("gltf: every change of one byte loads or is refused, and no more") {
@@ -210,7 +210,7 @@ TEST_CASE("gltf: an accessor out of bounds is refused") {
         {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC7"})",
          "accessors[0].type"},
         {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2"})",
-         "found 2 numbers an element, expected 3"},
+         "found 2 components per element, expected 3"},
         {accessor, R"({"componentType": 5126, "count": 80000000, "type": "VEC3"})",
          "without a bufferView"},
         {R"("indices": 1)", R"("indices": 0)", "meshes[0].primitives[0].indices: accessors[0]"},
@@ -268,8 +268,8 @@ TEST_CASE("gltf: abused sparse accessors are refused") {
         return parse_gltf(make_glb(uses_sparse, binary), "square.glb", "");
     };
     check_refused(with_indices(1, 4), "sparse.indices: found 4 at 1, expected an index below 4");
-    check_refused(with_indices(3, 1), "expected increasing ones");
-    check_refused(with_indices(2, 2), "expected increasing ones");
+    check_refused(with_indices(3, 1), "expected increasing indices");
+    check_refused(with_indices(2, 2), "expected increasing indices");
 }
 
 TEST_CASE("gltf: an index past the vertices is refused") {
@@ -317,7 +317,8 @@ TEST_CASE("gltf: a very deep node graph is refused without a recursion") {
     const std::string json = R"({"asset": {"version": "2.0"}, "nodes": [)" + nodes
                              + R"({}], "scenes": [{"nodes": [0]}]})";
     check_refused(
-        parse_gltf(std::as_bytes(std::span(json)), "square.gltf", ""), "found more than 256 nodes");
+        parse_gltf(std::as_bytes(std::span(json)), "square.gltf", ""),
+        "found a hierarchy deeper than 256 nodes");
     const std::string brackets =
         R"({"asset": {"version": "2.0"}, "extras": )" + std::string(100'000, '[');
     CHECK_FALSE(parse_gltf(std::as_bytes(std::span(brackets)), "square.gltf", "").ok());
@@ -364,7 +365,7 @@ TEST_CASE("gltf: a file may name only files under its own folder") {
     }
     check_refused(
         parse_gltf(read_file(write_gltf(folder, "good%20name.bin")).value(), "square.gltf", ""),
-        "expected no other files here");
+        "expected no references to other files");
 }
 
 TEST_CASE("gltf: a buffer without bytes is refused") {
@@ -402,12 +403,12 @@ TEST_CASE("gltf: a texture that is missing, corrupt or 100,000 pixels wide is re
     CHECK(load(R"({"uri": "good.png"})").ok());
     check_refused(
         load(R"({"uri": "missing.png"})"), "images[0].uri: \"missing.png\": no such file");
-    check_refused(load(R"({"uri": "corrupt.png"})"), "images[0] (corrupt.png): broken PNG");
+    check_refused(load(R"({"uri": "corrupt.png"})"), "images[0] (corrupt.png): corrupt PNG");
     check_refused(load(R"({"uri": "wide.png"})"), "found 100000 x 8 pixels");
-    check_refused(load(R"({"uri": "text.png"})"), "unknown kind");
+    check_refused(load(R"({"uri": "text.png"})"), "unknown format");
     check_refused(load(R"({"uri": "../good.png"})"), "expected a path under");
     check_refused(load(R"({"uri": "http://example.com/a.png"})"), "a scheme");
-    check_refused(load(R"({"bufferView": 0})"), "unknown kind");
+    check_refused(load(R"({"bufferView": 0})"), "unknown format");
     check_refused(load(R"({"bufferView": 11})"), "images[0].bufferView");
     check_refused(load(R"({"bufferView": 0, "uri": "good.png"})"), "found both");
     check_refused(load(R"({})"), "found neither");

@@ -241,7 +241,7 @@ TEST_CASE(
     CHECK(
         scene.error().message.find(
             R"(entity "puppet": clip_player: found the clip "nid", expected one of a glTF file or )"
-            R"(a made mesh (did you mean nod?))")
+            R"(a generated mesh (did you mean nod?))")
         != std::string::npos);
 }
 
@@ -252,10 +252,10 @@ TEST_CASE("gltf character: --set and the names of a world know skeletons, skins 
     const Status set = set_value(world, "puppet.clip_player.clip", "grin");
     REQUIRE_MESSAGE(set.ok(), set.error().message);
     CHECK(world.get<const ClipPlayer>(puppet).clip.index == 1);
-    const FindNames names = find_names_in(world);
+    const NameResolver names = make_name_resolver(world);
     CHECK(names.asset("skeleton", "puppet") == std::optional<std::uint32_t>(0));
     CHECK(names.asset("skin", "cloth") == std::optional<std::uint32_t>(0));
-    CHECK(give_names_of(world).asset("clip", 1) == "grin");
+    CHECK(make_name_provider(world).asset("clip", 1) == "grin");
     CHECK_FALSE(set_value(world, "puppet.clip_player.clip", "grim").ok());
 }
 

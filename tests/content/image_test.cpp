@@ -139,11 +139,11 @@ TEST_CASE("image: every way to be no picture is one line that names the place") 
     const auto as_bytes = std::as_bytes(std::span(text));
     const std::pair<const char*, std::vector<std::byte>> cases[] = {
         {"100000 x 2 pixels", huge},
-        {"ends early", truncated},
+        {"truncated", truncated},
         {"wrong checksum", corrupt},
-        {"ends early", jpeg},
-        {"unknown kind", {as_bytes.begin(), as_bytes.end()}},
-        {"found nothing", {}},
+        {"truncated", jpeg},
+        {"unknown format", {as_bytes.begin(), as_bytes.end()}},
+        {"found an empty file", {}},
     };
     for (const auto& [expected, bytes] : cases) {
         const Result<ImageData> image = decode_image(bytes, "scene.gltf: images[3]", true);

@@ -75,13 +75,13 @@ TEST_CASE("json: what is no JSON is refused with its place and what was expected
     CHECK(error_of("{\"a\": 1,\n}") == "t.json:2:1: found \"}\", expected a key in quotes");
     CHECK(
         error_of("{\"a\": 1,\n \"a\": 2}")
-        == "t.json:2:2: found the key \"a\" for the second time, expected each key once");
+        == "t.json:2:2: found a duplicate key \"a\", expected each key once");
     CHECK(
         error_of("[1] x")
         == "t.json:1:5: found \"x\", expected the end of the file after the value");
-    CHECK(error_of("[1, /* x") == "t.json:1:5: found a comment without end, expected */");
-    CHECK(error_of("\"abc") == "t.json:1:1: found a string without end, expected a closing \"");
-    CHECK(error_of("\"a\nb\"").find("string without end") != std::string::npos);
+    CHECK(error_of("[1, /* x") == "t.json:1:5: found an unterminated comment, expected */");
+    CHECK(error_of("\"abc") == "t.json:1:1: found an unterminated string, expected a closing \"");
+    CHECK(error_of("\"a\nb\"").find("unterminated string") != std::string::npos);
     CHECK(error_of("\"\\x\"").find("after a backslash") != std::string::npos);
     CHECK(error_of("\"\\u12g4\"").find("four hexadecimal digits") != std::string::npos);
     CHECK(error_of("\"\\u12").find("four hexadecimal digits") != std::string::npos);
@@ -149,10 +149,10 @@ TEST_CASE("json: a missing file, a directory and an empty file each give one lin
     const test::TemporaryFolder folder;
     CHECK(
         load_json(folder.file("none.json")).error().message
-        == folder.file("none.json") + ": found no such file, expected JSON");
+        == folder.file("none.json") + ": no such file");
     CHECK(
         load_json(folder.path()).error().message
-        == folder.path() + ": found a directory, expected a file");
+        == folder.path() + ": found a folder, expected a file");
     const std::ofstream empty(folder.file("empty.json"));
     CHECK(
         load_json(folder.file("empty.json")).error().message

@@ -53,7 +53,7 @@ TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error
     const test::TemporaryFolder folder;
     World world;
     CHECK(has(load_scene(world, folder.file("no.level.json")).error().message, "no such file"));
-    CHECK(has(load_scene(world, folder.path() + "/").error().message, "directory"));
+    CHECK(has(load_scene(world, folder.path() + "/").error().message, "found a folder"));
     CHECK(has(load_scene(world, "no-such-level").error().message, "no level of that name"));
     CHECK(has(load_scene(world, folder.file("no.glb")).error().message, "no.glb"));
     CHECK(world.entity_count() == 0);
@@ -61,7 +61,7 @@ TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error
     CHECK(
         has(scene_error_of(folder, "{\n  \"title\": \"a\"\n  \"entities\": []\n}"),
             "t.level.json:3:3: found \"\\\"\", expected ',' or '}'"));
-    CHECK(has(scene_error_of(folder, "[]"), "expected a level: an object"));
+    CHECK(has(scene_error_of(folder, "[]"), "expected a level (an object)"));
     CHECK(has(scene_error_of(folder, "\x89PNG\r\n"), "found"));
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
     CHECK(has(error_of(R"({"resources": {"exposre": {}}})"), "(did you mean exposure?)"));
     CHECK(
         has(error_of(R"({"resources": {"environment": {"sky": "panorama"}}})"),
-            "found a sky that is a panorama without the image"));
+            "found a panorama sky without the image"));
     CHECK(
         has(error_of(
                 R"({"images": {"dusk": {"file": "dusk.exr"}},
@@ -234,10 +234,8 @@ TEST_CASE("bad level: a prefab inside itself, at any distance, used or not") {
 TEST_CASE("bad level: names given twice") {
     CHECK(
         has(error_of(R"({"entities": [{"name": "a"}, {"children": [{"name": "a"}]}]})"),
-            "found the name \"a\" for the second time"));
-    CHECK(
-        has(error_of(R"({"materials": {"a": {}, "a": {}}})"),
-            "found the key \"a\" for the second time"));
+            "found a duplicate name \"a\""));
+    CHECK(has(error_of(R"({"materials": {"a": {}, "a": {}}})"), "found a duplicate key \"a\""));
 }
 
 TEST_CASE("bad level: what would grow without bound is refused before it does") {
@@ -281,15 +279,14 @@ TEST_CASE("bad level: what would grow without bound is refused before it does") 
         deep += ", \"p" + std::to_string(i) + "\": {\"children\": [{\"prefab\": \"p"
                 + std::to_string(i - 1) + "\"}]}";
     }
-    CHECK(has(
-        error_of(deep + "}, \"entities\": [{\"prefab\": \"p4999\"}]}"), "entities in each other"));
+    CHECK(has(error_of(deep + "}, \"entities\": [{\"prefab\": \"p4999\"}]}"), "nested entities"));
     std::string chain = R"({"prefabs": {"p0": {})";
     for (int i = 1; i < 5000; ++i) {
         chain +=
             ", \"p" + std::to_string(i) + "\": {\"prefab\": \"p" + std::to_string(i - 1) + "\"}";
     }
-    CHECK(
-        has(error_of(chain + "}, \"entities\": [{\"prefab\": \"p4999\"}]}"), "prefabs of prefabs"));
+    CHECK(has(
+        error_of(chain + "}, \"entities\": [{\"prefab\": \"p4999\"}]}"), "a chain of more than"));
 }
 
 TEST_CASE("bad level: too many pixels or vertices are refused") {

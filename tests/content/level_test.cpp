@@ -1,3 +1,4 @@
+#include "content/game/game.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/level_list.h"
@@ -634,6 +635,7 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
 }
 
 TEST_CASE("levels: every level of the project loads, is named and has a camera that moves") {
+    register_game_components();
     const std::vector<LevelEntry> levels = list_levels();
     for (const LevelEntry& entry : levels) {
         CAPTURE(entry.name);
@@ -655,4 +657,40 @@ TEST_CASE("levels: a name that is none names the nearest") {
     const Result<std::string> path = find_level("galery");
     REQUIRE_FALSE(path.ok());
     CHECK(path.error().message.find("(did you mean gallery?)") != std::string::npos);
+}
+
+TEST_CASE("level: it binds keys to actions; actions and keys must exist") {
+    register_game_components();
+    World world;
+    spawn_into(world, R"({"bindings": {"steer_left": ["J", "Left"], "boost": []}})");
+    const auto& bindings = world.resource<Bindings>();
+    const auto keys = [&](const char* name) -> std::vector<std::string> {
+        for (const ActionGroup& group : action_groups()) {
+            for (const ActionInfo& action : group.actions) {
+                if (action.name == name) {
+                    const std::span<const std::string> bound = keys_of(action, &bindings);
+                    return {bound.begin(), bound.end()};
+                }
+            }
+        }
+        return {"no such action"};
+    };
+    CHECK(keys("steer_left") == std::vector<std::string>{"J", "Left"});
+    CHECK(keys("steer_right") == std::vector<std::string>{"D", "Right"});  // its default
+    CHECK(keys("boost").empty());
+
+    const auto error = [](const char* text) {
+        const Result<Level> level = parse_level(text, "t.level.json");
+        return level.ok() ? std::string("none") : level.error().message;
+    };
+    CHECK(
+        error(R"({"bindings": {"steer_lft": ["J"]}})")
+        == "t.level.json:1:15: bindings.steer_lft: found the action \"steer_lft\", expected the "
+           "name of one (did you mean steer_left?)");
+    CHECK(
+        error(R"({"bindings": {"steer_left": ["Space"]}})").find("found \"Space\"")
+        != std::string::npos);
+    CHECK(
+        error(R"({"bindings": {"steer_left": "J"}})").find("an array of keys")
+        != std::string::npos);
 }

@@ -205,9 +205,9 @@ TEST_CASE("patterns: metals are metal, rust is not, and everything else is no me
 }
 
 TEST_CASE("patterns: kinds are found by name, and a slip is answered with the nearest") {
-    REQUIRE(find_pattern_kind("marble") != nullptr);
-    CHECK(find_pattern_kind("Marble") == nullptr);
-    CHECK(pattern_kind_suggestion("marbel") == " (did you mean marble?)");
+    REQUIRE(find_kind(pattern_kinds(), "marble") != nullptr);
+    CHECK(find_kind(pattern_kinds(), "Marble") == nullptr);
+    CHECK(kind_suggestion(pattern_kinds(), "marbel") == " (did you mean marble?)");
     for (const PatternKind& kind : pattern_kinds()) {
         CHECK(kind.parameters->fields.size() >= 3);
     }

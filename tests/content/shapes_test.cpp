@@ -59,7 +59,7 @@ TEST_CASE(
     "shapes: tangents from the formula are those that would be generated from the triangles") {
     for (const char* name : {"box", "cylinder", "disc", "plane", "sphere", "terrain", "torus"}) {
         INFO(std::string(name));
-        const MeshData mesh = make_default(*find_mesh_kind(name));
+        const MeshData mesh = make_default(*find_kind(mesh_kinds(), name));
         MeshData generated = mesh;
         generate_tangents(generated);
         REQUIRE(generated.positions.size() == mesh.positions.size());  // nothing is mirrored
@@ -268,10 +268,10 @@ TEST_CASE("shapes: an image stands upright and unmirrored on the front of a sphe
 }
 
 TEST_CASE("shapes: kinds are found by name, and a slip is answered with the nearest") {
-    REQUIRE(find_mesh_kind("teapot") != nullptr);
-    CHECK(find_mesh_kind("tea pot") == nullptr);
-    CHECK(mesh_kind_suggestion("teapod") == " (did you mean teapot?)");
-    CHECK(mesh_kind_suggestion("quarterdeck") == "");
+    REQUIRE(find_kind(mesh_kinds(), "teapot") != nullptr);
+    CHECK(find_kind(mesh_kinds(), "tea pot") == nullptr);
+    CHECK(kind_suggestion(mesh_kinds(), "teapod") == " (did you mean teapot?)");
+    CHECK(kind_suggestion(mesh_kinds(), "quarterdeck") == "");
     for (const MeshKind& kind : mesh_kinds()) {
         INFO(std::string(kind.name));
         CHECK(!kind.parameters->fields.empty());

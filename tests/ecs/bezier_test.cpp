@@ -139,7 +139,7 @@ TEST_CASE("bezier: a key may slide, turn and move with its control points, and s
             glm::length(slid.key - slid.before) / glm::length(slid.after - slid.before);
         CHECK(share == doctest::Approx(std::clamp(t, 0.01f, 0.99f)).epsilon(1e-4));
     }
-    const BezierKnot turned = turn_knot(knot, rotation_about({1, -1, 2}, 0.7f));
+    const BezierKnot turned = rotate_knot(knot, rotation_about({1, -1, 2}, 0.7f));
     CHECK(is_smooth(turned));
     CHECK(turned.key == knot.key);
     CHECK(glm::length(turned.before - knot.before) > 0.1f);

@@ -86,7 +86,7 @@ TEST_CASE("component bytes: what is written is read back") {
     const PointLight lights[3] = {
         {.intensity = 1}, {.intensity = 2, .enabled = false}, {.radius = 3}};
     const std::vector<std::byte> light_bytes = bytes_of(lights[0], 3);
-    CHECK(light_bytes.size() == 3 * least_bytes(component_info<PointLight>()));
+    CHECK(light_bytes.size() == 3 * min_serialized_size(component_info<PointLight>()));
     PointLight read_lights[3];
     ByteReader light_in(light_bytes);
     REQUIRE(read_values(component_info<PointLight>(), read_lights, 3, light_in));

@@ -107,10 +107,10 @@ TEST_CASE("hierarchy: a cycle is refused with a reason and changes nothing") {
     const std::uint64_t before = state_hash(world);
     CHECK(
         set_parent(world, a, c).error().message
-        == "set_parent: entity 2 v1 cannot be the parent of entity 0 v1: it is below it");
+        == "set_parent: entity 2 v1 cannot be the parent of entity 0 v1: it is its descendant");
     CHECK(
         set_parent(world, a, a).error().message
-        == "set_parent: entity 0 v1 cannot be the parent of entity 0 v1: it is the same");
+        == "set_parent: entity 0 v1 cannot be the parent of entity 0 v1: it is the same entity");
     const Entity gone = world.create();
     world.destroy(gone);
     CHECK_FALSE(set_parent(world, a, gone).ok());

@@ -41,7 +41,7 @@ TEST_CASE("path: n segments have n + 1 knots, closed ones n, and go exactly thro
     REQUIRE(path.segments.size() == 4);  // 13 points, 5 of them knots
     for (std::size_t i = 0; i < 5; ++i) {
         CAPTURE(i);
-        CHECK(find_path_frame(path, path.begins[i]).position == shape.knots[i].position);
+        CHECK(path_frame_at(path, path.begins[i]).position == shape.knots[i].position);
     }
     for (std::size_t i = 1; i < 4; ++i) {  // smooth: joined ends are as control points ask
         CHECK(find_join(path.segments[i - 1], path.segments[i]) >= BezierJoin::Direction);
@@ -64,7 +64,7 @@ TEST_CASE("path: control points at thirds of the way make straight lines at cons
     for (int i = 0; i <= 90; ++i) {
         const float s = 0.1f * static_cast<float>(i);
         const Vec3 expected = s < 3 ? Vec3(s, 0, 0) : Vec3(3, 0, s - 3);
-        CHECK(glm::distance(find_path_frame(path, s).position, expected) < 1e-4f);
+        CHECK(glm::distance(path_frame_at(path, s).position, expected) < 1e-4f);
     }
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("path: the first knot's incoming and the last one's outgoing point hav
     const PathData other = *make_path(shape);
     for (int i = 0; i <= 10; ++i) {
         const double s = 0.1 * i * static_cast<double>(path.length());
-        CHECK(find_path_frame(path, s).position == find_path_frame(other, s).position);
+        CHECK(path_frame_at(path, s).position == path_frame_at(other, s).position);
     }
 }
 
@@ -87,11 +87,11 @@ TEST_CASE("path: equal distances are equal ways, round and round") {
     CHECK(length == doctest::Approx(2 * kPi * 10).epsilon(1e-3));
     for (int i = 0; i < 200; ++i) {
         const double s = length * i / 100.0;  // twice round
-        const Vec3 here = find_path_frame(path, s).position;
-        const Vec3 there = find_path_frame(path, s + 0.01 * length).position;
+        const Vec3 here = path_frame_at(path, s).position;
+        const Vec3 there = path_frame_at(path, s + 0.01 * length).position;
         const float chord = 20 * std::sin(kPi / 100);
         CHECK(glm::distance(here, there) == doctest::Approx(chord).epsilon(2e-3));
-        CHECK(glm::distance(here, find_path_frame(path, s - 3 * length).position) < 1e-4f);
+        CHECK(glm::distance(here, path_frame_at(path, s - 3 * length).position) < 1e-4f);
     }
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("path: frames are upright, at right angles, and turn with the curve") 
     const PathData path = *make_path(circle());
     for (int i = 0; i < 40; ++i) {
         const double s = 1.57 * i;
-        const PathFrame frame = find_path_frame(path, s);
+        const PathFrame frame = path_frame_at(path, s);
         CHECK(glm::length(frame.ahead) == doctest::Approx(1));
         CHECK(std::abs(glm::dot(frame.ahead, frame.up)) < 1e-6f);
         CHECK(frame.up.y == doctest::Approx(1));
@@ -119,14 +119,14 @@ TEST_CASE("path: roll leans to the right, smoothly from knot to knot") {
     shape.knots = {knot({0, 0, 0}), knot({0, 0, 10}), knot({0, 0, 20})};
     shape.knots[1].roll = 0.5f;
     const PathData path = *make_path(shape);
-    CHECK(find_path_frame(path, 0).up == Vec3(0, 1, 0));
-    const PathFrame middle = find_path_frame(path, 10);
+    CHECK(path_frame_at(path, 0).up == Vec3(0, 1, 0));
+    const PathFrame middle = path_frame_at(path, 10);
     const Vec3 right = {-1, 0, 0};  // looking along +z
     CHECK(glm::dot(middle.up, right) == doctest::Approx(std::sin(0.5)));
     CHECK(middle.up.y == doctest::Approx(std::cos(0.5)));
     float last = 0;
     for (int i = 0; i <= 100; ++i) {
-        const float roll = find_path_frame(path, 0.1 * i).roll;
+        const float roll = path_frame_at(path, 0.1 * i).roll;
         CHECK(roll >= last);
         CHECK(roll - last < 0.01f);
         last = roll;
@@ -142,13 +142,13 @@ TEST_CASE("path: a knot on its control point, or two in one place, still have a 
         knot({0, 0, 9})};
     const PathData path = *make_path(shape);
     for (int i = -5; i <= 100; ++i) {
-        const PathFrame frame = find_path_frame(path, 0.1 * i);
+        const PathFrame frame = path_frame_at(path, 0.1 * i);
         CHECK(std::isfinite(frame.position.z));
         CHECK(glm::length(frame.ahead) == doctest::Approx(1));
         CHECK(std::isfinite(path_curvature(path, 0.1 * i)));
     }
-    CHECK(find_path_frame(path, std::nan("")).position == Vec3(0));
-    CHECK(find_path_frame(path, std::numeric_limits<double>::infinity()).position == Vec3(0));
+    CHECK(path_frame_at(path, std::nan("")).position == Vec3(0));
+    CHECK(path_frame_at(path, std::numeric_limits<double>::infinity()).position == Vec3(0));
 }
 
 TEST_CASE("path: what is no way is refused with its place") {
@@ -157,7 +157,7 @@ TEST_CASE("path: what is no way is refused with its place") {
     shape.knots = {knot({1, 2, 3}), knot({1, 2, 3})};
     CHECK(
         make_path(shape).error().message
-        == "found knots in one place, expected a way between them");
+        == "all knots coincide, expected a path of nonzero length");
     shape.knots[1].position.y = std::nanf("");
     CHECK(make_path(shape).error().message == "knots[1]: found a number that is not finite");
 }

@@ -193,11 +193,11 @@ TEST_CASE(
                || headers.find("\n    " + type + " ") != std::string::npos;
     };
     int described = 0;
-    const std::string key = "visit_fields(";
+    const std::string key = "LIMN_FIELDS(";
     for (std::size_t at = headers.find(key); at != std::string::npos;
          at = headers.find(key, at + 1)) {
         const std::size_t begin = at + key.size();
-        const std::string type = headers.substr(begin, headers.find('&', begin) - begin);
+        const std::string type = headers.substr(begin, headers.find(')', begin) - begin);
         const std::string name = snake_case(type);
         CAPTURE(name);
         CHECK((find_component(name) != nullptr || find_resource(name) != nullptr || is_part(type)));

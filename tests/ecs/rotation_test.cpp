@@ -26,7 +26,7 @@ struct Quats {
     Random random{77, 0, 0, 0};
     Quat next() {
         const Vec4 q(random.normal(), random.normal(), random.normal(), random.normal());
-        return unit_or_none(Quat(q.w, q.x, q.y, q.z));
+        return normalize_or_identity(Quat(q.w, q.x, q.y, q.z));
     }
     Vec3 vector() { return random.uniform(0.1f, 2.0f) * random.direction(); }
 };
@@ -86,10 +86,10 @@ TEST_CASE("rotation: exp undoes log, also near no rotation and near a whole turn
 }
 
 TEST_CASE("rotation: the unit quaternion of nothing, of infinity and of NaN is no rotation") {
-    CHECK(unit_or_none(Quat(0, 0, 0, 0)) == kNone);
-    CHECK(unit_or_none(Quat(NAN, 1, 0, 0)) == kNone);
-    CHECK(unit_or_none(Quat(INFINITY, 1, 0, 0)) == kNone);
-    CHECK(apart(unit_or_none(Quat(0, 0, 3, 4)), Quat(0, 0, 0.6f, 0.8f)) < 1e-7f);
+    CHECK(normalize_or_identity(Quat(0, 0, 0, 0)) == kNone);
+    CHECK(normalize_or_identity(Quat(NAN, 1, 0, 0)) == kNone);
+    CHECK(normalize_or_identity(Quat(INFINITY, 1, 0, 0)) == kNone);
+    CHECK(apart(normalize_or_identity(Quat(0, 0, 3, 4)), Quat(0, 0, 0.6f, 0.8f)) < 1e-7f);
 }
 
 TEST_CASE("rotation: a quaternion turns vectors about its axis") {
@@ -159,31 +159,31 @@ TEST_CASE("rotation: a matrix gives its quaternion back, half turns included") {
     for (int i = 0; i < 10'000; ++i) {
         const Quat q = quats.next();
         const Mat3 m = glm::mat3_cast(q);
-        const auto back = rotation_in(m);
+        const auto back = extract_rotation(m);
         REQUIRE(back.has_value());
         CHECK(turned(*back, q) < 2e-6f);
         CHECK(1 + m[0][0] + m[1][1] + m[2][2] == doctest::Approx(4 * q.w * q.w).epsilon(1e-4));
     }
     for (const Vec3& axis : {kX, kY, kZ, Vec3(1, 1, 0), Vec3(-1, 0, 1)}) {
         const Quat half = rotation_about(axis, kPi);
-        CHECK(turned(rotation_in(glm::mat3_cast(half)).value(), half) < 1e-6f);
+        CHECK(turned(extract_rotation(glm::mat3_cast(half)).value(), half) < 1e-6f);
     }
-    CHECK(rotation_in(Mat3(1)) == kNone);
-    CHECK(apart(*rotation_in(glm::mat3_cast(about_z(90))), about_z(90)) < 1e-6f);
+    CHECK(extract_rotation(Mat3(1)) == kNone);
+    CHECK(apart(*extract_rotation(glm::mat3_cast(about_z(90))), about_z(90)) < 1e-6f);
 }
 
 TEST_CASE(
     "rotation: scale and shear are taken out of a matrix, mirrors and flat ones are refused") {
     const Quat q = rotation_about({1, 2, 3}, 1.1f);
     Mat3 m = glm::mat3_cast(q);
-    CHECK(apart(*rotation_in(Mat3(2.0f * m[0], 5e3f * m[1], 1e-3f * m[2])), q) < 1e-6f);
-    CHECK(apart(*rotation_in(Mat3(m[0], m[1] + 0.4f * m[0], m[2] - 0.2f * m[1])), q) < 1e-6f);
-    CHECK_FALSE(rotation_in(Mat3(-m[0], m[1], m[2])).has_value());
-    CHECK_FALSE(rotation_in(Mat3(m[0], m[1], Vec3(0))).has_value());
-    CHECK_FALSE(rotation_in(Mat3(m[0], 2.0f * m[0], m[2])).has_value());
-    CHECK_FALSE(rotation_in(Mat3(0)).has_value());
+    CHECK(apart(*extract_rotation(Mat3(2.0f * m[0], 5e3f * m[1], 1e-3f * m[2])), q) < 1e-6f);
+    CHECK(apart(*extract_rotation(Mat3(m[0], m[1] + 0.4f * m[0], m[2] - 0.2f * m[1])), q) < 1e-6f);
+    CHECK_FALSE(extract_rotation(Mat3(-m[0], m[1], m[2])).has_value());
+    CHECK_FALSE(extract_rotation(Mat3(m[0], m[1], Vec3(0))).has_value());
+    CHECK_FALSE(extract_rotation(Mat3(m[0], 2.0f * m[0], m[2])).has_value());
+    CHECK_FALSE(extract_rotation(Mat3(0)).has_value());
     m[1][1] = NAN;
-    CHECK_FALSE(rotation_in(m).has_value());
+    CHECK_FALSE(extract_rotation(m).has_value());
 }
 
 TEST_CASE("rotation: slerp goes the great circle at constant speed") {
@@ -192,7 +192,7 @@ TEST_CASE("rotation: slerp goes the great circle at constant speed") {
     Quats quats;
     for (int i = 0; i < 300; ++i) {
         const Quat a = quats.next();
-        const Quat b = near_to(a, quats.next());
+        const Quat b = to_same_hemisphere(a, quats.next());
         const Quat p = quats.next();
         const float omega = std::acos(std::min(glm::dot(a, b), 1.0f));
         for (const float u : {0.0f, 0.1f, 0.5f, 0.8f, 1.0f}) {
@@ -220,7 +220,7 @@ TEST_CASE("rotation: slerp does not jump where it becomes a straight line, nor d
         const Quat stays = slerp_along(kNone, -kNone, u);
         CHECK(glm::length(stays) == doctest::Approx(1));
         // Half a turn may go either way, but goes evenly.
-        const AxisAngle half = axis_angle(near_to(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
+        const AxisAngle half = axis_angle(to_same_hemisphere(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
         CHECK(half.angle == doctest::Approx(u * kPi).epsilon(1e-5));
         CHECK(std::abs(half.axis.y) == doctest::Approx(1));
     }

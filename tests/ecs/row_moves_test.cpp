@@ -196,7 +196,7 @@ TEST_CASE("row moves: an empty archetype takes the columns of a large one over")
             }
             const std::byte* const positions =
                 from.column(from.column_of(component_id<Position>)).data;
-            REQUIRE(to.take_over(from, 9));
+            REQUIRE(to.adopt_rows(from, 9));
             CHECK(to.column(to.column_of(component_id<Position>)).data == positions);
             CHECK(Counted::living == 0);
             CHECK(from.size() == 0);
@@ -213,7 +213,7 @@ TEST_CASE("row moves: an empty archetype takes the columns of a large one over")
             }
             check_rows(to, numbers(0, size + 3000));
             check_rows(from, numbers(0, 3000));
-            CHECK_FALSE(to.take_over(from, 10));
+            CHECK_FALSE(to.adopt_rows(from, 10));
         }
     }
     CHECK(Counted::living == 0);

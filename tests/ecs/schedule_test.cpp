@@ -299,7 +299,7 @@ TEST_CASE("schedule: it prints systems, access, order and times as text") {
     CHECK(text.find("reads a  writes b  after write_a, write_b") != std::string::npos);
     CHECK(text.find("commands") != std::string::npos);
     CHECK(text.find("stage 2\n  count_alone") != std::string::npos);
-    CHECK(text.find("alone") != std::string::npos);
+    CHECK(text.find("exclusive") != std::string::npos);
     CHECK(text.find("mean") == std::string::npos);
     world.insert_resource(Count{});
     schedule.run(world);

@@ -204,13 +204,13 @@ TEST_CASE("delta: applied to another snapshot it is refused") {
     story.create(1);
     const std::vector<std::byte> second = save(story.world);
     const std::vector<std::byte> delta = save_delta(story.world, mark).value();
-    CHECK(apply_delta(second, delta).error().message == "delta: belongs to another snapshot");
+    CHECK(apply_delta(second, delta).error().message == "delta: belongs to a different snapshot");
     CHECK(
         apply_delta({}, delta).error().message
-        == "delta: the earlier snapshot: no snapshot: it does not begin with LIMNSNAP");
+        == "delta: the earlier snapshot: not a snapshot: it does not begin with LIMNSNAP");
     CHECK(
         apply_delta(first, first).error().message
-        == "delta: no delta: it does not begin with LIMNDELT");
+        == "delta: not a delta: it does not begin with LIMNDELT");
     // An altered one either fails or has its altered bytes replaced.
     int refused = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {

@@ -262,7 +262,7 @@ TEST_CASE("snapshot: what cannot be saved is named") {
         world.create(SnapOpaque{});
         CHECK(
             save_snapshot(world).error().message
-            == "component snap_opaque: no known bytes to save; give it visit_fields, or mark it as "
+            == "component snap_opaque: cannot be serialized; give it LIMN_FIELDS, or mark it as "
                "not saved");
     }
 }
@@ -284,9 +284,9 @@ TEST_CASE("snapshot: cut off at any byte, it is refused and changes nothing") {
     }
     std::vector<std::byte> longer = bytes;
     longer.push_back(std::byte{0});
-    CHECK(refusal(longer) == "snapshot: found 513 bytes, expected 48 and what the header says");
+    CHECK(refusal(longer) == "snapshot: found 513 bytes, expected 48 plus the sizes in the header");
     seal_snapshot(longer);
-    CHECK(refusal(longer) == "snapshot: found 115 bytes of data, expected the 114 of its pieces");
+    CHECK(refusal(longer) == "snapshot: found 115 bytes of data, expected the 114 of the pieces");
 }
 
 TEST_CASE("snapshot: any altered byte is found out") {
@@ -305,7 +305,7 @@ TEST_CASE("snapshot: any altered byte is found out") {
     altered = bytes;
     altered[8] = std::byte{9};
     CHECK(refusal(altered) == "snapshot: found version 9, expected 2");
-    CHECK(refusal({}) == "snapshot: no snapshot: it does not begin with LIMNSNAP");
+    CHECK(refusal({}) == "snapshot: not a snapshot: it does not begin with LIMNSNAP");
 }
 
 TEST_CASE("snapshot: any altered byte with a fitting checksum gives an error or a whole world") {
@@ -356,11 +356,13 @@ TEST_CASE("snapshot: a free slot that is missing, there twice or linked by a liv
         seal_snapshot(altered);
         return refusal(altered);
     };
-    CHECK(refusal_with(3, 2) == "snapshot: slots: found one more free slot than the 2 there are");
+    CHECK(refusal_with(3, 2) == "snapshot: slots: the free list is longer than 2");
     CHECK(
-        refusal_with(1, 1) == "snapshot: slots: found free slot 1 twice or beyond the 4 there are");
+        refusal_with(1, 1)
+        == "snapshot: slots: free slot 1 appears twice or is not below the slot count 4");
     CHECK(
-        refusal_with(1, 7) == "snapshot: slots: found free slot 7 twice or beyond the 4 there are");
+        refusal_with(1, 7)
+        == "snapshot: slots: free slot 7 appears twice or is not below the slot count 4");
     CHECK(refusal_with(0, 2) == "snapshot: slots: found a link in slot 0, which is not free");
 }
 
@@ -381,7 +383,7 @@ TEST_CASE("snapshot: a component this program does not know, or knows differentl
     at[9] ^= std::byte{1};
     *at = std::byte{'t'};
     seal_snapshot(renamed);
-    CHECK(refusal(renamed) == "snapshot: component transform: was saved with other fields");
+    CHECK(refusal(renamed) == "snapshot: component transform: was saved with different fields");
 }
 
 TEST_CASE(

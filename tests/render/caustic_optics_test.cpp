@@ -41,7 +41,7 @@ float lit_area(float bulge) {
         const Vec3 normal = glm::normalize(Vec3(-2 * bulge * x, 1, -2 * bulge * z));
         const Vec3 from(x, bulge * (x * x + z * z), z);
         const Plane bottom = {kUp, -2};
-        return land_on_planes(from, refract_ray(normal, kUp, 1 / kIndex), {&bottom, 1});
+        return hit_nearest_plane(from, refract_ray(normal, kUp, 1 / kIndex), {&bottom, 1});
     };
     const Vec3 a = lands(-0.5f, -0.5f);
     const Vec3 b = lands(0.5f, 0.5f);
@@ -63,11 +63,11 @@ Mirror mirror_at(float a) {
 
 TEST_CASE("caustic optics: a ray meets a plane where it should, and one beside it never does") {
     const Plane plane = {{0, 0, 1}, 0};
-    CHECK(way_to_plane({0, 0, 2}, {0, 0, -1}, plane) == doctest::Approx(2));
-    CHECK(way_to_plane({0, 0, 2}, {1, 0, 0}, plane) == kFarPlane);
-    CHECK(way_to_plane({0, 0, 2}, {0, 0, 1}, plane) == kFarPlane);
+    CHECK(distance_to_plane({0, 0, 2}, {0, 0, -1}, plane) == doctest::Approx(2));
+    CHECK(distance_to_plane({0, 0, 2}, {1, 0, 0}, plane) == kFarPlane);
+    CHECK(distance_to_plane({0, 0, 2}, {0, 0, 1}, plane) == kFarPlane);
     for (const float x : {-1.0f, 0.0f, 1.0f}) {
-        const Vec3 beside = land_on_planes({x, 0, 2}, {1, 0, 0}, {&plane, 1});
+        const Vec3 beside = hit_nearest_plane({x, 0, 2}, {1, 0, 0}, {&plane, 1});
         CHECK(std::isfinite(beside.x));
     }
 }
@@ -77,7 +77,7 @@ TEST_CASE("caustic optics: rays land on the first of a pool's planes") {
     for (int i = 0; i < 500; ++i) {
         const Vec3 from = start_of(i);
         const Vec3 ray = ray_of(i);
-        const Vec3 hit = land_on_planes(from, ray, planes);
+        const Vec3 hit = hit_nearest_plane(from, ray, planes);
         bool on_one = false;
         for (const Plane& plane : planes) {
             const float off = glm::dot(plane.normal, hit) - plane.offset;
@@ -96,7 +96,7 @@ TEST_CASE("caustic optics: by areas no light is made or lost, and flat water lig
     const auto moved = [&](float x, float z, float high) {
         const Vec3 normal = glm::normalize(Vec3(-high * std::cos(x), 1, high * std::sin(z)));
         const Vec3 from(x, high * (std::sin(x) + std::cos(z)), z);
-        return land_on_planes(from, refract_ray(normal, to_sun, 1 / kIndex), {&bottom, 1});
+        return hit_nearest_plane(from, refract_ray(normal, to_sun, 1 / kIndex), {&bottom, 1});
     };
     for (const float high : {0.0f, 0.1f}) {
         double entered = 0;
@@ -108,7 +108,7 @@ TEST_CASE("caustic optics: by areas no light is made or lost, and flat water lig
             const Vec3 b = moved(x + 0.1f, z, high);
             const Vec3 c = moved(x, z + 0.1f, high);
             const float after = glm::length(glm::cross(b - a, c - a));
-            const float light = area_light(0.01f, after);
+            const float light = irradiance_ratio(0.01f, after);
             if (high == 0) {
                 CHECK(light == doctest::Approx(1).epsilon(1e-3));
             }
@@ -144,7 +144,7 @@ TEST_CASE(
     "caustic optics: crests gather light, troughs scatter it, flat water lets it straight down") {
     const Plane bottom = {kUp, -2};
     const Vec3 below =
-        land_on_planes({0.4f, 0, -0.7f}, refract_ray(kUp, kUp, 1 / kIndex), {&bottom, 1});
+        hit_nearest_plane({0.4f, 0, -0.7f}, refract_ray(kUp, kUp, 1 / kIndex), {&bottom, 1});
     CHECK(glm::length(below - Vec3(0.4f, -2, -0.7f)) < 1e-5f);
     CHECK(lit_area(-0.1f) < 0.95f);
     CHECK(lit_area(0.1f) > 1.05f);
@@ -161,7 +161,7 @@ TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book recko
     CHECK(glm::distance(moved.position, vertex) == doctest::Approx(1.414214));
     CHECK(moved.light == doctest::Approx(0.125));
     const MirroredVertex text =
-        mirror_vertex(vertex, {-1, 0, 0}, light, plane, {.power_plane = 1, .power_surface = 4});
+        mirror_vertex(vertex, {-1, 0, 0}, light, plane, {.plane_exponent = 1, .surface_exponent = 4});
     CHECK(text.light == doctest::Approx(0.176777));
 
     const MirroredVertex away = mirror_vertex(vertex, {1, 0, 0}, light, plane);
@@ -173,11 +173,11 @@ TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book recko
     // A ray that comes down too far away ends on the plane; one that must not lie so high is black.
     const Vec3 flat = glm::normalize(Vec3(-1, 0, -1e-4f));
     const Vec3 half = glm::normalize(flat - l);
-    const MirroredVertex far = mirror_vertex(vertex, half, light, plane, {.farthest = 10});
+    const MirroredVertex far = mirror_vertex(vertex, half, light, plane, {.max_distance = 10});
     CHECK(std::abs(far.position.z) < 1e-4f);
     CHECK(glm::distance(Vec2(far.position), Vec2(vertex)) < 11);
     const MirroredVertex high = mirror_vertex(
-        {1, 0, 5}, half, Vec3(1, 0, 5) - 4.0f * l, plane, {.farthest = 10, .highest = 2});
+        {1, 0, 5}, half, Vec3(1, 0, 5) - 4.0f * l, plane, {.max_distance = 10, .max_height = 2});
     CHECK(high.light == 0);
     CHECK(std::abs(high.position.z) < 1e-4f);
 }
@@ -221,7 +221,7 @@ TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions")
     for (int i = 0; i < 256; ++i) {
         const MirroredVertex expected = mirror_vertex(
             start_of(i), ray_of(i), {1, 4, 2}, {{0, 1, 0}, -1.5f},
-            {.power_plane = 1, .power_surface = 4, .farthest = 20});
+            {.plane_exponent = 1, .surface_exponent = 4, .max_distance = 20});
         const Vec4 found = sent[static_cast<std::size_t>(i)];
         CHECK(glm::distance(Vec3(found), expected.position) < 2e-3f);
         CHECK(std::abs(std::max(found.w, 0.0f) - expected.light) < 1e-4f);
@@ -237,7 +237,7 @@ TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions")
         inputs);
     const std::array<Plane, 5> planes = pool_planes({2, 3}, 1.5f);
     for (int i = 0; i < 256; ++i) {
-        const Vec3 expected = land_on_planes(start_of(i), ray_of(i), planes);
+        const Vec3 expected = hit_nearest_plane(start_of(i), ray_of(i), planes);
         CHECK(glm::distance(Vec3(hits[static_cast<std::size_t>(i)]), expected) < 1e-3f);
         CHECK(
             hits[static_cast<std::size_t>(i)].w

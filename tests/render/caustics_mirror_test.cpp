@@ -142,7 +142,7 @@ TEST_CASE_FIXTURE(
     for (const float height : {70.0f, 35.0f}) {
         const Vec3 to_sun = sun_at(radians(height));
         const Entity light = sun(to_sun);
-        const Vec2 aside = mirrored_slant(to_sun) * kCeiling;
+        const Vec2 aside = reflected_slope(to_sun) * kCeiling;
         CHECK(glm::dot(aside, Vec2(to_sun.x, to_sun.z)) < 0);  // away from the sun
         const float expected = fresnel(to_sun.y, kIndex) * to_sun.y / kPi;
         for (const Vec2 entry : {Vec2(0, 0), Vec2(1.8f, -1.8f), Vec2(-1.8f, 0.4f)}) {
@@ -182,7 +182,7 @@ TEST_CASE_FIXTURE(Grotto, "caustics: what waves throw onto a ceiling is that of 
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
     constexpr int kCells = 32;
-    const glm::dvec2 aside = glm::dvec2(mirrored_slant(to_sun)) * static_cast<double>(kCeiling);
+    const glm::dvec2 aside = glm::dvec2(reflected_slope(to_sun)) * static_cast<double>(kCeiling);
     const oracle::CausticLight traced = oracle::trace_mirrored_photons(
         {.half = glm::dvec2(kHalf), .boxes = {}}, surface_of(world.get<WaveTable>(water)),
         glm::dvec3(to_sun), kCeiling, aside, kCells, 1000000);
@@ -216,7 +216,7 @@ TEST_CASE_FIXTURE(
     sun(to_sun);
     const float hangs = 0.75f;
     const Vec2 entry(0.3f, 0.2f);
-    const Vec2 slant = mirrored_slant(to_sun);
+    const Vec2 slant = reflected_slope(to_sun);
     const Vec2 hit = entry + slant * hangs;
     const Vec2 behind = entry + slant * kCeiling;
     const float open = above({behind.x, 1.2f, behind.y});
@@ -257,7 +257,7 @@ TEST_CASE_FIXTURE(
     const Entity water = fill({.resolution = 64});
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);
-    const Vec2 aside = mirrored_slant(to_sun) * kCeiling;
+    const Vec2 aside = reflected_slope(to_sun) * kCeiling;
     CHECK(above({aside.x, 0.2f, aside.y}) == 0);
     FrameGraph& graph = frame_graph(shared_renderer());
     CHECK(!graph.was_run("caustic rays"));  // nor does anybody look into the water

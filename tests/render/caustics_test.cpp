@@ -281,7 +281,7 @@ TEST_CASE_FIXTURE(Pool, "caustics: a ripple that moves takes its caustic along")
                 state.height[state.at(x, z)] = 0.03f * std::exp(-(u * u + v * v) / 0.08f);
             }
         }
-        state.before = state.height;
+        state.previous = state.height;
         if (world.has<RippleState>(water)) {
             world.get<RippleState>(water) = state;
         } else {

@@ -49,7 +49,7 @@ LightList list_of(std::vector<LightReach> reach, int directional = 0) {
 
 class ClusterTest : public RenderTest {
   public:
-    oracle::ReadClusters build(const RenderView& view, const LightList& lights) {
+    oracle::ClusterReadbackLists build(const RenderView& view, const LightList& lights) {
         // One for all tests, like the shared renderer.
         static auto& readback =
             *new oracle::ClusterReadback(*oracle::ClusterReadback::create(device()));
@@ -71,7 +71,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 60; ++i) {
             reach.push_back(random.reach());
         }
-        const oracle::ReadClusters lists = build(view, list_of(reach, 2));
+        const oracle::ClusterReadbackLists lists = build(view, list_of(reach, 2));
         for (int k = 0; k < 400; ++k) {
             // A point that some light reaches, so that the test is not wasted on the dark.
             const LightReach& chosen = reach[k % reach.size()];
@@ -105,7 +105,7 @@ TEST_CASE_FIXTURE(
             reach.push_back(random.reach());
             reach.back().cosine = -1;  // the sphere around a narrow cone ends beyond the radius
         }
-        const oracle::ReadClusters lists = build(view, list_of(reach));
+        const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
         const auto allowed = oracle::brute_force_lists(view, lists.shape, reach, 4e-3);
         int listed = 0;
         int within = 0;
@@ -131,7 +131,7 @@ TEST_CASE_FIXTURE(
     for (int i = 0; i < 4096; ++i) {
         reach.push_back({random.in_cube(40), 1.5f});
     }
-    const oracle::ReadClusters lists = build(view, list_of(reach));
+    const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
     for (int cell = 0; cell < lists.shape.cells(); ++cell) {
         const auto listed = lists.of(cell);
         REQUIRE(std::is_sorted(listed.begin(), listed.end()));
@@ -139,7 +139,7 @@ TEST_CASE_FIXTURE(
     CHECK(lists.total() > 4096);
     CHECK(lists.total() < 20 * lists.cells.size());
     CHECK(lists.total() <= lists.capacity);
-    const oracle::ReadClusters again = build(view, list_of(reach));
+    const oracle::ClusterReadbackLists again = build(view, list_of(reach));
     CHECK(lists.cells == again.cells);
     CHECK(std::equal(
         lists.indices.begin(), lists.indices.begin() + static_cast<std::ptrdiff_t>(lists.total()),
@@ -158,7 +158,7 @@ TEST_CASE_FIXTURE(
         for (int i = 0; i < 70; ++i) {
             reach.push_back(random.reach());
         }
-        const oracle::ReadClusters lists = build(view, list_of(reach));
+        const oracle::ClusterReadbackLists lists = build(view, list_of(reach));
         layout::uint end = 0;
         for (const layout::uvec2& cell : lists.cells) {
             REQUIRE(cell.x == end);
@@ -173,7 +173,7 @@ TEST_CASE_FIXTURE(
     ClusterTest, "clusters: a light without an end is in every cell, no light is in none") {
     const Affine pose = look_at({0, 0, 5}, {0, 0, 0});
     const RenderView view = make_render_view({}, pose, pose, {.width = 100, .height = 70});
-    const oracle::ReadClusters endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
+    const oracle::ClusterReadbackLists endless = build(view, list_of({{{1e3f, 0, 0}, INFINITY}}));
     CHECK(endless.total() == endless.cells.size());
     CHECK(endless.total() == endless.capacity);
     CHECK(build(view, list_of({})).total() == 0);

@@ -2,7 +2,6 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/glow.h"
 #include "render/passes/depth_of_field_pass.h"
-#include "render/passes/focus_block.h"
 #include "render/shaders/focus_gpu.h"
 #include "render/window_depth.h"
 #include "tests/render/scene_fixture.h"
@@ -35,7 +34,7 @@ RenderView lens_view(int width, int height, float diameter, int blades = 0) {
         .aperture_radius = diameter * kFocus * view.tangent.y / static_cast<float>(height),
         .focus_distance = kFocus,
         .blades = blades,
-        .largest_blur = 0.25f};
+        .max_blur = 0.25f};
     return view;
 }
 
@@ -416,7 +415,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: NaN and infinite radiance stay wher
 TEST_CASE("depth_of_field: a lens whose circles are no larger than a pixel is none") {
     RenderView view = lens_view(640, 360, 20);
     CHECK(has_depth_of_field(view));
-    view.lens.largest_blur = 0;
+    view.lens.max_blur = 0;
     CHECK(!has_depth_of_field(view));
     view = lens_view(640, 360, 20);
     view.lens.aperture_radius = 0;

@@ -1,5 +1,5 @@
 #include "bench/oracles/tone_oracle.h"
-#include "render/develop.h"
+#include "render/tone_mapper.h"
 #include "render/gpu/readback.h"
 #include "tests/render/render_fixture.h"
 
@@ -65,9 +65,9 @@ std::size_t index(int x, int y) {
 
 struct DodgeBurn : RenderTest {
     DodgeBurn() {
-        Result<Developer> made = create_developer(device());
+        Result<ToneMapper> made = create_tone_mapper(device());
         REQUIRE(made.ok());
-        developer = *std::move(made);
+        tone_mapper = *std::move(made);
     }
 
     gpu::Texture upload(const Picture& picture) {
@@ -92,7 +92,7 @@ struct DodgeBurn : RenderTest {
             .dither = false};
         graph.begin_frame();
         const TextureId display =
-            develop(graph, developer, exposure, {}, graph.import("picture", texture));
+            apply_tone_mapper(graph, tone_mapper, exposure, {}, graph.import("picture", texture));
         graph.keep(display);
         graph.execute();
         const gpu::ByteImage bytes = gpu::read_bytes(*graph.texture(display));
@@ -100,7 +100,7 @@ struct DodgeBurn : RenderTest {
     }
 
     FrameGraph graph{device()};
-    Developer developer;
+    ToneMapper tone_mapper;
 };
 
 }  // namespace
@@ -151,7 +151,7 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: the blurs of the GPU are the oracle's Gaussia
     const gpu::Texture texture = upload(room);
     graph.begin_frame();
     const LocalLuminance blurred =
-        blur_luminance(graph, developer.local, graph.import("picture", texture));
+        blur_luminance(graph, tone_mapper.local, graph.import("picture", texture));
     for (const TextureId id : {blurred.fine, blurred.middle, blurred.coarse}) {
         graph.keep(id);
     }

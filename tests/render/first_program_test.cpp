@@ -66,7 +66,7 @@ class PairTest : public RenderTest {
         device().bind_vertex_array(array);
         device().use(gpu::Pipeline{*program, state});
         device().draw(GL_TRIANGLES, 0, static_cast<int>(vertices.size()));
-        device().forget_state();
+        device().invalidate_state();
     }
 
     gpu::Texture color;

@@ -339,8 +339,8 @@ TEST_CASE_FIXTURE(
                 const Vec4 clip = Vec4(ndc * distance, view.near, distance);
                 const Vec3 p = Vec3(world_from_clip * clip);
                 const Vec3 q = Vec3(before_from_now * Vec4(p, 1));
-                const Vec2 want = project(view, view.steady_from_world, p)
-                                  - project(view, view.previous_from_world, q);
+                const Vec2 want = project(view, view.unjittered_from_world, p)
+                                  - project(view, view.previous_clip_from_world, q);
                 CHECK(glm::distance(want, velocity_at(velocity, x, y)) <= 0.05f);
                 checked += glm::length(want) > 1 ? 1 : 0;
             }
@@ -369,7 +369,7 @@ TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from picture to p
     // 32 pixels show 1 m. From a quarter to three quarters of the step: 0.2 m.
     const RenderView view = make_render_view(
         {.fov_y = radians(90)}, eye, eye,
-        {.width = 64, .height = 64, .alpha = 0.75f, .alpha_before = 0.25f});
+        {.width = 64, .height = 64, .alpha = 0.75f, .previous_alpha = 0.25f});
     CHECK(velocity_at(aov(view, "velocity"), 40, 32).x == doctest::Approx(0.2f * 32).epsilon(2e-3));
     // The plate stands at 0.3: from -0.7 on.
     const gpu::FloatImage depth = aov(view, "depth");

@@ -11,10 +11,10 @@
 namespace limn::test {
 namespace {
 
-using oracle::LightPicture;
+using oracle::LightImage;
 
-LightPicture picture_of(const gpu::FloatImage& image) {
-    LightPicture picture = oracle::make_dark(image.width, image.height);
+LightImage picture_of(const gpu::FloatImage& image) {
+    LightImage picture = oracle::make_black_image(image.width, image.height);
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             picture.pixels[y * image.width + x] = glm::dvec3(rgb_at(image, x, y));
@@ -24,7 +24,7 @@ LightPicture picture_of(const gpu::FloatImage& image) {
 }
 
 /// Without a scene: what the pass makes of these pixels.
-LightPicture glowing(const LightPicture& picture, const Glow& glow) {
+LightImage glowing(const LightImage& picture, const Glow& glow) {
     static const GlowPass pass = *create_glow_pass(shared_device());
     static FrameGraph graph(shared_device());
     std::vector<Vec4> texels;
@@ -44,8 +44,8 @@ LightPicture glowing(const LightPicture& picture, const Glow& glow) {
 }
 
 /// A pixel's worth of light at `place`, spread over the pixels that it covers.
-LightPicture dot_at(int width, int height, const glm::dvec2& place, double light) {
-    LightPicture picture = oracle::make_dark(width, height);
+LightImage dot_at(int width, int height, const glm::dvec2& place, double light) {
+    LightImage picture = oracle::make_black_image(width, height);
     for (int y = 0; y < height; ++y) {
         const double down = std::max(0.0, 1 - std::abs(y + 0.5 - place.y));
         for (int x = 0; down > 0 && x < width; ++x) {
@@ -56,7 +56,7 @@ LightPicture dot_at(int width, int height, const glm::dvec2& place, double light
     return picture;
 }
 
-double green_sum(const LightPicture& picture) {
+double green_sum(const LightImage& picture) {
     return oracle::sum_of(picture).y;
 }
 
@@ -101,9 +101,9 @@ TEST_CASE_FIXTURE(Scene, "glow: a picture of many samples glows once, with the s
         return picture_of(
             gpu::read_floats(*render_accumulated(shared_renderer(), world, view, 4).radiance));
     };
-    const LightPicture without = accumulated();
+    const LightImage without = accumulated();
     world.insert_resource(Glow{.strength = 0.5f});
-    const LightPicture with = accumulated();
+    const LightImage with = accumulated();
     CHECK(with.pixels != without.pixels);
     CHECK(green_sum(with) == doctest::Approx(green_sum(without)).epsilon(1e-4));
     CHECK(pass_names().find("accumulate") == std::string::npos);  // of the last frame alone
@@ -139,7 +139,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: no light is made or lost, at any size, in c
             CAPTURE(size.y);
             CAPTURE(place.x);
             CAPTURE(place.y);
-            const LightPicture made =
+            const LightImage made =
                 glowing(dot_at(size.x, size.y, place, 20), {.strength = 1, .radius = 0.4f});
             CHECK(green_sum(made) == doctest::Approx(20).epsilon(1e-4));
         }
@@ -148,11 +148,11 @@ TEST_CASE_FIXTURE(RenderTest, "glow: no light is made or lost, at any size, in c
 
 TEST_CASE_FIXTURE(RenderTest, "glow: an even picture stays as it is") {
     for (const IVec2& size : {IVec2(40, 24), IVec2(37, 23)}) {
-        LightPicture even = oracle::make_dark(size.x, size.y);
+        LightImage even = oracle::make_black_image(size.x, size.y);
         for (glm::dvec3& pixel : even.pixels) {
             pixel = {0.25, 1, 300};
         }
-        const LightPicture made = glowing(even, {.strength = 0.7f});
+        const LightImage made = glowing(even, {.strength = 0.7f});
         for (const glm::dvec3& pixel : made.pixels) {
             CHECK(pixel.y == doctest::Approx(1).epsilon(1e-5));
             CHECK(pixel.z == doctest::Approx(300).epsilon(1e-5));
@@ -165,7 +165,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a point becomes round, within 5 % at any ra
     const Glow glow = {.strength = 1, .radius = 0.1f, .firefly = 0};
     for (const glm::dvec2& place :
          {glm::dvec2(160.5, 120.5), glm::dvec2(163.5, 125.5), glm::dvec2(170.5, 113.5)}) {
-        const LightPicture made = glowing(dot_at(320, kHeight, place, 100), glow);
+        const LightImage made = glowing(dot_at(320, kHeight, place, 100), glow);
         for (const double radius : {1.5, 3.0, 6.0, 9.0, 12.0, 18.0, 24.0}) {
             CAPTURE(radius);
             CHECK(oracle::rotational_spread(made, place, radius) < 0.05);
@@ -175,7 +175,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a point becomes round, within 5 % at any ra
 
 TEST_CASE_FIXTURE(RenderTest, "glow: light falls with the power of the distance that was asked") {
     for (const float falloff : {2.0f, 2.4f, 3.0f}) {
-        const LightPicture made = glowing(
+        const LightImage made = glowing(
             dot_at(320, 240, {160.5, 120.5}, 100),
             {.strength = 1, .radius = 0.5f, .falloff = falloff, .firefly = 0});
         const double near = made.at(160 + 12, 120).y;
@@ -189,7 +189,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a pixel's light that moves by eighths does 
         double sum = 0;
         double squares = 0;
         for (int i = 0; i <= 16; ++i) {
-            const LightPicture made = glowing(
+            const LightImage made = glowing(
                 dot_at(96, 64, {40.5 + i / 8.0, 30.5 + i / 16.0}, light), {.strength = 0.5f});
             sum += green_sum(made) / 17;
             squares += green_sum(made) * green_sum(made) / 17;
@@ -203,13 +203,13 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a pixel's light that moves by eighths does 
 TEST_CASE_FIXTURE(RenderTest, "glow: a firefly's light stays in its pixel instead of spreading") {
     const Glow glow = {.strength = 0.5f, .firefly = 100};
     const auto spread = [&](double light) {
-        const LightPicture made = glowing(dot_at(96, 64, {40.5, 30.5}, light), glow);
+        const LightImage made = glowing(dot_at(96, 64, {40.5, 30.5}, light), glow);
         return 1 - made.at(40, 30).y / light;  // share that left the pixel
     };
     CHECK(spread(1) > 0.45);
     CHECK(spread(1e4) < 0.1 * spread(1));
     // Large lights are none, however bright, but for their rims.
-    LightPicture sun = oracle::make_dark(96, 64);
+    LightImage sun = oracle::make_black_image(96, 64);
     for (int y = 20; y < 40; ++y) {
         for (int x = 30; x < 50; ++x) {
             sun.pixels[y * 96 + x] = glm::dvec3(1e4);
@@ -224,11 +224,11 @@ TEST_CASE_FIXTURE(RenderTest, "glow: what is no number, or infinite, never sprea
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const IVec2& size : {IVec2(64, 48), IVec2(63, 47)}) {
-        LightPicture picture = dot_at(size.x, size.y, {40.5, 30.5}, 10);
+        LightImage picture = dot_at(size.x, size.y, {40.5, 30.5}, 10);
         picture.pixels[10 * size.x + 12] = {kNan, 1, 1};
         picture.pixels[20 * size.x + 22] = {1, kInfinity, 1};
         picture.pixels[30 * size.x + 5] = {3e38, 3e38, 3e38};
-        const LightPicture made = glowing(picture, {.strength = 1, .radius = 0.3f});
+        const LightImage made = glowing(picture, {.strength = 1, .radius = 0.3f});
         int broken = 0;
         for (int i = 0; i < size.x * size.y; ++i) {
             broken += std::isfinite(made.pixels[i].x + made.pixels[i].y + made.pixels[i].z) ? 0 : 1;
@@ -240,16 +240,16 @@ TEST_CASE_FIXTURE(RenderTest, "glow: what is no number, or infinite, never sprea
 }
 
 TEST_CASE_FIXTURE(RenderTest, "glow: it is the oracle's convolution, within 2 % of the brightest") {
-    LightPicture picture = dot_at(160, 96, {50.5, 40.5}, 40);
+    LightImage picture = dot_at(160, 96, {50.5, 40.5}, 40);
     for (int y = 60; y < 80; ++y) {
         for (int x = 100; x < 150; ++x) {
             picture.pixels[y * 160 + x] = {2, 0.5, x % 7 == 0 ? 3 : 0};
         }
     }
     const Glow glow = {.strength = 1, .radius = 0.15f, .firefly = 0};
-    const LightPicture made = glowing(picture, glow);
+    const LightImage made = glowing(picture, glow);
     const std::vector<float> weights = glow_weights(glow, 160, 96);
-    const LightPicture exact = oracle::scatter(picture, 1, oracle::scattering_of_levels(weights));
+    const LightImage exact = oracle::scatter(picture, 1, oracle::scattering_of_levels(weights));
     double peak = 0;
     double worst = 0;
     for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
@@ -293,10 +293,10 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask adds the lamp's light once more, twice as
     const auto added = [&](const Vec3& emission, float strength) {
         Scene scene;
         furnish(scene, emission);
-        const LightPicture bare = picture_of(scene.radiance(view));
+        const LightImage bare = picture_of(scene.radiance(view));
         scene.world.insert_resource(
             Glow{.kind = GlowKind::Mask, .strength = strength, .passes = 3});
-        LightPicture made = picture_of(scene.radiance(view));
+        LightImage made = picture_of(scene.radiance(view));
         double lamp = 0;
         for (std::size_t i = 0; i < made.pixels.size(); ++i) {
             for (int c = 0; c < 3; ++c) {

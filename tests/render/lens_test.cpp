@@ -117,7 +117,7 @@ std::vector<LensEffect> lens_effects() {
                  view.lens = {
                      .aperture_radius = 0.1f * strength,
                      .focus_distance = 0.5f,
-                     .largest_blur = 0.25f,
+                     .max_blur = 0.25f,
                      .method = method};
              }});
     }

@@ -34,8 +34,8 @@ TEST_CASE("motion blur: the oracle's box and bar agree with each other") {
         }
         CHECK(sum == doctest::Approx(13));
     }
-    CHECK(oracle::exposure_moment(0, 2, 180) == doctest::Approx(-0.125));
-    CHECK(oracle::exposure_moment(1, 2, 180) == doctest::Approx(0.125));
+    CHECK(oracle::exposure_sample_time(0, 2, 180) == doctest::Approx(-0.125));
+    CHECK(oracle::exposure_sample_time(1, 2, 180) == doctest::Approx(0.125));
 }
 
 TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes no bit") {
@@ -208,9 +208,9 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
             {.fov_y = radians(90.0f)}, pose(moment), pose(moment - 1),
             {.width = kSize, .height = kSize});
     };
-    oracle::MeanPicture mean;
+    oracle::MeanImage mean;
     for (int i = 0; i < 64; ++i) {
-        mean.add(radiance(view(oracle::exposure_moment(i, 64, 360))));
+        mean.add(radiance(view(oracle::exposure_sample_time(i, 64, 360))));
     }
     const gpu::FloatImage truth = mean.mean();
     const gpu::FloatImage plain = radiance(view(0));

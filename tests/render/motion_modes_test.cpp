@@ -44,7 +44,7 @@ class OldShutter : public Shutter {
   public:
     void set_mode(MotionBlurMode mode, float shutter = 360) {
         world.insert_resource(
-            MotionBlur{.mode = mode, .shutter = shutter, .samples = 64, .longest = 1});
+            MotionBlur{.mode = mode, .shutter = shutter, .samples = 64, .max_length = 1});
     }
     void set_time(double time) { world.insert_resource(FrameTime{.step = 0.1f, .time = time}); }
     /// In front of all there is, from now on or no more.
@@ -148,11 +148,11 @@ TEST_CASE_FIXTURE(
     const Entity edge = bar(unlit({1, 1, 1}), 8, 24, 0);
     const Affine pose = world.get<WorldTransform>(edge).world;
     const auto mean_of = [&](int count, double shutter) {
-        oracle::MeanPicture mean;
+        oracle::MeanImage mean;
         for (int i = 0; i < count; ++i) {
             Affine moved = pose;
             moved.row[0].w += static_cast<float>(
-                32 * oracle::exposure_moment(i, count, shutter) / Shutter::kPerMeter);
+                32 * oracle::exposure_sample_time(i, count, shutter) / Shutter::kPerMeter);
             world.get<WorldTransform>(edge).world = moved;
             mean.add(picture());
         }
@@ -334,7 +334,7 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: two pictures of a box make the ra
     };
     const Entity entity = place(box, unlit({1, 1, 1}), pose(-8 / Shutter::kPerMeter));
     world.insert_resource(
-        MotionBlur{.mode = MotionBlurMode::Stretch, .shutter = 360, .samples = 10, .longest = 1});
+        MotionBlur{.mode = MotionBlurMode::Stretch, .shutter = 360, .samples = 10, .max_length = 1});
     static_cast<void>(picture());
     world.get<PreviousWorldTransform>(entity).world = pose(-8 / Shutter::kPerMeter);
     world.get<WorldTransform>(entity).world = pose(8 / Shutter::kPerMeter);

@@ -299,7 +299,7 @@ TEST_CASE_FIXTURE(PostScene, "perspective map: a spot's map is of what it lights
 TEST_CASE("perspective map: what would harden at contacts is soft") {
     const Shadow asked = {
         .method = ShadowMethod::Perspective, .filter = ShadowFilter::ContactHardening};
-    CHECK(make_sane(asked).filter == ShadowFilter::Soft);
+    CHECK(sanitize(asked).filter == ShadowFilter::Soft);
 }
 
 }  // namespace limn::test

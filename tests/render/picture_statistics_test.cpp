@@ -1,6 +1,7 @@
 #include "bench/oracles/tone_oracle.h"
 #include "ecs/base/rng.h"
-#include "render/develop.h"
+#include "render/frame_clock.h"
+#include "render/tone_mapper.h"
 #include "render/shaders/tone_gpu.h"
 #include "tests/render/render_fixture.h"
 
@@ -24,17 +25,17 @@ struct Statistics : RenderTest {
     }
 
     /// `width` times as many rows as there are pixels for; bottom row first, which no sum minds.
-    layout::PictureMeasure
+    layout::ImageStatistics
     measure(const std::vector<Vec3>& pixels, int width, const MeasureRequest& request = {}) {
         const int height = static_cast<int>(pixels.size()) / width;
         gpu::Texture picture("picture", {.format = GL_RGBA32F, .width = width, .height = height});
         picture.upload<Vec3>(pixels, GL_RGB, GL_FLOAT);
         graph.begin_frame();
-        static_cast<void>(measure_picture(graph, pass, graph.import("picture", picture), request));
+        static_cast<void>(measure_image(graph, pass, graph.import("picture", picture), request));
         graph.execute();
-        return pass.measure.read_value<layout::PictureMeasure>(0);
+        return pass.measure.read_value<layout::ImageStatistics>(0);
     }
-    layout::PictureMeasure even(const Vec3& color, const MeasureRequest& request = {}) {
+    layout::ImageStatistics even(const Vec3& color, const MeasureRequest& request = {}) {
         return measure(std::vector<Vec3>(64, color), 8, request);
     }
 
@@ -53,12 +54,12 @@ std::vector<Vec3> make_noise(int count, float scale = 1.0f) {
     return pixels;
 }
 
-oracle::PictureStatistics reckon(const std::vector<Vec3>& pixels) {
+oracle::ImageStatistics reckon(const std::vector<Vec3>& pixels) {
     std::vector<glm::dvec3> exact;
     for (const Vec3& pixel : pixels) {
         exact.emplace_back(pixel);
     }
-    return oracle::measure_picture(exact);
+    return oracle::measure_image(exact);
 }
 
 double ratio(float a, float b) {
@@ -71,8 +72,8 @@ TEST_CASE_FIXTURE(
     Statistics, "hdr: statistics on the GPU are those of the oracle to a thousandth") {
     for (const IVec2 size : {IVec2(1, 1), IVec2(64, 64), IVec2(65, 63), IVec2(317, 181)}) {
         const std::vector<Vec3> pixels = make_noise(size.x * size.y);
-        const oracle::PictureStatistics want = reckon(pixels);
-        const layout::PictureMeasure got = measure(pixels, size.x);
+        const oracle::ImageStatistics want = reckon(pixels);
+        const layout::ImageStatistics got = measure(pixels, size.x);
         CAPTURE(size.x);
         CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
         for (int c = 0; c < 3; ++c) {
@@ -98,13 +99,13 @@ TEST_CASE_FIXTURE(
     Statistics, "hdr: the range of 0.01 and 1000 is 1e5, in any unit, and 1 in the dark") {
     for (const float unit : {1.0f, 0.125f, 37.0f}) {
         const std::vector<Vec3> two = {Vec3(0.01f * unit), Vec3(1000 * unit)};
-        const layout::PictureMeasure got = measure(two, 2, {.histogram = true});
+        const layout::ImageStatistics got = measure(two, 2, {.histogram = true});
         CHECK(ratio(got.luminance.w, got.luminance.z) == doctest::Approx(1e5).epsilon(1e-5));
         CHECK(ratio(got.clipped.y, got.clipped.x) == doctest::Approx(1e5).epsilon(1e-5));
     }
     const std::vector<Vec3> lit = {Vec3(0), Vec3(0.5f), Vec3(2), Vec3(0)};
     CHECK(measure(lit, 2).luminance.z == doctest::Approx(0.5));  // black has no ratio
-    const layout::PictureMeasure black = even(Vec3(0), {.histogram = true});
+    const layout::ImageStatistics black = even(Vec3(0), {.histogram = true});
     CHECK(black.luminance.z == 0);
     CHECK(black.luminance.w == 0);
 }
@@ -112,20 +113,20 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Statistics, "hdr: the clipped range is the oracle's to the width of a bin, twice too") {
     const std::vector<Vec3> pixels = make_noise(300 * 100);
-    const oracle::PictureStatistics want = reckon(pixels);
+    const oracle::ImageStatistics want = reckon(pixels);
     const double bin = std::exp2(1.1 / layout::kBinsPerStop);
     for (int again = 0; again < 2; ++again) {  // the histogram is empty again
-        const layout::PictureMeasure got = measure(pixels, 300, {.histogram = true});
-        CHECK(got.clipped.x <= want.clipped_least);
-        CHECK(got.clipped.x >= want.clipped_least / bin);
-        CHECK(got.clipped.y >= want.clipped_largest);
-        CHECK(got.clipped.y <= want.clipped_largest * bin);
-        CHECK(got.luminance.z < want.clipped_least / bin);  // it does leave something out
-        CHECK(got.luminance.w > want.clipped_largest * bin);
+        const layout::ImageStatistics got = measure(pixels, 300, {.histogram = true});
+        CHECK(got.clipped.x <= want.clipped_min_luminance);
+        CHECK(got.clipped.x >= want.clipped_min_luminance / bin);
+        CHECK(got.clipped.y >= want.clipped_max_luminance);
+        CHECK(got.clipped.y <= want.clipped_max_luminance * bin);
+        CHECK(got.luminance.z < want.clipped_min_luminance / bin);  // it does leave something out
+        CHECK(got.luminance.w > want.clipped_max_luminance * bin);
     }
     std::vector<Vec3> spike(10000, Vec3(1));
     spike[5000] = Vec3(1e4f);
-    const layout::PictureMeasure got = measure(spike, 100, {.histogram = true});
+    const layout::ImageStatistics got = measure(spike, 100, {.histogram = true});
     CHECK(ratio(got.clipped.y, got.clipped.x) <= bin);
 }
 
@@ -134,15 +135,15 @@ TEST_CASE_FIXTURE(Statistics, "hdr: NaN and infinity are counted and change noth
     std::vector<Vec3> bad = good;
     bad.insert(bad.begin() + 30, {Vec3(kNan, 1, 1), Vec3(1, kInfinity, 1), Vec3(1, 1, -kInfinity)});
     bad.insert(bad.end(), 3, Vec3(kNan));
-    const layout::PictureMeasure got = measure(bad, 8);
-    const oracle::PictureStatistics want = reckon(good);
+    const layout::ImageStatistics got = measure(bad, 8);
+    const oracle::ImageStatistics want = reckon(good);
     CHECK(got.pixels.x == 90);
     CHECK(got.pixels.y == 6);
     CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
     CHECK(got.luminance.w == doctest::Approx(want.largest).epsilon(1e-6));
     CHECK(got.mean_scale.x == doctest::Approx(want.mean.x).epsilon(1e-5));
 
-    const layout::PictureMeasure nothing = even(Vec3(kNan), {.key = 0.18f});
+    const layout::ImageStatistics nothing = even(Vec3(kNan), {.key = 0.18f});
     CHECK(nothing.pixels.x == 0);
     CHECK(nothing.luminance.x == doctest::Approx(1e-4));
     CHECK(std::isfinite(nothing.mean_scale.w));
@@ -156,9 +157,9 @@ TEST_CASE_FIXTURE(Statistics, "hdr: light below 0 counts as none, above the larg
 
 TEST_CASE_FIXTURE(Statistics, "hdr: equal pictures have equal statistics, to the last bit") {
     const std::vector<Vec3> pixels = make_noise(640 * 90);
-    const layout::PictureMeasure first = measure(pixels, 640);
+    const layout::ImageStatistics first = measure(pixels, 640);
     for (int i = 0; i < 3; ++i) {
-        const layout::PictureMeasure again = measure(pixels, 640);
+        const layout::ImageStatistics again = measure(pixels, 640);
         CHECK(std::memcmp(&again, &first, sizeof(first)) == 0);
     }
 }
@@ -167,7 +168,7 @@ TEST_CASE_FIXTURE(
     Statistics, "hdr: metering brings the log-average to the key in any unit of light") {
     for (const float unit : {1.0f, 1000.0f}) {
         const std::vector<Vec3> pixels = make_noise(64 * 64, unit);
-        const layout::PictureMeasure got = measure(pixels, 64, {.key = 0.18f});
+        const layout::ImageStatistics got = measure(pixels, 64, {.key = 0.18f});
         CHECK(got.mean_scale.w * got.luminance.x == doctest::Approx(0.18).epsilon(1e-5));
         CHECK(
             unit * got.mean_scale.w * reckon(make_noise(64 * 64)).log_average
@@ -178,27 +179,27 @@ TEST_CASE_FIXTURE(
     // In the dark the key is delta, and no further than it may adapt.
     CHECK(even(Vec3(0), {.key = 0.18f}).mean_scale.w == doctest::Approx(1800).epsilon(1e-3));
     CHECK(
-        even(Vec3(0), {.key = 0.18f, .adaptable = {0.01f, 10}}).mean_scale.w
+        even(Vec3(0), {.key = 0.18f, .adaptation_range = {0.01f, 10}}).mean_scale.w
         == doctest::Approx(18).epsilon(1e-3));
     CHECK(
-        even(Vec3(100), {.key = 0.18f, .adaptable = {0.01f, 10}}).mean_scale.w
+        even(Vec3(100), {.key = 0.18f, .adaptation_range = {0.01f, 10}}).mean_scale.w
         == doctest::Approx(0.018).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(
     Statistics, "hdr: the eye is at home in its first picture, then goes the share it is given") {
-    CHECK(even(Vec3(2), {.key = 0.18f, .follow = 0.25f}).luminance.y == doctest::Approx(2.0001));
-    CHECK(even(Vec3(10), {.key = 0.18f, .follow = 0.25f}).luminance.y == doctest::Approx(4.0001));
-    const layout::PictureMeasure again = even(Vec3(10), {.key = 0.18f, .follow = 0.25f});
+    CHECK(even(Vec3(2), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(2.0001));
+    CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(4.0001));
+    const layout::ImageStatistics again = even(Vec3(10), {.key = 0.18f, .blend = 0.25f});
     CHECK(again.luminance.y == doctest::Approx(5.5001));
     CHECK(again.mean_scale.w == doctest::Approx(0.18 / 5.5001));
-    CHECK(even(Vec3(10), {.key = 0.18f, .follow = 0}).luminance.y == again.luminance.y);
-    const layout::PictureMeasure home = even(Vec3(0.1f), {.key = 0.18f, .follow = 1});
+    CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0}).luminance.y == again.luminance.y);
+    const layout::ImageStatistics home = even(Vec3(0.1f), {.key = 0.18f, .blend = 1});
     CHECK(home.luminance.y == home.luminance.x);
 }
 
 TEST_CASE("hdr: only cuts make the clock of pictures start anew") {
-    PictureClock clock;
+    FrameClock clock;
     const Affine here;
     Affine near_by = here;
     near_by.row[0].w = 1;

@@ -46,7 +46,7 @@ class RenderTest {
   public:
     RenderTest() {
         device().debug_output().take_errors();
-        device().forget_state();
+        device().invalidate_state();
     }
     ~RenderTest() {
         glFinish();

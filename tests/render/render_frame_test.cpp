@@ -83,9 +83,9 @@ TEST_CASE_FIXTURE(Scene, "render frame: assets that did not change are not uploa
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 8, 8);
     static_cast<void>(draw(view));
     static_cast<void>(draw(view));
-    const std::uint64_t deaths = gpu::object_deaths();
+    const std::uint64_t deaths = gpu::deletion_count();
     static_cast<void>(draw(view));
-    CHECK(gpu::object_deaths() == deaths);
+    CHECK(gpu::deletion_count() == deaths);
 }
 
 TEST_CASE_FIXTURE(Scene, "render frame: what is added to the assets later is drawn") {

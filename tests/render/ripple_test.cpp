@@ -19,22 +19,6 @@ using glm::dvec3;
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
 
-/// Seen by the camera of every test here.
-oracle::RippleCamera camera_of(const RenderView& view) {
-    const Affine& pose = view.world_from_camera;
-    const auto column = [&](int c) {
-        return dvec3(pose.row[0][c], pose.row[1][c], pose.row[2][c]);
-    };
-    return {
-        .eye = column(3),
-        .right = column(0),
-        .up = column(1),
-        .forward = -column(2),
-        .tangent = dvec2(view.tangent),
-        .size = dvec2(view.width, view.height),
-        .near = view.near};
-}
-
 class Rippled : public Scene {
   public:
     Rippled() { world.insert_resource(FrameTime{.time = 1.25}); }
@@ -210,7 +194,7 @@ TEST_CASE_FIXTURE(
     world.create(ring_at(0.5f), WorldTransform{at(center)});
     const oracle::RingWave wave = {
         .center = dvec3(center), .radius = 1, .wavelength = 1.2, .amplitude = 0.06 * 0.75};
-    const oracle::RippleCamera camera = camera_of(seen());
+    const oracle::RippleCamera camera = oracle::ripple_camera(seen());
     double largest = 0;
     const double off = field_error(
         [&](const dvec2& pixel, double distance) {
@@ -236,7 +220,7 @@ TEST_CASE_FIXTURE(
             .scale = 0.4,
             .raised = 0.5 * 1.25 / 0.4,
             .seed = haze.seed};
-        const oracle::RippleCamera camera = camera_of(seen());
+        const oracle::RippleCamera camera = oracle::ripple_camera(seen());
         double largest = 0;
         const double off = field_error(
             [&](const dvec2& pixel, double distance) {

@@ -10,15 +10,15 @@
 namespace limn::test {
 namespace {
 
-using oracle::LightPicture;
+using oracle::LightImage;
 
 constexpr int kSide = 24;
 constexpr BlurKernel kBox = {1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f, 1 / 7.f};
 constexpr BlurKernel kAskew = {0.3f, 0.05f, 0.1f, 0.2f, 0.05f, 0.05f, 0.25f};
 
-LightPicture blurred(
-    const LightPicture& picture, const BlurKernel& kernel,
-    BlurOrder order = BlurOrder::AcrossFirst) {
+LightImage blurred(
+    const LightImage& picture, const BlurKernel& kernel,
+    BlurOrder order = BlurOrder::HorizontalFirst) {
     static const SeparableBlur blur = *create_separable_blur(shared_device());
     static FrameGraph graph(shared_device());
     std::vector<Vec4> texels;
@@ -37,7 +37,7 @@ LightPicture blurred(
     graph.execute();
     CHECK(graph.stats().passes_run == 2);
     const gpu::FloatImage image = gpu::read_floats(*graph.texture(made));
-    LightPicture out = oracle::make_dark(picture.width, picture.height);
+    LightImage out = oracle::make_black_image(picture.width, picture.height);
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
             out.pixels[y * picture.width + x] = {
@@ -47,8 +47,8 @@ LightPicture blurred(
     return out;
 }
 
-LightPicture noise() {
-    LightPicture picture = oracle::make_dark(kSide, kSide);
+LightImage noise() {
+    LightImage picture = oracle::make_black_image(kSide, kSide);
     Random random(3, 0, 0, 0);
     for (glm::dvec3& pixel : picture.pixels) {
         pixel.x = random.uniform(0.0f, 1.0f);
@@ -58,7 +58,7 @@ LightPicture noise() {
     return picture;
 }
 
-double largest_difference(const LightPicture& a, const LightPicture& b, int border = 0) {
+double largest_difference(const LightImage& a, const LightImage& b, int border = 0) {
     double largest = 0;
     for (int y = border; y < a.height - border; ++y) {
         for (int x = border; x < a.width - border; ++x) {
@@ -79,9 +79,9 @@ std::array<double, 7> exact(const BlurKernel& kernel) {
 
 TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product of the weights") {
     CHECK(std::accumulate(kBinomialKernel.begin(), kBinomialKernel.end(), 0.0) == 1.0);
-    LightPicture point = oracle::make_dark(kSide, kSide);
+    LightImage point = oracle::make_black_image(kSide, kSide);
     point.pixels[12 * kSide + 11] = glm::dvec3(1);
-    const LightPicture made = blurred(point, kBinomialKernel);
+    const LightImage made = blurred(point, kBinomialKernel);
     CHECK(made.at(11, 12).y == doctest::Approx(0.09765625).epsilon(1e-6));
     CHECK(oracle::sum_of(made).y == doctest::Approx(1).epsilon(1e-6));
     CHECK(made.at(11 + 3, 12 - 2).y == doctest::Approx(0.015625 * 0.09375).epsilon(1e-5));
@@ -89,11 +89,11 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product
 }
 
 TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weights at once") {
-    const LightPicture picture = noise();
+    const LightImage picture = noise();
     for (const BlurKernel& kernel : {kBinomialKernel, kBox, kAskew}) {
         // A GPU has its rows from the bottom up: there a picture's weights are turned over.
-        const LightPicture made = blurred(picture, kernel);
-        LightPicture direct = oracle::make_dark(kSide, kSide);
+        const LightImage made = blurred(picture, kernel);
+        LightImage direct = oracle::make_black_image(kSide, kSide);
         const std::array<double, 7> weights = exact(kernel);
         for (int y = 0; y < kSide; ++y) {
             for (int x = 0; x < kSide; ++x) {
@@ -116,15 +116,15 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weight
 }
 
 TEST_CASE_FIXTURE(RenderTest, "separable blur: the order of the axes makes no difference") {
-    const LightPicture picture = noise();
+    const LightImage picture = noise();
     CHECK(
         largest_difference(
-            blurred(picture, kAskew), blurred(picture, kAskew, BlurOrder::UpFirst), 3)
+            blurred(picture, kAskew), blurred(picture, kAskew, BlurOrder::VerticalFirst), 3)
         < 1e-6);
 }
 
 TEST_CASE_FIXTURE(RenderTest, "separable blur: an even picture stays so, at its edges too") {
-    LightPicture even = oracle::make_dark(5, 3);
+    LightImage even = oracle::make_black_image(5, 3);
     for (glm::dvec3& pixel : even.pixels) {
         pixel = glm::dvec3(0.7);
     }

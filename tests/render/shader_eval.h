@@ -38,7 +38,7 @@ inline std::vector<Vec4> evaluate_shader(
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     std::vector<Vec4> outputs(inputs.size());
     target.read(0, std::as_writable_bytes(std::span(outputs)));
-    device.forget_state();
+    device.invalidate_state();
     return outputs;
 }
 

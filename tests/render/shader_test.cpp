@@ -185,7 +185,7 @@ void main() { c = texture(a[0], vec2(0)) + texture(a[1], vec2(0)) + texture(a[2]
     caps.max_fragment_textures = 3;
     gpu::ShaderLibrary small(caps, files);
     const std::string message = message_of(small.load({.vertex = "v.vert", .fragment = "f.frag"}));
-    CHECK(message == "v.vert + f.frag: capacity: 4 fragment textures asked for, this device has 3");
+    CHECK(message == "v.vert + f.frag: capacity: 4 fragment textures required, this device has 3");
     caps.max_fragment_textures = 0;
     gpu::ShaderLibrary none(caps, files);
     CHECK(

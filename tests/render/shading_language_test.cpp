@@ -184,14 +184,14 @@ TEST_CASE_FIXTURE(RenderTest, "stdlib: functions of one number are those of math
 }
 
 TEST_CASE("control_flow: a jump pays when what it saves is more than what it costs") {
-    using oracle::jump_pays;
-    CHECK_FALSE(jump_pays(8, 0.5, oracle::kIfElseCycles));  // saves 4 of 6
-    CHECK(jump_pays(40, 0.5, oracle::kIfElseCycles));       // saves 20
-    CHECK(jump_pays(40, 0.5, oracle::kIfCycles + 2 * oracle::kCallCycles));
-    CHECK_FALSE(jump_pays(1000, 0, oracle::kIfCycles));  // never skipped
-    CHECK_FALSE(jump_pays(4, 1, oracle::kIfCycles));     // as much as it costs
-    CHECK(jump_pays(5, 1, oracle::kIfCycles));
-    CHECK(jump_pays(6, 0.9, oracle::kLoopCycles));
+    using oracle::branch_pays;
+    CHECK_FALSE(branch_pays(8, 0.5, oracle::kIfElseCycles));  // saves 4 of 6
+    CHECK(branch_pays(40, 0.5, oracle::kIfElseCycles));       // saves 20
+    CHECK(branch_pays(40, 0.5, oracle::kIfCycles + 2 * oracle::kCallCycles));
+    CHECK_FALSE(branch_pays(1000, 0, oracle::kIfCycles));  // never skipped
+    CHECK_FALSE(branch_pays(4, 1, oracle::kIfCycles));     // as much as it costs
+    CHECK(branch_pays(5, 1, oracle::kIfCycles));
+    CHECK(branch_pays(6, 0.9, oracle::kLoopCycles));
 }
 
 TEST_CASE_FIXTURE(

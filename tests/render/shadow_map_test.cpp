@@ -656,7 +656,7 @@ TEST_CASE_FIXTURE(
 // ------------------------------------------------------------------------------------
 
 TEST_CASE("shadow map: numbers that make no sense are replaced by some that do") {
-    const Shadow sane = make_sane(
+    const Shadow sane = sanitize(
         {.resolution = -5,
          .source_size = std::nanf(""),
          .cascades = 99,
@@ -667,11 +667,11 @@ TEST_CASE("shadow map: numbers that make no sense are replaced by some that do")
     CHECK(sane.cascades == kMaxCascades);
     CHECK(sane.distance == 40);
     CHECK(sane.bias == 1);
-    CHECK(make_sane({.resolution = 300}).resolution == 512);
-    CHECK(make_sane({.resolution = 0}).resolution == 16);
-    CHECK(make_sane({.resolution = 1'000'000'000}).resolution == 4096);
-    CHECK(make_sane({.cascades = 0}).cascades == 1);
-    CHECK(make_sane({.distance = std::nanf("")}).distance == 40);
+    CHECK(sanitize({.resolution = 300}).resolution == 512);
+    CHECK(sanitize({.resolution = 0}).resolution == 16);
+    CHECK(sanitize({.resolution = 1'000'000'000}).resolution == 4096);
+    CHECK(sanitize({.cascades = 0}).cascades == 1);
+    CHECK(sanitize({.distance = std::nanf("")}).distance == 40);
 }
 
 TEST_CASE_FIXTURE(

@@ -72,7 +72,7 @@ std::vector<DTriangle> extruded(
 std::vector<DTriangle> without_slivers(const std::vector<DTriangle>& triangles) {
     std::vector<DTriangle> spread;
     for (const DTriangle& t : triangles) {
-        if (oracle::count_spread(std::span(&t, 1)) == 1) {
+        if (oracle::count_nondegenerate(std::span(&t, 1)) == 1) {
             spread.push_back(t);
         }
     }
@@ -202,7 +202,7 @@ TEST_CASE(
     const ShadowMesh cube = make_shadow_mesh(make_cube());
     const VolumeGeometry geometry = make_edge_volume(cube);
     const auto triangles = [&](const DVec3& light) {
-        return oracle::count_spread(extruded(geometry, Extrude::ByFace, light, 40, 0.1));
+        return oracle::count_nondegenerate(extruded(geometry, Extrude::ByFace, light, 40, 0.1));
     };
     CHECK(triangles({0, 10, 0}) == 20);
     CHECK(triangles({10, 10, 10}) == 24);
@@ -223,7 +223,7 @@ TEST_CASE("shadow_mesh: quads of edges within the lit or the dark part have no a
         const ShadowEdge& edge = cube.edges[i];
         const bool opens = faces_light(cube.planes[edge.along], light)
                            != faces_light(cube.planes[edge.against], light);
-        CHECK(oracle::count_spread(std::span(sides).subspan(2 * i, 2)) == (opens ? 2 : 0));
+        CHECK(oracle::count_nondegenerate(std::span(sides).subspan(2 * i, 2)) == (opens ? 2 : 0));
     }
 }
 
@@ -276,7 +276,7 @@ TEST_CASE("shadow_mesh: a cube's prisms are 16 triangles lit from above, 48 from
     const VolumeGeometry geometry = make_triangle_volume(make_shadow_mesh(make_cube()));
     CHECK(geometry.indices.size() == 12 * 24);
     const auto triangles = [&](const DVec3& light) {
-        return oracle::count_spread(extruded(geometry, Extrude::ByFlag, light, 40, 0.1));
+        return oracle::count_nondegenerate(extruded(geometry, Extrude::ByFlag, light, 40, 0.1));
     };
     CHECK(triangles({0, 10, 0}) == 16);
     CHECK(triangles({10, 10, 10}) == 48);
@@ -320,8 +320,8 @@ TEST_CASE("shadow_volume: counting agrees with rays at 4000 points about a cube"
         const DVec3 p = points.within(6);
         const bool dark = inside_cube(p) || oracle::segment_hits(mesh, p, light);
         shadowed += dark ? 1 : 0;
-        REQUIRE((oracle::count_behind(by_edge, eye, p) != 0) == dark);
-        REQUIRE((oracle::count_behind(by_triangle, eye, p) != 0) == dark);
+        REQUIRE((oracle::z_fail_count(by_edge, eye, p) != 0) == dark);
+        REQUIRE((oracle::z_fail_count(by_triangle, eye, p) != 0) == dark);
     }
     CHECK(shadowed > 10);
 }
@@ -341,9 +341,9 @@ TEST_CASE("shadow_volume: z-fail counts z-pass and the volumes about the eye, ex
         const int containing = oracle::winding_number(volumes, eye);
         within += containing > 0 ? 1 : 0;
         REQUIRE(
-            oracle::count_behind(volumes, eye, p)
-            == oracle::count_before(volumes, eye, p) + containing);
-        REQUIRE(oracle::count_behind(volumes, eye, p) == oracle::winding_number(volumes, p));
+            oracle::z_fail_count(volumes, eye, p)
+            == oracle::z_pass_count(volumes, eye, p) + containing);
+        REQUIRE(oracle::z_fail_count(volumes, eye, p) == oracle::winding_number(volumes, p));
     }
     CHECK(within > 100);
 }
@@ -360,8 +360,8 @@ TEST_CASE("shadow_volume: within k nested volumes the count is k, outside of all
     for (int k = 0; k <= 4; ++k) {
         // Between the walls of the k-th and the next, as the light spreads them at y = -1.
         const double x = (0.9 - 0.2 * k) * 1.1;
-        CHECK(oracle::count_behind(volumes, eye, {x, -1, 0.013}) == k);
-        CHECK(oracle::count_before(volumes, eye, {x, -1, 0.013}) == k);
+        CHECK(oracle::z_fail_count(volumes, eye, {x, -1, 0.013}) == k);
+        CHECK(oracle::z_pass_count(volumes, eye, {x, -1, 0.013}) == k);
     }
 }
 

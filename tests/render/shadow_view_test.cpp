@@ -340,10 +340,10 @@ TEST_CASE("shadow view: twice the resolution is four times the texels a pixel") 
 
 TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-cull)") {
     const Bounds box = {{2, 2, 2}, {3, 3, 3}};
-    CHECK_FALSE(ball_touches({0, 0, 0}, 3.4f, box));  // 11.56 < 12
-    CHECK(ball_touches({0, 0, 0}, 3.5f, box));        // 12.25 > 12
-    CHECK(ball_touches({2.5f, 2.5f, 2.5f}, 0, box));
-    CHECK(ball_touches({100, 0, 0}, INFINITY, box));
+    CHECK_FALSE(sphere_touches({0, 0, 0}, 3.4f, box));  // 11.56 < 12
+    CHECK(sphere_touches({0, 0, 0}, 3.5f, box));        // 12.25 > 12
+    CHECK(sphere_touches({2.5f, 2.5f, 2.5f}, 0, box));
+    CHECK(sphere_touches({100, 0, 0}, INFINITY, box));
 }
 
 }  // namespace limn

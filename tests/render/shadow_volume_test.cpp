@@ -673,13 +673,13 @@ TEST_CASE_FIXTURE(
 TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is seen") {
     const Bounds box = {{-1, 4, -1}, {1, 5, 1}};
     const Vec4 light = {0, 10, 0, 1};
-    CHECK(shade_may_hold(box, light, {0, 0, 0}, 0.1f));
-    CHECK(shade_may_hold(box, light, {1.6f, 0, 0}, 0.1f));
-    CHECK_FALSE(shade_may_hold(box, light, {3, 0, 0}, 0.1f));
-    CHECK_FALSE(shade_may_hold(box, light, {0, 8, 0}, 0.1f));  // between light and caster
-    CHECK(shade_may_hold(box, {0, 1, 0, 0}, {0.5f, -50, 0.5f}, 0.1f));
-    CHECK_FALSE(shade_may_hold(box, {0, 1, 0, 0}, {1.5f, -50, 0.5f}, 0.1f));
-    CHECK_FALSE(shade_may_hold(box, {0, 1, 0, 0}, {0.5f, 6, 0.5f}, 0.1f));
+    CHECK(shadow_may_contain(box, light, {0, 0, 0}, 0.1f));
+    CHECK(shadow_may_contain(box, light, {1.6f, 0, 0}, 0.1f));
+    CHECK_FALSE(shadow_may_contain(box, light, {3, 0, 0}, 0.1f));
+    CHECK_FALSE(shadow_may_contain(box, light, {0, 8, 0}, 0.1f));  // between light and caster
+    CHECK(shadow_may_contain(box, {0, 1, 0, 0}, {0.5f, -50, 0.5f}, 0.1f));
+    CHECK_FALSE(shadow_may_contain(box, {0, 1, 0, 0}, {1.5f, -50, 0.5f}, 0.1f));
+    CHECK_FALSE(shadow_may_contain(box, {0, 1, 0, 0}, {0.5f, 6, 0.5f}, 0.1f));
 
     // Looking along -z from the origin, at the height of the ground.
     const Affine pose = look_at({0, 0, 0}, {0, 0, -1});
@@ -687,12 +687,12 @@ TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is
         make_render_view({.fov_y = radians(60.0f), .near = 0.1f}, pose, pose, {});
     const Frustum frustum = make_frustum(view.clip_from_world);
     const Bounds above = {{-1, 20, -11}, {1, 21, -9}};
-    CHECK_FALSE(shade_is_outside(above, {0, 30, -10, 1}, frustum));  // falls into the picture
-    CHECK(shade_is_outside(above, {0, 10, -10, 1}, frustum));        // rises out of it
+    CHECK_FALSE(shadow_is_outside(above, {0, 30, -10, 1}, frustum));  // falls into the picture
+    CHECK(shadow_is_outside(above, {0, 10, -10, 1}, frustum));        // rises out of it
     const Bounds behind = {{-1, -1, 4}, {1, 1, 5}};
-    CHECK_FALSE(shade_is_outside(behind, {0, 0, 9, 1}, frustum));
-    CHECK(shade_is_outside(behind, {0, 0, -9, 1}, frustum));
-    CHECK(shade_is_outside(behind, {0, 0, -1, 0}, frustum));
+    CHECK_FALSE(shadow_is_outside(behind, {0, 0, 9, 1}, frustum));
+    CHECK(shadow_is_outside(behind, {0, 0, -9, 1}, frustum));
+    CHECK(shadow_is_outside(behind, {0, 0, -1, 0}, frustum));
 }
 
 TEST_CASE("shadow selection: only auto is decided, by whether the light has a ShadowVolume") {

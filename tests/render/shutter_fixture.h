@@ -30,7 +30,7 @@ class Shutter : public Scene {
     }
     void open(float shutter, int samples = 64, float longest = 1) {
         world.insert_resource(
-            MotionBlur{.shutter = shutter, .samples = samples, .longest = longest});
+            MotionBlur{.shutter = shutter, .samples = samples, .max_length = longest});
     }
     [[nodiscard]] RenderView front(int width = kSize, int height = kSize) const {
         return look({0, 0, 1}, {0, 0, 0}, width, height);

@@ -219,7 +219,7 @@ TEST_CASE_FIXTURE(
     });
     int about = 0;
     for (const std::string& message : messages) {
-        about += message.find("tube changes its shape") != std::string::npos ? 1 : 0;
+        about += message.find("tube is deformed") != std::string::npos ? 1 : 0;
     }
     CHECK(about == 1);
 }

@@ -14,8 +14,8 @@ namespace limn::test {
 namespace {
 
 struct SkinTest : SkinScene {
-    oracle::ReadSkin read(Entity entity, float alpha = 1, float alpha_before = 0) {
-        return gpu.run(world, std::vector<Entity>{entity}, alpha, alpha_before)[0];
+    oracle::SkinReadbackVertices read(Entity entity, float alpha = 1, float previous_alpha = 0) {
+        return gpu.run(world, std::vector<Entity>{entity}, alpha, previous_alpha)[0];
     }
     /// A tube of eleven joints, most of its vertices on several.
     Entity snake(Skinning skinning, int joints, int most, std::uint64_t seed) {
@@ -67,7 +67,7 @@ TEST_CASE_FIXTURE(
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         for (const int joints : {2, 11, 300}) {  // 300: more than a byte counts
             const Entity entity = snake(skinning, joints, 6, static_cast<std::uint64_t>(joints));
-            const oracle::ReadSkin got = read(entity);
+            const oracle::SkinReadbackVertices got = read(entity);
             const auto want_now = want(entity);
             CHECK(largest_error(got.positions, want_now) <= 1e-4);
             CHECK(largest_error(got.before, want(entity, true)) <= 1e-4);
@@ -91,19 +91,19 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(SkinTest, "skin_gpu: the kernels of the CPU give the same") {
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = snake(skinning, 11, 6, 2);
-        const oracle::ReadSkin got = read(entity);
+        const oracle::SkinReadbackVertices got = read(entity);
         const MeshData& mesh = mesh_of(entity);
         const SkinId skin = world.get<Deformed>(entity).skin;
         std::vector<Affine> palette(11);
-        find_palette(
+        compute_skin_palette(
             world.resource<Assets>().skins[skin.index], world.get<Pose>(entity).joints, palette);
         std::vector<DualQuaternion> duals(11);
-        find_dual_palette(palette, duals);
+        compute_dual_palette(palette, duals);
         std::vector<Vec3> positions(mesh.positions.size());
         std::vector<Vec3> normals(positions.size());
         std::vector<Vec4> tangents(positions.size());
         const RestVertices rest = {mesh.positions, mesh.normals, mesh.tangents};
-        const MovedVertices moved = {positions, normals, tangents};
+        const SkinnedVertices moved = {positions, normals, tangents};
         if (skinning == Skinning::Linear) {
             skin_linear(mesh.skin, palette, rest, moved, 0, positions.size());
         } else {
@@ -124,7 +124,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: where joints are as they were bound, vert
         for (std::size_t j = 0; j < pose.joints.size(); ++j) {
             pose.joints[j] = at({0, 0.25f * static_cast<float>(j), 0});
         }
-        const oracle::ReadSkin got = read(entity);
+        const oracle::SkinReadbackVertices got = read(entity);
         const MeshData& rest = mesh_of(entity);
         for (std::size_t i = 0; i < rest.positions.size(); ++i) {
             CHECK(glm::distance(got.positions[i], rest.positions[i]) <= 1e-5f);
@@ -142,7 +142,7 @@ TEST_CASE_FIXTURE(
         for (std::size_t j = 0; j < pose.joints.size(); ++j) {
             pose.joints[j] = motion * at({0, 0.25f * static_cast<float>(j), 0});
         }
-        const oracle::ReadSkin got = read(entity);
+        const oracle::SkinReadbackVertices got = read(entity);
         const MeshData& rest = mesh_of(entity);
         for (std::size_t i = 0; i < rest.positions.size(); ++i) {
             const Vec3 want = transform_point(motion, rest.positions[i]);
@@ -169,7 +169,7 @@ TEST_CASE_FIXTURE(
     const SkinId skin = add_skin(make_chain(3, 0.5f));
     for (const Skinning skinning : {Skinning::Linear, Skinning::DualQuaternion}) {
         const Entity entity = SkinScene::pose(add(tube), gray, skin, pose, skinning);
-        const oracle::ReadSkin got = read(entity);
+        const oracle::SkinReadbackVertices got = read(entity);
         REQUIRE(got.positions.size() == tube.positions.size());
         for (std::size_t i = 0; i < tube.positions.size(); ++i) {
             // char.skin-rigid: as far from the joint as at rest.
@@ -240,7 +240,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a twist by half a turn leaves unit normal
         const Bend worst = make_bend({0, 1, 0}, kPi, 0.5f);
         for (const Bend& one : {bend, worst}) {
             const Entity entity = pose(add(one.mesh), gray, add_skin(one.skin), one.pose, skinning);
-            const oracle::ReadSkin got = read(entity);
+            const oracle::SkinReadbackVertices got = read(entity);
             for (std::size_t i = 0; i < got.normals.size(); ++i) {
                 CHECK(std::abs(glm::length(got.normals[i]) - 1) <= 1e-4f);
                 CHECK(std::isfinite(got.positions[i].x));
@@ -263,7 +263,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: 300 morph targets add up as in double pre
     }
     world.add(entity, morphs);
     world.add(entity, Deformed{entity, {}, 4, Skinning::Linear});
-    const oracle::ReadSkin got = read(entity);
+    const oracle::SkinReadbackVertices got = read(entity);
     const auto now = want(entity);
     CHECK(largest_error(got.positions, now) <= 1e-4);
     CHECK(largest_error(got.before, want(entity, true)) <= 1e-4);
@@ -276,7 +276,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: 300 morph targets add up as in double pre
     CHECK(largest_error(read(entity).positions, want(entity)) <= 1e-4);
     world.get<MorphWeights>(entity).weights[5] = NAN;
     world.get<MorphWeights>(entity).previous[5] = NAN;
-    const oracle::ReadSkin without = read(entity);
+    const oracle::SkinReadbackVertices without = read(entity);
     world.get<MorphWeights>(entity).weights[5] = 0;
     CHECK(largest_error(without.positions, want(entity)) <= 1e-4);
 }
@@ -315,21 +315,21 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: positions before are those that the last 
         Pose& pose = world.get<Pose>(entity);
         pose.previous = pose.joints;
         pose.joints = random_joints(11, 0.25f, 0.5f, true, random);
-        const oracle::ReadSkin got = read(entity);
+        const oracle::SkinReadbackVertices got = read(entity);
         CHECK(got.before == last);
         CHECK(got.positions != last);
         last = got.positions;
     }
     // A character that has just come was always there: no motion.
     world.get<Pose>(entity).previous.clear();
-    const oracle::ReadSkin spawned = read(entity);
+    const oracle::SkinReadbackVertices spawned = read(entity);
     CHECK(spawned.before == spawned.positions);
 }
 
 TEST_CASE_FIXTURE(SkinTest, "skin_gpu: between two steps joints are componentwise between") {
     const Entity entity = snake(Skinning::Linear, 5, 4, 10);
-    const oracle::ReadSkin ends = read(entity, 1, 0);
-    const oracle::ReadSkin between = read(entity, 0.25f, -0.5f);
+    const oracle::SkinReadbackVertices ends = read(entity, 1, 0);
+    const oracle::SkinReadbackVertices between = read(entity, 0.25f, -0.5f);
     for (std::size_t i = 0; i < ends.positions.size(); ++i) {
         // Linear blending is linear in the joints.
         const Vec3 motion = ends.positions[i] - ends.before[i];
@@ -422,7 +422,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, an
         herd.push_back(pose(mesh, gray, skin, std::move(its)));
     }
     device().reset_stats();
-    const std::vector<oracle::ReadSkin> got = gpu.run(world, herd);
+    const std::vector<oracle::SkinReadbackVertices> got = gpu.run(world, herd);
     CHECK(device().stats().dispatches == 1);
     for (std::size_t i = 0; i < herd.size(); i += 111) {
         CHECK(largest_error(got[i].positions, want(herd[i])) <= 1e-4);
@@ -430,7 +430,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, an
     // Where a storage block shows few vertices, several dispatches do the same.
     oracle::SkinReadback narrow = *oracle::SkinReadback::create(device(), 40 * 1024);
     device().reset_stats();
-    const std::vector<oracle::ReadSkin> same = narrow.run(world, herd);
+    const std::vector<oracle::SkinReadbackVertices> same = narrow.run(world, herd);
     CHECK(device().stats().dispatches > 50);
     for (std::size_t i = 0; i < herd.size(); i += 37) {
         CHECK(same[i].positions == got[i].positions);
@@ -457,14 +457,14 @@ TEST_CASE_FIXTURE(
     for (std::uint64_t i = 0; i < 12; ++i) {
         herd.push_back(snake(Skinning::Linear, 2 + static_cast<int>(i % 5) * 3, 4, 50 + i));
     }
-    const std::vector<oracle::ReadSkin> got = gpu.run(world, herd);
+    const std::vector<oracle::SkinReadbackVertices> got = gpu.run(world, herd);
     CHECK(gpu.shapes().vertices().slots().capacity() == capacity);
     for (std::size_t i = 0; i < herd.size(); ++i) {
         CHECK(largest_error(got[i].positions, want(herd[i])) <= 1e-4);
     }
     // Growing keeps what is there, without another look at it.
     herd.push_back(snake(Skinning::Linear, 200, 4, 90));
-    const std::vector<oracle::ReadSkin> more = gpu.run(world, herd);
+    const std::vector<oracle::SkinReadbackVertices> more = gpu.run(world, herd);
     CHECK(gpu.shapes().vertices().slots().capacity() > capacity);
     CHECK(gpu.shapes().work().instances == 1);
     for (std::size_t i = 0; i < herd.size(); ++i) {
@@ -486,7 +486,7 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
         gpu.forget();
         REQUIRE(messages.size() == 1);
         CHECK(messages[0].find("tube") != std::string::npos);
-        CHECK(messages[0].find("at rest") != std::string::npos);
+        CHECK(messages[0].find("in rest pose") != std::string::npos);
         world.destroy(entity);
         return messages[0];
     };
@@ -506,10 +506,10 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: what cannot be deformed rests, and one li
     CHECK(has(complaint(entity), "is gone"));
     entity = snake(Skinning::Linear, 5, 4, 30);
     world.get<Pose>(entity).joints.resize(4);
-    CHECK(has(complaint(entity), "follows joint 4, its character's pose has 4"));
+    CHECK(has(complaint(entity), "uses joint 4, but its character's pose has 4"));
     entity = snake(Skinning::Linear, 5, 4, 30);
     world.get<Deformed>(entity).skin = add_skin(make_chain(3, 0.25f));
-    CHECK(has(complaint(entity), "name 5 joints, skin chain has 3"));
+    CHECK(has(complaint(entity), "use 5 joints, but skin chain has 3"));
     entity = snake(Skinning::Linear, 5, 4, 30);
     world.get<Deformed>(entity).skin = {77};
     CHECK(has(complaint(entity), "skin 77"));

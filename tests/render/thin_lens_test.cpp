@@ -143,10 +143,10 @@ TEST_CASE("thin_lens: what is none is refused in one line") {
     CHECK(far.aperture_radius > 0);
     CHECK(std::isfinite(far.aperture_radius));
     const LensView odd =
-        *make_lens_view({.blades = -3, .blade_rotation = nan, .largest_blur = nan}, camera);
+        *make_lens_view({.blades = -3, .blade_rotation = nan, .max_blur = nan}, camera);
     CHECK(odd.blades == 0);
     CHECK(odd.blade_rotation == 0);
-    CHECK(odd.largest_blur == 0);
+    CHECK(odd.max_blur == 0);
 }
 
 TEST_CASE("thin_lens: a camera whose lens is none is a pinhole") {
@@ -208,13 +208,13 @@ TEST_CASE("thin_lens: a lens sample moves the eye, keeps the jitter and sees the
     const Vec3 point = point_in_view(view, {0.2f, 0.1f}, 1.5f);
     CHECK(
         glm::distance(
-            pixel_of(view, sample.steady_from_world, point),
-            pixel_of(view, there.steady_from_world, point))
+            pixel_of(view, sample.unjittered_from_world, point),
+            pixel_of(view, there.unjittered_from_world, point))
         < 2e-3f);
     CHECK(
         glm::distance(
-            pixel_of(view, sample.previous_from_world, point),
-            pixel_of(view, there.previous_from_world, point))
+            pixel_of(view, sample.previous_clip_from_world, point),
+            pixel_of(view, there.previous_clip_from_world, point))
         < 2e-3f);
 }
 
@@ -223,7 +223,7 @@ TEST_CASE("thin_lens: a pinhole has one sample, the view itself") {
     for (const Vec2& p : {Vec2(0), Vec2(1, 0), Vec2(-0.3f, 0.7f)}) {
         const RenderView sample = with_lens_sample(view, p);
         CHECK(sample.clip_from_world == view.clip_from_world);
-        CHECK(sample.previous_from_world == view.previous_from_world);
+        CHECK(sample.previous_clip_from_world == view.previous_clip_from_world);
         CHECK(sample.jitter == view.jitter);
         for (int i = 0; i < 3; ++i) {
             CHECK(sample.world_from_camera.row[i] == view.world_from_camera.row[i]);

@@ -154,14 +154,14 @@ TEST_CASE("hdr: defog takes a share of the mean color off, and never more than t
 }
 
 TEST_CASE("hdr: the eye goes the same way however the time is cut into frames") {
-    CHECK(eye_follows(0.5f, 0.5f) == near(1 - std::exp(-1.0)));
-    CHECK(eye_follows(0.5f, 0) == 0);
-    CHECK(eye_follows(0, 0.01f) == 1);
+    CHECK(adaptation_blend(0.5f, 0.5f) == near(1 - std::exp(-1.0)));
+    CHECK(adaptation_blend(0.5f, 0) == 0);
+    CHECK(adaptation_blend(0, 0.01f) == 1);
     double left = 1;
     for (int i = 0; i < 30; ++i) {
-        left *= 1 - eye_follows(0.5f, 1.0f / 30);
+        left *= 1 - adaptation_blend(0.5f, 1.0f / 30);
     }
-    CHECK(1 - left == near(eye_follows(0.5f, 1.0f), 1e-4));
+    CHECK(1 - left == near(adaptation_blend(0.5f, 1.0f), 1e-4));
 }
 
 }  // namespace limn::oracle

@@ -31,7 +31,7 @@ struct VelocityScene : SkinScene {
         motion.current = look_at({0, 0.5f, 1.6f}, {0, 0.45f, 0});
         motion.width = kSize;
         motion.height = kSize;
-        motion.alpha_before = 0;
+        motion.previous_alpha = 0;
         return motion;
     }
     static RenderView view_of(const oracle::CameraMotion& motion, const Vec2& jitter = {0, 0}) {
@@ -41,7 +41,7 @@ struct VelocityScene : SkinScene {
              .height = motion.height,
              .jitter = jitter,
              .alpha = static_cast<float>(motion.alpha),
-             .alpha_before = static_cast<float>(motion.alpha_before)});
+             .previous_alpha = static_cast<float>(motion.previous_alpha)});
     }
     /// Every third pixel of the picture against rays, at the moments and with the jitter given.
     Agreement agreement(const oracle::CameraMotion& motion, const Vec2& jitter = {0, 0}) {
@@ -77,7 +77,7 @@ struct VelocityScene : SkinScene {
              {std::pair(1.0, 0.0), std::pair(0.7, 0.3), std::pair(0.2, -0.6)}) {
             oracle::CameraMotion at = motion;
             at.alpha = alpha;
-            at.alpha_before = before;
+            at.previous_alpha = before;
             const Agreement found = agreement(at);
             CHECK(found.worst <= 0.05);
             CHECK(found.fastest >= 2.0);
@@ -301,7 +301,7 @@ TEST_CASE_FIXTURE(
     world.get<Pose>(character).previous.clear();
     CHECK(bounded());
     RenderView broken = view;
-    broken.previous_from_world = Mat4(NAN);
+    broken.previous_clip_from_world = Mat4(NAN);
     CHECK(fastest(broken) == 0);
 }
 

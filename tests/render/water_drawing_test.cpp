@@ -67,7 +67,7 @@ WaterWaves all_waves() {
         .waves =
             {{.amplitude = 0.2f, .length = 9, .direction = 1, .sharpness = 1},
              {.amplitude = 0.1f, .length = 5, .direction = -1, .lean = 0.5f}},
-        .radial = {{.amplitude = 0.15f, .length = 6, .full = 2}, {.length = 4, .inward = true}},
+        .radial = {{.amplitude = 0.15f, .length = 6, .fade_radius = 2}, {.length = 4, .inward = true}},
         .packets = {
             {.center = {1, -2}, .age = 1.5f, .amplitude = 0.1f, .length = 4, .waves = 1},
             {.center = {-2, 0},
@@ -98,7 +98,7 @@ RippleState make_rough(const Water& water, float cell) {
             const Vec2 p(x, z);
             const std::size_t place = state.at(x, z);
             state.height[place] = 0.1f * std::sin(0.7f * p.x) * std::cos(0.4f * p.y);
-            state.before[place] = state.height[place] - 0.01f * std::cos(0.5f * p.x + 0.3f * p.y);
+            state.previous[place] = state.height[place] - 0.01f * std::cos(0.5f * p.x + 0.3f * p.y);
         }
     }
     return state;
@@ -184,7 +184,7 @@ TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the mom
         WaveTable now = table_at(water, 0);
         WaveTable before = table_at(water, static_cast<double>(step));
         RippleState state = make_ripples(water, {.cell = 0.5f}, kStep);
-        for (float& height : state.before) {
+        for (float& height : state.previous) {
             height -= 0.5f * kStep;  // it rises by half a meter a second
         }
         if (ripples) {
@@ -198,7 +198,7 @@ TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the mom
         const gpu::FloatImage moving = aov(view, "velocity");
         const gpu::FloatImage depth = aov(view, "depth");
         const auto pixel = [&](const Vec3& p) {
-            const Vec4 clip = view.steady_from_world * Vec4(p, 1);
+            const Vec4 clip = view.unjittered_from_world * Vec4(p, 1);
             return Vec2(0.5f + 0.5f * clip.x / clip.w, 0.5f - 0.5f * clip.y / clip.w)
                    * Vec2(view.width, view.height);
         };

@@ -161,7 +161,7 @@ TEST_CASE("water patches: there are never too many, whatever is asked for") {
 TEST_CASE("ripple atlas: rectangles lie beside each other, none on another") {
     const IVec2 sizes[] = {{10, 4}, {3, 9}, {7, 7}, {0, 0}, {12, 2}, {5, 5}, {8, 1}};
     IVec2 corners[7];
-    const int height = place_on_shelves(sizes, 14, corners);
+    const int height = pack_shelves(sizes, 14, corners);
     for (int i = 0; i < 7; ++i) {
         CHECK(corners[i].x + sizes[i].x <= 14);
         CHECK(corners[i].y + sizes[i].y <= height);
@@ -341,7 +341,7 @@ TEST_CASE_FIXTURE(Pond, "water: its velocity is that of the surface; at rest it 
             const Vec3 is = rest + evaluate_waves(table, point.rest).offset;
             const Vec3 was = rest + evaluate_waves(before, point.rest).offset;
             const auto pixel = [&](const Vec3& p) {
-                const Vec4 clip = view.steady_from_world * Vec4(p, 1);
+                const Vec4 clip = view.unjittered_from_world * Vec4(p, 1);
                 return Vec2(0.5f + 0.5f * clip.x / clip.w, 0.5f - 0.5f * clip.y / clip.w)
                        * Vec2(view.width, view.height);
             };

@@ -36,7 +36,8 @@ float angle_at(const ClipData& clip, float time) {
 }
 
 Quat any_rotation(Random& random) {
-    return unit_or_none(Quat(random.normal(), random.normal(), random.normal(), random.normal()));
+    return normalize_or_identity(
+        Quat(random.normal(), random.normal(), random.normal(), random.normal()));
 }
 
 }  // namespace
@@ -119,7 +120,7 @@ TEST_CASE("clip: samples taken 30 times a second are shown 100 times, none lost 
     Random random(3, 0, name_hash("samples"), 0);
     for (std::size_t i = 1; i < keys.size(); ++i) {
         const Quat step = rotation_about(random.direction(), random.uniform(0, 0.4f));
-        keys[i] = near_to(keys[i - 1], keys[i - 1] * step);
+        keys[i] = to_same_hemisphere(keys[i - 1], keys[i - 1] * step);
     }
     const auto angle_between = [](const Quat& a, const Quat& b) {
         return 2 * std::asin(std::min(0.5f * apart(a, b), 1.0f)) * 2;
@@ -333,13 +334,13 @@ TEST_CASE("clip: m keys of n joints are m (1 + 7 n) numbers") {
 TEST_CASE("joints: a matrix is the product from the root on, in the order T R S") {
     SkeletonData skeleton = make_chain(4);
     std::vector<Affine> matrices(4);
-    find_joint_matrices(skeleton, skeleton.rest, matrices);
+    compute_joint_matrices(skeleton, skeleton.rest, matrices);
     CHECK(transform_point(matrices[3], Vec3(0)) == Vec3(0, 3, 0));
     LocalPose pose = skeleton.rest;
     pose.translations[0] = {5, 0, 0};
     pose.rotations[1] = rotation_about({0, 0, 1}, radians(90));
     pose.scales[1] = {1, 2, 1};
-    find_joint_matrices(skeleton, pose, matrices);
+    compute_joint_matrices(skeleton, pose, matrices);
     CHECK(apart(transform_point(matrices[0], Vec3(0)), Vec3(5, 0, 0)) < 1e-6f);
     CHECK(apart(transform_point(matrices[1], Vec3(0)), Vec3(5, 1, 0)) < 1e-6f);
     CHECK(apart(transform_point(matrices[2], Vec3(0)), Vec3(3, 1, 0)) < 1e-6f);
@@ -356,10 +357,10 @@ TEST_CASE("joints: turning one moves its descendants and no other, and no bone c
         rotation = any_rotation(random);
     }
     std::vector<Affine> before(9);
-    find_joint_matrices(skeleton, pose, before);
+    compute_joint_matrices(skeleton, pose, before);
     pose.rotations[4] = any_rotation(random);
     std::vector<Affine> after(9);
-    find_joint_matrices(skeleton, pose, after);
+    compute_joint_matrices(skeleton, pose, after);
     for (std::size_t i = 0; i < 9; ++i) {
         const bool moves = i == 4 || i == 5;
         CHECK((std::memcmp(&before[i], &after[i], sizeof(Affine)) != 0) == moves);
@@ -381,6 +382,6 @@ TEST_CASE("joints: angles are applied in the order of the channels of a file") {
     pose.rotations[0] =
         rotation_about({0, 0, 1}, radians(90)) * rotation_about({1, 0, 0}, radians(90));
     std::vector<Affine> matrices(1);
-    find_joint_matrices(skeleton, pose, matrices);
+    compute_joint_matrices(skeleton, pose, matrices);
     CHECK(apart(transform_vector(matrices[0], Vec3(0, 1, 0)), Vec3(0, 0, 1)) < 1e-6f);
 }

@@ -77,12 +77,12 @@ TEST_CASE(
     start_world(world);
     REQUIRE(world.find<EnvProbeState>(probe) != nullptr);
     CHECK(world.get<EnvProbeState>(probe).faces == 6);
-    CHECK(world.get<EnvProbeState>(probe).seen_from == Vec3(1, 0, 0));
+    CHECK(world.get<EnvProbeState>(probe).capture_position == Vec3(1, 0, 0));
     Schedule schedule = make_world_schedule();
     step_world(world, schedule);
     CHECK(world.get<EnvProbeState>(probe).faces == 6);
     world.get<Transform>(probe).position = {3, 0, 0};
     step_world(world, schedule);
     CHECK(world.get<EnvProbeState>(probe).faces == 12);
-    CHECK(world.get<EnvProbeState>(probe).seen_from == Vec3(3, 0, 0));
+    CHECK(world.get<EnvProbeState>(probe).capture_position == Vec3(3, 0, 0));
 }

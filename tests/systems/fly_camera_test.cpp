@@ -81,7 +81,7 @@ TEST_CASE("fly_camera: without input nothing is written, and inactive cameras st
     const std::uint32_t since = world.version();
     world.run(update_fly_cameras);
     CHECK(world.query<const Transform, Changed<Transform>>().since(since).count() == 0);
-    world.resource<Input>().move = {0, 0, 1};
+    set_action(world.resource<Input>(), "move_forward");
     world.run(update_fly_cameras);
     CHECK(world.get<Transform>(active).position.z < 0);
     CHECK(world.get<Transform>(idle).position.z == 0);

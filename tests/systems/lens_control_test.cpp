@@ -33,11 +33,14 @@ struct Scene {
         start_world(world);
     }
     void turn(const Vec3& lens, int steps = 30) {
-        world.resource<Input>().lens = lens;
+        Input& input = world.resource<Input>();
+        set_action(input, "focus_farther", lens.x);
+        set_action(input, "aperture_open", lens.y);
+        set_action(input, "shutter_longer", lens.z);
         for (int i = 0; i < steps; ++i) {
             step_world(world, schedule);
         }
-        world.resource<Input>().lens = Vec3(0);
+        world.resource<Input>() = {};
     }
 };
 
@@ -77,13 +80,15 @@ TEST_CASE("lens_control: aperture and shutter open and close") {
 }
 
 TEST_CASE("lens_control: two half steps are one, back is where it was, and the rings have ends") {
-    CHECK(turn_focus(turn_focus(3, 1, 0.1f), 1, 0.1f) == doctest::Approx(turn_focus(3, 1, 0.2f)));
-    CHECK(turn_focus(turn_focus(3, 1, 0.3f), -1, 0.3f) == doctest::Approx(3));
-    CHECK(turn_aperture(2, 1, 2.0f / 1.5f) == doctest::Approx(1));  // two stops
-    CHECK(turn_focus(3, 1, 1e6f) == 1000);
-    CHECK(turn_focus(3, -1, 1e6f) == 0.02f);
-    CHECK(turn_aperture(2, 1, 1e6f) == 0.5f);
-    CHECK(turn_aperture(2, -1, 1e6f) == 64);
-    CHECK(turn_shutter(90, 1, 1e6f) == 360);
-    CHECK(turn_shutter(90, -1, 1e6f) == 0);
+    CHECK(
+        adjust_focus(adjust_focus(3, 1, 0.1f), 1, 0.1f)
+        == doctest::Approx(adjust_focus(3, 1, 0.2f)));
+    CHECK(adjust_focus(adjust_focus(3, 1, 0.3f), -1, 0.3f) == doctest::Approx(3));
+    CHECK(adjust_aperture(2, 1, 2.0f / 1.5f) == doctest::Approx(1));  // two stops
+    CHECK(adjust_focus(3, 1, 1e6f) == 1000);
+    CHECK(adjust_focus(3, -1, 1e6f) == 0.02f);
+    CHECK(adjust_aperture(2, 1, 1e6f) == 0.5f);
+    CHECK(adjust_aperture(2, -1, 1e6f) == 64);
+    CHECK(adjust_shutter(90, 1, 1e6f) == 360);
+    CHECK(adjust_shutter(90, -1, 1e6f) == 0);
 }

@@ -40,7 +40,7 @@ double integrate_turn(const OceanEnergy& sea, double omega) {
         const double from_rear = u * u * u;
         const double theta = 0.5 * kTurn * (1.0 - from_rear);
         const double weight = i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-        sum += weight * direction_share(sea, omega, theta) * 3.0 * u * u;
+        sum += weight * directional_density(sea, omega, theta) * 3.0 * u * u;
     }
     return 2.0 * sum * 0.5 * kTurn / (3.0 * kSteps);
 }
@@ -116,14 +116,14 @@ TEST_CASE("ocean_spectrum: waves at the peak run with the wind, longer and short
     CHECK(ratio(cosine_power_integral(1e5), 2 * std::sqrt(0.5 * kTurn / 1e5)) < 1e-4);
 
     const OceanEnergy sea = wind_sea_of_peak(0.1);
-    const double at_peak = direction_share(sea, sea.peak, 0);
+    const double at_peak = directional_density(sea, sea.peak, 0);
     CHECK(at_peak == doctest::Approx(0.893092).epsilon(1e-6).scale(0));
     const double half = 30.3422 * kTurn / 360;
     CHECK(
-        direction_share(sea, sea.peak, half)
+        directional_density(sea, sea.peak, half)
         == doctest::Approx(0.5 * at_peak).epsilon(1e-5).scale(0));
     CHECK(
-        direction_share(sea, sea.peak, -half)
+        directional_density(sea, sea.peak, -half)
         == doctest::Approx(0.5 * at_peak).epsilon(1e-5).scale(0));
 }
 
@@ -148,19 +148,19 @@ TEST_CASE("ocean_spectrum: shares are even about the wind, and most where it blo
         CAPTURE(static_cast<int>(spreading));
         const OceanEnergy sea = make_ocean_energy({.spreading = spreading, .swell = 0.3f});
         for (const double x : {0.5, 1.0, 3.0}) {
-            const double ahead = direction_share(sea, x * sea.peak, 0);
+            const double ahead = directional_density(sea, x * sea.peak, 0);
             for (double theta = 0.1; theta < 3.14; theta += 0.1) {
-                const double share = direction_share(sea, x * sea.peak, theta);
+                const double share = directional_density(sea, x * sea.peak, theta);
                 CHECK(share <= ahead);
                 CHECK(share >= 0);
-                CHECK(direction_share(sea, x * sea.peak, -theta) == share);
-                const double turned = direction_share(sea, x * sea.peak, theta + kTurn);
+                CHECK(directional_density(sea, x * sea.peak, -theta) == share);
+                const double turned = directional_density(sea, x * sea.peak, theta + kTurn);
                 CHECK(turned == doctest::Approx(share).epsilon(1e-9).scale(0));
             }
         }
     }
     const OceanEnergy sea = make_ocean_energy({});
-    CHECK(direction_share(sea, 2 * sea.peak, 0.5 * kTurn) < 1e-12);
+    CHECK(directional_density(sea, 2 * sea.peak, 0.5 * kTurn) < 1e-12);
 }
 
 TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner join where they change") {
@@ -183,7 +183,7 @@ TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner join where
         const double beta = donelan_banner_beta(x);
         const double closed = 0.5 * beta / std::tanh(0.5 * kTurn * beta);
         CHECK(
-            direction_share(sea, x * sea.peak, 0)
+            directional_density(sea, x * sea.peak, 0)
             == doctest::Approx(closed).epsilon(1e-3).scale(0));
     }
 }
@@ -199,7 +199,7 @@ TEST_CASE("ocean_spectrum: swell gathers long waves about the wind, and short on
         for (const float swell : {0.0f, 0.3f, 0.6f, 1.0f}) {
             const OceanEnergy sea = make_ocean_energy({.spreading = spreading, .swell = swell});
             for (const int i : {0, 1}) {
-                const double share = direction_share(sea, (i == 0 ? 0.7 : 3.0) * sea.peak, 0);
+                const double share = directional_density(sea, (i == 0 ? 0.7 : 3.0) * sea.peak, 0);
                 CHECK(share > last[i]);
                 last[i] = share;
             }

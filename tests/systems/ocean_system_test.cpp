@@ -402,9 +402,9 @@ TEST_CASE("ocean: the last fields are those of one step earlier, from the first 
         const OceanState earlier = ocean_at_time(state.made_for, time);
         bool same = true;
         for (std::size_t c = 0; c < state.cascades.size(); ++c) {
-            same = same && state.cascades[c].last_height == earlier.cascades[c].height
-                   && state.cascades[c].last_shift_x == earlier.cascades[c].shift_x
-                   && state.cascades[c].last_shift_z == earlier.cascades[c].shift_z;
+            same = same && state.cascades[c].previous_height == earlier.cascades[c].height
+                   && state.cascades[c].previous_shift_x == earlier.cascades[c].shift_x
+                   && state.cascades[c].previous_shift_z == earlier.cascades[c].shift_z;
         }
         return same;
     };
@@ -532,14 +532,14 @@ TEST_CASE("ocean: without wind it is flat; what is out of range is brought withi
         OceanState state;
         step_ocean(ocean, 1.0, kStep, state);
         CHECK(all_finite(state));
-        const Ocean limited = limit_ocean(ocean);
-        CHECK(limit_ocean(limited) == limited);
+        const Ocean limited = clamp_ocean(ocean);
+        CHECK(clamp_ocean(limited) == limited);
         CHECK(state.cascades.size() == static_cast<std::size_t>(limited.cascades));
     }
-    CHECK(limit_ocean(storm).wind_speed == 60);
-    CHECK(limit_ocean({.resolution = 100}).resolution == 64);
-    CHECK(limit_ocean({.resolution = 5000}).resolution == 1024);
-    CHECK(limit_ocean(kSmall) == kSmall);
+    CHECK(clamp_ocean(storm).wind_speed == 60);
+    CHECK(clamp_ocean({.resolution = 100}).resolution == 64);
+    CHECK(clamp_ocean({.resolution = 5000}).resolution == 1024);
+    CHECK(clamp_ocean(kSmall) == kSmall);
 }
 
 TEST_CASE("ocean: it is as high after an hour, or a day, as at first") {
@@ -589,6 +589,6 @@ TEST_CASE("ocean: a world steps it, and goes on with the same bits from a snapsh
     CHECK(same_fields(world.get<OceanState>(sea), other.get<OceanState>(sea)));
     CHECK(world.get<OceanFoam>(sea).coverage == other.get<OceanFoam>(sea).coverage);
     CHECK(
-        world.get<OceanState>(sea).cascades[0].last_height
-        == other.get<OceanState>(sea).cascades[0].last_height);
+        world.get<OceanState>(sea).cascades[0].previous_height
+        == other.get<OceanState>(sea).cascades[0].previous_height);
 }

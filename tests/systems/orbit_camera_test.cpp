@@ -92,8 +92,8 @@ TEST_CASE("camera_lag: the way does not depend on the frame rate, and never over
     CHECK(near(long_step, two_steps));
     for (const float dt : {0.001f, 0.1f, 1.0f, 100.0f}) {
         for (const float follow : {0.0f, 0.1f, 0.99f, 1.0f}) {
-            CHECK(lag_share(follow, dt) >= 0);
-            CHECK(lag_share(follow, dt) <= 1);
+            CHECK(lag_fraction(follow, dt) >= 0);
+            CHECK(lag_fraction(follow, dt) <= 1);
         }
     }
 }

@@ -54,13 +54,13 @@ TEST_CASE("skeleton: cycles, second roots and children before parents are refuse
         == "skeleton chain: joint 0 (joint 0) has the parent 0, expected -1, it is the root");
     CHECK(
         skeleton_error([](SkeletonData& s) { s.rest.scales.pop_back(); })
-        == "skeleton chain: lists of different lengths for 4 joints");
+        == "skeleton chain: arrays of different lengths for 4 joints");
     CHECK(
         skeleton_error([](SkeletonData& s) { s.rest.rotations[3] = Quat(0, 0, 0, 0); })
-        == "skeleton chain: joint 3 (joint 3) rests nowhere");
+        == "skeleton chain: joint 3 (joint 3) has an invalid rest transform");
     CHECK(
         skeleton_error([](SkeletonData& s) { s.rest.translations[1].y = NAN; })
-        == "skeleton chain: joint 1 (joint 1) rests nowhere");
+        == "skeleton chain: joint 1 (joint 1) has an invalid rest transform");
     CHECK(skeleton_error([](SkeletonData& s) { s.rest.scales[1].y = INFINITY; }) != "");
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("skeleton: a clip with unsorted keys, wrong lengths or strangers is re
         == "clip turn, sheet 0: key 1 at 0 s, expected later than 0 s");
     CHECK(
         clip_error([](ClipSheet& s) { s.times[1] = NAN; })
-        == "clip turn, sheet 0: the time of key 1 is no number");
+        == "clip turn, sheet 0: the time of key 1 is not finite");
     CHECK(
         clip_error([](ClipSheet& s) { s.rotations.pop_back(); })
         == "clip turn, sheet 0: 2 rotations, expected 3 for 3 keys");
@@ -89,25 +89,25 @@ TEST_CASE("skeleton: a clip with unsorted keys, wrong lengths or strangers is re
         == "clip turn, sheet 0: 3 rotations, expected 9 for 3 keys");
     CHECK(
         clip_error([](ClipSheet& s) { s.rotating = {2}; })
-        == "clip turn, sheet 0: rotations of number 2, expected less than 2");
+        == "clip turn, sheet 0: rotations of index 2, expected less than 2");
     CHECK(
         clip_error([](ClipSheet& s) {
             s.morphing = {1};
             s.weights = {0, 0, 0};
         })
-        == "clip turn, sheet 0: weights of number 1, expected less than 1");
+        == "clip turn, sheet 0: weights of index 1, expected less than 1");
     CHECK(
         clip_error([](ClipSheet& s) {
             s.translating = {1, 1};
             s.translations.resize(6);
         })
-        == "clip turn, sheet 0: translations of number 1 twice");
+        == "clip turn, sheet 0: translations of index 1 twice");
     CHECK(
         clip_error([](ClipSheet& s) {
             s.scaling = {1};
             s.scales = {Vec3(1), Vec3(1, NAN, 1), Vec3(1)};
         })
-        == "clip turn, sheet 0: scales that are no numbers");
+        == "clip turn, sheet 0: scales that are not finite");
     CHECK(
         clip_error([](ClipSheet& s) { s.rotations[1] = Quat(0, 0, 0, 0); })
         == "clip turn, sheet 0: a rotation of length 0");

@@ -32,7 +32,7 @@ struct Puppet {
 
     void bind() {
         std::vector<Affine> rest(skeleton.joints.size());
-        find_joint_matrices(skeleton, skeleton.rest, rest);
+        compute_joint_matrices(skeleton, skeleton.rest, rest);
         skin.joints.clear();
         skin.joint_from_mesh.clear();
         for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -43,17 +43,17 @@ struct Puppet {
     }
     void pose(const LocalPose& local) {
         joints.resize(skeleton.joints.size());
-        find_joint_matrices(skeleton, local, joints);
+        compute_joint_matrices(skeleton, local, joints);
         palette.resize(joints.size());
         duals.resize(joints.size());
-        find_palette(skin, joints, palette);
-        find_dual_palette(palette, duals);
+        compute_skin_palette(skin, joints, palette);
+        compute_dual_palette(palette, duals);
         moved = mesh;
     }
     [[nodiscard]] RestVertices rest() const {
         return {mesh.positions, mesh.normals, mesh.tangents};
     }
-    MovedVertices target() { return {moved.positions, moved.normals, moved.tangents}; }
+    SkinnedVertices target() { return {moved.positions, moved.normals, moved.tangents}; }
     void linear() { skin_linear(mesh.skin, palette, rest(), target(), 0, mesh.positions.size()); }
     void dual() { skin_dual(mesh.skin, duals, rest(), target(), 0, mesh.positions.size()); }
 };
@@ -302,7 +302,7 @@ TEST_CASE("skin: vectors of the machine and plain C++ give the same bits, cut an
         Puppet puppet = make_puppet(30, count, 5);
         puppet.pose(random_pose(puppet.skeleton, 3));
         MeshData plain = puppet.mesh;
-        const MovedVertices target = {plain.positions, plain.normals, plain.tangents};
+        const SkinnedVertices target = {plain.positions, plain.normals, plain.tangents};
         puppet.linear();
         skin_linear_scalar(puppet.mesh.skin, puppet.palette, puppet.rest(), target, 0, count);
         CHECK(same_bits(plain.positions, puppet.moved.positions));
@@ -343,7 +343,7 @@ Puppet make_regular_puppet(std::size_t count, std::size_t run, std::size_t verti
 void check_same_bits(Puppet& puppet) {
     MeshData plain = puppet.mesh;
     const std::size_t count = plain.positions.size();
-    const MovedVertices target = {plain.positions, plain.normals, plain.tangents};
+    const SkinnedVertices target = {plain.positions, plain.normals, plain.tangents};
     puppet.linear();
     skin_linear_scalar(puppet.mesh.skin, puppet.palette, puppet.rest(), target, 0, count);
     CHECK(same_bits(plain.positions, puppet.moved.positions));

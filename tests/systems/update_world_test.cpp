@@ -43,7 +43,7 @@ std::vector<std::uint64_t> hashes(int threads, int steps) {
     for (int i = 0; i < steps; ++i) {
         step_world(world, schedule);
         world.resource<Input>().look = {static_cast<float>(i % 7), 1};
-        world.resource<Input>().move = {0, 0, 1};
+        set_action(world.resource<Input>(), "move_forward");
         all.push_back(state_hash(world));
     }
     return all;

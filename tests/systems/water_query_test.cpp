@@ -32,7 +32,7 @@ struct Sea {
         settings.waves = {
             {.amplitude = 0.25f, .length = 9, .direction = 0.4f, .sharpness = 1.0f},
             {.amplitude = 0.1f, .length = 4, .direction = -0.9f, .sharpness = 1.5f}};
-        settings.radial = {{.center = {20, 1}, .amplitude = 0.05f, .length = 3, .full = 1}};
+        settings.radial = {{.center = {20, 1}, .amplitude = 0.05f, .length = 3, .fade_radius = 1}};
         return settings;
     }
     void add_ripples() {
@@ -108,7 +108,7 @@ TEST_CASE("water query: what it finds is on the surface, above the place asked f
             Vec3(point.rest.x, 0, point.rest.y) + displace_water(sea.surface, point.rest).offset);
         CHECK(glm::distance(point.position, drawn) < 1e-5f);
         CHECK(glm::distance(Vec2(point.position.x, point.position.z), at) < 1.2e-4f);
-        CHECK(std::abs(point.miss - glm::distance(Vec2(drawn.x, drawn.z), at)) < 1e-5f);
+        CHECK(std::abs(point.error - glm::distance(Vec2(drawn.x, drawn.z), at)) < 1e-5f);
         CHECK(glm::length(point.normal) == doctest::Approx(1));
         evaluations += point.evaluations;
         CHECK(point.evaluations <= 12);
@@ -264,7 +264,7 @@ TEST_CASE("water query: the sharpest waves there are, cusps, are found everywher
     int most = 0;
     for (int i = 0; i < 2000; ++i) {
         const WaterPoint point = sample_water(surface, {0.01f * static_cast<float>(i), 0});
-        CHECK(point.miss < 2e-4f);
+        CHECK(point.error < 2e-4f);
         CHECK(std::isfinite(point.normal.x + point.slope().x));
         most = std::max(most, point.evaluations);
     }
@@ -282,7 +282,7 @@ TEST_CASE("water query: of folded water it finds a point that is there") {
         CHECK(point.evaluations <= 32);
         CHECK(std::isfinite(point.position.y + point.normal.y + point.velocity.y));
         CHECK(point.normal.y >= 0);
-        found += point.miss < 1e-3f ? 1 : 0;
+        found += point.error < 1e-3f ? 1 : 0;
     }
     CHECK(found > 450);
 }
@@ -362,16 +362,16 @@ TEST_CASE("water query: a point is in the water whose surface is nearest above i
 
 TEST_CASE("water query: what is too large for short waves may leave them out") {
     Sea sea;
-    sea.surface.shortest = 6;
+    sea.surface.min_wavelength = 6;
     const WaveTable all = sea.waves;
     sea.waves.rings.clear();
     sea.waves.lines.resize(1);  // that of 9 m
     const Vec3 alone = evaluate_waves(sea.waves, {1, 2}).offset;
     sea.waves = all;
     CHECK(displace_water(sea.surface, {1, 2}).offset == alone);
-    sea.surface.shortest = 10;
+    sea.surface.min_wavelength = 10;
     CHECK(displace_water(sea.surface, {1, 2}).offset == Vec3(0));
-    sea.surface.shortest = 0;
+    sea.surface.min_wavelength = 0;
     CHECK(displace_water(sea.surface, {1, 2}).offset == evaluate_waves(all, {1, 2}).offset);
 }
 

@@ -45,7 +45,7 @@ inline void fill_standing_wave(RippleState& state, float amplitude) {
             const float share = (static_cast<float>(x) + 0.5f) / static_cast<float>(state.cells.x);
             const float h = amplitude * std::cos(kPi * share);
             state.height[state.at(x, z)] = h;
-            state.before[state.at(x, z)] = h;
+            state.previous[state.at(x, z)] = h;
         }
     }
 }

@@ -82,7 +82,7 @@ void start_pulse(RippleState& state, float x, float speed) {
             const float from = middle(state, i, z).x - x;
             const float ago = from + speed * state.substep;
             state.height[state.at(i, z)] = 0.1f * std::exp(-square(from / 0.25f));
-            state.before[state.at(i, z)] = 0.1f * std::exp(-square(ago / 0.25f));
+            state.previous[state.at(i, z)] = 0.1f * std::exp(-square(ago / 0.25f));
         }
     }
     state.level = ripple_volume(state)
@@ -102,7 +102,7 @@ class Reference {
                 const bool on = x >= 0 && z >= 0 && x < size_.x && z < size_.y;
                 wet_.push_back(on && (state.dry.empty() || state.dry[place] == 0));
                 now_.push_back(wet_.back() ? state.height[place] : 0);
-                before_.push_back(wet_.back() ? state.before[place] : 0);
+                before_.push_back(wet_.back() ? state.previous[place] : 0);
             }
         }
     }
@@ -458,7 +458,7 @@ TEST_CASE("ripple walls: one that steps aside in level water leaves it level") {
         for (int x = 0; x < state.cells.x; ++x) {
             const float level = is_dry(state, state.at(x, z)) ? 0 : 0.05f;
             state.height[state.at(x, z)] = level;
-            state.before[state.at(x, z)] = level;
+            state.previous[state.at(x, z)] = level;
         }
     }
     stand(0.1f);
@@ -467,7 +467,7 @@ TEST_CASE("ripple walls: one that steps aside in level water leaves it level") {
         for (int x = 0; x < state.cells.x; ++x) {
             const std::size_t place = state.at(x, z);
             const float off = std::max(
-                std::abs(state.height[place] - 0.05f), std::abs(state.before[place] - 0.05f));
+                std::abs(state.height[place] - 0.05f), std::abs(state.previous[place] - 0.05f));
             worst = is_dry(state, place) ? worst : std::max(worst, off);
         }
     }
@@ -585,7 +585,7 @@ TEST_CASE("ripple walls: a snapshot goes on as the world does") {
         } else if (part == 2) {
             state.stride = 2;
         } else if (part == 3) {
-            state.before.clear();
+            state.previous.clear();
         } else {
             state.body.assign(2, 1.0f);
         }
@@ -602,7 +602,7 @@ TEST_CASE("ripple walls: before one the water is as high as beside it, for who a
         for (int x = 0; x < state.cells.x; ++x) {
             const bool dry = state.dry[state.at(x, z)] != 0;
             state.height[state.at(x, z)] = dry ? 0 : 0.05f;
-            state.before[state.at(x, z)] = dry ? 0 : 0.05f;
+            state.previous[state.at(x, z)] = dry ? 0 : 0.05f;
         }
     }
     run(state, kUndamped, 2);

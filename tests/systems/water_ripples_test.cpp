@@ -344,7 +344,7 @@ TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") 
         for (int x = 0; x < state.cells.x; ++x) {
             const Vec2 p = state.cell * (Vec2(x, z) + 0.5f - 0.5f * Vec2(state.cells));
             state.height[state.at(x, z)] = field(p);
-            state.before[state.at(x, z)] = field(p) - 0.3f * kStep;
+            state.previous[state.at(x, z)] = field(p) - 0.3f * kStep;
         }
     }
     for (const Vec2 p : {Vec2(0, 0), Vec2(1.333f, -1.1f), Vec2(-0.777f, 0.123f)}) {

@@ -54,14 +54,14 @@ TEST_CASE("water soak: after an hour of rain a pool holds its water and what flo
         const double area = static_cast<double>(state.size().x * state.size().y);
         const double volume = ripple_volume(state);
         CHECK(std::abs(volume - state.level * area) < 1e-5);
-        const Floating& floating = world.get<Floating>(crate);
+        const FloatingState& floating = world.get<FloatingState>(crate);
         const Vec3 place = world.get<Transform>(crate).position;
         CHECK(std::isfinite(glm::length(floating.velocity) + glm::length(floating.spin)));
         CHECK(std::abs(place.x) < 1.5f);
         CHECK(std::abs(place.z) < 1.0f);
         if (minute > 0) {
             CHECK(volume == doctest::Approx(static_cast<double>(displaced)).epsilon(0.15).scale(0));
-            CHECK(floating.under == doctest::Approx(kDensity / 1000).epsilon(0.25).scale(0));
+            CHECK(floating.submerged == doctest::Approx(kDensity / 1000).epsilon(0.25).scale(0));
         }
     }
     CHECK(rained > 0.003);

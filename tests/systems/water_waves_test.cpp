@@ -116,7 +116,7 @@ TEST_CASE("water waves: slopes and velocity are those of the surface") {
             {.amplitude = 0.1f, .length = 3, .direction = -2, .phase = 1, .lean = 0.5f}}};
     const WaterWaves rings = {
         .radial =
-            {{.center = {1, 2}, .amplitude = 0.2f, .length = 3, .full = 2},
+            {{.center = {1, 2}, .amplitude = 0.2f, .length = 3, .fade_radius = 2},
              {.center = {-1, 0}, .amplitude = 0.1f, .length = 2, .inward = true}},
     };
     for (const Vec2 at : {Vec2(0.2f, 0.3f), Vec2(4, -3), Vec2(-6.1f, 7.7f)}) {
@@ -166,7 +166,7 @@ TEST_CASE("water waves: circles run outward or inward, and are the same all arou
 }
 
 TEST_CASE("water waves: circles fade with the root of the distance where they should") {
-    const RadialWave wave = {.amplitude = 0.2f, .length = 1, .full = 2};
+    const RadialWave wave = {.amplitude = 0.2f, .length = 1, .fade_radius = 2};
     const WaveTable table = table_of(WaterWaves{.radial = {wave}}, 0);
     CHECK(height_of(table, {1.25f, 0}) == doctest::Approx(0.2).epsilon(1e-4).scale(0));
     CHECK(
@@ -238,7 +238,7 @@ TEST_CASE(
 TEST_CASE("water waves: a group is within its bounds, and the same for the same seed") {
     const WaveGroup group = {
         .count = 200, .length = {0.3f, 3}, .amplitude = {0.002f, 0.02f}, .direction = 2, .seed = 9};
-    const std::vector<WaterWave> waves = draw_waves(group);
+    const std::vector<WaterWave> waves = generate_waves(group);
     REQUIRE(waves.size() == 200);
     float shortest = 1e9f;
     float longest = 0;
@@ -253,13 +253,13 @@ TEST_CASE("water waves: a group is within its bounds, and the same for the same 
     const auto aside = std::count_if(
         waves.begin(), waves.end(), [](const WaterWave& wave) { return wave.direction < 2; });
     CHECK((aside > 70 && aside < 130));
-    const std::vector<WaterWave> again = draw_waves(group);
+    const std::vector<WaterWave> again = generate_waves(group);
     CHECK(again[77].phase == waves[77].phase);
     WaveGroup other = group;
     other.seed = 10;
-    CHECK(draw_waves(other)[77].phase != waves[77].phase);
+    CHECK(generate_waves(other)[77].phase != waves[77].phase);
     other.count = 4000000000u;
-    CHECK(draw_waves(other).size() == 256);
+    CHECK(generate_waves(other).size() == 256);
 }
 
 TEST_CASE("water waves: waves add up, no higher than all together, with half the sum of squares") {

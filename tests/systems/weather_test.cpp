@@ -40,7 +40,10 @@ struct Bay {
         start_world(world);
     }
     void run(int steps, const Vec3& turn = Vec3(0)) {
-        world.resource<Input>().weather = turn;
+        Input& input = world.resource<Input>();
+        set_action(input, "wind_veer", turn.x);
+        set_action(input, "wind_stronger", turn.y);
+        set_action(input, "rain_more", turn.z);
         for (int i = 0; i < steps; ++i) {
             step_world(world, schedule);
         }
@@ -76,7 +79,8 @@ TEST_CASE("weather: oceans have its wind, pools its rain, the lens its drops") {
     CHECK(bay.world.resource<LensRain>().amount == 0);
     bay.run(180, {1, -1, 1});
     bay.run(8);
-    const auto& weather = bay.world.resource<Weather>();
+    const Weather weather =
+        current_weather(bay.world.resource<Weather>(), bay.world.resource<WeatherState>());
     CHECK(weather.wind_speed == doctest::Approx(4).epsilon(0.02));
     CHECK(weather.wind_direction == doctest::Approx(1.25).epsilon(0.01));
     CHECK(weather.rain > 0.4f);
@@ -88,13 +92,13 @@ TEST_CASE("weather: oceans have its wind, pools its rain, the lens its drops") {
 TEST_CASE("weather: keys bring it no farther than storm and calm") {
     Weather weather;
     for (int i = 0; i < 2000; ++i) {
-        weather = turn_weather(weather, {1, 1, 1}, 1.0f / 60);
+        weather = adjust_weather(weather, {1, 1, 1}, 1.0f / 60);
     }
-    CHECK(weather.wind_speed == kStrongestWind);
+    CHECK(weather.wind_speed == kMaxWindSpeed);
     CHECK(weather.rain == 1);
     CHECK(std::abs(weather.wind_direction) <= kPi + 1e-5f);
     for (int i = 0; i < 2000; ++i) {
-        weather = turn_weather(weather, {-1, -1, -1}, 1.0f / 60);
+        weather = adjust_weather(weather, {-1, -1, -1}, 1.0f / 60);
     }
     CHECK(weather.wind_speed == 0);
     CHECK(weather.rain == 0);

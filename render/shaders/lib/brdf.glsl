@@ -1,24 +1,22 @@
-// How surfaces scatter light. Every function returns what one light adds for an irradiance of 1 on a plane
-// that faces it; cosines are named n_l = dot(normal, to_light) and so on, with h halfway between l and v.
+// Surface reflectance. Every function returns the reflected light for an irradiance of 1 on a plane that faces
+// the light; cosines are named n_l = dot(normal, to_light) and so on, with h halfway between l and v.
 
 const float kPi = 3.14159265358979;
 
-// Coefficients (1, diffuse, specular, 1) of light.lit; specular ends where the light sets.
+// Coefficients (1, diffuse, specular, 1) of light.lit; no specular where the light is below the horizon.
 vec4 lit(float n_l, float n_h, float shininess) {
     float diffuse = max(n_l, 0.0);
     float specular = n_l > 0.0 && n_h > 0.0 ? pow(n_h, shininess) : 0.0;
     return vec4(1.0, diffuse, specular, 1.0);
 }
 
-// How much skin glows toward its rim, for the cosine to the viewer (char.skin-shade): the listing's form, or the text's,
-// which reaches farther into the face.
+// Rim light of skin by the cosine to the viewer (char.skin-shade): the listing's form, or the text's, which is wider.
 float skin_rim(float n_v, bool wide) {
     float away = 1.0 - clamp(n_v, 0.0, 1.0);
     return wide ? away * (2.0 - away) : away * away;
 }
 
-// Half vector of two unit vectors by their cosine alone: |l + v| = sqrt(2 + 2 l.v). Returns (n.h, v.h); both
-// 0 where l = -v.
+// (n.h, v.h) of the half vector h of l and v, from cosines alone: |l + v| = sqrt(2 + 2 l.v). Both 0 where l = -v.
 vec2 half_cosines(float n_l, float n_v, float l_v) {
     float inverse_length = inversesqrt(max(2.0 + 2.0 * l_v, 1e-8));
     return vec2(clamp((n_l + n_v) * inverse_length, 0.0, 1.0), clamp((1.0 + l_v) * inverse_length, 0.0, 1.0));

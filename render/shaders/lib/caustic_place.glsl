@@ -1,37 +1,37 @@
-// The maps of caustics_pass.h where they are read.
+// Sampling of the caustic maps of caustics_pass.h.
 
 #include "caustics_gpu.h"
 
-layout(binding = 20) uniform samplerBuffer water_lights;  // WaterLightHead, SunkenRecord, MirrorRecord, CausticPlace
-layout(binding = 21) uniform sampler2D caustic_maps;      // light that arrives over the light that flat water sends
+layout(binding = 20) uniform samplerBuffer water_lights;  // WaterLightHeader, UnderwaterRecord, MirrorRecord, CausticPlace
+layout(binding = 21) uniform sampler2D caustic_maps;      // light relative to that under flat water
 
 CausticPlace caustic_place(int index) {
     vec4 counts = texelFetch(water_lights, 0);
-    int first = int(kHeadTexels) + int(counts.x) * int(kSunkenTexels) + int(counts.y) * int(kMirrorTexels)
+    int first = int(kHeaderTexels) + int(counts.x) * int(kUnderwaterTexels) + int(counts.y) * int(kMirrorTexels)
                 + index * int(kPlaceTexels);
     return CausticPlace(
         texelFetch(water_lights, first), texelFetch(water_lights, first + 1), texelFetch(water_lights, first + 2));
 }
 
-// At a place of the map, 0 .. 1.
+// Samples the map at uv in 0 .. 1.
 float caustic_texel(CausticPlace place, vec2 uv) {
     vec2 texel = place.rect.xy + clamp(uv * place.rect.z, 0.5, place.rect.z - 0.5);
     return textureLod(caustic_maps, texel / vec2(textureSize(caustic_maps, 0)), 0.0).r;
 }
 
-const float kWaySlack = 2e-3;
+const float kPathBias = 2e-3;
 
-// Share of the light of a map that meets nothing before it is `length` [m] below or above the water. After
+// Share of a map's light that is unoccluded up to `length` [m] below or above the water. Include after
 // lib/shadow.glsl.
-float way_is_open(CausticPlace place, vec2 uv, float length) {
-    float way = length / place.view.z;
+float path_visibility(CausticPlace place, vec2 uv, float length) {
+    float path = length / place.view.z;
 #ifdef SHADOW_MAPS
     vec4 rect = texelFetch(shadow_views, max(int(place.view.x), 0) * int(kShadowViewTexels) + 7);
     vec2 texel = clamp(mix(rect.xy, rect.zw, uv), rect.xy + 1.0, rect.zw - 1.0);
     vec2 corner = floor(texel - 0.5);
     vec2 part = texel - 0.5 - corner;
     vec4 depths = textureGather(shadow_atlas, (corner + 1.0) / vec2(textureSize(shadow_atlas, 0)));
-    vec4 open = vec4(lessThanEqual(depths, vec4(1.0 + kWaySlack - way)));
+    vec4 open = vec4(lessThanEqual(depths, vec4(1.0 + kPathBias - path)));
     float share = mix(mix(open.w, open.z, part.x), mix(open.x, open.y, part.x), part.y);
     return place.view.x >= 0.0 ? share : 1.0;
 #else

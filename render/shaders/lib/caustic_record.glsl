@@ -1,11 +1,11 @@
-// The maps to be made, as buffers of the three steps know them (caustics_pass.h).
+// The caustic maps to render, for the three steps of caustics_pass.h.
 
 #include "caustics_gpu.h"
 
-// A texel a work group of rays: its map, its first ray; then CausticRecord.
+// One texel per work group of rays: its map, its first ray; then CausticRecord.
 layout(binding = 20) uniform samplerBuffer caustics;
 
-uniform int groups;  // of rays, in all maps together
+uniform int groups;  // work groups of rays in all maps
 
 CausticRecord caustic_record(int map) {
     int first = groups + map * int(kCausticTexels);
@@ -20,10 +20,10 @@ CausticRecord caustic_record(int map) {
         texelFetch(caustics, first + 7));
 }
 
-// Map and ray of an invocation, the ray as a number of the map's own.
+// Map of this invocation, and index of its ray within the map.
 ivec2 caustic_ray() {
     vec4 group = texelFetch(caustics, int(gl_WorkGroupID.x));
     return ivec2(group.x, int(group.y) + int(gl_LocalInvocationID.x));
 }
 
-const float kWhole = 524288.0;  // what a texel counts for the light of flat water: sums are whole numbers
+const float kFixedPointOne = 524288.0;  // fixed-point value of the light under flat water, as sums are integers

@@ -1,10 +1,10 @@
-// Cells of the light clusters and blocks of them, as the compute shaders number them.
+// Cells of the light clusters, and blocks of cells: indexing and culling.
 
 #include "lib/view.glsl"
 
 const uvec3 kBlockSize = uvec3(kBlockColumns, kBlockRows, kBlockSlices);
-const float kFarthest = 1e12;  // [m]; the last slice goes on for ever
-const float kSlack = 1e-3;     // cells are widened by this share: log2 and exp2 differ in the last bits
+const float kMaxDistance = 1e12;  // [m]; end of the last slice, which is unbounded
+const float kSlack = 1e-3;     // cells are widened by this share, as log2 and exp2 differ in the last bits
 
 uvec3 cell_counts() {
     return uvec3(view.grid_cells.xyz);
@@ -19,7 +19,7 @@ uvec3 block_position(uint block) {
     return uvec3(block % n.x, block / n.x % n.y, block / (n.x * n.y));
 }
 
-// Words of light bits for each block.
+// Words of the light mask of each block.
 uint word_count(uint lights) {
     return (lights + 31u) / 32u;
 }
@@ -38,7 +38,7 @@ struct CellBox {
     vec3 high;
 };
 
-// x / z (or y / z) of a tile's left edge and of its right one; `tangent` of half the field of view.
+// x / z (or y / z) of the left and right edges of a tile; `tangent` of half the field of view.
 vec2 tile_slopes(uint tile, float pixels, float jitter, float tangent) {
     vec2 edge = (vec2(tile) + vec2(0.0, 1.0)) * view.grid_cells.w;
     return (2.0 * edge / pixels - 1.0 - jitter) * tangent;
@@ -47,7 +47,7 @@ vec2 tile_slopes(uint tile, float pixels, float jitter, float tangent) {
 CellBox cell_box(uvec3 cell) {
     vec2 slices = (vec2(cell.z) + vec2(0.0, 1.0) - view.grid_depth.y) / view.grid_depth.x;
     float z0 = cell.z == 0u ? 0.0 : exp2(slices.x) * (1.0 - kSlack);
-    float z1 = cell.z + 1u == cell_counts().z ? kFarthest : exp2(slices.y) * (1.0 + kSlack);
+    float z1 = cell.z + 1u == cell_counts().z ? kMaxDistance : exp2(slices.y) * (1.0 + kSlack);
     vec2 x = tile_slopes(cell.x, view.size.x, view.ray_right.w, length(view.ray_right.xyz));
     vec2 y = tile_slopes(cell.y, view.size.y, view.ray_up.w, length(view.ray_up.xyz));
     vec2 low = vec2(x.x, y.x);
@@ -56,13 +56,13 @@ CellBox cell_box(uvec3 cell) {
         vec3(min(low * z0, low * z1), z0), vec3(max(high * z0, high * z1), z1));
 }
 
-// Whether the sphere about `center` and the box certainly do not touch; radius2 < 0: it is everywhere.
+// Whether the sphere about `center` certainly misses the box; radius2 < 0: unbounded.
 bool sphere_outside(vec3 center, float radius2, CellBox box) {
     vec3 offset = center - clamp(center, box.low, box.high);
     return radius2 >= 0.0 && dot(offset, offset) > radius2;
 }
 
-// Whether the cone from `apex` along the unit `axis` and the sphere certainly do not touch (Wronski 2017).
+// Whether the cone from `apex` along the unit `axis` certainly misses the sphere (Wronski 2017).
 bool cone_outside(vec3 apex, vec3 axis, float cosine, vec3 center, float radius) {
     vec3 v = center - apex;
     float along = dot(v, axis);

@@ -1,6 +1,6 @@
-// The points of a cube map's faces; render/cube_map.h has the table in C++.
+// Directions of a cube map's texels; render/cube_map.h has the table in C++.
 
-// Toward (s, t) of a face, on the cube of half side 1.
+// Direction of (s, t) of a face, on the cube of half side 1.
 vec3 cube_direction(int face, vec2 st) {
     vec2 p = 2.0 * st - 1.0;
     if (face < 2) {

@@ -1,6 +1,6 @@
-// The inverse Fourier transform of lines of SIZE complex numbers, four lines at once, by the SIZE / 4 invocations of a
-// work group: Stockham, radix 4, and pairs at the end where SIZE is no power of four. systems/water/fft_kernels.h does
-// the same.
+// Inverse Fourier transform of lines of SIZE complex numbers, four lines at once, by the SIZE / 4 invocations of a
+// work group: Stockham, radix 4, with a last radix-2 step where SIZE is not a power of four. The same as
+// systems/water/fft_kernels.h.
 //
 //     line(x) = sum over n of line(n) e^(2 pi i n x / SIZE)
 
@@ -9,7 +9,7 @@ const float kFullTurn = 6.28318530718;
 
 layout(local_size_x = SIZE / 4) in;
 
-// Element n: two complex numbers each. Write all of them, transform_line(), read all of them.
+// Element n, two complex numbers each. Write all of them, call transform_line(), read all of them.
 shared vec4 line_ab[SIZE];
 shared vec4 line_cd[SIZE];
 
@@ -39,7 +39,7 @@ vec4 times_pair(vec4 z, vec2 root) {
 Quad times(Quad z, vec2 root) {
     return Quad(times_pair(z.ab, root), times_pair(z.cd, root));
 }
-Quad turned(Quad z) {  // i z
+Quad times_i(Quad z) {  // i z
     return Quad(vec4(-z.ab.y, z.ab.x, -z.ab.w, z.ab.z), vec4(-z.cd.y, z.cd.x, -z.cd.w, z.cd.z));
 }
 
@@ -60,7 +60,7 @@ void transform_line() {
         Quad even = plus(x0, x2);
         Quad odd = plus(x1, x3);
         Quad even_rest = minus(x0, x2);
-        Quad odd_rest = turned(minus(x1, x3));
+        Quad odd_rest = times_i(minus(x1, x3));
         uint to = i + 3u * stride * p;  // i = p * stride + the sequence's number
         barrier();
         store_line(to, plus(even, odd));

@@ -1,4 +1,4 @@
-// Circles of confusion and the layers they are sorted into.
+// Circles of confusion and the layers that they are sorted into.
 
 #include "focus_gpu.h"
 
@@ -6,32 +6,32 @@ layout(std140, binding = 2) uniform Focus {
     FocusBlock focus;
 };
 
-// Diameter [px] of a point's image, negative in front of the focus (post.circle-of-confusion). Linear in reversed
-// depth, which is 0 infinitely far away.
+// Diameter [px] of a point's circle of confusion, negative in front of the focus (post.circle-of-confusion). Linear
+// in reversed depth, which is 0 at infinity.
 float circle(float depth) {
     float diameter = focus.lens.x * (focus.lens.y - depth * focus.lens.z);
     return clamp(diameter, -focus.lens.w, focus.lens.w);
 }
 
-// Share of a pixel that is far behind or before the focus, and blurred at half resolution.
+// Share of a pixel in the far or near layer, which are blurred at half resolution.
 float far_share(float diameter) {
-    return clamp((diameter - kSharpest) / (kBlurriest - kSharpest), 0.0, 1.0);
+    return clamp((diameter - kFullResDiameter) / (kHalfResDiameter - kFullResDiameter), 0.0, 1.0);
 }
 float near_share(float diameter) {
     return far_share(-diameter);
 }
 
-// Share of a circle of `radius` [px] that is wide enough for a coarser level to be read.
+// Share of a circle of `radius` [px] that is gathered coarsely, from a lower mip level.
 float coarse_share(float radius) {
     return clamp(radius - kFineRadius + 0.5, 0.0, 1.0);
 }
 
-// The level that taps through circles of `radius` [px] need to leave no gaps: 0 is the half picture.
+// The mip level at which taps over circles of `radius` [px] leave no gaps; 0 is half resolution.
 float level_of(float radius) {
     return min(ceil(log2(max(radius / kLevelRadius, 1.0))), float(focus.tiles.w));
 }
 
-// Radius of the aperture that goes through `place`: 1 at the rim of the unit aperture, whatever its shape.
+// Radius of the aperture whose rim passes through `place`: 1 for the unit aperture, whatever its shape.
 float aperture_radius(vec2 place) {
     if (focus.aperture.x < 3.0) {
         return length(place);
@@ -42,11 +42,11 @@ float aperture_radius(vec2 place) {
     return length(place) * cos(from_middle) / cos(0.5 * slice);
 }
 
-// Beside the light of a pixel that is not finite, in place of its circle: it is nobody's.
+// Stored instead of the circle of a pixel whose radiance is not finite, and which is ignored.
 const float kUnknown = 32768.0;
 
-// Kernel in the half picture [texels], and 1 / the texels that it covers, whose disc is as wide as one of `radius` [px]
-// once the tents of splitting and of showing half as many pixels have blurred it: variances add.
+// Kernel radius at half resolution [texels], and 1 / the texels that it covers, for discs of `radius` [px]: narrower
+// by the tents of down- and upsampling, which blur too (variances add).
 vec2 kernel_of(float radius) {
     float place = float(kKernelStep) * radius;
     int i = clamp(int(place), 0, kKernels - 2);
@@ -56,13 +56,13 @@ vec2 kernel_of(float radius) {
     return mix(odd ? low.zw : low.xy, odd ? high.xy : high.zw, place - float(i));
 }
 
-// Share of what has a circle or kernel that is clearly less than `own`: behind the focus it lies before that, before the
-// focus behind it; else they are beside each other.
-float before(float circle, float own) {
+// Weight of a circle or kernel that is clearly smaller than `own`: behind the focus it lies in front of `own`, before
+// the focus behind it. Else 0: both are in the same layer.
+float front_weight(float circle, float own) {
     return clamp((own - circle) / (0.1 * own + 0.1) - 1.0, 0.0, 1.0);  // by eye
 }
 
-// Light with a 1 beside it; NaN and infinity are nobody's light.
+// Radiance with weight 1; all 0 for NaN and infinity.
 vec4 finite_light(vec4 light) {
     return max(light.r, max(light.g, light.b)) <= 3e38 ? vec4(light.rgb, 1.0) : vec4(0.0);
 }
@@ -71,8 +71,7 @@ float luminance_of(vec3 light) {
     return dot(light, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// Of neighbors that are mixed the one that shines most decides about the circle: else a lamp before the night gets one
-// of both.
+// Weight for averaging circles: the brightest pixel decides, else a lamp before a dark sky would get a mixture of both.
 float radius_weight(vec4 light) {
     return luminance_of(light.rgb) + 1e-6 * light.a;
 }

@@ -1,9 +1,9 @@
-// What shaders that light surfaces while they draw them share. After lib/lighting.glsl.
+// Common to forward-shaded surfaces. Include after lib/lighting.glsl.
 
 #include "lib/material.glsl"
 
-// The surface rounded as the G-buffer would keep it, so that both ways of drawing give one picture. Holes of masked
-// surfaces need no test: the depth pass before has left them out.
+// The surface quantized as in the G-buffer, so that forward and deferred shading give the same image. Alpha-masked
+// holes need no test: the depth prepass has left them out.
 SurfaceSample forward_surface() {
     return unpack_surface(pack_surface(surface_sample(surface_color().rgb)));
 }

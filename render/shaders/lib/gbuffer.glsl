@@ -1,15 +1,14 @@
 // One surface sample in 128 bits, the light-independent half of deferred shading (deferred.gbuffer). An
-// integer target is written without conversion and read in one fetch, which is what a software OpenGL is
-// quick at, and keeps more bits than four 8-bit targets would.
+// integer target is written without conversion and read in one fetch, which is fast on a software OpenGL,
+// and keeps more bits than four 8-bit targets would.
 //
 //     x   normal, octahedral                16 + 16
 //     y   albedo r, g (square roots)        12 + 12,  occlusion 8
 //     z   albedo b 12,  roughness 10, metalness 7 - or material 17 -,  shading model 3
 //     w   emission, shared exponent         9 + 9 + 9 + 5
 //
-// Blinn, Phong and Skin find their coefficients in the material, so the word that others fill with roughness and
-// metalness holds its index. Of Unlit the albedo is the share that mirrors; its color is emission. All zero means:
-// no surface here.
+// Blinn, Phong and Skin take their coefficients from the material, whose index replaces roughness and metalness. For
+// Unlit, albedo is the mirrored share and its color is in emission. All zero: no surface here.
 
 #include "lib/octahedral.glsl"
 
@@ -21,7 +20,7 @@ const uint kModelPhong = 3u;
 const uint kModelUnlit = 4u;
 const uint kModelSkin = 5u;
 
-// Whether coefficients are in the material.
+// Whether the coefficients are in the material.
 bool is_classic(uint model) {
     return model == kModelBlinn || model == kModelPhong || model == kModelSkin;
 }
@@ -30,14 +29,14 @@ struct SurfaceSample {
     vec3 normal_ws;   // unit
     vec3 albedo;      // linear, 0 .. 1
     vec3 emission;    // radiance, 0 .. 65408
-    float occlusion;  // 0 hidden .. 1 open
+    float occlusion;  // 0 occluded .. 1 open
     float roughness;  // perceptual, 0 .. 1
     float metalness;  // 0 .. 1
-    uint material;    // index; kept where is_classic() alone
+    uint material;    // index; stored only if is_classic()
     uint model;       // kModel*
 };
 
-// Of an unlit surface, what is emission and what mirrors.
+// Splits the color of an unlit surface into emission and mirrored share.
 void split_unlit(inout SurfaceSample s) {
     if (s.model == kModelUnlit) {
         s.emission += (1.0 - s.metalness) * s.albedo;

@@ -4,7 +4,7 @@
 
 namespace limn::layout {
 
-// GLSL's names for what C++ and shaders share through *_gpu.h.
+// GLSL's type names, for the layouts shared through *_gpu.h.
 using vec2 = Vec2;
 using vec3 = Vec3;
 using vec4 = Vec4;

@@ -1,4 +1,4 @@
-// A vertex moved along its normal (shade.inflate). The normal need not be unit; one of no length moves nothing.
+// Moves a vertex along its normal (shade.inflate). The normal need not be unit; a zero normal moves nothing.
 vec3 inflate(vec3 position, vec3 normal, float distance) {
     return position + distance * inversesqrt(max(dot(normal, normal), 1e-30)) * normal;
 }

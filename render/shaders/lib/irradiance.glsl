@@ -1,15 +1,15 @@
 // Irradiance as nine spherical harmonics of the normal, whose constants are folded into the coefficients
-// (Ramamoorthi and Hanrahan 2001); render/environment_light.cpp says the same in C++.
+// (Ramamoorthi and Hanrahan 2001); the same as render/environment_light.cpp.
 
 #include "environment_gpu.h"
 
-// The nine without their constants.
+// The nine basis functions without their constants.
 float[9] harmonics(vec3 n) {
     return float[9](
         1.0, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0 * n.z * n.z - 1.0, n.x * n.z, n.x * n.x - n.y * n.y);
 }
 
-// Squares of the constants, times what convolution with the clamped cosine does to each band / pi.
+// Squares of the constants, times the band factors of convolution with the clamped cosine / pi.
 const float kHarmonicFactors[9] = float[9](
     0.0795774715, 0.159154943, 0.159154943, 0.159154943, 0.298415518, 0.298415518, 0.0248679599, 0.298415518,
     0.0746038796);

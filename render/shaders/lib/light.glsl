@@ -1,9 +1,9 @@
-// What arrives from a light: the formulas of point, spot and directional lights, branch-free so that every
-// option costs the same. bench/oracles/light_oracle.h says the same in double precision.
+// Attenuation of point and spot lights, branch-free so that every option costs the same. The same as
+// bench/oracles/light_oracle.h in double precision.
 
 // Irradiance factor of a point or spot light at squared distance d2 [m^2], 1 cd unattenuated.
-//   inv_radius2   1 / radius^2; 0: never fades to nothing
-//   polynomial    c, l, q of 1 / (c + l d + q d^2); the inverse square is (0, 0, 1); l needs LINEAR_FADE defined
+//   inv_radius2   1 / radius^2; 0: unbounded
+//   polynomial    c, l, q of 1 / (c + l d + q d^2); the inverse square is (0, 0, 1); l needs LINEAR_FADE
 //   multiplier    0: the window (1 - (d/r)^4)^2 of Karis 2013; else clamp(multiplier (1 - (d/r)^2), 0, 1)
 float distance_attenuation(float d2, float inv_radius2, vec3 polynomial, float multiplier) {
     float x = d2 * inv_radius2;
@@ -21,10 +21,9 @@ const float kSpotLinearCosine = 0.0;
 const float kSpotSmoothstep = 1.0;
 const float kSpotLinearAngle = 2.0;
 
-// 1 inside the inner cone, 0 outside the outer one. `axis` is where the light shines times the profile's
-// scale; scale and `offset` map the cosine (of kSpotLinearAngle: minus the angle) at the outer cone to 0 and at
-// the inner one to 1. A zero axis and offset 1 shine everywhere: a point light. kSpotLinearAngle needs the
-// definition SPOT_ANGLES.
+// 1 inside the inner cone, 0 outside the outer one. `axis` is the light's direction times the profile's scale;
+// scale and `offset` map the cosine (for kSpotLinearAngle: minus the angle) at the outer cone to 0 and at the
+// inner one to 1. A zero axis and offset 1 make a point light. kSpotLinearAngle needs SPOT_ANGLES.
 float spot_attenuation(vec3 to_light, vec3 axis, float offset, float profile) {
     float t = -dot(to_light, axis);
 #ifdef SPOT_ANGLES

@@ -1,14 +1,14 @@
-// All light that reaches a surface and what the surface sends on: every light of the pixel's cell and the
-// surroundings. Definitions, which only spare a software OpenGL work that nobody needs:
+// Shading of a surface by every light of the pixel's cell and by the environment. Definitions, which only save a
+// software OpenGL needless work:
 //   DIRECTIONAL_LIGHTS  there are directional lights
 //   SPOT_LIGHTS         some light is a spot
 //   SPOT_ANGLES         some spot has the profile kSpotLinearAngle
 //   LINEAR_FADE         some polynomial has a linear term
 //   SHADOWS             some light has a shadow
-//   PROJECTORS          some light throws an image
+//   PROJECTORS          some light projects a cookie
 //   LOCAL_LIGHTS        some point or spot light is in view
-//   WATERS              there is water; ON_WATER: but what is lit is its surface
-//   MIRRORS             some water throws the sun's light up
+//   WATERS              there is water; ON_WATER: and its surface is being shaded
+//   MIRRORS             some water reflects the sun's light upward
 
 #include "lib/light.glsl"
 #include "lib/optics.glsl"
@@ -23,7 +23,7 @@
 #include "lib/projector.glsl"
 #endif
 #if defined(SHADOWS) || defined(PROJECTORS)
-#define LIGHT_PASSING
+#define LIGHT_TRANSMITTANCE
 #endif
 #if defined(WATERS) && !defined(ON_WATER)
 #define UNDER_WATER
@@ -38,22 +38,22 @@ layout(binding = 11) uniform usamplerBuffer light_cells;    // begin and length 
 #include "lib/over_water.glsl"
 #endif
 
-// What casters and images let pass of a light with this LightRecord::shadow, on its way to `position_ws`.
-vec3 shadow_passing(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
-    vec3 passing = vec3(1.0);
+// Transmittance of shadow casters and cookies between `position_ws` and a light with this LightRecord::shadow.
+vec3 shadow_transmittance(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+    vec3 transmittance = vec3(1.0);
 #ifdef SHADOWS
-    passing *= light_visibility(shadow, position_ws, normal, to_light, pixel);
+    transmittance *= light_visibility(shadow, position_ws, normal, to_light, pixel);
 #endif
 #ifdef PROJECTORS
-    passing *= projected_color(shadow.w, position_ws);
+    transmittance *= projected_color(shadow.w, position_ws);
 #endif
-    return passing;
+    return transmittance;
 }
 
-vec3 light_passing(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
-#ifdef LIGHT_PASSING
+vec3 light_transmittance(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
+#ifdef LIGHT_TRANSMITTANCE
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    return shadow_passing(shadow, position_ws, normal, to_light, pixel);
+    return shadow_transmittance(shadow, position_ws, normal, to_light, pixel);
 #else
     return vec3(1.0);
 #endif
@@ -64,50 +64,51 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
     vec3 irradiance = texelFetch(lights, index * int(kLightTexels) + 1).rgb;
 #ifdef UNDER_WATER
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    Sunken water = sunken_at(position_ws);
-    bool sunken = water.depth >= 0.0;
+    Underwater water = underwater_at(position_ws);
+    bool under_water = water.depth >= 0.0;
     vec3 bent = bent_to_light(water, to_light);
-    irradiance *= sunken ? sunken_share(water, to_light, bent) : vec3(1.0);
-    Gathered gathered = gathered_at(water, index);
-    if (gathered.view >= 0.0 && sunken) {
-        irradiance *= gathered.light;
-        shadow.xyz = vec3(gathered.view, kShadowView, 1.0);
+    irradiance *= under_water ? underwater_share(water, to_light, bent) : vec3(1.0);
+    FocusedLight focused = focused_light_at(water, index);
+    if (focused.view >= 0.0 && under_water) {
+        irradiance *= focused.light;
+        shadow.xyz = vec3(focused.view, kShadowView, 1.0);
     }
-    to_light = sunken ? bent : to_light;
-#ifdef LIGHT_PASSING
-    irradiance *= shadow_passing(shadow, position_ws, normal, to_light, pixel);
+    to_light = under_water ? bent : to_light;
+#ifdef LIGHT_TRANSMITTANCE
+    irradiance *= shadow_transmittance(shadow, position_ws, normal, to_light, pixel);
 #endif
 #else
-    irradiance *= light_passing(index, position_ws, normal, to_light, pixel);
+    irradiance *= light_transmittance(index, position_ws, normal, to_light, pixel);
 #endif
     return Incoming(to_light, irradiance);
 }
 
-// The water around a point.
-struct WaterAbout {
+// The water that a point is in.
+struct WaterMedium {
     vec3 extinction;  // [1/m]
-    float depth;      // [m]; < 0: in no water
+    float depth;      // [m]; < 0: not in water
     float index;      // of refraction
 };
-WaterAbout water_about(vec3 position_ws) {
+WaterMedium water_medium(vec3 position_ws) {
 #ifdef UNDER_WATER
-    Sunken water = sunken_at(position_ws);
-    return WaterAbout(water.extinction, water.depth, water.index);
+    Underwater water = underwater_at(position_ws);
+    return WaterMedium(water.extinction, water.depth, water.index);
 #else
-    return WaterAbout(vec3(0.0), -1.0, 1.333);
+    return WaterMedium(vec3(0.0), -1.0, 1.333);
 #endif
 }
 
-// What water leaves of a lamp's light that goes straight to a point in it, `offset` away, and goes in by flat water.
-vec3 lamp_through_water(WaterAbout about, vec3 offset) {
-    float way = length(offset);
-    bool above = offset.y > about.depth;
-    float inside = above ? about.depth / offset.y : 1.0;
-    float let_in = above ? 1.0 - fresnel(offset.y / max(way, 1e-6), about.index) : 1.0;
-    return about.depth >= 0.0 ? let_in * exp(-about.extinction * (way * inside)) : vec3(1.0);
+// Transmittance of water for a local light `offset` away from a point in it, along a straight line through a flat
+// surface.
+vec3 lamp_through_water(WaterMedium medium, vec3 offset) {
+    float path = length(offset);
+    bool above = offset.y > medium.depth;
+    float inside = above ? medium.depth / offset.y : 1.0;
+    float let_in = above ? 1.0 - fresnel(offset.y / max(path, 1e-6), medium.index) : 1.0;
+    return medium.depth >= 0.0 ? let_in * exp(-medium.extinction * (path * inside)) : vec3(1.0);
 }
 
-Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterAbout about) {
+Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterMedium medium) {
     vec4 place = texelFetch(lights, index * int(kLightTexels));
     vec4 color = texelFetch(lights, index * int(kLightTexels) + 1);
     vec4 polynomial = texelFetch(lights, index * int(kLightTexels) + 2);
@@ -119,17 +120,17 @@ Incoming incoming_local(int index, vec3 position_ws, vec3 normal, WaterAbout abo
     vec4 axis = texelFetch(lights, index * int(kLightTexels) + 3);
     fade *= spot_attenuation(to_light, axis.xyz, axis.w, polynomial.w);
 #endif
-    return Incoming(to_light, color.rgb * (fade * lamp_through_water(about, offset)));
+    return Incoming(to_light, color.rgb * (fade * lamp_through_water(medium, offset)));
 }
 
-// Cell of the light clusters that a pixel at a distance along the view axis belongs to.
+// Cell of the light clusters of a pixel at a distance along the view axis.
 int light_cell(vec2 pixel, float distance) {
     vec2 tile = floor(pixel / view.grid_cells.w);
     float slice = clamp(floor(log2(distance) * view.grid_depth.x + view.grid_depth.y), 0.0, view.grid_cells.z - 1.0);
     return int((slice * view.grid_cells.y + tile.y) * view.grid_cells.x + tile.x);
 }
 
-// Share of the mirrored surroundings that a hole of this openness lets through (Lagarde and de Rousiers 2014).
+// Specular occlusion from ambient occlusion (Lagarde and de Rousiers 2014).
 float specular_occlusion(float n_v, float occlusion, float roughness) {
     return clamp(pow(n_v + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
@@ -138,7 +139,7 @@ const int kNoLight = 0x7fffffff / int(kLightTexels) - 1;  // reads zeros
 
 // Adds the directional lights.
 void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pixel) {
-    // The loops ask after their body: a software OpenGL runs a body that is asked before once too often, masked.
+    // Loops test after their body: if tested before, a software OpenGL runs one more masked iteration.
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
     int n = 0;
@@ -148,32 +149,32 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 #endif
 }
 
-// Adds the point and spot lights of a list: begin and length in light_indices. An empty list reads zeros, and counts
-// them not at all. Lights with shadows or images come last, in a loop of their own.
+// Adds the point and spot lights of a list: begin and length in light_indices. An empty list reads zeros, which add
+// nothing. Lights with shadows or cookies come last, in a separate loop.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
-    WaterAbout about = water_about(position_ws);
+    WaterMedium medium = water_medium(position_ws);
     int i = int(list.x);
     int end = int(list.x + list.y);
     int index = int(texelFetch(light_indices, i).x);
-#ifdef LIGHT_PASSING
+#ifdef LIGHT_TRANSMITTANCE
     int first_shadowed = int(view.grid_depth.w);
 #else
     int first_shadowed = kNoLight;
 #endif
     index = list.y > 0u ? index : kNoLight;
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal, about);
+        Incoming light = incoming_local(index, position_ws, r.normal, medium);
         light.irradiance *= index < first_shadowed ? 1.0 : 0.0;
         add_light(sum, r, light);
         i += index < first_shadowed ? 1 : 0;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
     } while (index < first_shadowed);
-#ifdef LIGHT_PASSING
+#ifdef LIGHT_TRANSMITTANCE
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal, about);
-        vec3 passing = light_passing(index, position_ws, r.normal, light.to_light, pixel);
-        light.irradiance *= i < end ? passing : vec3(0.0);
+        Incoming light = incoming_local(index, position_ws, r.normal, medium);
+        vec3 transmittance = light_transmittance(index, position_ws, r.normal, light.to_light, pixel);
+        light.irradiance *= i < end ? transmittance : vec3(0.0);
         add_light(sum, r, light);
         ++i;
         index = i < end ? int(texelFetch(light_indices, i).x) : kNoLight;
@@ -182,7 +183,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
 #endif
 }
 
-// What a surface sends on of the light of all lights, and of the surroundings'. Neither has its emission.
+// Reflected light of all lights, and of the environment. Neither includes emission.
 Reflected reflect_lights(Reflector r, LightSum sum) {
     Reflected result;
     result.diffuse = r.diffuse * (sum.diffuse / kPi);
@@ -191,9 +192,9 @@ Reflected reflect_lights(Reflector r, LightSum sum) {
 }
 
 Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
-    Around around = light_from_around(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
+    EnvironmentLight around = environment_light(position_ws, r.normal, reflect(-r.to_camera, r.normal), s.roughness);
 #ifdef UNDER_WATER
-    vec3 left = sunken_surroundings(position_ws);
+    vec3 left = underwater_environment(position_ws);
     around.irradiance *= left;
     around.mirrored *= left;
 #endif
@@ -207,8 +208,7 @@ Reflected reflect_surroundings(Reflector r, SurfaceSample s, vec3 position_ws) {
     return result;
 }
 
-// Radiance toward the camera of a surface at `position_ws`, seen through `pixel`, without its emission; `list` as in
-// add_listed.
+// Radiance toward the camera of a surface at `position_ws` in `pixel`, without its emission; `list` as in add_listed.
 Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -219,7 +219,7 @@ Reflected reflect_all(SurfaceSample s, vec3 position_ws, vec2 pixel, uvec2 list)
     return Reflected(lights.diffuse + around.diffuse, lights.specular + around.specular);
 }
 
-// The list of the cell that a pixel at a distance along the view axis belongs to.
+// The light list of the cell of a pixel at a distance along the view axis.
 uvec2 cell_list(vec2 pixel, float distance) {
 #ifdef LOCAL_LIGHTS
     return texelFetch(light_cells, light_cell(pixel, distance)).xy;

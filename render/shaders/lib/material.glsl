@@ -1,14 +1,14 @@
-// The surface of a material at a point: factors times textures. Which textures there are is fixed when the
-// program is compiled, since a software OpenGL pays for both sides of every branch:
+// The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
+// since a software OpenGL executes both sides of every branch:
 //   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP
-//   OCCLUSION_SHARED  the occlusion is the red of the metal-rough map
+//   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
-//   UV_MAP         all textures share a uv set or transform; otherwise they use the first set as it is
+//   UV_MAP         all textures share a uv set and transform; otherwise they use the first set untransformed
 //   UV_MAPS        each has its own
-//   SRGB_BASE_COLOR SRGB_EMISSION   the image is still encoded: filtered as it is, decoded here, because a software
-//                  OpenGL is slow at decoding every texel it filters; its mip levels were made in linear light
-//   DOUBLE_SIDED   seen from behind, the normal turns to the viewer
-//   LIT_AT_VERTICES  there are no normals: colors alone
+//   SRGB_BASE_COLOR SRGB_EMISSION   the texture is sRGB, filtered encoded and decoded here, because a software
+//                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
+//   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
+//   LIT_AT_VERTICES  no normals, only colors
 
 #include "lib/gbuffer.glsl"
 #include "material_gpu.h"
@@ -47,12 +47,12 @@ vec2 slot_uv(int slot) {
 #endif
 }
 
-// sRGB to linear to 0.002, without a power.
+// sRGB to linear, to within 0.002, without pow().
 vec3 srgb_decode(vec3 c) {
     return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878);
 }
 
-// What the base color's map says; white without one.
+// Texel of the base color map; white without one.
 vec4 base_color_texel() {
     vec4 texel = vec4(1.0);
 #ifdef BASE_COLOR_MAP
@@ -94,7 +94,7 @@ vec3 surface_normal(float strength) {
 #endif
     n *= inversesqrt(max(dot(n, n), 1e-20));
 #ifdef DOUBLE_SIDED
-    // The rasterizer knows the winding on the screen; a mirrored instance has turned it.
+    // gl_FrontFacing is by winding on screen, which a mirrored instance flips.
     if (gl_FrontFacing == ((material_and_flags.y & 1u) != 0u)) {
         n = -n;
     }
@@ -102,8 +102,8 @@ vec3 surface_normal(float strength) {
     return n;
 }
 
-// Where a normal map changes within a pixel, the lobe is widened by as much: no sparkle. Curved meshes are left
-// sharp, since the same roughness blurs what they mirror.
+// Widens the specular lobe by the variation of a normal map within a pixel, against sparkling. Not for the curvature
+// of meshes, since roughness blurs their reflections too.
 // Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
 float widen_roughness(float roughness, vec3 normal) {
 #ifdef NORMAL_MAP

@@ -1,4 +1,4 @@
-// What vertex shaders of mesh instances share: their inputs, and where they take a vertex. Definition:
+// Inputs and transforms of vertex shaders of mesh instances. Definition:
 //   INFLATE  vertices move along their normals
 
 #include "lib/inflate.glsl"
@@ -36,8 +36,8 @@ float vertex_side() {
     return (instance.y & 1u) != 0u ? -1.0 : 1.0;
 }
 
-// Unit. Normals go by the cofactor matrix, the inverse transpose times the determinant, whose sign is taken out: its
-// rows are the cross products of the rows.
+// Unit. Normals transform by the cofactor matrix (the inverse transpose times the determinant, whose sign is removed),
+// whose rows are the cross products of the rows.
 vec3 vertex_normal_ws() {
     vec3 n = vertex_side() * vec3(
         dot(cross(world_row1.xyz, world_row2.xyz), normal_ms),

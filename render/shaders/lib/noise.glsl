@@ -1,5 +1,5 @@
-// Gradient noise of one, two or three coordinates, as ecs/base/gradient_noise.h explains it, the same to 1e-5; and
-// noise by the pixel.
+// Gradient noise in one, two or three dimensions, equal to ecs/base/gradient_noise.h (which explains it) to 1e-5; and
+// per-pixel noise.
 
 uint lattice_hash(int x, int y, uint seed) {
     uint h = seed * 0x9e3779b9u ^ uint(x) * 0x85ebca6bu;
@@ -34,7 +34,7 @@ float noise_ramp(ivec2 cell, vec2 offset, uint seed) {
                      : h < 8u ? vec2(kLong, kShort)
                      : h < 12u ? vec2(kShort, kLong)
                                : vec2(kDiagonal);
-    // Of the first four, bit 0 turns round the one coordinate that they have.
+    // For the first four, bit 0 flips their only coordinate.
     bvec2 turned = h < 4u ? bvec2((h & 1u) != 0u) : bvec2((h & 1u) != 0u, (h & 2u) != 0u);
     return dot(mix(direction, -direction, turned), offset);
 }
@@ -78,8 +78,8 @@ bool has_fraction(float x) {
     return !isnan(x) && abs(x) < 8388608.0;
 }
 
-// Noise in 0 .. 1 (shade.noise); octave i has frequency 2^i and amplitude 2^-i. 0.5 where a float has no fraction any
-// more, and for NaN.
+// Noise in 0 .. 1 (shade.noise); octave i has frequency 2^i and amplitude 2^-i. 0.5 for NaN and where floats have no
+// fraction left.
 float noise(float x, uint seed, int octaves) {
     float sum = 0.0;
     float total = 0.0;

@@ -1,5 +1,5 @@
-// Unit vectors as points of the square [-1, 1]^2: the octahedron |x| + |y| + |z| = 1, its lower half folded
-// outward. Uniform enough that 16 bits a coordinate leave 0.004 degrees.
+// Octahedral mapping of unit vectors to the square [-1, 1]^2: the octahedron |x| + |y| + |z| = 1, its lower half
+// folded outward. 16 bits per coordinate are exact to 0.004 degrees.
 // After Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014.
 
 // 1 or -1, never 0.
@@ -7,7 +7,7 @@ vec2 sign_not_zero(vec2 v) {
     return vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0);
 }
 
-// `direction` != 0 of any length. +y is the middle of the square.
+// `direction` != 0, of any length. +y maps to the center of the square.
 vec2 octahedral_encode(vec3 direction) {
     vec2 p = direction.xz / (abs(direction.x) + abs(direction.y) + abs(direction.z));
     return direction.y >= 0.0 ? p : (1.0 - abs(p.yx)) * sign_not_zero(p);

@@ -1,16 +1,16 @@
-// One light, for passes that add light by light. After lib/lighting.glsl. Definition:
-//   DIRECTIONAL_LIGHT  it is a directional one
+// One light, for passes that accumulate light by light. Include after lib/lighting.glsl. Definition:
+//   DIRECTIONAL_LIGHT  it is directional
 
 uniform int light_index;
 
-// Radiance toward the camera that the light adds.
+// Radiance toward the camera due to the light.
 vec3 reflect_one(SurfaceSample s, vec3 position_ws, vec2 pixel) {
     Reflector r = make_reflector(s, to_viewer(position_ws));
 #ifdef DIRECTIONAL_LIGHT
     Incoming light = incoming_directional(light_index, position_ws, r.normal, pixel);
 #else
-    Incoming light = incoming_local(light_index, position_ws, r.normal, water_about(position_ws));
-    light.irradiance *= light_passing(light_index, position_ws, r.normal, light.to_light, pixel);
+    Incoming light = incoming_local(light_index, position_ws, r.normal, water_medium(position_ws));
+    light.irradiance *= light_transmittance(light_index, position_ws, r.normal, light.to_light, pixel);
 #endif
     LightSum sum = LightSum(vec3(0.0), vec3(0.0), vec3(0.0));
     add_light(sum, r, light);

@@ -1,12 +1,12 @@
-// Light where two clear media meet, as ecs/base/optics.h explains it: to_light points away from the surface, eta is
-// the refractive index on that side over the one beyond, index the one beyond over the one on this side.
+// Reflection and refraction at the boundary of two clear media; see ecs/base/optics.h. to_light points away from the
+// surface; eta is the refractive index on that side over the one beyond, index is the inverse.
 
-// Where light leaves that is mirrored.
+// Direction in which reflected light leaves.
 vec3 reflect_ray(vec3 normal, vec3 to_light) {
     return 2.0 * dot(normal, to_light) * normal - to_light;
 }
 
-// Where light leaves that goes through, or 0 where all of it is mirrored. The normal may point to either side.
+// Direction in which refracted light leaves, or 0 for total internal reflection. The normal may point to either side.
 vec3 refract_ray(vec3 normal, vec3 to_light, float eta) {
     float cosine = dot(normal, to_light);
     vec3 facing = cosine < 0.0 ? -normal : normal;
@@ -15,7 +15,7 @@ vec3 refract_ray(vec3 normal, vec3 to_light, float eta) {
     return radicand < 0.0 ? vec3(0.0) : (eta * cos_in - sqrt(radicand)) * facing - eta * to_light;
 }
 
-// Share 0 .. 1 of unpolarized light that is mirrored; cos_in = |N.L|. Exact (Fresnel).
+// Reflectance 0 .. 1 for unpolarized light; cos_in = |N.L|. Exact (Fresnel).
 float fresnel(float cos_in, float index) {
     float c = clamp(cos_in, 0.0, 1.0);
     float inverse2 = 1.0 / (index * index);
@@ -23,7 +23,7 @@ float fresnel(float cos_in, float index) {
     if (radicand < 0.0) {
         return 1.0;
     }
-    const float kTiny = 1e-20;  // light that grazes what is no boundary: index 1
+    const float kTiny = 1e-20;  // for grazing light at index 1
     float beyond = sqrt(radicand);
     float s = (c - index * beyond) / max(c + index * beyond, kTiny);
     float p = (index * c - beyond) / max(index * c + beyond, kTiny);
@@ -38,7 +38,7 @@ float fresnel_schlick(float cos_in, float index) {
     return head_on + (1.0 - head_on) * (m * m) * (m * m) * m;
 }
 
-// Into water alone, by the angle (T'so and Barsky 1987). Too bright by as much as 0.27.
+// For water only, by the angle (T'so and Barsky 1987). Too bright by up to 0.27.
 float fresnel_tso_barsky(float cos_in) {
     const float k4OverPi = 1.27323954473516;
     float u = max(0.0, acos(clamp(cos_in, 0.0, 1.0)) * k4OverPi - 1.0);

@@ -1,11 +1,11 @@
-// The sun's light that waters throw up onto what stands above them (caustics_pass.h). After lib/caustic_place.glsl, the
+// Sunlight reflected by waters onto surfaces above them (caustics_pass.h). Include after lib/caustic_place.glsl, the
 // lights and lib/shadow.glsl of lib/lighting.glsl.
 
-const float kAside = 1.5;  // texels of the map along the normal, from where a surface asks what is before it
+const float kNormalOffset = 1.5;  // offset along the normal for lookups, against self-occlusion [texels of the map]
 
-// Light that comes from water number n, as bright as its waves make it.
+// Light reflected by water number n, focused by its waves.
 vec3 mirrored_by(int n, vec3 position_ws, vec3 normal) {
-    int at = int(kHeadTexels) + int(texelFetch(water_lights, 0).x) * int(kSunkenTexels) + n * int(kMirrorTexels);
+    int at = int(kHeaderTexels) + int(texelFetch(water_lights, 0).x) * int(kUnderwaterTexels) + n * int(kMirrorTexels);
     vec4 origin = texelFetch(water_lights, at);
     vec4 shape = texelFetch(water_lights, at + 1);
     vec4 bent = texelFetch(water_lights, at + 2);
@@ -15,15 +15,15 @@ vec3 mirrored_by(int n, vec3 position_ws, vec3 normal) {
     float facing = max(dot(normal, vec3(to_sun.x, -to_sun.y, to_sun.z)), 0.0);
 
     vec2 texel = 1.0 / (place.window.zw * place.rect.z);
-    vec3 from = position_ws - origin.xyz + normal * (kAside * max(texel.x, texel.y));
+    vec3 from = position_ws - origin.xyz + normal * (kNormalOffset * max(texel.x, texel.y));
     vec2 local = vec2(origin.w * from.x + shape.x * from.z, origin.w * from.z - shape.x * from.x);
     vec2 uv = (local - bent.xy * from.y - place.window.xy) * place.window.zw;
     bool inside = from.y > 0.0 && from.y < shape.w && all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
-    float share = bent.z * facing * caustic_texel(place, uv) * way_is_open(place, uv, from.y);
+    float share = bent.z * facing * caustic_texel(place, uv) * path_visibility(place, uv, from.y);
     return inside ? texelFetch(lights, light + 1).rgb * share : vec3(0.0);
 }
 
-// Irradiance of all.
+// Irradiance from all waters.
 vec3 mirrored_irradiance(vec3 position_ws, vec3 normal) {
     int count = int(texelFetch(water_lights, 0).y);
     vec3 sum = vec3(0.0);

@@ -1,6 +1,6 @@
-// Which point of one flat picture of all surroundings shows a direction of any length: (u, v) in [0, 1]^2, v upward.
-// render/panorama.h says the same in C++ and explains the three. An arc cosine would lose the last degrees near the
-// poles to rounding; the arc tangents here do not.
+// Maps a direction of any length to (u, v) in [0, 1]^2 of a panorama, v upward. The same as render/panorama.h, which
+// explains the three mappings. An arc cosine would lose the last degrees near the poles to rounding; the arc tangents
+// here do not.
 
 const float kTwoPi = 6.28318530718;
 
@@ -11,7 +11,7 @@ const int kAngular = 2;
 
 vec2 panorama_uv(int mapping, vec3 d, float half_angle) {
     float across = length(d.xz);
-    // At a pole every longitude is right; atan(0, 0) is undefined.
+    // At a pole any longitude will do; atan(0, 0) is undefined.
     float longitude = (across > 0.0 ? atan(d.x, -d.z) : 0.0) / kTwoPi + 0.5;
     if (mapping == kEquirectangular) {
         return vec2(longitude, 2.0 * atan(d.y, across) / kTwoPi + 0.5);

@@ -1,4 +1,4 @@
-// Images that lights throw (shadow.projector).
+// Cookies: images projected by lights (shadow.projector).
 
 #include "lib/view.glsl"
 #include "projector_gpu.h"
@@ -6,7 +6,7 @@
 layout(binding = 18) uniform sampler2DArray projector_images;  // linear, with mip levels
 layout(binding = 19) uniform samplerBuffer projectors;         // ProjectorRecord
 
-// What the image of projector `number` (from 1; 0 is none) does to the light at `position_ws`.
+// Color by which cookie `number` (from 1; 0 is none) filters the light at `position_ws`.
 vec3 projected_color(float number, vec3 position_ws) {
     int at = max(int(number) - 1, 0) * int(kProjectorTexels);
     vec4 row_s = texelFetch(projectors, at);
@@ -19,7 +19,7 @@ vec3 projected_color(float number, vec3 position_ws) {
     vec2 uv = vec2(dot(row_s, place), dot(row_t, place)) / q;
     bool inside = q > 0.0 && all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
 
-    // The mip level from how many texels a pixel covers here: derivatives would break at the frame's edges.
+    // Mip level from the texels that a pixel covers here; screen derivatives would break at the frame's edges.
     float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     float pixel = 2.0 * view.size.w * length(view.ray_up.xyz) * along;
     float speed = max(length(row_s.xyz - uv.x * row_q.xyz) * frame.z, length(row_t.xyz - uv.y * row_q.xyz) * frame.w);

@@ -1,7 +1,6 @@
-// Steps between pictures of which one is about half as large as the other and both show the same. A texel of the
-// smaller one stands for a tent over the larger one, twice as wide as the texel. Neighbors overlap so that together
-// they weigh every point the same, whatever the sizes: what one loses another one gets. Beyond its border a picture
-// is mirrored.
+// Down- and upsampling between images of which one is about half as large as the other. A texel of the smaller one
+// is a tent over the larger one, twice as wide as the texel. Neighboring tents overlap and sum to 1 everywhere,
+// whatever the sizes, so that energy is conserved. Images are mirrored beyond their borders.
 
 // Area of a tent of height 1 over -1 .. 1 that lies to the left of x.
 float tent_area(float x) {
@@ -10,12 +9,12 @@ float tent_area(float x) {
     return x < 0.0 ? tail : 1.0 - tail;
 }
 
-// Share of the tent about `middle` of half-width `ratio` that lies in from .. to [pixels of the larger picture].
+// Share of the tent about `middle` of half-width `ratio` that lies in from .. to [pixels of the larger image].
 float tent_share(float from, float to, float middle, float ratio) {
     return tent_area((to - middle) / ratio) - tent_area((from - middle) / ratio);
 }
 
-// The same of pixel `at` and, half as much, its two neighbors.
+// The same for pixel `at` smoothed with its two neighbors by [1 2 1] / 4.
 float smooth_share(float at, float middle, float ratio) {
     return 0.25
            * (tent_share(at, at + 2.0, middle, ratio) + tent_share(at - 1.0, at + 1.0, middle, ratio));

@@ -1,10 +1,10 @@
-// The surroundings as rough surfaces mirror them: octahedral maps, one a layer (environment_gpu.h), whose level l is
-// blurred for roughness (l / (levels - 1))^2, finer steps where the picture is sharper. Every level has a border of
-// one texel that continues over the fold, so that bilinear filtering sees no seam.
+// Prefiltered environment maps: octahedral, one per layer (environment_gpu.h); mip level l is blurred for roughness
+// (l / (levels - 1))^2, with finer steps where the image is sharper. Every level has a border of one texel that
+// continues across the fold, so that bilinear filtering leaves no seam.
 
 #include "lib/octahedral.glsl"
 
-// Position in a level of side `size` [px] of a point of the octahedral square [-1, 1]^2.
+// Texture coordinates of a point of the octahedral square [-1, 1]^2, in a level of side `size` [px].
 vec2 bordered_uv(vec2 p, float size) {
     return (p * (0.5 * size - 1.0) + 0.5 * size) / size;
 }
@@ -12,7 +12,7 @@ vec2 bordered_uv(vec2 p, float size) {
 // The direction of texel `pixel` (gl_FragCoord.xy) of a level of side `size`, border included.
 vec3 bordered_direction(vec2 pixel, float size) {
     vec2 p = (pixel - 0.5 * size) / (0.5 * size - 1.0);
-    // Beyond an edge the square goes on mirrored along that edge.
+    // Beyond an edge the square continues mirrored along that edge.
     if (abs(p.x) > 1.0) {
         p = vec2(sign_not_zero(p).x * (2.0 - abs(p.x)), -p.y);
     }

@@ -1,6 +1,6 @@
-// What a surface makes of light that arrives. Lights answer one question - from where and how much - and nothing
-// here asks what they are (light.interface). Definition CLASSIC_MODELS: some surface is Blinn, Phong or Skin; it only
-// spares a software OpenGL work that nobody needs.
+// Reflection of incoming light by a surface. Lights are reduced to direction and irradiance, whatever their type
+// (light.interface). Definition CLASSIC_MODELS: some surface is Blinn, Phong or Skin; it only saves a software OpenGL
+// needless work.
 
 #include "lib/brdf.glsl"
 #include "lib/gbuffer.glsl"
@@ -18,32 +18,32 @@ struct Incoming {
     vec3 irradiance;  // on a plane that faces the light
 };
 
-// What of a surface stays the same for all lights.
+// The terms of a surface that are the same for all lights.
 struct Reflector {
     vec3 normal;
     vec3 to_camera;
     float n_v;
     float alpha2;      // roughness^4
-    vec3 diffuse;      // albedo of the diffuse part, losses to the specular part taken off
-    vec3 specular_0;   // reflectance head on, with what single scattering lost; ks of the classic models
+    vec3 diffuse;      // albedo of the diffuse part, less what the specular part reflects
+    vec3 specular_0;   // reflectance at normal incidence, with multiple scattering; ks of the classic models
     vec3 specular_90;  // the same at grazing angles
-    vec3 mirror;       // share of uniform surroundings that the specular part returns
+    vec3 mirror;       // specular reflectance for a uniform environment
     float classic;     // 0: Pbr, 1: Blinn and Skin, 2: Phong
     float shininess;
-    vec3 rim;          // of Skin: what it returns of a light, wherever that is, beside n.l
+    vec3 rim;          // of Skin: added to n.l for every light, whatever its direction
 };
 
 Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     Reflector r;
     r.normal = s.normal_ws;
     r.to_camera = to_camera;
-    // Normal maps and interpolation turn some normals away from the viewer: taken as seen edge on.
+    // Normal maps and interpolation turn some normals away from the viewer: treated as grazing.
     r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
     float roughness = max(s.roughness, kMinRoughness);
     r.alpha2 = roughness * roughness * roughness * roughness;
 
-    // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Either gives
-    // back what single scattering lost: Turquin, "Practical Multiple Scattering Compensation for Microfacet
+    // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate
+    // the energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet
     // Models", 2019.
     vec2 size = vec2(textureSize(specular_albedo, 0));
     vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
@@ -58,7 +58,7 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     if (s.model == kModelUnlit) {
         r.specular_0 = vec3(0.0);
         r.specular_90 = vec3(0.0);
-        r.mirror = s.albedo;  // the share that is no color of its own
+        r.mirror = s.albedo;  // the mirrored share, see split_unlit()
         r.diffuse = vec3(0.0);
     }
     r.classic = 0.0;
@@ -85,7 +85,7 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
 struct LightSum {
     vec3 diffuse;   // E n.l
     vec3 specular;  // E lobe
-    vec3 fresnel;   // E lobe (1 - v.h)^5, the part of it that is as at grazing angles
+    vec3 fresnel;   // E lobe (1 - v.h)^5, the part of it with grazing reflectance
 };
 
 void add_light(inout LightSum sum, Reflector r, Incoming light) {

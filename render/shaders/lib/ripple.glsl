@@ -1,4 +1,4 @@
-// post.scene-ripple: where in the picture `uv` looks instead, less uv. Distances along x count `aspect` times.
+// post.scene-ripple: offset of the lookup at `uv`. Distances along x are scaled by `aspect`.
 vec2 screen_ripple(vec2 uv, vec2 center, float radius, float amplitude, float aspect) {
     vec2 away = (uv - center) * vec2(aspect, 1.0);
     float far = length(away);

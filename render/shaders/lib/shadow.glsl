@@ -1,25 +1,25 @@
-// Whether a light sees a point: lookups in the shadow atlas (render/shadow/shadow_list.h).
+// Visibility of lights: lookups in the shadow atlas (render/shadow/shadow_list.h).
 //
-// No bias needs tuning. A point is looked up a little way along its normal, as far as a texel of the map is wide in
-// the world and the more the flatter the light falls; and every texel of a filter is compared with the depth that
-// the surface's plane has there, not with that of its middle. Planes have no acne at any angle, curved surfaces are
-// helped by the offset, and a shadow is no farther from its caster than two texels.
+// The bias needs no tuning. Lookups are offset along the normal by up to a texel of the map in world units, more at
+// grazing incidence; and every texel of a filter is compared with the depth of the surface's plane there (receiver
+// plane bias), not with that of the point. Planes have no acne at any angle, curved surfaces gain by the offset, and a
+// shadow is detached from its caster by two texels at most.
 // After Isidoro, "Shadow Mapping: GPU-based Tips and Techniques", 2006; King, "Shadow Mapping Algorithms", 2004.
 //
-// Definitions, which only spare a software OpenGL work that nobody needs:
+// Definitions, which only save a software OpenGL needless work:
 //   SHADOW_CUBES     some light has six faces
 //   SHADOW_CASCADES  some light has cascades
 //   SHADOW_SOFT      some filter is wider than 2x2
 //   SHADOW_MAPS      some light has a map
-//   SHADOW_MASKS     some light has a layer of the mask: shadow volumes
+//   SHADOW_MASKS     some light has a layer of the shadow mask: shadow volumes
 
 #include "lib/noise.glsl"
 #include "shadow_gpu.h"
 
-layout(binding = 15) uniform sampler2D shadow_atlas;     // reversed depth, 0 where nothing is
+layout(binding = 15) uniform sampler2D shadow_atlas;     // reversed depth, 0 where empty
 layout(binding = 16) uniform samplerBuffer shadow_views;  // ShadowViewRecord
 
-const float kCascadeBlend = 0.1;  // share of a cascade over which the next one takes its place
+const float kCascadeBlend = 0.1;  // share of a cascade over which it blends into the next one
 
 // ShadowFilter.
 const float kFilterHard = 0.0;
@@ -27,31 +27,31 @@ const float kFilterBilinear = 1.0;
 const float kFilterSoft = 2.0;
 const float kFilterContactHardening = 3.0;
 
-const float kOffsetFacing = 0.1;  // along the normal [texels] where the light falls straight: rounding
-const float kOffsetGrazing = 1.0;  // more of it where the light grazes
-const float kLeastCosine = 0.05;  // of light and plane: beyond, the plane's slope means little
+const float kOffsetFacing = 0.1;  // along the normal at normal incidence, against rounding [texels]
+const float kOffsetGrazing = 1.0;  // added at grazing incidence [texels]
+const float kMinCosine = 0.05;  // between light and plane; below it, the plane's slope is unreliable
 
-const float kSoftHalf = 2.0;      // of the square that the soft filter covers [texels]
-const int kSearchTaps = 16;       // for what blocks the light
+const float kSoftHalf = 2.0;      // half side of the soft filter [texels]
+const int kSearchTaps = 16;       // of the blocker search
 const int kPenumbraTaps = 32;
 const vec2 kGoldenTurn = vec2(-0.73736888, 0.67549029);  // cosine and sine of the golden angle
 
-// A point as a view sees it.
+// A point in a shadow view.
 struct ShadowPoint {
     vec2 st;      // texels of the atlas
     float depth;
-    vec2 slope;   // of the surface's plane: depth a texel
+    vec2 slope;   // of the surface's plane: depth per texel
     vec4 rect;    // texels that may be read
 };
 
-// Depth of the surface's plane at texels; nowhere farther from the light than at the point, so that the ground
-// before a wall, nearer than the wall's plane below it, does not shade the wall.
+// Depth of the surface's plane at texels; clamped to be no farther from the light than the point, so that the ground
+// in front of a wall, nearer than the wall's plane below it, does not shadow the wall.
 vec4 plane_depths(ShadowPoint p, vec4 s, vec4 t) {
     return p.depth + max(p.slope.x * (s - p.st.x) + p.slope.y * (t - p.st.y), 0.0);
 }
 
-// How much of a square of side 2 `half_side` about `st` the 2x2 texels right and above of `corner` cover where they
-// are lit [texels].
+// Area [texels] of a square of side 2 `half_side` about `st` that is covered by lit texels, of the 2x2 texels right of
+// and above `corner`.
 float lit_area(ShadowPoint p, vec2 st, vec2 corner, float half_side) {
     vec4 s = corner.xxxx + vec4(0.5, 1.5, 1.5, 0.5);
     vec4 t = corner.yyyy + vec4(1.5, 1.5, 0.5, 0.5);
@@ -61,12 +61,12 @@ float lit_area(ShadowPoint p, vec2 st, vec2 corner, float half_side) {
     return dot(lit, covered);
 }
 
-// The corner of the 2x2 texels nearest to a point of the view.
+// The lower left corner of the 2x2 texels nearest to a point.
 vec2 corner_at(ShadowPoint p, vec2 st) {
     return floor(clamp(st, p.rect.xy + 1.0, p.rect.zw - 1.0) - 0.5);
 }
 
-// 2x2 comparisons, weighted; or the nearest texel alone.
+// Bilinear 2x2 comparison (PCF); or the nearest texel only.
 float lit_share(ShadowPoint p, bool hard) {
     vec2 corner = corner_at(p, p.st);
     vec2 st = hard ? corner + 0.5 + step(0.5, p.st - 0.5 - corner) : p.st;
@@ -74,7 +74,7 @@ float lit_share(ShadowPoint p, bool hard) {
 }
 
 #ifdef SHADOW_SOFT
-// Mean depth of what blocks the light within `radius` [texels], or 0.
+// Mean depth of blockers within `radius` [texels], or 0.
 float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
     float sum = 0.0;
     float count = 0.0;
@@ -92,15 +92,15 @@ float blocker_depth(ShadowPoint p, float radius, vec2 turn) {
     return sum / max(count, 1.0);
 }
 
-// All filters in one loop over 2x2 texels, since a software OpenGL would run one loop a filter, whichever is meant:
-// one step of the narrow filters; nine, six by six texels of which the square covers five by five, of the soft one;
-// and points of a disc as wide as the penumbra of the contact-hardening one (Fernando 2005).
+// All filters in one loop over 2x2 texels, since a software OpenGL would execute one loop for each filter: one step
+// for the narrow filters; nine for the soft one, 6x6 texels of which the square covers 5x5; and for the
+// contact-hardening one, points of a disc as wide as the penumbra (Fernando 2005).
 float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
     float filter_kind = settings.x;
     bool contact = filter_kind == kFilterContactHardening;
     bool soft = filter_kind == kFilterSoft;
 
-    // The disc is turned from pixel to pixel (Jimenez 2014): its steps become a fine grain.
+    // The disc is rotated per pixel (Jimenez 2014), which turns banding into fine grain.
     float angle = 6.2831853 * pixel_noise(pixel);
     vec2 turn = vec2(cos(angle), sin(angle));
     float search = min(0.5 * settings.z * (1.0 - p.depth), settings.w);
@@ -125,7 +125,7 @@ float filtered_share(ShadowPoint p, vec4 settings, vec2 pixel) {
 }
 #endif
 
-// Share of the light that one view lets through; all of it outside the view.
+// Visibility in one view; 1 outside of it.
 float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
     int at = view_index * int(kShadowViewTexels);
     vec4 row_s = texelFetch(shadow_views, at);
@@ -134,7 +134,7 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
     vec4 row_q = texelFetch(shadow_views, at + 3);
     vec4 settings = texelFetch(shadow_views, at + 8);
 
-    // How wide a texel is here: the inverse of how fast texels go by.
+    // Width of a texel here: the inverse of the texel gradient.
     vec4 place = vec4(position_ws, 1.0);
     float q = dot(row_q, place);
     vec2 st = vec2(dot(row_s, place), dot(row_t, place)) / q;
@@ -149,7 +149,7 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
     p.st = vec2(dot(row_s, place), dot(row_t, place)) / q;
     p.depth = dot(row_r, place) / q;
     p.rect = texelFetch(shadow_views, at + 7);
-    vec3 slanted = normal + to_light * max(kLeastCosine - n_l, 0.0);
+    vec3 slanted = normal + to_light * max(kMinCosine - n_l, 0.0);
     vec4 plane = vec4(slanted, -dot(slanted, place.xyz));
     vec3 plane_in_shadow = vec3(
         dot(texelFetch(shadow_views, at + 4), plane),
@@ -166,7 +166,7 @@ float view_visibility(int view_index, vec3 position_ws, vec3 normal, vec3 to_lig
     return inside ? lit : 1.0;
 }
 
-// The face of a cube that a direction meets, in the order of make_cube_view.
+// The cube map face of a direction, in the order of make_cube_view.
 int cube_face(vec3 direction) {
     vec3 size = abs(direction);
     int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -176,12 +176,12 @@ int cube_face(vec3 direction) {
 
 #ifdef SHADOW_MASKS
 #ifdef UNMASKED
-// A mask knows the opaque surfaces alone.
+// The mask covers opaque surfaces only.
 float mask_visibility(float layer, vec2 pixel) {
     return 1.0;
 }
 #else
-layout(binding = 17) uniform sampler2DArray shadow_masks;  // of lights with volumes, a layer each
+layout(binding = 17) uniform sampler2DArray shadow_masks;  // one layer per light with shadow volumes
 
 float mask_visibility(float layer, vec2 pixel) {
     return texelFetch(shadow_masks, ivec3(pixel, layer), 0).r;
@@ -200,7 +200,7 @@ float light_visibility(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_light
     index += shadow.y == kShadowCube ? cube_face(-to_light) : 0;
 #endif
 #ifdef SHADOW_CASCADES
-    // Toward the end of a cascade the next one, or none, takes over; only there both are looked at.
+    // Toward its end a cascade blends into the next one, or into light; only there both are sampled.
     float along = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
     vec4 ends = texelFetch(shadow_views, index * int(kShadowViewTexels) + 9);
     bool cascades = shadow.y == kShadowCascades;

@@ -1,5 +1,5 @@
-// How joints move a vertex: by the mean of their matrices (char.skin-bone-offset), or of their screw motions
-// (L. Kavan et al., "Geometric Skinning with Approximate Dual Quaternion Blending", 2008).
+// Skinning by linear blending of matrices (char.skin-bone-offset), or of dual quaternions (L. Kavan et al., "Geometric
+// Skinning with Approximate Dual Quaternion Blending", 2008).
 
 // The three upper rows of an affine matrix.
 struct Rows {
@@ -30,9 +30,9 @@ vec3 unit_or(vec3 v, vec3 fallback) {
     return length2 > 1e-30 ? v * inversesqrt(length2) : fallback;
 }
 
-// Unit. The inverse transpose of `m`, without its size: cofactors, whose rows are the cross products of the rows, and
-// the sign of the determinant. Where `m` flattens all to a line, as when joints twist by half a turn, `strongest`
-// turns the normal: the matrix of the joint with the largest weight.
+// Unit. Transforms by the inverse transpose of `m` up to scale: the cofactor matrix, whose rows are the cross products
+// of the rows, times the sign of the determinant. Where `m` collapses to a line, as when joints twist by half a turn,
+// `strongest` is used instead: the matrix of the joint with the largest weight.
 vec3 rows_normal(Rows m, Rows strongest, vec3 n) {
     vec3 yz = cross(m.y.xyz, m.z.xyz);
     vec3 turned = vec3(dot(yz, n), dot(cross(m.z.xyz, m.x.xyz), n), dot(cross(m.x.xyz, m.y.xyz), n));
@@ -43,19 +43,19 @@ vec3 rows_normal(Rows m, Rows strongest, vec3 n) {
     return (dot(m.x.xyz, yz) < 0.0 ? -1.0 : 1.0) * unit_or(turned, n);
 }
 
-// A screw motion: quaternions x, y, z, w of its turn and, half and multiplied by that, of its way.
+// A rigid motion as a dual quaternion, x, y, z, w: rotation, and half the translation times the rotation.
 struct Dual {
     vec4 real;
     vec4 dual;
 };
 
-// On the side of `first`: q and -q are one motion, but not to a mean.
+// Adds `b` in the hemisphere of `first`: q and -q are the same motion, but cancel in a sum.
 Dual add_dual(Dual a, float weight, Dual b, vec4 first) {
     float w = dot(b.real, first) < 0.0 ? -weight : weight;
     return Dual(a.real + w * b.real, a.dual + w * b.dual);
 }
 
-// `first` where opposite motions leave nothing.
+// Normalized; `first` where opposite motions cancel.
 Dual unit_dual(Dual d, Dual first) {
     float size = length(d.real);
     return size > 1e-6 ? Dual(d.real / size, d.dual / size) : first;
@@ -66,6 +66,6 @@ vec3 dual_vector(Dual d, vec3 v) {
 }
 
 vec3 dual_point(Dual d, vec3 p) {
-    vec3 way = d.real.w * d.dual.xyz - d.dual.w * d.real.xyz + cross(d.real.xyz, d.dual.xyz);
-    return dual_vector(d, p) + 2.0 * way;
+    vec3 translation = d.real.w * d.dual.xyz - d.dual.w * d.real.xyz + cross(d.real.xyz, d.dual.xyz);
+    return dual_vector(d, p) + 2.0 * translation;
 }

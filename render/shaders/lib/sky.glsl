@@ -1,6 +1,6 @@
-// Radiance of the surroundings by direction. The same functions make the background, the reflections and the
-// ambient light; render/environment_light.cpp says them in C++, but for the panorama (3), which is a cube map.
-// SKY_KIND, as numbered by SkyKind, is fixed when the program is compiled.
+// Radiance of the environment by direction. The same functions give the background, the reflections and the
+// ambient light; the same as render/environment_light.cpp, except for the panorama (3), which is a cube map.
+// SKY_KIND, as numbered by SkyKind, is fixed at compile time.
 
 #include "environment_gpu.h"
 
@@ -13,15 +13,15 @@ layout(std140, binding = 1) uniform Environment {
 layout(binding = 5) uniform samplerCube sky_cube;  // with all its mip levels
 #endif
 
-// Between horizon and zenith the color falls off as haze does, fast near the horizon; the ground takes on the
-// haze in the distance. Shape by eye.
+// The color between horizon and zenith falls off like haze, fast near the horizon; distant ground takes the color of
+// the haze. Shape by eye.
 vec3 gradient_sky(vec3 d) {
     vec3 above = mix(environment.zenith.rgb, environment.horizon.rgb, exp2(-4.5 * max(d.y, 0.0)));
     vec3 below = mix(environment.ground.rgb, 0.8 * environment.horizon.rgb, exp2(12.0 * min(d.y, 0.0)));
     return mix(below, above, smoothstep(-0.015, 0.015, d.y));
 }
 
-// A dark room whose wall is lightest behind the object.
+// A dark room whose wall is brightest behind the object.
 vec3 studio_backdrop(vec3 d) {
     float wall = 1.0 - abs(d.y - 0.05);
     float carpet = smoothstep(-0.1, -0.9, d.y);
@@ -40,7 +40,7 @@ vec3 studio_lamps(vec3 d) {
     return sum;
 }
 
-// What lights the scene: without the sun, which is a light of its own.
+// Radiance that lights the scene: without the sun, which is a separate light.
 vec3 sky_radiance(vec3 d) {
 #if SKY_KIND == 0
     return gradient_sky(d);
@@ -53,12 +53,12 @@ vec3 sky_radiance(vec3 d) {
 #endif
 }
 
-const float kSunCosine = 0.99995;        // of the disc's radius, 0.57 degrees: twice the real one reads better
+const float kSunCosine = 0.99995;        // of the disc's radius, 0.57 degrees: twice the real one looks better
 const float kSunSoftness = 0.00001;
 const float kSunGlow = 0.06;             // radiance of the glow around it per lux, by eye
 const float kMaxSunRadiance = 20000.0;   // half floats end at 65504
 
-// What is seen where no surface is: the sun with its glow, but not the studio's lamps.
+// Visible background: with the sun and its glow, but without the studio's lamps.
 vec3 sky_background(vec3 d) {
 #if SKY_KIND == 0
     float c = dot(d, environment.sun_direction.xyz);

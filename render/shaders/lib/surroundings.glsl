@@ -1,5 +1,4 @@
-// What reaches a surface from all around, lights apart: the sky's light or, where definition PROBES is there and some
-// probe reaches, what that saw instead.
+// Environment light on a surface: from the sky or, with definition PROBES and within their influence, from probes.
 
 #include "lib/irradiance.glsl"
 #include "lib/reflection_map.glsl"
@@ -10,7 +9,7 @@ layout(std140, binding = 5) uniform Surroundings {
     Irradiance surroundings[kReflectionLayers];
 };
 
-struct Around {
+struct EnvironmentLight {
     vec3 irradiance;  // / pi
     vec3 mirrored;    // radiance
 };
@@ -20,11 +19,11 @@ layout(std140, binding = 6) uniform Probes {
     ProbeBlock probe_block;
 };
 
-// World to where the probe's ball or cube is the unit one.
+// Transforms from world space to the space where the probe's ball or cube is the unit one.
 vec3 into_place(ProbeRecord probe, vec3 v, float w) {
     vec4 p = vec4(v, w);
     return vec3(
-        dot(probe.place_from_world[0], p), dot(probe.place_from_world[1], p), dot(probe.place_from_world[2], p));
+        dot(probe.probe_from_world[0], p), dot(probe.probe_from_world[1], p), dot(probe.probe_from_world[2], p));
 }
 
 // 1 within, then smoothly down to 0 over the rim.
@@ -35,9 +34,9 @@ float probe_weight(ProbeRecord probe, vec3 position) {
     return 1.0 - smoothstep(0.0, 1.0, (outward - 1.0) * probe.shape.y);
 }
 
-// Where the probe must look to see what is seen along `direction` from `position`: toward the point of the room's
-// wall that this ray meets (Lagarde and Zanuttini, "Local Image-based Lighting with Parallax-corrected Cubemaps",
-// 2012). From beyond the walls it is the far one.
+// Parallax-corrected lookup direction: from the probe toward the point where the ray from `position` along `direction`
+// hits the room's walls (Lagarde and Zanuttini, "Local Image-based Lighting with Parallax-corrected Cubemaps", 2012).
+// From outside the room, the far wall.
 vec3 probe_direction(ProbeRecord probe, vec3 position, vec3 direction) {
     if (probe.shape.x < 0.5) {
         return direction;
@@ -45,13 +44,13 @@ vec3 probe_direction(ProbeRecord probe, vec3 position, vec3 direction) {
     vec3 p = into_place(probe, position, 1.0);
     vec3 d = into_place(probe, direction, 0.0);
     vec3 inverse = 1.0 / mix(d, vec3(1e-8), lessThan(abs(d), vec3(1e-8)));
-    vec3 ways = max((1.0 - p) * inverse, (-1.0 - p) * inverse);
-    return position + max(min(ways.x, min(ways.y, ways.z)), 0.0) * direction - probe.seen_from.xyz;
+    vec3 distances = max((1.0 - p) * inverse, (-1.0 - p) * inverse);
+    return position + max(min(distances.x, min(distances.y, distances.z)), 0.0) * direction - probe.seen_from.xyz;
 }
 #endif
 
-Around light_from_around(vec3 position, vec3 normal, vec3 mirror_direction, float roughness) {
-    Around sum = Around(vec3(0.0), vec3(0.0));
+EnvironmentLight environment_light(vec3 position, vec3 normal, vec3 mirror_direction, float roughness) {
+    EnvironmentLight sum = EnvironmentLight(vec3(0.0), vec3(0.0));
     float left = 1.0;
 #ifdef PROBES
     int count = int(probe_block.count.x);

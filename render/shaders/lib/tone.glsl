@@ -2,12 +2,12 @@
 
 #include "lib/noise.glsl"
 
-// Of linear light (hdr.luminance). Rec. 709 would say 0.2126, 0.7152, 0.0722.
+// Of linear light (hdr.luminance). Rec. 709 has 0.2126, 0.7152, 0.0722.
 float luminance(vec3 color) {
     return dot(color, vec3(0.27, 0.67, 0.06));
 }
 
-// False for what is infinite or not a number; by the bits, which no compiler assumes away.
+// False for infinity and NaN; tests the bits, which no compiler optimizes away.
 bool is_finite(float x) {
     return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u;
 }
@@ -15,13 +15,13 @@ bool is_finite(vec3 v) {
     return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
 }
 
-// Light that can be reckoned with, whatever a pixel holds: NaN is black, infinite is `most`, below 0 is 0.
-vec3 clean_light(vec3 color, float most) {
+// Sanitizes radiance: NaN becomes black, infinity `max_light`, negative values 0.
+vec3 sanitize_light(vec3 color, float max_light) {
     bvec3 number = lessThanEqual(floatBitsToUint(color) & 0x7fffffffu, uvec3(0x7f800000u));
-    return mix(vec3(0.0), clamp(color, 0.0, most), number);
+    return mix(vec3(0.0), clamp(color, 0.0, max_light), number);
 }
 
-// Khronos PBR neutral: the identity less a small toe until 0.76, then compresses toward white and
+// Khronos PBR neutral: the identity less a small toe up to 0.76, then compresses toward white and
 // desaturates. Khronos Group, "PBR Neutral Tone Mapper", 2024.
 vec3 tone_neutral(vec3 color) {
     const float kStart = 0.8 - 0.04;
@@ -47,29 +47,29 @@ vec3 tone_aces(vec3 color) {
     return kOutput * (a / b);
 }
 
-// Luminance compressed to 0 .. 1, nearly linear where it is dark (hdr.compress). `per_white` is 1 over the luminance
-// that becomes 1; 0 for none, and then nothing gets there. Reinhard et al. 2002.
-float compress(float scaled, float per_white) {
-    return scaled * (1.0 + scaled * per_white * per_white) / (1.0 + scaled);
+// Luminance compressed to 0 .. 1, nearly linear in the darks (hdr.compress). `inverse_white` is 1 over the luminance that
+// maps to 1; 0 = infinite white. Reinhard et al. 2002.
+float compress(float scaled, float inverse_white) {
+    return scaled * (1.0 + scaled * inverse_white * inverse_white) / (1.0 + scaled);
 }
 
-// The color at another luminance; black stays black.
+// Rescales the color from one luminance to another; black stays black.
 vec3 with_luminance(vec3 color, float from, float to) {
     return from > 0.0 ? color * (to / from) : vec3(0.0);
 }
 
-// ln(1 + x), x >= 0, also where 1 + x is rounded to little more than 1.
+// ln(1 + x), x >= 0, also accurate for small x.
 vec3 log1p(vec3 x) {
     return mix(log(1.0 + x), x * (1.0 - x * (0.5 - x / 3.0)), lessThan(x, vec3(0.01)));
 }
 
-// A knee for each channel: linear where it is dark, logarithmic where it is bright; contrast 0 is the identity
+// A knee for each channel: linear in the darks, logarithmic in the brights; contrast 0 is the identity
 // (hdr.tonemap-shader).
 vec3 knee(vec3 color, float contrast) {
     return contrast < 1e-4 ? color : log1p(contrast * color) / contrast;
 }
 
-// Linear to what a display of this gamma shows as linear (hdr.gamma).
+// Linear to the encoding of a display of this gamma (hdr.gamma).
 vec3 power_encode(vec3 linear, float gamma) {
     return pow(max(linear, vec3(0.0)), vec3(1.0 / gamma));
 }
@@ -80,8 +80,8 @@ vec3 srgb_encode(vec3 linear) {
     return mix(power, 12.92 * linear, lessThan(linear, vec3(0.0031308)));
 }
 
-// Triangular noise in (-1, 1): added in units of one code before rounding it makes the rounding error
-// independent of the color, so that no band remains.
+// Triangular noise in (-1, 1): added in units of one code before rounding, it makes the rounding error
+// independent of the color and so removes banding.
 float triangular_dither(vec2 pixel) {
     return pixel_noise(pixel) + pixel_noise(pixel.yx + 47.0) - 1.0;
 }

@@ -1,24 +1,24 @@
-// Light under water: bent by the surface at rest, absorbed on its way down, gathered by the waves where there is a map
-// of that (caustics_pass.h). After lib/optics.glsl.
+// Underwater light: refracted by the surface at rest, absorbed on its way down, focused by waves where there is a
+// caustic map (caustics_pass.h). Include after lib/optics.glsl.
 
 #include "lib/caustic_place.glsl"
 
-const float kDiffuseWay = 1.2;     // how much longer than straight down the way of light from all around is
-const float kDiffuseThrough = 0.93;  // of light from all around, that the surface lets in
+const float kDiffusePath = 1.2;     // mean path of diffuse light relative to depth
+const float kDiffuseTransmittance = 0.93;  // transmittance of the surface for diffuse light
 
-struct Sunken {
-    float depth;      // below the water at rest [m]; < 0: in no water
-    vec2 place;       // along x and z, in the water's own space [m]
-    vec2 axis;        // of the water, in the world
+struct Underwater {
+    float depth;      // below the water at rest [m]; < 0: not in water
+    vec2 place;       // x and z in water space [m]
+    vec2 axis;        // x axis of the water, in the world
     vec3 extinction;  // [1/m]
     float index;      // of refraction
-    vec4 maps;        // SunkenRecord
+    vec4 maps;        // UnderwaterRecord
     vec4 bent;
 };
 
-// In which water a point is.
-Sunken sunken_at(vec3 position_ws) {
-    Sunken found = Sunken(-1.0, vec2(0.0), vec2(1.0, 0.0), vec3(0.0), 1.333, vec4(0.0), vec4(0.0));
+// The water that a point is in.
+Underwater underwater_at(vec3 position_ws) {
+    Underwater found = Underwater(-1.0, vec2(0.0), vec2(1.0, 0.0), vec3(0.0), 1.333, vec4(0.0), vec4(0.0));
     vec4 grid = texelFetch(water_lights, 1);
     vec2 cells = texelFetch(water_lights, 2).xy;
     vec2 cell = clamp(floor((position_ws.xz - grid.xy) * grid.zw), vec2(0.0), cells - 1.0);
@@ -26,7 +26,7 @@ Sunken sunken_at(vec3 position_ws) {
     int i = int(list.x);
     int end = int(list.y);
     do {
-        int at = int(kHeadTexels) + int(texelFetch(water_lights, i).x) * int(kSunkenTexels);
+        int at = int(kHeaderTexels) + int(texelFetch(water_lights, i).x) * int(kUnderwaterTexels);
         vec4 origin = texelFetch(water_lights, at);
         vec4 shape = texelFetch(water_lights, at + 1);
         vec4 extinction = texelFetch(water_lights, at + 2);
@@ -37,7 +37,7 @@ Sunken sunken_at(vec3 position_ws) {
         float bottom = extinction.w > 0.0 ? 1.001 * extinction.w + 0.01 : 1e9;
         bool inside = i < end && from.y < 0.0 && -from.y <= bottom && all(lessThanEqual(abs(place), bounds + 1e-3));
         if (inside) {
-            found = Sunken(
+            found = Underwater(
                 -from.y,
                 place,
                 axis,
@@ -50,32 +50,32 @@ Sunken sunken_at(vec3 position_ws) {
     return found;
 }
 
-// The way down of light that comes from `to_light`: bent by flat water.
-vec3 bent_to_light(Sunken water, vec3 to_light) {
+// Direction toward the light in the water, refracted by a flat surface; `to_light` above the water.
+vec3 bent_to_light(Underwater water, vec3 to_light) {
     return -refract_ray(vec3(0.0, 1.0, 0.0), to_light, 1.0 / water.index);
 }
 
-// Irradiance there over the light's own, across the light; `to_light` above the water.
-vec3 sunken_share(Sunken water, vec3 to_light, vec3 bent) {
+// Irradiance there relative to that above the water, both perpendicular to the light; `to_light` above the water.
+vec3 underwater_share(Underwater water, vec3 to_light, vec3 bent) {
     float through = 1.0 - fresnel(to_light.y, water.index);
     float down = max(bent.y, 0.1);
     vec3 left = exp(-water.extinction * (water.depth / down));
     return left * (through * max(to_light.y, 0.0) / down);
 }
 
-// What waves make of a light at a point: of the light under flat water, and the shadow view of what stands before it.
-struct Gathered {
+// Light focused by waves, relative to that under flat water, and the shadow view for its occluders.
+struct FocusedLight {
     float light;
-    float view;  // -1: no map knows the point
+    float view;  // -1: no map covers the point
 };
 
-// Of the finest map that has the point in it; toward its edge the next one takes over, which at last is flat water.
-Gathered gathered_at(Sunken water, int light) {
+// From the finest map that covers the point; blends into the next one toward its edge, finally into flat water.
+FocusedLight focused_light_at(Underwater water, int light) {
     vec2 entry = water.place - water.bent.xy * water.depth;
     int map = int(water.maps.x);
     int end = map + (float(light) == water.maps.z && water.depth < water.maps.w ? int(water.maps.y) : 0);
-    Gathered found = Gathered(1.0, -1.0);
-    float open = 1.0;  // share that no map has told of
+    FocusedLight found = FocusedLight(1.0, -1.0);
+    float open = 1.0;  // weight not yet taken by a map
     float sum = 0.0;
     do {
         CausticPlace place = caustic_place(map);
@@ -94,9 +94,9 @@ Gathered gathered_at(Sunken water, int light) {
     return found;
 }
 
-// Light from all around that is left.
-vec3 sunken_surroundings(vec3 position_ws) {
-    Sunken water = sunken_at(position_ws);
-    vec3 left = kDiffuseThrough * exp(-water.extinction * (kDiffuseWay * water.depth));
+// Transmittance of the water for environment light.
+vec3 underwater_environment(vec3 position_ws) {
+    Underwater water = underwater_at(position_ws);
+    vec3 left = kDiffuseTransmittance * exp(-water.extinction * (kDiffusePath * water.depth));
     return water.depth >= 0.0 ? left : vec3(1.0);
 }

@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform View {
     ViewBlock view;
 };
 
-// Ray through a pixel (gl_FragCoord.xy), as long as it takes to get 1 m further along the view axis.
+// Ray through a pixel (gl_FragCoord.xy), of length 1 m along the view axis.
 vec3 view_ray(vec2 pixel) {
     vec2 ndc = pixel * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     return view.ray_forward.xyz + ndc.x * view.ray_right.xyz + ndc.y * view.ray_up.xyz;
@@ -21,7 +21,7 @@ vec3 world_position(vec2 pixel, float depth) {
     return view.camera_ws.xyz + view_ray(pixel) * view_distance(depth);
 }
 
-// Unit direction from a surface to the camera; to an infinite viewer the same everywhere (light.infinite-approx).
+// Unit direction from a surface to the camera; constant for an infinitely distant viewer (light.infinite-approx).
 vec3 to_viewer(vec3 position_ws) {
     return view.ray_forward.w > 0.5 ? -view.ray_forward.xyz : normalize(view.camera_ws.xyz - position_ws);
 }

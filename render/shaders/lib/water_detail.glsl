@@ -1,5 +1,5 @@
-// What is too fine to move the surface of water and tilts its normals: a normal map whose copies move, and waves in a
-// texture. After lib/water_surface.glsl. Definitions DETAIL and, with a normal map, DETAIL_MAP.
+// Water detail too fine for displacement, which only tilts normals: scrolling layers of a normal map, and waves in a
+// texture. Include after lib/water_surface.glsl. Definitions DETAIL and, with a normal map, DETAIL_MAP.
 
 #ifdef DETAIL
 #include "water_detail_gpu.h"
@@ -10,14 +10,14 @@ layout(binding = 25) uniform samplerBuffer water_details;  // WaterDetailRecord
 #ifdef DETAIL_MAP
 layout(binding = 23) uniform sampler2D detail_map;         // tangent space, green toward -z; repeats
 
-// Of a normal map's mean over a texel, its slopes' variance: means of unit vectors are the shorter the less they agree
+// Slope variance within a texel of a filtered normal map: the more its unit vectors differ, the shorter their mean
 // (Toksvig 2005).
-float spread_of(vec3 mean) {
+float slope_variance(vec3 mean) {
     float share = clamp(length(mean), 0.1, 1.0);
     return 2.0 * (1.0 - share) / share;
 }
 
-// The mean of the layers, sum (n.xy strength, n.z).
+// Adds the mean of the layers, sum (n.xy strength, n.z).
 void add_layers(inout WaterBend bend, int first, int count, vec2 q, float footprint) {
     vec3 sum = vec3(0.0);
     float variance = 0.0;
@@ -27,7 +27,7 @@ void add_layers(inout WaterBend bend, int first, int count, vec2 q, float footpr
         float level = max(log2(footprint * layer.x * size), 0.0);
         vec3 n = 2.0 * textureLod(detail_map, q * layer.x - layer.yz, level).xyz - 1.0;
         sum += vec3(n.xy * layer.w, n.z);
-        variance += layer.w * layer.w * min(level, 1.0) * spread_of(n);  // level 0 has lost nothing but rounding
+        variance += layer.w * layer.w * min(level, 1.0) * slope_variance(n);  // level 0 has only rounding errors
     }
     if (count > 0) {
         vec2 tilt = sum.xy / max(sum.z, 0.1);

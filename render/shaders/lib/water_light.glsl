@@ -1,16 +1,16 @@
-// Light in the body of water: what scatters toward a viewer. After lib/lighting.glsl, lib/optics.glsl and
+// Light scattered toward the viewer in a body of water. Include after lib/lighting.glsl, lib/optics.glsl and
 // lib/water_surface.glsl.
 
-const float kUpwelling = 0.33;  // share of backscatter over absorption that comes up again (Gordon et al. 1975)
-const float kDimming = 1.2;     // how much longer than straight the way down of light in the water is
+const float kUpwelling = 0.33;  // upwelling irradiance, per backscatter over absorption (Gordon et al. 1975)
+const float kDownwellingPath = 1.2;     // mean path of downwelling light relative to depth
 
 vec3 water_extinction(WaterRecord water) {
     return water.absorption.rgb + water.scattering.rgb;
 }
 
-// Irradiance over pi that falls through the surface: of the lights, and of all around. Of light number `sun` there is
-// `share` as much as falls through flat water.
-vec3 light_falling_in(WaterRecord water, int sun, float share) {
+// Downwelling irradiance over pi just below the surface, from lights and environment. Light number `sun` is scaled by
+// `share`, relative to flat water.
+vec3 downwelling_light(WaterRecord water, int sun, float share) {
     vec3 sum = irradiance_toward(surroundings[0], vec3(0.0, 1.0, 0.0));
 #ifdef DIRECTIONAL_LIGHTS
     int directional = int(view.grid_depth.z);
@@ -24,28 +24,29 @@ vec3 light_falling_in(WaterRecord water, int sun, float share) {
 #endif
     return sum;
 }
-vec3 light_falling_in(WaterRecord water) {
-    return light_falling_in(water, -1, 1.0);
+vec3 downwelling_light(WaterRecord water) {
+    return downwelling_light(water, -1, 1.0);
 }
 
-// Radiance of endless water at `depth` [m] that comes from `direction`, where so much light falls in: from above there
-// is three times as much as from below (by eye, after Mobley 1994).
-vec3 scattered_light(WaterRecord water, vec3 falling_in, float depth, vec3 direction) {
+// Radiance of unbounded water at `depth` [m] along `direction`, for the downwelling light `downwelling`: three times as
+// much from above as from below (by eye, after Mobley 1994).
+vec3 scattered_light(WaterRecord water, vec3 downwelling, float depth, vec3 direction) {
     vec3 extinction = max(water_extinction(water), vec3(1e-6));
-    vec3 here = falling_in * exp(-extinction * (kDimming * depth));
+    vec3 here = downwelling * exp(-extinction * (kDownwellingPath * depth));
     return here * (kUpwelling * water.scattering.rgb / extinction) * (2.0 + direction.y);
 }
 vec3 scattered_light(WaterRecord water, float depth, vec3 direction) {
-    return scattered_light(water, light_falling_in(water), depth, direction);
+    return scattered_light(water, downwelling_light(water), depth, direction);
 }
 
-// Of water that is not deep: radiance of a bottom that the picture does not show, of mean albedo, and the way there
-// from the surface [m].
-const float kGroundAlbedo = 0.35;
+// For shallow water: radiance of a bottom that is off screen, with a typical albedo, and the distance to it from the
+// surface [m].
+const float kBottomAlbedo = 0.35;
 
-vec3 ground_light(WaterRecord water) {
-    return light_falling_in(water) * kGroundAlbedo * exp(-water_extinction(water) * (kDimming * water.absorption.w));
+vec3 bottom_light(WaterRecord water) {
+    return downwelling_light(water) * kBottomAlbedo
+           * exp(-water_extinction(water) * (kDownwellingPath * water.absorption.w));
 }
-float way_to_ground(WaterRecord water, vec3 direction) {
+float distance_to_bottom(WaterRecord water, vec3 direction) {
     return water.absorption.w / max(-direction.y, 0.02);
 }

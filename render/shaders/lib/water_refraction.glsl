@@ -1,63 +1,63 @@
-// What is seen through the surface of water, one way or another (ecs/components/water_look.h). After
-// lib/water_tracing.glsl and lib/water_light.glsl. Definitions:
-//   LOOKS      some body of water is not drawn as usual
-//   FLOOR_MAP  one has a map of its floor
-//   UNBENT     from above none shows the picture where bent rays go
+// Refraction in water, by one of several methods (ecs/components/water_look.h). Include after lib/water_tracing.glsl
+// and lib/water_light.glsl. Definitions:
+//   LOOKS      some body of water is not rendered by default
+//   FLOOR_MAP  some has a map of its floor
+//   NO_TRACED_REFRACTION     none has screen-space traced refraction from above
 
 const int kTracedRefraction = 0;
 const int kShiftedRefraction = 1;
 const int kFloorRefraction = 2;
-const float kShift = 0.02;  // of the picture, where a normal lies flat
+const float kShift = 0.02;  // share of the image, for a horizontal normal
 
 #ifdef FLOOR_MAP
 layout(binding = 27) uniform sampler2D floor_map;  // repeats
 uniform float floor_tile;                          // side of a copy [m]
 
-// The map of the floor where a bent ray meets it, lit by what falls in.
-Seen floor_through(WaterRecord water, vec3 position, vec3 bent) {
-    float way = (water.absorption.w + position.y - water.origin.y) / max(-bent.y, 0.02);
-    vec3 hit = world_to_water(water, position + way * bent - water.origin.xyz);
-    // The level of flat water: waves that gather rays are no reason for another.
+// The floor map where a refracted ray hits it, lit by downwelling light.
+RayHit floor_refraction(WaterRecord water, vec3 position, vec3 bent) {
+    float path = (water.absorption.w + position.y - water.origin.y) / max(-bent.y, 0.02);
+    vec3 hit = world_to_water(water, position + path * bent - water.origin.xyz);
+    // The mip level of flat water, regardless of waves that focus rays.
     float texels = float(textureSize(floor_map, 0).x) / floor_tile;
     float pixel = distance(position, view.camera_ws.xyz) * 2.0 * length(view.ray_up.xyz) * view.size.w;
     vec3 color = textureLod(floor_map, hit.xz / floor_tile, log2(max(pixel * texels, 1.0))).rgb;
-    vec3 light = light_falling_in(water) * exp(-water_extinction(water) * (kDimming * water.absorption.w));
-    return Seen(color * light, way);
+    vec3 light = downwelling_light(water) * exp(-water_extinction(water) * (kDownwellingPath * water.absorption.w));
+    return RayHit(color * light, path);
 }
 #endif
 
 #ifdef LOOKS
-// The picture, shifted as the normal leans; never what stands before the water or above it (Vlachos et al. 2004).
-Seen shifted_through(WaterRecord water, vec3 normal) {
+// The image, offset by the tilt of the normal; never what is in front of the water or above it (Vlachos et al. 2004).
+RayHit shifted_refraction(WaterRecord water, vec3 normal) {
     vec2 lean = vec2(dot(normal.xz, view.ray_right.xz) / length(view.ray_right.xyz), dot(normal.xz, view.ray_forward.xz));
-    vec2 to = into_picture(gl_FragCoord.xy + kShift * water.ocean.w * lean * view.size.xy);
+    vec2 to = clamp_to_screen(gl_FragCoord.xy + kShift * water.ocean.w * lean * view.size.xy);
     float here = view_distance(gl_FragCoord.z);
     float there = distance_at(to);
     bool outside = there > 0.0 && (there <= here || height_of(to, there) > water.origin.y);
     to = outside ? gl_FragCoord.xy : to;
     there = distance_at(to);
-    float way = there > 0.0 ? (there - here) * length(view_ray(gl_FragCoord.xy)) : kEndless;
-    return Seen(radiance_at(to), max(way, 0.0));
+    float path = there > 0.0 ? (there - here) * length(view_ray(gl_FragCoord.xy)) : kInfiniteDistance;
+    return RayHit(radiance_at(to), max(path, 0.0));
 }
 #endif
 
-Seen look_through(WaterRecord water, vec3 position, vec3 normal, vec3 bent, float most, bool above) {
+RayHit refracted_light(WaterRecord water, vec3 position, vec3 normal, vec3 bent, float max_distance, bool above) {
 #ifdef LOOKS
     int how = above ? int(water.scattering.w) >> 4 & 3 : kTracedRefraction;
-    Seen through = shifted_through(water, normal);
-#if defined(FROM_BELOW) || !defined(UNBENT)
-    Seen traced = seen_through(position, bent, most);
+    RayHit through = shifted_refraction(water, normal);
+#if defined(FROM_BELOW) || !defined(NO_TRACED_REFRACTION)
+    RayHit traced = trace_refraction(position, bent, max_distance);
     if (how == kTracedRefraction) {
         through = traced;
     }
 #endif
 #ifdef FLOOR_MAP
     if (how == kFloorRefraction) {
-        through = floor_through(water, position, bent);
+        through = floor_refraction(water, position, bent);
     }
 #endif
     return through;
 #else
-    return seen_through(position, bent, most);
+    return trace_refraction(position, bent, max_distance);
 #endif
 }

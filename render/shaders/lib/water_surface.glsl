@@ -1,5 +1,5 @@
-// What moves the surface of a body of water, as evaluate_waves() and sample_ripples() of systems/water have it: the
-// point at rest at q = (x, z), in the water's own space, is displaced by the sum of all.
+// Displacement of a water surface, the same as evaluate_waves() and sample_ripples() of systems/water: the point at
+// rest at q = (x, z), in water space, is displaced by the sum of all waves.
 
 #include "water_gpu.h"
 
@@ -8,8 +8,8 @@ layout(binding = 2) uniform samplerBuffer wave_lines;  // WaveLineRecord
 layout(binding = 3) uniform samplerBuffer wave_rings;  // WaveRingRecord
 layout(binding = 4) uniform sampler2D ripple_atlas;    // height, velocity, slopes (ripple_atlas.h)
 #ifdef OCEAN  // ocean_textures.h
-layout(binding = 6) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z at the moment shown
-layout(binding = 13) uniform sampler2DArray ocean_shift_before;  // at the moment before
+layout(binding = 6) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z, current
+layout(binding = 13) uniform sampler2DArray previous_ocean_shift;  // previous frame
 layout(binding = 14) uniform sampler2DArray ocean_slope;        // slope_x, slope_z, shift_xx, shift_zz
 layout(binding = 17) uniform sampler2DArray ocean_foam;         // shift_xz, foam
 #endif
@@ -45,22 +45,22 @@ vec4 ripples_at(WaterRecord water, vec2 q) {
 }
 
 #ifdef OCEAN
-// Texture coordinates of a patch: point 0 is the middle of texel 0.
+// Texture coordinates in a patch: point 0 is the center of texel 0.
 vec3 ocean_place(WaterRecord water, int i, vec2 q) {
     return vec3(q * water.patches[i] + 0.5 / water.ocean.z, water.ocean.x + float(i));
 }
 #endif
 
-// Share of waves of wave number k that points `spacing` [m] apart still show: none of those with less than two points.
+// Amplitude share of wave number k that points `spacing` [m] apart can resolve: 0 below two points per wave.
 float wave_share(float k, float spacing) {
     return 1.0 - smoothstep(0.25, 0.5, spacing * k * 0.159154943);
 }
 
-// How the offset changes along x and along z.
+// Derivatives of the offset by x and by z.
 struct WaterBend {
     vec3 by_x;
     vec3 by_z;
-    float variance;  // of slopes that are too fine to be seen
+    float variance;  // of unresolved slopes
     float foam;      // 0 .. 1
 };
 
@@ -69,13 +69,13 @@ struct WaterMotion {
     WaterBend bend;
 };
 
-// Adds a wave with straight crests, at the moment shown or the moment `before`; `there`: 1, or 0: no wave.
-void add_line(inout WaterMotion motion, int line, float there, vec2 q, float spacing, bool before) {
+// Adds a wave with straight crests, current or in the previous frame (`previous`); `there`: 1, or 0: no wave.
+void add_line(inout WaterMotion motion, int line, float there, vec2 q, float spacing, bool previous) {
     vec4 run = texelFetch(wave_lines, line * int(kWaveLineTexels));
     vec4 wave = texelFetch(wave_lines, line * int(kWaveLineTexels) + 1);
     float k = length(run.xy);
     float share = there * wave_share(k, spacing);
-    float phase = dot(run.xy, q) + (before ? wave.y : wave.x);
+    float phase = dot(run.xy, q) + (previous ? wave.y : wave.x);
     float s = sin(phase);
     float c = cos(phase);
     float lean = s > 0.0 ? wave.w : 0.0;
@@ -88,11 +88,11 @@ void add_line(inout WaterMotion motion, int line, float there, vec2 q, float spa
 }
 
 // Adds a wave around a point.
-void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spacing, bool before) {
+void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spacing, bool previous) {
     vec4 place = texelFetch(wave_rings, ring * int(kWaveRingTexels));
     vec4 wave = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 1);
     vec4 fade = texelFetch(wave_rings, ring * int(kWaveRingTexels) + 2);
-    vec2 edges = place.zw + (before ? fade.z : 0.0);
+    vec2 edges = place.zw + (previous ? fade.z : 0.0);
     vec2 out_from = q - place.xy;
     float r = max(length(out_from), 1e-6);
     float rate = fade.y > 0.5 ? kPi / max(edges.y - edges.x, 1e-6) : 0.0;
@@ -102,7 +102,7 @@ void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spa
     float window_slope = 2.0 * rate * s * cos(u);
     bool fading = fade.x > 0.0 && r > fade.x;
     float faded = fading ? sqrt(fade.x / r) : 1.0;
-    float phase = wave.z * r + (before ? wave.y : wave.x);
+    float phase = wave.z * r + (previous ? wave.y : wave.x);
     float height = sin(phase);
     float size = r >= edges.x && r <= edges.y ? there * wave.w * wave_share(wave.z, spacing) * faded : 0.0;
     motion.offset.y += size * window * height;
@@ -112,27 +112,27 @@ void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spa
     motion.bend.by_z.y += slope * out_from.y / r;
 }
 
-// By waves of closed form, as points `spacing` [m] apart show them, at the moment shown or the moment `before`.
-WaterMotion wave_motion(WaterRecord water, vec2 q, float spacing, bool before) {
+// Motion by analytic waves, as points `spacing` [m] apart resolve them, current or in the previous frame (`previous`).
+WaterMotion wave_motion(WaterRecord water, vec2 q, float spacing, bool previous) {
     WaterMotion motion = WaterMotion(vec3(0.0), WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0));
-    // The loops ask after their body, see add_directional().
+    // Loops test after their body, see add_directional().
     int line = int(water.waves.x);
     int end = line + int(water.waves.y);
     float there = water.waves.y > 0.0 ? 1.0 : 0.0;
     do {
-        add_line(motion, line, there, q, spacing, before);
+        add_line(motion, line, there, q, spacing, previous);
     } while (++line < end);
     int ring = int(water.waves.z);
     end = ring + int(water.waves.w);
     there = water.waves.w > 0.0 ? 1.0 : 0.0;
     do {
-        add_ring(motion, ring, there, q, spacing, before);
+        add_ring(motion, ring, there, q, spacing, previous);
     } while (++ring < end);
     return motion;
 }
 
-// By ripples and seas, as points `spacing` [m] apart show them.
-vec3 field_offset(WaterRecord water, vec2 q, float spacing, bool before) {
+// Offset by ripples and ocean patches, as points `spacing` [m] apart resolve them.
+vec3 field_offset(WaterRecord water, vec2 q, float spacing, bool previous) {
     vec3 offset = vec3(0.0);
 #ifdef OCEAN
     int patches = int(water.ocean.y);
@@ -142,27 +142,28 @@ vec3 field_offset(WaterRecord water, vec2 q, float spacing, bool before) {
         vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
         float level = log2(max(spacing * water.patches[i] * water.ocean.z, 1.0));
         offset += there
-                  * (before ? textureLod(ocean_shift_before, place, level) : textureLod(ocean_shift, place, level)).xyz;
+                  * (previous ? textureLod(previous_ocean_shift, place, level)
+                              : textureLod(ocean_shift, place, level)).xyz;
     } while (++i < patches);
 #endif
     vec4 ripples = ripples_at(water, q);
-    offset.y += ripples.x + ripples.y * (before ? water.rippling.w : water.rippling.z);
+    offset.y += ripples.x + ripples.y * (previous ? water.rippling.w : water.rippling.z);
     return offset;
 }
 
-// Where the point at rest at q is.
-vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool before) {
-    return wave_motion(water, q, spacing, before).offset + field_offset(water, q, spacing, before);
+// Offset of the point at rest at q.
+vec3 water_offset(WaterRecord water, vec2 q, float spacing, bool previous) {
+    return wave_motion(water, q, spacing, previous).offset + field_offset(water, q, spacing, previous);
 }
 
-// By ripples and seas; of seas the mean over `footprint` [m].
+// Derivatives by ripples and ocean patches; the latter averaged over `footprint` [m].
 WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
     WaterBend bend = WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0);
 #ifdef OCEAN
     int patches = int(water.ocean.y);
     int i = 0;
     float there = patches > 0 ? 1.0 : 0.0;
-    // Asks after its body, see add_directional().
+    // Tests after its body, see add_directional().
     do {
         vec3 place = patches > 0 ? ocean_place(water, i, q) : vec3(0.0);
         float level = max(log2(footprint * water.patches[i] * water.ocean.z), 0.0);
@@ -181,7 +182,7 @@ WaterBend field_bend(WaterRecord water, vec2 q, float footprint) {
     return bend;
 }
 
-// By all, at the moment shown, as points `spacing` [m] apart show it; of seas the mean over as much.
+// Current motion by all waves, as points `spacing` [m] apart resolve it; ocean patches are averaged over as much.
 WaterMotion water_motion(WaterRecord water, vec2 q, float spacing) {
     WaterMotion motion = wave_motion(water, q, spacing, false);
     WaterBend bend = field_bend(water, q, spacing);
@@ -191,7 +192,7 @@ WaterMotion water_motion(WaterRecord water, vec2 q, float spacing) {
     return motion;
 }
 
-// Up, unit, in the water's own space.
+// Upward, unit, in water space.
 vec3 water_normal(WaterBend bend) {
     return normalize(cross(vec3(0.0, 0.0, 1.0) + bend.by_z, vec3(1.0, 0.0, 0.0) + bend.by_x));
 }

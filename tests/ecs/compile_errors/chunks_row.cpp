@@ -1,4 +1,4 @@
-// expects: chunks: the function takes a ChunkView and one std::span a component, in order:
+// expects: chunks: the function takes a ChunkView and one std::span per component, in order:
 // std::span<const A>, std::span<B>
 #include "ecs/schedule.h"
 #include "ecs/world.h"

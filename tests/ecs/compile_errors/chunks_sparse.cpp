@@ -1,4 +1,4 @@
-// expects: chunks: sparse components come row by row; use each or par_each
+// expects: chunks: sparse components are not in chunks; use each or par_each
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,4 +1,4 @@
-// expects: a field of this type needs visit_fields
+// expects: a field of this type needs LIMN_FIELDS
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

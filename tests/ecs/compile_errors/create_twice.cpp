@@ -1,4 +1,4 @@
-// expects: an entity has each component once
+// expects: an entity has each component only once
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

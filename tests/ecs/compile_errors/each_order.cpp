@@ -1,5 +1,5 @@
 // expects: each: the function takes the query's components in order (const A&, B&, Optional as C*),
-// before them an Entity if it wants one
+// optionally preceded by an Entity
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,4 +1,4 @@
-// expects: a const World gives only const components: query<const A>()
+// expects: a const World has only const components: query<const A>()
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,5 +1,5 @@
 // expects: a query term is T, const T, Optional<T>, With<..>, Without<..>, AnyOf<..> or
-// Changed<..>; entities arrive without being asked for
+// Changed<..>; an Entity parameter needs no term
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

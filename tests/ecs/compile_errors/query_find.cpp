@@ -1,4 +1,4 @@
-// expects: find: T must be a term of the query, const if it is const there
+// expects: find: T must be a term of the query, const if the term is const
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,4 +1,4 @@
-// expects: a query has each component once
+// expects: a query must list each component only once
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,4 +1,4 @@
-// expects: a query that asks for a component Without itself has no entities
+// expects: a query that both requires and excludes a component matches no entities
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

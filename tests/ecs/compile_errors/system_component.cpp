@@ -1,4 +1,4 @@
-// expects: a parameter of a system is Query<..>, Res<T>, Res<const T>, Commands, World& or const
+// expects: a parameter of a system is Query<..>, Res<T>, OptionalRes<T>, Commands, World& or const
 // World&; components come through a Query
 #include "ecs/schedule.h"
 #include "ecs/world.h"

@@ -1,4 +1,4 @@
-// expects: a system has one Commands
+// expects: a system takes Commands only once
 #include "ecs/schedule.h"
 #include "ecs/world.h"
 #include "tests/ecs/compile_errors/parts.h"

@@ -1,9 +1,0 @@
-#pragma once
-
-#include "content/app/quality.h"
-
-namespace limn {
-
-[[nodiscard]] Result<QualityReport> measure_motion_blur(HeadlessRenderer& headless);
-
-}  // namespace limn

@@ -1,0 +1,143 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "render/gbuffer.h"
+#include "render/gpu/ring_buffer.h"
+#include "render/graph/frame_graph.h"
+#include "render/render_view.h"
+#include "render/typed_store.h"
+#include "render/variant.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+struct Assets;
+class DeformedList;
+class MaterialPool;
+class MeshPool;
+class World;
+
+// The data of a frame, by lifetime:
+//
+//     FrameData   once a frame, whatever the number of views: uploaded assets, lights, bodies of
+//                 water, deformed shapes
+//     ViewData    once a view: visible instances, clusters, shadow views, uniform blocks; and the
+//                 graph textures that the view is drawn into
+//
+// Both have a store that effects publish plain structs in and read others' from, by type: an effect
+// includes another's header for such a struct alone, and none writes what another published.
+
+/// What a view is for; effects choose the kinds that they take part in (EffectEntry::views).
+enum ViewKind : std::uint32_t {
+    kCameraView = 1u << 0,  ///< the image that is asked for
+    kSampleView = 1u << 1,  ///< an image that is added to an accumulated one
+    kMeanView = 1u << 2,    ///< accumulated radiance on its way to the display: nothing is drawn
+    kProbeView = 1u << 3,   ///< a face of an environment probe: what lights, without probes
+    kMirrorView = 1u << 4,  ///< what a planar water surface mirrors, without water
+
+    kMainViews = kCameraView | kSampleView,               ///< seen by the camera that was asked for
+    kSceneViews = kMainViews | kProbeView | kMirrorView,  ///< all that draw the scene
+    kFilmViews = kCameraView | kMeanView,                 ///< those that become a displayed image
+};
+
+/// What a view's image becomes part of.
+enum class SampleKind : std::uint8_t {
+    Played,   ///< a whole frame: moving things blurred, distant things out of focus
+    Instant,  ///< one instant through one point of the lens: the mean itself blurs
+};
+
+/// A further view that this frame needs drawn before the main one.
+struct ExtraView {
+    ViewKind kind = kProbeView;
+    RenderView camera;
+    std::string_view name = {};  ///< scope of its passes in timings
+    int index = 0;               ///< what the effect that asked tells its views apart by
+};
+
+struct FrameData {
+    const World* world = nullptr;
+    const Assets* assets = nullptr;
+    std::uint64_t assets_identity = 0;
+    bool assets_replaced = false;  ///< other assets than in the last frame: caches are invalid
+    gpu::Device* device = nullptr;
+    gpu::RingBuffer* ring = nullptr;  ///< uploads of this frame
+    MeshPool* meshes = nullptr;
+    MaterialPool* materials = nullptr;
+    DeformedList* shapes = nullptr;
+    GLenum radiance_format = GL_RGBA16F;
+    GLenum velocity_format = GL_RG16F;
+
+    ViewKind kind = kCameraView;  ///< of the main view
+    SampleKind sample = SampleKind::Played;
+    RenderView camera;                ///< of the main view; collect() may jitter it
+    std::uint64_t number = 0;         ///< counts the frames of the renderer
+    double time = 0;                  ///< simulated time shown [s]
+    std::optional<float> since_last;  ///< simulated time since the previous frame [s]; none: a cut
+    std::span<const std::string> aovs;  ///< asked for
+    bool velocity = false;              ///< the main view needs motion vectors; set in collect()
+    bool attributes = false;            ///< the main view needs its G-buffer; set in collect()
+    bool warm_up = false;               ///< compile what later frames may need, too
+    std::vector<ExtraView> views;       ///< filled in request_views()
+
+    TypedStore data;
+};
+
+/// What shaders that light surfaces need beside the surface itself. Effects that light, shade or
+/// occlude contribute: definitions and bindings in prepare(), what the graph must know in draw().
+struct LightingInputs {
+    struct Binding {
+        void (*bind)(PassContext&, const void*);
+        const void* data;
+    };
+    Variant variant;
+    std::vector<Use> reads;
+    std::vector<Binding> bindings;
+
+    /// `bind(context, data)` is called whenever a lit pass begins; `data` must live until then.
+    template <auto bind, typename T>
+    void add_binding(const T& data) {
+        bindings.push_back(
+            {[](PassContext& context, const void* its) {
+                 bind(context, *static_cast<const T*>(its));
+             },
+             &data});
+    }
+    void clear() {
+        variant = {};
+        reads.clear();
+        bindings.clear();
+    }
+};
+
+struct ViewData {
+    const FrameData* frame = nullptr;
+    ViewKind kind = kCameraView;
+    RenderView camera;
+    int index = 0;          ///< ExtraView::index
+    bool velocity = false;  ///< motion vectors are drawn
+    bool attributes = false;
+    gpu::RingSlice block;  ///< layout::ViewBlock
+    LightingInputs lighting;
+
+    Gbuffer gbuffer;
+    TextureId radiance;  ///< the image so far; effects replace it
+    TextureId display;   ///< RGBA8, at the end of kFilmViews
+
+    TypedStore data;
+
+    [[nodiscard]] bool is(std::uint32_t kinds) const { return (kind & kinds) != 0; }
+    /// Size of what is drawn [px].
+    [[nodiscard]] IVec2 size() const { return {camera.width, camera.height}; }
+};
+
+}  // namespace limn

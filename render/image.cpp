@@ -1,0 +1,74 @@
+#include "render/image.h"
+
+#include "render/passes/aov_pass.h"
+#include "render/passes/blend_pass.h"
+#include "render/passes/caustics_pass.h"
+#include "render/passes/cluster_pass.h"
+#include "render/passes/deform_pass.h"
+#include "render/passes/depth_of_field_pass.h"
+#include "render/passes/environment_pass.h"
+#include "render/passes/gbuffer_pass.h"
+#include "render/passes/glare_pass.h"
+#include "render/passes/glow_pass.h"
+#include "render/passes/light_pass.h"
+#include "render/passes/mirror_caustic_pass.h"
+#include "render/passes/motion_blur_pass.h"
+#include "render/passes/probe_pass.h"
+#include "render/passes/ripple_pass.h"
+#include "render/passes/shadow_pass.h"
+#include "render/passes/sky_pass.h"
+#include "render/passes/speed_line_pass.h"
+#include "render/passes/temporal_pass.h"
+#include "render/passes/texture_combine_pass.h"
+#include "render/passes/water_pass.h"
+#include "render/passes/water_veil_pass.h"
+#include "render/tone_mapper.h"
+#include "render/water/water_surfaces.h"
+
+namespace limn {
+namespace {
+
+constexpr EffectEntry kImage[] = {
+    // What is in the world, and what of it each view shows.
+    effect<TextureCombineEffect>(0),
+    effect<DeformEffect>(kSceneViews),     // before all that draws meshes
+    effect<LightListEffect>(kSceneViews),  // records and clusters
+    effect<EnvironmentEffect>(kSceneViews),
+    effect<GbufferEffect>(kSceneViews),
+    effect<WaterBodiesEffect>(kSceneViews),  // where water is, and what lies in it
+    effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
+    effect<CausticsEffect>(kSceneViews),     // after shadows: what stands in the way of its light
+
+    // Light.
+    effect<LightEffect>(kSceneViews),
+    effect<SkyEffect>(kSceneViews),
+    effect<MirrorCausticEffect>(kSceneViews),
+    effect<WaterEffect>(kSceneViews),      // over all that is opaque
+    effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
+    effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it
+    effect<SpeedLineEffect>(kMainViews),
+
+    // Where views end that are not the camera's.
+    effect<ProbeEffect>(kSceneViews),  // asks for its faces as views; lights all others
+    effect<WaterMirrorEffect>(kMirrorView),
+    effect<AovEffect>(kMainViews),
+
+    // The lens and the shutter.
+    effect<TemporalEffect>(kMainViews),
+    effect<RippleEffect>(kMainViews),
+    effect<MotionBlurEffect>(kMainViews),
+    effect<DepthOfFieldEffect>(kMainViews),
+    effect<GlareEffect>(kFilmViews),
+    effect<GlowEffect>(kMainViews | kMeanView),
+
+    // The film.
+    effect<ToneMapEffect>(kFilmViews),
+};
+
+}  // namespace
+
+std::span<const EffectEntry> standard_image() {
+    return kImage;
+}
+
+}  // namespace limn

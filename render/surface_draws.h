@@ -1,0 +1,76 @@
+#pragma once
+
+#include "render/frame_data.h"
+#include "render/instance_list.h"
+#include "render/light_objects.h"
+#include "render/variant.h"
+
+#include <cstdint>
+#include <span>
+
+namespace limn {
+
+// Draws the instances of a view, run by run: one multi-draw for all that share program, state and
+// textures. The programs are variants of mesh.vert with the fragment shader of the pass.
+
+/// What every run of a pass has in common.
+struct SurfaceDraw {
+    const Variant* variant = nullptr;  ///< of the programs, beside the features of the surface
+    std::uint32_t features = 0;        ///< of SurfaceFeature, beside those of the surface
+    gpu::PipelineState state;          ///< winding and culled sides are those of each run
+    int light = -1;                    ///< uniform light_index of programs that light with one
+};
+
+void draw_runs(
+    PassContext& context, const ViewData& view, std::span<const DrawRun> runs,
+    ProgramVariants& programs, const SurfaceDraw& draw);
+
+/// Draws the objects that single lights reach: `runs` of `commands`, indirect draw commands in
+/// place of those of the instance list.
+void draw_light_runs(
+    PassContext& context, const ViewData& view, std::span<const LightRun> runs,
+    const gpu::RingSlice& commands, ProgramVariants& programs, const SurfaceDraw& draw);
+
+/// Draws the opaque instances for their depth alone, visible sides only.
+void draw_depths(PassContext& context, const ViewData& view, ProgramVariants& programs);
+
+/// Draws shadow casters for their depth alone, both sides: `programs` get no more features than
+/// decide where a surface has holes.
+void draw_casters(
+    PassContext& context, const ViewData& view, const InstanceList& casters,
+    ProgramVariants& programs, const gpu::PipelineState& state);
+
+/// Draws the opaque instances for where they are and were, without their materials, visible sides
+/// only; needs the view's velocity. `prepare(program)` sets the uniforms of each program.
+template <typename Prepare>
+void draw_motions(
+    PassContext& context, const ViewData& view, ProgramVariants& programs,
+    const gpu::PipelineState& state, Prepare prepare);
+
+// ---- parts of the above ----
+
+/// Binds instance streams, material records and draw commands of a list.
+void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list);
+/// `state` with the sides culled that a run does not show.
+[[nodiscard]] gpu::PipelineState visible_sides(gpu::PipelineState state, const DrawRun& run);
+void draw_run(
+    gpu::Device& device, const FrameData& frame, const InstanceList& list, const DrawRun& run);
+
+template <typename Prepare>
+void draw_motions(
+    PassContext& context, const ViewData& view, ProgramVariants& programs,
+    const gpu::PipelineState& state, Prepare prepare) {
+    const auto& list = view.data.get<InstanceList>();
+    bind_instances(context.device(), *view.frame, list);
+    for (const DrawRun& run : list.opaque) {
+        const gpu::Program* program =
+            programs.get({}, (run.features & (kInflate | kDeformed)) | kVelocity);
+        if (program != nullptr) {
+            context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
+            prepare(*program);
+            draw_run(context.device(), *view.frame, list, run);
+        }
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,230 @@
+#include "bench/quality/quality.h"
+#include "tests/app/run_program.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace limn {
+
+using test::ProgramRun;
+using test::read_text;
+using test::run_limn;
+using test::TemporaryFolder;
+
+namespace {
+
+QualityReport small_report() {
+    const ColorImage gray = {.width = 2, .height = 1, .pixels = {Vec3(0.25f), Vec3(0.5f)}};
+    const ColorImage lighter = {.width = 2, .height = 1, .pixels = {Vec3(0.25f), Vec3(1.0f)}};
+    return {
+        .rows =
+            {{"error", 0.5, QualityBound::AtMost, 1, "px"},
+             {"psnr <of> it", 30, QualityBound::AtLeast, 32, "dB"},
+             {"told", 7}},
+        .images = {{"plate & lamp", gray, lighter}, {"alone", gray}}};
+}
+
+MeasuredQuality measured() {
+    static const QualityEffect effect = {"sample", "what is exact", nullptr};
+    return {&effect, small_report()};
+}
+
+std::size_t count_of(const std::string& text, std::string_view word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+/// The rows of `limn quality EFFECT`, which must hold.
+nlohmann::json measured_rows(const std::string& effect, const TemporaryFolder& folder = {}) {
+    const ProgramRun run =
+        run_limn(folder, {"quality", effect, "--json", "q.json", "--html", "q.html"});
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.starts_with(effect + ": "));
+    const auto json = nlohmann::json::parse(read_text(folder.file("q.json")));
+    REQUIRE(json["effects"].size() == 1);
+    for (const nlohmann::json& row : json["effects"][0]["rows"]) {
+        CAPTURE(row.dump());
+        CHECK(row["holds"] == true);
+    }
+    return json["effects"][0]["rows"];
+}
+
+std::size_t count_unbounded(const nlohmann::json& rows) {
+    return static_cast<std::size_t>(std::count_if(
+        rows.begin(), rows.end(), [](const auto& row) { return row["bound"] == "none"; }));
+}
+
+}  // namespace
+
+TEST_CASE("quality: a bound holds up to its limit, and never for what is no number") {
+    CHECK(holds({"", 1, QualityBound::AtMost, 1}));
+    CHECK_FALSE(holds({"", 1.001, QualityBound::AtMost, 1}));
+    CHECK(holds({"", 1, QualityBound::AtLeast, 1}));
+    CHECK_FALSE(holds({"", 0.999, QualityBound::AtLeast, 1}));
+    CHECK_FALSE(holds({"", std::nan(""), QualityBound::AtMost, 1}));
+    CHECK_FALSE(holds({"", std::nan(""), QualityBound::AtLeast, 1}));
+    CHECK(holds({"", std::nan(""), QualityBound::None, 0}));
+}
+
+TEST_CASE("quality: table, JSON and page say of every row whether it holds") {
+    const MeasuredQuality one = measured();
+    const std::string table = quality_table({&one, 1});
+    CHECK(count_of(table, "\n") == 4);
+    CHECK(count_of(table, "VIOLATED") == 1);
+    CHECK(table.find("0.5 px") != std::string::npos);
+
+    const auto json = nlohmann::json::parse(quality_json({&one, 1}, "some GPU"));
+    CHECK(json["gl"] == "some GPU");
+    CHECK(json["effects"][0]["name"] == "sample");
+    const auto& rows = json["effects"][0]["rows"];
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0]["holds"] == true);
+    CHECK(rows[1]["holds"] == false);
+    CHECK(rows[1]["bound"] == "at_least");
+    CHECK(rows[2]["bound"] == "none");
+}
+
+TEST_CASE("quality: the page has effect, oracle and difference of each picture within itself") {
+    const MeasuredQuality one = measured();
+    const Result<std::string> page = quality_html({&one, 1}, "GPU <x>");
+    REQUIRE(page);
+    CHECK(count_of(*page, "<img ") == 3 + 1);
+    // Every picture is a whole PNG: signature and end in base64.
+    CHECK(count_of(*page, "src=\"data:image/png;base64,iVBORw0KGgo") == 4);
+    CHECK(count_of(*page, "\" alt=\"") == 4);
+    CHECK(page->find("GPU &lt;x&gt;") != std::string::npos);
+    CHECK(page->find("psnr &lt;of&gt; it") != std::string::npos);
+    CHECK(page->find("plate &amp; lamp") != std::string::npos);
+    CHECK(page->find("<x>") == std::string::npos);
+}
+
+TEST_CASE("quality: without its program beside it, limn says what is missing and how to build it") {
+    const TemporaryFolder folder;
+    const std::string alone = folder.file("limn");
+    std::filesystem::copy_file(LIMN_PROGRAM, alone);
+    const ProgramRun run = test::Program(folder, {"quality", "surfaces"}, alone).wait();
+    CHECK(run.exit_code == 1);
+    CHECK(run.out.empty());
+    CHECK(count_of(run.err, "\n") == 1);
+    CHECK(run.err.find(alone + "-quality") != std::string::npos);
+    CHECK(run.err.find("--target limn-quality") != std::string::npos);
+}
+
+TEST_CASE("quality: wrong usage ends with 2, and the effects are listed in the help") {
+    const TemporaryFolder folder;
+    const ProgramRun wrong = run_limn(folder, {"quality", "--jsn", "q.json"});
+    CHECK(wrong.exit_code == 2);
+    CHECK(wrong.err.find("--jsn") != std::string::npos);
+    const ProgramRun help = run_limn(folder, {"quality", "--help"});
+    CHECK(help.exit_code == 0);
+    CHECK(quality_effects().size() == 12);
+    for (const QualityEffect& effect : quality_effects()) {
+        CHECK(
+            help.out.find(fmt::format("  {:<12}vs {}\n", effect.name, effect.oracle))
+            != std::string::npos);
+    }
+}
+
+TEST_CASE("quality: lights keep their bounds by every method, and no list misses one") {
+    const nlohmann::json rows = measured_rows("lights");
+    REQUIRE(rows.size() == 7);
+    CHECK(rows[0]["found"] <= 1.0);
+}
+
+TEST_CASE("quality: the surfaces keep their bounds, and an effect that is none is named") {
+    const TemporaryFolder folder;
+    CHECK(measured_rows("surfaces", folder).size() == 6);
+    CHECK(read_text(folder.file("stdout.txt")).find("VIOLATED") == std::string::npos);
+    CHECK(read_text(folder.file("q.html")).ends_with("</html>\n"));
+
+    const ProgramRun wrong = run_limn(folder, {"quality", "surfacs"});
+    CHECK(wrong.exit_code == 1);
+    CHECK(wrong.err.find("perhaps surfaces") != std::string::npos);
+}
+
+TEST_CASE("quality: every shadow method agrees with rays, and penumbras keep their law") {
+    const TemporaryFolder folder;
+    const nlohmann::json rows = measured_rows("shadows", folder);
+    CHECK(rows.size() == 9 + 8 + 9 + 3);
+    CHECK(count_unbounded(rows) == 0);
+    // Of each method, of all in one corner, and of each penumbra: effect, oracle and difference.
+    CHECK(count_of(read_text(folder.file("q.html")), "<img ") == 3 * (10 + 9 + 10 + 3));
+}
+
+TEST_CASE("quality: statistics and tone operators of the GPU are those of the oracle") {
+    const nlohmann::json rows = measured_rows("tone");
+    CHECK(rows.size() == 14);
+    for (const auto& row : rows) {
+        if (row["bound"] == "none") {  // the image covers five decades of light
+            CHECK(row["found"] > 1e5);
+        }
+    }
+}
+
+TEST_CASE("quality: motion blur comes close to the mean of the moments of an exposure") {
+    const nlohmann::json rows = measured_rows("motion-blur");
+    CHECK(rows.size() == 18);
+    // For each scene, a row with the effect and one without it.
+    for (std::size_t i = 0; i + 1 < 16; i += 2) {
+        CAPTURE(rows[i].dump());
+        CHECK(rows[i]["found"].get<double>() > rows[i + 1]["found"].get<double>() + 3);
+    }
+}
+
+TEST_CASE("quality: depth of field obeys the law of discs and does not leak") {
+    CHECK(measured_rows("dof").size() == 12 + 5 + 2 + 2 * 3);
+}
+
+TEST_CASE("quality: glow keeps the light, is round, steady and the oracle's convolution") {
+    const nlohmann::json rows = measured_rows("glow");
+    CHECK(rows.size() == 5 + 2 * 3 + 4 + 3 * 2);
+    for (const auto& row : rows) {
+        if (row["bound"] == "none") {  // glow or glare changes the scene visibly
+            CHECK(row["found"] < 38);
+        }
+    }
+}
+
+TEST_CASE("quality: skinning is that of double precision, for many joints and morph targets") {
+    const nlohmann::json rows = measured_rows("skinning");
+    CHECK(rows.size() == 2 * 2 + 9);
+    CHECK(count_unbounded(rows) == 1);  // what linear blending loses
+}
+
+TEST_CASE("quality: caustics are those of ten million photons") {
+    const nlohmann::json rows = measured_rows("caustics");
+    CHECK(rows.size() == 2 + 3 + 1 + 2 + 1);
+    CHECK(count_unbounded(rows) == 1);  // the coarsest grid, which bounds the others
+}
+
+TEST_CASE("quality: open water is the sum of its waves, as high and as fast as the laws say") {
+    const nlohmann::json rows = measured_rows("water");
+    CHECK(rows.size() == 3 * 2 + 2 + 2 + 1 + 3);
+    CHECK(count_unbounded(rows) == 0);
+}
+
+TEST_CASE("quality: velocity is that of rays, and none where nothing has moved") {
+    const nlohmann::json rows = measured_rows("velocity");
+    CHECK(rows.size() == 5 * 2 + 5);
+    for (const auto& row : rows) {
+        if (row["bound"] == "none") {  // the scene moves
+            CHECK(row["found"] > 10);
+        }
+    }
+}
+
+TEST_CASE("quality: ripples shift as geometry says and leave alone what stands before them") {
+    CHECK(measured_rows("ripple").size() == 6 * 4 + 1);
+}
+
+}  // namespace limn
