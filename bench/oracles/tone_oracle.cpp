@@ -30,7 +30,7 @@ std::vector<double> lit(std::span<const double> luminances, double share) {
 }  // namespace
 
 double luminance(const glm::dvec3& color) {
-    return 0.27 * color.r + 0.67 * color.g + 0.06 * color.b;
+    return 0.27 * color.x + 0.67 * color.y + 0.06 * color.z;
 }
 
 double log_average(std::span<const double> luminances, double delta) {
@@ -50,13 +50,13 @@ ImageStatistics measure_image(std::span<const glm::dvec3> pixels, double clipped
     ImageStatistics result;
     std::vector<double> luminances;
     for (const glm::dvec3& pixel : pixels) {
-        if (!std::isfinite(pixel.r) || !std::isfinite(pixel.g) || !std::isfinite(pixel.b)) {
+        if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z)) {
             ++result.broken;
             continue;
         }
         const glm::dvec3 light = {
-            std::clamp(pixel.r, 0.0, kLargestHalf), std::clamp(pixel.g, 0.0, kLargestHalf),
-            std::clamp(pixel.b, 0.0, kLargestHalf)};
+            std::clamp(pixel.x, 0.0, kLargestHalf), std::clamp(pixel.y, 0.0, kLargestHalf),
+            std::clamp(pixel.z, 0.0, kLargestHalf)};
         result.mean += light;
         luminances.push_back(luminance(light));
     }

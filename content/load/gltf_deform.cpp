@@ -75,7 +75,7 @@ read_influence_sets(GltfDocument& document, const GltfVertices& vertices) {
 }
 
 /// Vertices whose weights had to be changed: how many, and the first.
-struct Changed {
+struct ChangedWeights {
     std::size_t count = 0;
     std::uint32_t vertex = 0;
     double sum = 0;
@@ -204,8 +204,8 @@ read_skin_weights(GltfDocument& document, const GltfVertices& vertices, std::siz
     if (sets.empty()) {
         return skin;
     }
-    Changed loose;  // no weight at all
-    Changed off;    // did not sum to 1
+    ChangedWeights loose;  // no weight at all
+    ChangedWeights off;    // did not sum to 1
     std::vector<Influence> influences;
     for (const std::uint32_t vertex : vertices.used) {
         skin.first.push_back(static_cast<std::uint32_t>(skin.joints.size()));
