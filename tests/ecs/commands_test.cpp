@@ -335,7 +335,7 @@ TEST_CASE(
     const Commands commands(buffer);
     commands.create(Mass{1});
     std::thread([&] { commands.create(Mass{2}); }).join();
-    CHECK(stop_message([&] { apply(world, buffer); }).find("no order") != std::string::npos);
+    CHECK(stop_message([&] { apply(world, buffer); }).find("their order is") != std::string::npos);
     buffer.discard();
 }
 

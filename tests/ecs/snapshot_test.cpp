@@ -301,7 +301,7 @@ TEST_CASE("snapshot: any altered byte is found out") {
     }
     std::vector<std::byte> altered = bytes;
     altered.back() ^= std::byte{1};
-    CHECK(refusal(altered) == "snapshot: altered: the checksum of the data is wrong");
+    CHECK(refusal(altered) == "snapshot: corrupt: the checksum of the data does not match");
     altered = bytes;
     altered[8] = std::byte{9};
     CHECK(refusal(altered) == "snapshot: found version 9, expected 2");

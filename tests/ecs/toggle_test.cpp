@@ -635,7 +635,7 @@ TEST_CASE("toggle: misuse stops with a message") {
         world.query<const Power>().chunks(
             [](ChunkView chunk, std::span<const Power>) { chunk.set_enabled<Power>(0, false); });
     });
-    CHECK(unwritten.find("no written term") != std::string::npos);
+    CHECK(unwritten.find("not a written term") != std::string::npos);
     world.destroy(with);
     CHECK(stop_message([&] { world.disable<Power>(with); }).find("stale") != std::string::npos);
 }
