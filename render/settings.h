@@ -15,10 +15,10 @@ template <typename Settings>
 [[nodiscard]] Settings within_ranges(Settings settings) {
     visit_fields(settings, [](std::string_view, auto& field, const FieldMeta& meta = {}) {
         if constexpr (std::is_same_v<decltype(field), float&>) {
-            constexpr double kMost = 1e6;  // where there is no range
+            constexpr double kMax = 1e6;  // where there is no range
             const double number = std::isnan(field) ? 0.0 : static_cast<double>(field);
             field = static_cast<float>(
-                std::clamp(number, std::max(meta.min, -kMost), std::min(meta.max, kMost)));
+                std::clamp(number, std::max(meta.min, -kMax), std::min(meta.max, kMax)));
         }
     });
     return settings;

@@ -82,6 +82,18 @@ bool use_run(
 
 }  // namespace
 
+std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads) {
+    const DeformedVertices& vertices = frame.shapes->vertices();
+    if (!frame.shapes->work().batches.empty()) {
+        reads.emplace_back(graph.import("deformed positions", vertices.positions()));
+        reads.emplace_back(graph.import("deformed attributes", vertices.attributes()));
+        if (vertices.before()) {
+            reads.emplace_back(graph.import("previous deformed positions", vertices.before()));
+        }
+    }
+    return reads;
+}
+
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {
     set_instance_streams(frame.meshes->vertices(), list);
     set_instance_streams(frame.shapes->vertices().vertices(), list);

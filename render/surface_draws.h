@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace limn {
 
@@ -46,6 +47,11 @@ template <typename Prepare>
 void draw_motions(
     PassContext& context, const ViewData& view, ProgramVariants& programs,
     const gpu::PipelineState& state, Prepare prepare);
+
+/// `reads` and, where meshes are deformed in this frame, their vertices: what passes that call the
+/// functions above must declare.
+[[nodiscard]] std::vector<Use>
+mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 
 // ---- parts of the above ----
 

@@ -34,7 +34,7 @@ struct LensView {
     float focus_distance = 1.0f;   ///< [m], > 0
     int blades = 0;                ///< fewer than 3: round
     float blade_rotation = 0.0f;   ///< [rad]
-    float max_blur = 0.1f;     ///< maximum disc diameter, fraction of the image height
+    float max_blur = 0.1f;         ///< maximum disc diameter, fraction of the image height
     FocusMethod method = FocusMethod::Gather;
 };
 

@@ -364,7 +364,35 @@ void Device::check_draw() const {
     if (caps_.debug && program_ != nullptr) {
         const std::string missing = missing_bindings(*program_);
         LIMN_CHECK_NOTE(missing.empty(), missing.c_str());
+        if (observer_ != nullptr) {
+            observer_(observer_context_, *program_);
+        }
     }
+}
+
+void Device::observe_draws(DrawObserver observer, void* context) {
+    observer_ = observer;
+    observer_context_ = context;
+}
+
+GLuint Device::bound_object(BindingKind kind, int binding) const {
+    const auto unit = static_cast<std::size_t>(binding);
+    GLuint name = 0;
+    switch (kind) {
+    case BindingKind::UniformBlock:
+        name = unit < uniforms_.size() ? uniforms_[unit].buffer : 0;
+        break;
+    case BindingKind::StorageBlock:
+        name = unit < storage_.size() ? storage_[unit].buffer : 0;
+        break;
+    case BindingKind::Texture:
+        name = unit < textures_.size() ? textures_[unit] : 0;
+        break;
+    case BindingKind::Image:
+        name = unit < images_.size() ? images_[unit].texture : 0;
+        break;
+    }
+    return name == kUnknown ? 0 : name;
 }
 
 std::string Device::missing_bindings(const Program& program) const {

@@ -93,6 +93,13 @@ class Device {
     /// As many groups of `group` x `group` as cover `width` x `height` items.
     void dispatch_over(int width, int height, int group);
 
+    /// In debug contexts called before each draw and dispatch, with the program in use: how the
+    /// frame graph checks what passes declare. Null: nobody.
+    using DrawObserver = void (*)(void* context, const Program& program);
+    void observe_draws(DrawObserver observer, void* context);
+    /// The OpenGL name of the texture, image or storage buffer at a binding; 0 if unknown.
+    [[nodiscard]] GLuint bound_object(BindingKind kind, int binding) const;
+
     /// The bindings that `program` expects and that are not set: "nothing bound at texture unit 4
     /// (scene_color)", or "" if all are set.
     [[nodiscard]] std::string missing_bindings(const Program& program) const;
@@ -138,6 +145,8 @@ class Device {
     Framebuffer blit_source_;  // of the texture that blit_to_window() showed last
     std::uint64_t blit_serial_ = 0;
     DeviceStats stats_;
+    DrawObserver observer_ = nullptr;
+    void* observer_context_ = nullptr;
 
     // The state cache; kUnknown marks what must be set again.
     static constexpr GLuint kUnknown = ~0u;

@@ -208,7 +208,13 @@ class FrameGraph {
     /// Fails on a read before any write, a texture that is both read and written in one pass, or
     /// targets of different sizes. execute() aborts on these.
     [[nodiscard]] Status validate() const;
+    /// In debug contexts every draw is also checked: a program that reads a texture or buffer which
+    /// passes of this frame write, without its pass declaring that, or one that its pass draws to,
+    /// stops.
     void execute();
+    /// Such hazards are listed by hazards() instead, for tests.
+    void collect_hazards(bool on);
+    [[nodiscard]] const std::vector<std::string>& hazards() const;  ///< of the last frame
 
     // ---- after add_pass ----
     /// The last texture declared under this name in this frame; not valid() if there is none.

@@ -34,6 +34,7 @@ struct FrameGraph::Impl {
         const gpu::Texture* imported_texture = nullptr;
         const gpu::Buffer* imported_buffer = nullptr;
         bool kept = false;
+        bool written = false;   // by a pass that has run
         bool unsynced = false;  // imported: shader writes not yet followed by a barrier
         // Lifetime, filled by plan(): first and last running pass that uses it.
         int first = -1;
@@ -104,6 +105,8 @@ struct FrameGraph::Impl {
     bool total_cpu_seen = false;
     bool total_gpu_seen = false;
     Stats stats;
+    bool collects_hazards = false;
+    std::vector<std::string> hazards;
     std::vector<std::uint8_t> scratch;  // one per resource, for validate() and plan()
 
     // frame_graph.cpp
@@ -135,6 +138,10 @@ struct FrameGraph::Impl {
     [[nodiscard]] IVec2 bind_targets(const Pass& pass);
     void clear_target(GLuint framebuffer, const Use& use, int color_index);
     void run_pass(Pass& pass, int number, PassContext& context);
+    /// What an undeclared or conflicting use of a resource by the running pass is, "" if there is
+    /// none: `program` reads a texture or buffer that passes of this frame write.
+    [[nodiscard]] std::string find_hazard(const gpu::Program& program) const;
+    void check_hazards(const gpu::Program& program);
     [[nodiscard]] const gpu::Texture& physical_texture(const Resource& resource) const;
     void collect_gpu_times(bool wait);
     void publish_timings();

@@ -44,6 +44,7 @@ void FrameGraph::execute() {
 
     ++graph.frame;
     graph.stats = {};
+    graph.hazards.clear();
     graph.plan();
     graph.collect_gpu_times(false);
 
@@ -79,6 +80,14 @@ void FrameGraph::execute() {
     graph.stats.framebuffers = graph.pool.framebuffer_count();
     graph.stats.pool_bytes = graph.pool.bytes();
     graph.publish_timings();
+}
+
+void FrameGraph::collect_hazards(bool on) {
+    impl_->collects_hazards = on;
+}
+
+const std::vector<std::string>& FrameGraph::hazards() const {
+    return impl_->hazards;
 }
 
 /// Culls passes and determines the lifetime of every resource.
@@ -189,6 +198,7 @@ void FrameGraph::Impl::synchronize(const Pass& pass) {
 void FrameGraph::Impl::mark_unsynced(const Pass& pass) {
     for (const Use& use : writes(pass)) {
         Resource& r = resources[use.resource];
+        r.written = true;
         if (!is_target(use, true)) {
             unsynced(r) = true;
         }
@@ -273,6 +283,56 @@ void FrameGraph::Impl::clear_target(GLuint framebuffer, const Use& use, int colo
     }
 }
 
+void FrameGraph::Impl::check_hazards(const gpu::Program& program) {
+    std::string hazard = find_hazard(program);
+    LIMN_CHECK_NOTE(hazard.empty() || collects_hazards, hazard.c_str());
+    if (!hazard.empty()) {
+        hazards.push_back(std::move(hazard));
+    }
+}
+
+std::string FrameGraph::Impl::find_hazard(const gpu::Program& program) const {
+    const auto name_of_object = [&](const Resource& r) -> GLuint {
+        if (!r.imported() && r.slot == TargetPool::kNoOwner) {
+            return 0;
+        }
+        return r.is_texture                   ? physical_texture(r).id()
+               : r.imported_buffer != nullptr ? r.imported_buffer->id()
+                                              : pool.buffer(r.slot).id();
+    };
+    for (const gpu::ProgramBinding& binding : program.bindings()) {
+        const GLuint bound = device.bound_object(binding.kind, binding.binding);
+        const bool texture =
+            binding.kind == gpu::BindingKind::Texture || binding.kind == gpu::BindingKind::Image;
+        for (std::uint32_t i = 0; bound != 0 && i < resources.size(); ++i) {
+            const Resource& r = resources[i];
+            const int number = static_cast<int>(running - passes.data());
+            const bool alive = r.imported() || (r.first <= number && number <= r.last);
+            if (r.is_texture != texture || !alive || name_of_object(r) != bound) {
+                continue;
+            }
+            const auto same = [i](const Use& use) { return use.resource == i; };
+            const std::span<const Use> read = reads(*running);
+            const std::span<const Use> write = writes(*running);
+            const bool declared_read = std::any_of(read.begin(), read.end(), same);
+            const auto target = std::find_if(write.begin(), write.end(), same);
+            const bool attached = target != write.end() && is_target(*target, true);
+            if (r.written && !declared_read && target == write.end()) {
+                return format_text(
+                    "pass {}: {} binds {}, which this frame writes; expected among its reads",
+                    names[running->name], binding.name, name_of(r));
+            }
+            if (attached && binding.kind == gpu::BindingKind::Texture && target->level == 0
+                && target->layer < 0) {
+                return format_text(
+                    "pass {}: {} reads {} while the pass draws to it", names[running->name],
+                    binding.name, name_of(r));
+            }
+        }
+    }
+    return {};
+}
+
 void FrameGraph::Impl::run_pass(Pass& pass, int number, PassContext& context) {
     const Clock::time_point begin = Clock::now();
     const std::string& name = names[pass.name];
@@ -289,7 +349,13 @@ void FrameGraph::Impl::run_pass(Pass& pass, int number, PassContext& context) {
                 use.sampler);
         }
     }
+    device.observe_draws(
+        [](void* graph, const gpu::Program& program) {
+            static_cast<Impl*>(graph)->check_hazards(program);
+        },
+        this);
     pass.run(pass.closure, context);
+    device.observe_draws(nullptr, nullptr);
     running = nullptr;
     mark_unsynced(pass);
     release(pass, number);

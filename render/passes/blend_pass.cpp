@@ -17,7 +17,8 @@ void BlendEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     if (view.data.get<InstanceList>().blended.empty()) {
         return;
     }
-    const std::vector<Use> reads = lighting_reads(view, {depth_tested(view.gbuffer.depth)});
+    const std::vector<Use> reads =
+        mesh_reads(graph, *view.frame, lighting_reads(view, {depth_tested(view.gbuffer.depth)}));
     const Use writes[] = {view.radiance};
     graph.add_pass("blended", std::span(reads), writes, [this, &view](PassContext& context) {
         const bool clipped = is_clipped(view);

@@ -64,7 +64,6 @@ void sum_on_cpu(
     graph.add_pass(
         "caustic splats", {rays}, {image(made)}, [=, &pass, &list](PassContext& context) {
             pass.rays_on_cpu.resize(list.rays);
-            glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
             context.buffer(rays).read(0, std::as_writable_bytes(std::span(pass.rays_on_cpu)));
             pass.atlas_on_cpu.resize(
                 static_cast<std::size_t>(list.atlas.x) * static_cast<std::size_t>(list.atlas.y));

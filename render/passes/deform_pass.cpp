@@ -78,7 +78,14 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
     pass.rest.set(shapes.rest().texels());
     pass.palettes.set(work.palettes);
     pass.weights.set(work.weights);
-    graph.add_pass("deform", {}, {}, [&pass, &shapes](PassContext& context) {
+    const DeformedVertices& vertices = shapes.vertices();
+    std::vector<Use> writes = {
+        graph.import("deformed positions", vertices.positions()),
+        graph.import("deformed attributes", vertices.attributes())};
+    if (vertices.before()) {
+        writes.emplace_back(graph.import("previous deformed positions", vertices.before()));
+    }
+    graph.add_pass("deform", {}, writes, [&pass, &shapes](PassContext& context) {
         gpu::Device& device = context.device();
         pass.jobs.bind(device, kJobsUnit);
         pass.groups.bind(device, kGroupsUnit);
@@ -91,12 +98,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
                 run_batch(device, *program, shapes.vertices(), batch);
             }
         }
-        // Vertex buffers are not resources of the graph.
-        glMemoryBarrier(
-            GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT
-            | GL_SHADER_STORAGE_BARRIER_BIT);
     });
-    graph.always_run();
 }
 
 Result<DeformEffect> DeformEffect::create(gpu::Device& device, const RenderSettings&) {

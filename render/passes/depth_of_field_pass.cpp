@@ -562,8 +562,7 @@ TextureId draw_depth_of_field(
                                                 : drawing.through_lens(radiance, depth);
 }
 
-Result<DepthOfFieldEffect>
-DepthOfFieldEffect::create(gpu::Device& device, const RenderSettings&) {
+Result<DepthOfFieldEffect> DepthOfFieldEffect::create(gpu::Device& device, const RenderSettings&) {
     return DepthOfFieldEffect{LIMN_TRY(create_depth_of_field_pass(device))};
 }
 

@@ -91,7 +91,7 @@ Result<ForwardPass> create_forward_pass(gpu::Device& device) {
 }
 
 void draw_forward(FrameGraph& graph, ForwardPass& pass, const ViewData& view) {
-    const std::vector<Use> reads = lighting_reads(view, {});
+    const std::vector<Use> reads = mesh_reads(graph, *view.frame, lighting_reads(view, {}));
     const Use first[] = {cleared(view.radiance), view.gbuffer.depth};
     if (view.data.get<LightingMethod>().method == LightMethod::ObjectMajor) {
         graph.add_pass("objects", std::span(reads), first, [&pass, &view](PassContext& context) {

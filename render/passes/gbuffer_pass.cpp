@@ -12,6 +12,7 @@
 #include "render/view_block.h"
 
 #include <algorithm>
+#include <array>
 
 namespace limn {
 namespace {
@@ -85,7 +86,8 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
     if (view.data.get<LightingMethod>().is_forward() && !attributes) {
         view.gbuffer.depth = create("depth", depth_format(view));
         graph.add_pass(
-            "depth", {}, {cleared(view.gbuffer.depth)}, [this, &view](PassContext& context) {
+            "depth", mesh_reads(graph, frame), std::array{cleared(view.gbuffer.depth)},
+            [this, &view](PassContext& context) {
                 bind_view(context, view);
                 draw_depths(context, view, depth_first);
             });
@@ -99,17 +101,18 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
         writes.push_back(cleared(view.gbuffer.velocity));
     }
     writes.push_back(cleared(view.gbuffer.depth));
-    graph.add_pass("gbuffer", {}, writes, [this, &view](PassContext& context) {
-        const bool clipped = is_clipped(view);
-        Variant variant;
-        variant.add_if(clipped, "CLIPPED");
-        bind_view(context, view);
-        draw_runs(
-            context, view, view.data.get<InstanceList>().opaque, programs,
-            {.variant = &variant,
-             .features = view.velocity ? kVelocity : 0u,
-             .state = {.clip = clipped}});
-    });
+    graph.add_pass(
+        "gbuffer", mesh_reads(graph, frame), writes, [this, &view](PassContext& context) {
+            const bool clipped = is_clipped(view);
+            Variant variant;
+            variant.add_if(clipped, "CLIPPED");
+            bind_view(context, view);
+            draw_runs(
+                context, view, view.data.get<InstanceList>().opaque, programs,
+                {.variant = &variant,
+                 .features = view.velocity ? kVelocity : 0u,
+                 .state = {.clip = clipped}});
+        });
     if (view.velocity) {
         draw_sky_velocity(graph, sky_velocity, view);
     }

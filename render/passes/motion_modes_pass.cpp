@@ -5,6 +5,7 @@
 #include "render/view_block.h"
 
 #include <algorithm>
+#include <array>
 
 namespace limn {
 namespace {
@@ -102,8 +103,8 @@ MotionFlow::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData& 
     const TextureId flow =
         create_target(graph, "motion blur.flow", GL_RG16F, size_of(graph, depth));
     graph.add_pass(
-        "motion blur, flow", {depth_tested(depth)}, {cleared(flow)},
-        [this, &view, settings](PassContext& context) {
+        "motion blur, flow", mesh_reads(graph, *view.frame, {depth_tested(depth)}),
+        std::array{cleared(flow)}, [this, &view, settings](PassContext& context) {
             bind_view(context, view);
             draw_motions(
                 context, view, field, {.depth = {.write = false, .func = GL_EQUAL}},
@@ -159,8 +160,11 @@ TextureId MotionStretch::blur(
     copy_frame(graph, "motion blur, copy", copy, view.radiance, discarded(blurred));
     graph.add_pass(
         "motion blur",
-        {sampled(view.radiance, 0), sampled(history, 1), sampled(view.gbuffer.depth, 2)},
-        {blurred, cleared(layer_depth)}, [this, &view, settings](PassContext& context) {
+        mesh_reads(
+            graph, *view.frame,
+            {sampled(view.radiance, 0), sampled(history, 1), sampled(view.gbuffer.depth, 2)}),
+        std::array{Use(blurred), cleared(layer_depth)},
+        [this, &view, settings](PassContext& context) {
             bind_view(context, view);
             draw_motions(context, view, hull, {}, [&](const gpu::Program& program) {
                 program.set("samples", std::clamp(settings.samples, 2, 64));

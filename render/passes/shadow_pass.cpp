@@ -64,12 +64,15 @@ TextureId draw_maps(
     }
     const TextureId atlas = graph.import("shadow.atlas", texture);
     if (!list.due.empty()) {
-        graph.add_pass("shadows", {}, {atlas}, [&programs, &view, &list](PassContext& context) {
-            for (const ShadowDraw& draw : list.due) {
-                draw_map(context, programs, view, draw);
-            }
-            context.device().disable_scissor();
-        });
+        const Use writes[] = {atlas};
+        graph.add_pass(
+            "shadows", mesh_reads(graph, *view.frame), writes,
+            [&programs, &view, &list](PassContext& context) {
+                for (const ShadowDraw& draw : list.due) {
+                    draw_map(context, programs, view, draw);
+                }
+                context.device().disable_scissor();
+            });
     }
     return atlas;
 }

@@ -723,26 +723,34 @@ TEST_CASE_FIXTURE(
     ShadowCollector collector;
     LightList lights;
     ShadowList shadows;
-    collect_lights(world, 1, lights);
     gpu::RingBuffer ring(device().caps(), "test", 1 << 16);
     MeshPool meshes;
     MaterialPool materials(device(), 1);
     materials.update(world.resource<Assets>(), true);
     DeformedList shapes(1 << 27);
-    ring.begin_frame();
-    collector.collect(
-        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, shapes, 1, ring, lights, shadows);
-    ring.end_frame();
+    FrameData frame;
+    frame.world = &world;
+    frame.assets_identity = 1;
+    frame.ring = &ring;
+    frame.meshes = &meshes;
+    frame.materials = &materials;
+    frame.shapes = &shapes;
+    ViewData view;
+    view.camera = look({0, 1, 1}, {0, 0, 0});
+    const auto collect = [&] {
+        collect_lights(world, 1, lights);
+        ring.begin_frame();
+        collector.begin_frame();
+        collector.collect(frame, view, {}, lights, shadows);
+        ring.end_frame();
+    };
+    collect();
     CHECK(shadows.unserved == 2);  // six faces of 4096 have no room even alone
     CHECK(shadows.records.empty());
     CHECK_FALSE(lights.shadows);
     // One that has room is served all the same.
     world.get<Shadow>(lamps[1]).resolution = 512;
-    collect_lights(world, 1, lights);
-    ring.begin_frame();
-    collector.collect(
-        world, look({0, 1, 1}, {0, 0, 0}), meshes, materials, shapes, 1, ring, lights, shadows);
-    ring.end_frame();
+    collect();
     CHECK(shadows.unserved == 1);
     CHECK(shadows.records.size() == 6);
 }

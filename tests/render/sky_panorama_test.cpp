@@ -6,8 +6,7 @@
 #include "render/gpu/buffer.h"
 #include "render/graph/frame_graph.h"
 #include "render/panorama.h"
-#include "render/passes/panorama_pass.h"
-#include "render/passes/reflection_pass.h"
+#include "render/passes/environment_pass.h"
 
 #include <glm/geometric.hpp>
 
@@ -92,7 +91,6 @@ struct PanoramaScene : Scene {
 struct MadeSurroundings {
     PanoramaPass panorama;
     ReflectionPass reflection;
-    FrameScene scene;
 
     explicit MadeSurroundings(const ImageData& image) {
         gpu::Device& device = shared_device();
@@ -110,11 +108,11 @@ struct MadeSurroundings {
         layout::EnvironmentBlock block{};
         const gpu::Buffer block_buffer =
             gpu::Buffer::of("block", std::span<const layout::EnvironmentBlock>(&block, 1));
-        scene.environment_block = {nullptr, block_buffer.id(), 0, sizeof(block)};
+        const gpu::RingSlice block_slice = {nullptr, block_buffer.id(), 0, sizeof(block)};
         FrameGraph graph(device);
         graph.begin_frame();
         draw_panorama(graph, panorama, source, {});
-        draw_cube_reflection(graph, reflection, scene, panorama.cube, 0, 256);
+        draw_cube_reflection(graph, reflection, block_slice, panorama.cube, 0, 256);
         graph.execute();
         maps.resize(reflection.maps.desc().levels);
         for (int level = 0; level < reflection.maps.desc().levels; ++level) {
