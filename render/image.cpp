@@ -20,6 +20,7 @@
 #include "render/passes/speed_line_pass.h"
 #include "render/passes/temporal_pass.h"
 #include "render/passes/texture_combine_pass.h"
+#include "render/passes/vignette_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
 #include "render/tone_mapper.h"
@@ -60,6 +61,7 @@ constexpr EffectEntry kImage[] = {
     effect<DepthOfFieldEffect>(kMainViews),
     effect<GlareEffect>(kFilmViews),
     effect<GlowEffect>(kMainViews | kMeanView),
+    effect<VignetteEffect>(kFilmViews),
 
     // The film.
     effect<ToneMapEffect>(kFilmViews),

@@ -28,6 +28,7 @@
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/vignette.h"
 #include "ecs/components/water.h"
 #include "ecs/components/water_detail.h"
 #include "ecs/components/water_look.h"
@@ -111,6 +112,7 @@ void register_all_components() {
     register_resource<Exposure>();
     register_resource<Glow>();
     register_resource<Glare>();
+    register_resource<Vignette>();
     register_resource<LensRain>();
     register_resource<Weather>();
     register_resource<WeatherState>();
