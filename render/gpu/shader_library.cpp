@@ -1,5 +1,7 @@
 #include "render/gpu/shader_library.h"
 
+#include "ecs/base/hash.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "render/gpu/device_caps.h"
 
@@ -7,6 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 
 namespace limn::gpu {
@@ -80,6 +85,48 @@ std::string describe(const ProgramDesc& desc) {
         text += fmt::format(" {}={}", define.name, define.value);
     }
     return text;
+}
+
+using StageSources = std::vector<std::pair<GLenum, ShaderSource>>;
+
+const char* file_extension(GLenum stage) {
+    switch (stage) {
+    case GL_VERTEX_SHADER:
+        return "vert";
+    case GL_GEOMETRY_SHADER:
+        return "geom";
+    case GL_FRAGMENT_SHADER:
+        return "frag";
+    default:
+        return "comp";
+    }
+}
+
+/// Writes the assembled sources below the folder LIMN_SHADER_DUMP, if that is set.
+void dump_sources(const ProgramDesc& desc, const StageSources& sources) {
+    const char* root = std::getenv("LIMN_SHADER_DUMP");
+    if (root == nullptr || *root == '\0') {
+        return;
+    }
+    std::uint64_t hash = 0;
+    for (const auto& [stage, source] : sources) {
+        hash = hash_combine(hash, hash_text(source.text));
+    }
+    const std::string& name = desc.compute.empty() ? desc.fragment : desc.compute;
+    const std::filesystem::path folder =
+        std::filesystem::path(root)
+        / fmt::format("{}-{:016x}", std::filesystem::path(name).stem().string(), hash);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    std::ofstream(folder / "program.txt") << describe(desc) << '\n';
+    for (const auto& [stage, source] : sources) {
+        std::ofstream file(folder / fmt::format("program.{}", file_extension(stage)));
+        file << source.text;
+        if (!file.flush()) {
+            log_error("LIMN_SHADER_DUMP: cannot write to {}", folder.string());
+            return;
+        }
+    }
 }
 
 /// Too many textures in one stage are a capability or capacity error, by the device's limits.
@@ -174,7 +221,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         {GL_COMPUTE_SHADER, &desc.compute},
     }};
     // All files first: files that fail to compile must be watched too, or a fix would go unnoticed.
-    std::vector<std::pair<GLenum, ShaderSource>> sources;
+    StageSources sources;
     watched.clear();
     Status assembled = Done{};
     for (const auto& [stage, path] : stages) {
@@ -191,6 +238,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
     if (!assembled) {
         return assembled.error();
     }
+    dump_sources(desc, sources);
 
     std::vector<Shader> shaders;
     for (const auto& [stage, source] : sources) {
