@@ -11,6 +11,7 @@
 //   MIRRORS             some water reflects the sun's light upward
 
 #include "lib/light.glsl"
+#include "lib/numbers.glsl"  // must not be included first within the #ifdef below
 #include "lib/optics.glsl"
 #include "lib/reflector.glsl"
 #include "lib/surroundings.glsl"
