@@ -8,6 +8,7 @@
 #include "render/render_frame.h"
 #include "render/view_block.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace limn {
@@ -131,13 +132,14 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& lights = view.data.publish<LightList>();
     lights = frame.data.get<LightList>();
     auto& placed = view.data.publish<ClusterLights>();
+    placed.max_entries = std::min(kMaxListEntries, BufferTexture::max_texel_count());
     place_lights(view.camera, lights, placed);
     placed.light_records.upload(*frame.ring, placed.lights);
     placed.box_records.upload(*frame.ring, placed.boxes);
     if (placed.dropped > 0 && !dropped_reported) {
         log_warn(
             "lights: {} of {} cover so much of the image that the cluster lists have no room for "
-            "them (kMaxListEntries, light_clusters.h); they are not shown",
+            "them (ClusterLights::max_entries); they are not shown",
             placed.dropped, lights.reach.size());
         dropped_reported = true;
     }
