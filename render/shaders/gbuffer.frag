@@ -20,7 +20,7 @@ void main() {
     velocity = velocity_from(now_ndc, previous_clip);
 #endif
 #ifdef ALPHA_MASK
-    // Last: a discard leaves the derivatives of the rest of the quad undefined, and the texture lookups above need them.
+    // Last: a discard leaves the derivatives of the quad undefined, and the texture lookups above need them.
     if (color.a < material_texel(2).w) {
         discard;
     }

@@ -155,8 +155,8 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 #endif
 }
 
-// Adds the point and spot lights of a list: begin and length in light_indices. The record read
-// for an empty list, or past the end, adds nothing. Lights with shadows or cookies come last, in a separate loop.
+// Adds the point and spot lights of a list: begin and length in light_indices. The record read for an empty list, or
+// past the end, adds nothing. Lights with shadows or cookies come last, in a separate loop.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
     WaterMedium medium = water_medium(position_ws);
