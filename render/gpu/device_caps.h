@@ -21,6 +21,12 @@ struct DeviceCaps {
     int gl_minor = 0;
     bool software = false;  ///< rendered by the CPU: llvmpipe, softpipe, SwiftShader
     bool debug = false;     ///< a debug context
+    /// zink on lavapipe (Mesa 22.3.6), which compiles in uniforms that conditions and loop bounds
+    /// read at a constant offset of a block. lvp_inline_uniforms.c indexes its table of such
+    /// offsets with the wrong stride: from the third block of a stage on it writes past the end,
+    /// which gives wrong code or a crash in update_inline_shader_state(). Programs then get the
+    /// definition OPAQUE_UNIFORMS, which hides the offsets from the compiler.
+    bool opaque_uniforms = false;
 
     int max_texture_size = 0;  ///< of a side [px]
     int max_texture_3d_size = 0;

@@ -220,6 +220,10 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         {GL_FRAGMENT_SHADER, &desc.fragment},
         {GL_COMPUTE_SHADER, &desc.compute},
     }};
+    std::vector<ShaderDefine> defines = desc.defines;
+    if (caps_.opaque_uniforms) {
+        defines.push_back({"OPAQUE_UNIFORMS"});
+    }
     // All files first: files that fail to compile must be watched too, or a fix would go unnoticed.
     StageSources sources;
     watched.clear();
@@ -228,7 +232,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         if (path->empty() || !assembled) {
             continue;
         }
-        Result<ShaderSource> source = assemble_shader(files_, *path, desc.defines, &watched);
+        Result<ShaderSource> source = assemble_shader(files_, *path, defines, &watched);
         if (source) {
             sources.emplace_back(stage, *std::move(source));
         } else {
