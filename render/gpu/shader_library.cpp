@@ -152,6 +152,23 @@ Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Pro
     return require(caps, describe(desc).c_str(), needs);
 }
 
+/// Textures of different types on one unit, in whichever stages, are an error at draw time that not
+/// every driver reports.
+Status check_units(const ProgramDesc& desc, const Program& program) {
+    for (const ProgramBinding& a : program.bindings()) {
+        for (const ProgramBinding& b : program.bindings()) {
+            if (a.kind == BindingKind::Texture && b.kind == BindingKind::Texture
+                && a.binding == b.binding && a.type != b.type) {
+                return fail(
+                    "{}: context: {} and {} found at texture unit {}, expected one texture type "
+                    "per unit",
+                    describe(desc), a.name, b.name, a.binding);
+            }
+        }
+    }
+    return Done{};
+}
+
 }  // namespace
 
 ShaderLibrary::ShaderLibrary(const DeviceCaps& caps, ShaderFiles files)
@@ -286,10 +303,8 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
             log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));
-    const Status fits = check_textures(caps_, desc, program);
-    if (!fits) {
-        return fits.error();
-    }
+    LIMN_TRY(check_units(desc, program));
+    LIMN_TRY(check_textures(caps_, desc, program));
     return program;
 }
 

@@ -194,6 +194,36 @@ void main() { c = texture(a[0], vec2(0)) + texture(a[1], vec2(0)) + texture(a[2]
         != std::string::npos);
 }
 
+TEST_CASE_FIXTURE(test::RenderTest, "shader: textures of two types on one unit are refused") {
+    const ShaderFiles files = with_fragment(R"(#version 450
+layout(binding = 3) uniform sampler2D a;
+layout(binding = 3) uniform samplerBuffer b;
+layout(location = 0) out vec4 c;
+void main() { c = texture(a, vec2(0)) + texelFetch(b, 0); }
+)");
+    const std::string message = compile_error(files);
+    CHECK(message.find("v.vert + f.frag: context: ") == 0);
+    CHECK(message.find("found at texture unit 3, expected one texture type per unit") > 0);
+}
+
+TEST_CASE_FIXTURE(
+    test::RenderTest,
+    "shader: a moving sea with classic materials uses each unit for one texture") {
+    const auto program = device().shaders().load(
+        {.vertex = "water.vert",
+         .fragment = "water.frag",
+         .defines = {
+             {"OCEAN"},
+             {"VELOCITY"},
+             {"CLASSIC_MODELS"},
+             {"DIRECTIONAL_LIGHTS"},
+             {"SHADOWS"},
+             {"SHADOW_MAPS"},
+             {"PROJECTORS"},
+             {"LOCAL_LIGHTS"}}});
+    CHECK_MESSAGE(program.ok(), message_of(program));
+}
+
 TEST_CASE_FIXTURE(test::RenderTest, "shader: stages that do not fit together do not link") {
     ShaderFiles files =
         with_fragment("#version 450\nlayout(location = 0) in vec3 normal;\nlayout(location = 0) "

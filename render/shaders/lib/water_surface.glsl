@@ -9,7 +9,7 @@ layout(binding = 3) uniform samplerBuffer wave_rings;  // WaveRingRecord
 layout(binding = 4) uniform sampler2D ripple_atlas;    // height, velocity, slopes (ripple_atlas.h)
 #ifdef OCEAN  // ocean_textures.h
 layout(binding = 6) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z, current
-layout(binding = 13) uniform sampler2DArray previous_ocean_shift;  // previous frame
+layout(binding = 28) uniform sampler2DArray previous_ocean_shift;  // previous frame
 layout(binding = 14) uniform sampler2DArray ocean_slope;        // slope_x, slope_z, shift_xx, shift_zz
 layout(binding = 17) uniform sampler2DArray ocean_foam;         // shift_xz, foam
 #endif
