@@ -109,7 +109,7 @@ ImageFormat image_format(const ImageData& image) {
 MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
     : device_(device),
       anisotropy_(
-          device.caps().software
+          device.caps().software  // not by profile: filters change quality, not formats
               ? 1.0f
               : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
       magenta_("magenta", {.format = GL_RGBA8}), record_texture_("materials", GL_RGBA32F) {
@@ -177,7 +177,7 @@ void MaterialPool::upload_image(const ImageData& image) {
     texture.upload<std::uint8_t>(std::span(image.pixels).first(needed), GL_RGBA, format.type);
     texture.generate_mipmaps();
     gpu::GlObject<gpu::ObjectKind::Texture> encoded;
-    if (device_.caps().software && format.format == GL_SRGB8_ALPHA8) {
+    if (device_.caps().profile == gpu::Profile::Software && format.format == GL_SRGB8_ALPHA8) {
         GLuint id = 0;
         glGenTextures(1, &id);
         glTextureView(
