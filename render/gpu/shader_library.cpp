@@ -238,6 +238,9 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         {GL_COMPUTE_SHADER, &desc.compute},
     }};
     std::vector<ShaderDefine> defines = desc.defines;
+    if (caps_.profile == Profile::Gpu) {
+        defines.push_back({"HALF_FLOATS"});  // lib/radiance.glsl
+    }
     if (caps_.opaque_uniforms) {
         defines.push_back({"OPAQUE_UNIFORMS"});
     }

@@ -13,6 +13,7 @@
 #include "lib/light.glsl"
 #include "lib/numbers.glsl"  // must not be included first within the #ifdef below
 #include "lib/optics.glsl"
+#include "lib/radiance.glsl"
 #include "lib/reflector.glsl"
 #include "lib/surroundings.glsl"
 #include "lib/view.glsl"

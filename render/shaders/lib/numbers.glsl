@@ -11,6 +11,9 @@ bvec3 is_nan(vec3 v) {
 bool is_infinite(float x) {
     return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u;
 }
+bvec3 is_infinite(vec3 v) {
+    return equal(floatBitsToUint(v) & 0x7fffffffu, uvec3(0x7f800000u));
+}
 
 // Neither infinite nor NaN.
 bool is_finite(float x) {
