@@ -1,4 +1,5 @@
-// Drivers accept code that the language forbids: glslangValidator checks every shader in many variants.
+// Drivers accept code that the language forbids: glslangValidator checks every shader in many
+// variants.
 
 #include "render/gpu/shader_source.h"
 #include "tests/support.h"
@@ -21,7 +22,7 @@
 namespace limn {
 namespace {
 
-/// A definition that has a value.
+/// A definition with a value, for stages whose own file mentions it.
 struct KnownDefine {
     std::string_view name;
     std::vector<const char*> values;  ///< each is tried in turn
@@ -107,7 +108,7 @@ std::vector<Defines> variants_of(const std::set<std::string>& names) {
     return variants;
 }
 
-/// `variants` times the values of known_defines.
+/// `variants` times the values of known_defines that `text`, the stage's own file, mentions.
 std::vector<Defines> with_values(std::vector<Defines> variants, std::string_view text) {
     for (const KnownDefine& known : known_defines()) {
         if (!has_word(text, known.name)) {
@@ -135,10 +136,13 @@ std::string describe(const Defines& defines) {
 
 /// The errors that glslangValidator reports for a stage, "" if none.
 std::string validate(const test::TemporaryFolder& folder, const std::string& stage) {
-    std::string text = text_of(stage, {});
-    std::set<std::string> names = tested_names(text);
+    std::set<std::string> names = tested_names(text_of(stage, {}));
     names.erase(kAtVertices);
-    std::vector<Defines> variants = with_values(variants_of(names), text);
+    for (const KnownDefine& known : known_defines()) {
+        names.erase(std::string(known.name));
+    }
+    const std::string own = gpu::ShaderFiles::standard().read(stage).value_or("");
+    const std::vector<Defines> variants = with_values(variants_of(names), own);
     const std::string extension = std::filesystem::path(stage).extension().string();
     std::string command = "glslangValidator";
     for (std::size_t i = 0; i < variants.size(); ++i) {
@@ -167,7 +171,8 @@ TEST_CASE("glslang: every shader is valid with and without each definition") {
     for (const auto& entry :
          std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/render/shaders")) {
         const std::string extension = entry.path().extension().string();
-        if (extension != ".vert" && extension != ".frag" && extension != ".geom" && extension != ".comp") {
+        if (extension != ".vert" && extension != ".frag" && extension != ".geom"
+            && extension != ".comp") {
             continue;
         }
         const test::TemporaryFolder folder;

@@ -47,5 +47,13 @@ TEST_CASE_FIXTURE(test::RenderTest, "numbers: NaN and infinite motion becomes no
     CHECK(moved[3] == Vec4(3, 4, 1.5, 2));
 }
 
+TEST_CASE_FIXTURE(test::RenderTest, "numbers: radiance for half floats is clamped to their range") {
+    const std::string half = "#define HALF_FLOATS\n#include \"lib/radiance.glsl\"\n";
+    const std::string body = "y.xyz = storable(x.xyz);";
+    const Vec4 bright(1, 1e9f, Limits::infinity(), 0);
+    CHECK(test::evaluate_shader(half, body, {bright})[0] == Vec4(1, 65504, 65504, 0));
+    CHECK(test::evaluate_shader("#include \"lib/radiance.glsl\"\n", body, {bright})[0] == bright);
+}
+
 }  // namespace
 }  // namespace limn
