@@ -209,7 +209,6 @@ void MaterialPool::add_material(const Material& material) {
     }
     batch.features |= uv_feature(material);
     batch.features |= reads_encoded(material.base_color_texture.image) ? kSrgbBaseColor : 0u;
-    batch.features |= reads_encoded(material.emission_texture.image) ? kSrgbEmission : 0u;
     batch.features |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features |= material.double_sided ? kDoubleSided : 0u;
     batch.textures = texture_set(set);
@@ -269,7 +268,7 @@ void MaterialPool::bind_textures(std::uint32_t textures) const {
             const gpu::Sampler* sampler = &samplers_[set[i].sampler];
             if (image >= images_.size() || !images_[image].texture) {
                 device_.bind_texture(i, magenta_, sampler);
-            } else if (images_[image].encoded) {
+            } else if (images_[image].encoded && i == 0) {
                 device_.bind_texture_name(i, images_[image].encoded.id(), sampler);
             } else {
                 device_.bind_texture(i, images_[image].texture, sampler);
