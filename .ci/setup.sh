@@ -6,7 +6,7 @@ packages=(
     libopenexr-dev libopenimageio-dev libmeshoptimizer-dev nlohmann-json3-dev
     libtbb-dev libhwy-dev libimgui-dev libcli11-dev libfmt-dev libspdlog-dev
     doctest-dev libbenchmark-dev libkissfft-dev
-    fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
+    glslang-tools fonts-dejavu-core xvfb xauth xdotool x11-apps imagemagick
 )
 ci_packages=(clang clang-format libclang-rt-14-dev)
 

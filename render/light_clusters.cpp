@@ -145,7 +145,7 @@ void place_lights(const RenderView& view, const LightList& lights, ClusterLights
         if (!find_cells(view, clusters.shape, light, box)) {
             continue;
         }
-        if (clusters.capacity + box.volume() > kMaxListEntries) {
+        if (clusters.capacity + box.volume() > clusters.max_entries) {
             ++clusters.dropped;
             continue;
         }

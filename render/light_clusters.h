@@ -48,19 +48,20 @@ struct CellBox {
     }
 };
 
+/// Maximum total length of all lists: 64 MiB of indices. Lights that would exceed it are left out.
+inline constexpr std::size_t kMaxListEntries = std::size_t{1} << 24;
+
 /// The point and spot lights of a LightList that may reach into the view, in its order.
 struct ClusterLights {
     ClusterShape shape;
     std::vector<layout::ClusterLight> lights;
     std::vector<layout::uvec2> boxes;  ///< of each light, packed as layout::cell_box_* expect
-    std::size_t capacity = 0;          ///< upper bound of the total length of all lists
-    int dropped = 0;                   ///< lights left out by kMaxListEntries
+    std::size_t max_entries = kMaxListEntries;  ///< less if buffer textures cannot hold as many
+    std::size_t capacity = 0;                   ///< upper bound of the total length of all lists
+    int dropped = 0;                            ///< lights left out by max_entries
     BufferTexture light_records = BufferTexture("cluster lights", GL_RGBA32F);
     BufferTexture box_records = BufferTexture("cluster boxes", GL_RG32UI);
 };
-
-/// Maximum total length of all lists: 64 MiB of indices. Lights that would exceed it are left out.
-inline constexpr std::size_t kMaxListEntries = std::size_t{1} << 24;
 
 /// Shape whose slices span the distances from the near plane to the end of the farthest light.
 [[nodiscard]] ClusterShape

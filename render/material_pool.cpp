@@ -109,7 +109,7 @@ ImageFormat image_format(const ImageData& image) {
 MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
     : device_(device),
       anisotropy_(
-          device.caps().software
+          device.caps().software  // not by profile: filters change quality, not formats
               ? 1.0f
               : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
       magenta_("magenta", {.format = GL_RGBA8}), record_texture_("materials", GL_RGBA32F) {
@@ -177,7 +177,7 @@ void MaterialPool::upload_image(const ImageData& image) {
     texture.upload<std::uint8_t>(std::span(image.pixels).first(needed), GL_RGBA, format.type);
     texture.generate_mipmaps();
     gpu::GlObject<gpu::ObjectKind::Texture> encoded;
-    if (device_.caps().software && format.format == GL_SRGB8_ALPHA8) {
+    if (device_.caps().profile == gpu::Profile::Software && format.format == GL_SRGB8_ALPHA8) {
         GLuint id = 0;
         glGenTextures(1, &id);
         glTextureView(
@@ -209,7 +209,6 @@ void MaterialPool::add_material(const Material& material) {
     }
     batch.features |= uv_feature(material);
     batch.features |= reads_encoded(material.base_color_texture.image) ? kSrgbBaseColor : 0u;
-    batch.features |= reads_encoded(material.emission_texture.image) ? kSrgbEmission : 0u;
     batch.features |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
     batch.features |= material.double_sided ? kDoubleSided : 0u;
     batch.textures = texture_set(set);
@@ -269,7 +268,7 @@ void MaterialPool::bind_textures(std::uint32_t textures) const {
             const gpu::Sampler* sampler = &samplers_[set[i].sampler];
             if (image >= images_.size() || !images_[image].texture) {
                 device_.bind_texture(i, magenta_, sampler);
-            } else if (images_[image].encoded) {
+            } else if (images_[image].encoded && i == 0) {
                 device_.bind_texture_name(i, images_[image].encoded.id(), sampler);
             } else {
                 device_.bind_texture(i, images_[image].texture, sampler);

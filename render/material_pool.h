@@ -22,9 +22,10 @@ class Device;
 // together, whatever their mesh and material. An image that is missing, broken or too large is
 // magenta.
 //
-// Cheaper settings on a software OpenGL, which pays for what is free on a GPU: sRGB is decoded
-// after filtering (a third of the cost), only the base color is filtered trilinearly, and nothing
-// anisotropically (five times the cost).
+// Cheaper settings on a software OpenGL, which pays for what is free on a GPU: the sRGB of the base
+// color is decoded after filtering (a third of the cost), only the base color is filtered
+// trilinearly, and nothing anisotropically (five times the cost). Emission is decoded before
+// filtering: between lit and dark windows the error would show.
 
 inline constexpr int kMaterialTextures =
     5;  ///< base color, metal-rough, normal, occlusion, emission
@@ -71,7 +72,7 @@ class MaterialPool {
         std::uint32_t sampler = 0;
         bool operator==(const BoundTexture&) const = default;
     };
-    /// On a software OpenGL sRGB images are read through a view that does not decode them.
+    /// On a software OpenGL base colors are read through a view that does not decode sRGB.
     struct Image {
         gpu::Texture texture;
         gpu::GlObject<gpu::ObjectKind::Texture> encoded;

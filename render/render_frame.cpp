@@ -62,7 +62,8 @@ class Renderer {
           shapes_(static_cast<std::size_t>(its_device.caps().max_storage_bytes)) {
         // A software OpenGL writes 32-bit floats faster than 16-bit ones, which it truncates
         // instead of rounding.
-        const bool full_float = its_settings.full_float || its_device.caps().software;
+        const bool full_float =
+            its_settings.full_float || its_device.caps().profile == gpu::Profile::Software;
         frame_.radiance_format = full_float ? GL_RGBA32F : GL_RGBA16F;
         frame_.velocity_format = full_float ? GL_RG32F : GL_RG16F;
         frame_.device = &device;

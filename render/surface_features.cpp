@@ -20,7 +20,6 @@ constexpr FeatureName kNames[] = {
     {kAlphaMask, "ALPHA_MASK"},
     {kDoubleSided, "DOUBLE_SIDED"},
     {kSrgbBaseColor, "SRGB_BASE_COLOR"},
-    {kSrgbEmission, "SRGB_EMISSION"},
     {kVertexColor, "VERTEX_COLOR"},
     {kVelocity, "VELOCITY"},
     {kOcclusionShared, "OCCLUSION_SHARED"},

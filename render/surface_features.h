@@ -19,7 +19,6 @@ enum SurfaceFeature : std::uint32_t {
     kAlphaMask = 1u << 7,
     kDoubleSided = 1u << 8,
     kSrgbBaseColor = 1u << 9,
-    kSrgbEmission = 1u << 10,
     kVertexColor = 1u << 11,      // added by the mesh
     kVelocity = 1u << 12,         // added by the view
     kOcclusionShared = 1u << 13,  // occlusion is the red channel of the metal-rough texture

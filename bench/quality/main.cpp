@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,9 +21,10 @@ namespace limn {
 namespace {
 
 struct QualityOptions {
-    std::string effect;  ///< empty = all
-    std::string json;    ///< file to write; empty = none
-    std::string html;    ///< file to write; empty = none
+    std::string effect;                   ///< empty = all
+    std::string json;                     ///< file to write; empty = none
+    std::string html;                     ///< file to write; empty = none
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 
 /// All effects, or the one of that name.
@@ -47,7 +49,7 @@ Result<std::vector<const QualityEffect*>> choose_effects(const std::string& name
 /// Prints the table and writes the files; then fails if a bound is violated.
 Status measure(const QualityOptions& options) {
     const auto effects = LIMN_TRY(choose_effects(options.effect));
-    HeadlessRenderer headless = LIMN_TRY(create_headless_renderer());
+    HeadlessRenderer headless = LIMN_TRY(create_headless_renderer(options.profile));
     std::vector<MeasuredQuality> measured;
     std::size_t missed = 0;
     {
@@ -86,6 +88,18 @@ int run(int argc, char** argv) {
     QualityOptions options;
     program.add_option("effect", options.effect, "name of an effect; default: all")
         ->type_name("EFFECT");
+    program
+        .add_option_function<std::string>(
+            "--profile",
+            [&options](const std::string& text) {
+                const Result<gpu::Profile> profile = parse_profile(text);
+                if (!profile) {
+                    throw CLI::ValidationError("--profile", profile.error().message);
+                }
+                options.profile = *profile;
+            },
+            "render as on a GPU or as on a software OpenGL; default: by the device")
+        ->type_name("gpu|software");
     program.add_option("--json", options.json, "write the results")->type_name("FILE");
     program.add_option("--html", options.html, "write a page with images")->type_name("FILE");
     std::string names;

@@ -50,10 +50,10 @@ Status write_results(
 }
 
 /// Fails if the device cannot render images of that size.
-Result<HeadlessRenderer> create_renderer_for(const IVec2& size) {
-    Result<HeadlessRenderer> headless = create_headless_renderer();
+Result<HeadlessRenderer> create_renderer_for(const BenchOptions& options) {
+    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
     if (headless) {
-        if (const Status fits = check_image_size(*headless->device, size); !fits) {
+        if (const Status fits = check_image_size(*headless->device, options.size); !fits) {
             return fits.error();
         }
     }
@@ -61,7 +61,7 @@ Result<HeadlessRenderer> create_renderer_for(const IVec2& size) {
 }
 
 Status run_lens_bench(const BenchOptions& options) {
-    Result<HeadlessRenderer> headless = create_renderer_for(options.size);
+    Result<HeadlessRenderer> headless = create_renderer_for(options);
     if (!headless) {
         return headless.error();
     }
@@ -131,7 +131,7 @@ Status run_bench(const BenchOptions& options) {
         return opened.error();
     }
     Stage& stage = **opened;
-    Result<HeadlessRenderer> headless = create_renderer_for(options.size);
+    Result<HeadlessRenderer> headless = create_renderer_for(options);
     if (!headless) {
         return headless.error();
     }

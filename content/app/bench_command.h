@@ -3,7 +3,9 @@
 #include "content/app/command_values.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "render/gpu/device_caps.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,7 @@ struct BenchOptions {
     std::vector<Assignment> assignments;  ///< --set
     std::string json;  ///< file, or "-" for stdout instead of the table; empty = none
     std::string csv;   ///< the same
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 
 /// Runs one step and renders one frame, then waits for the GPU, so that no cost spills into the

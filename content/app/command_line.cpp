@@ -4,10 +4,10 @@
 #include "content/app/command_values.h"
 #include "content/app/compare_command.h"
 #include "content/app/hash_command.h"
+#include "content/app/image_file.h"
 #include "content/app/info_command.h"
 #include "content/app/list_commands.h"
 #include "content/app/log_sink.h"
-#include "content/app/image_file.h"
 #include "content/app/play_command.h"
 #include "content/app/quality_command.h"
 #include "content/app/render_command.h"
@@ -21,6 +21,7 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,13 @@ void add_assignments(CLI::App& app, std::vector<Assignment>& assignments) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile) {
+    add_parsed(
+        app, "--profile", "render as on a GPU or as on a software OpenGL; default: by the device",
+        profile, parse_profile)
+        ->type_name("gpu|software");
+}
+
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
     app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: the tour")
@@ -136,6 +144,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
            "rendered pixels per window pixel, 0.1 to 2; auto adapts it to hold 60 frames per "
            "second")
         ->type_name("auto|X");
+    add_profile(*app, options.profile);
     add_integer(
         *app, "--headless-frames", "render N frames along the camera path, without a window",
         options.headless_frames, 1, 10000);
@@ -176,6 +185,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_parsed(*app, "--aov", "layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
     add_assignments(*app, options.assignments);
+    add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
     app->footer("Layers of --aov: depth [m], normal (world), albedo, velocity [pixels], emission,\n"
@@ -208,6 +218,7 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         ->default_str(std::to_string(options.warmup));
     add_size(*app, options.size);
     add_assignments(*app, options.assignments);
+    add_profile(*app, options.profile);
     app->add_option("--json", options.json, "write the numbers as JSON; - is stdout")
         ->type_name("FILE");
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")

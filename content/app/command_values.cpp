@@ -86,6 +86,16 @@ Result<std::vector<std::string>> parse_list(std::string_view text) {
     return parts;
 }
 
+Result<gpu::Profile> parse_profile(std::string_view text) {
+    if (text == "gpu") {
+        return gpu::Profile::Gpu;
+    }
+    if (text == "software") {
+        return gpu::Profile::Software;
+    }
+    return fail("found \"{}\", expected gpu or software", text);
+}
+
 std::string one_line(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;

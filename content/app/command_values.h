@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "render/gpu/device_caps.h"
 
 #include <cstdint>
 #include <string>
@@ -49,6 +50,9 @@ parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 
 /// The parts between the commas; an empty part is an error.
 [[nodiscard]] Result<std::vector<std::string>> parse_list(std::string_view text);
+
+/// "gpu" or "software".
+[[nodiscard]] Result<gpu::Profile> parse_profile(std::string_view text);
 
 /// A message without line breaks.
 [[nodiscard]] std::string one_line(std::string text);

@@ -16,14 +16,14 @@ Status check_image_size(const gpu::Device& device, const IVec2& size) {
     return Done{};
 }
 
-Result<HeadlessRenderer> create_headless_renderer() {
+Result<HeadlessRenderer> create_headless_renderer(std::optional<gpu::Profile> profile) {
     HeadlessRenderer headless;
     Result<std::unique_ptr<gpu::Context>> context = gpu::create_headless_context();
     if (!context) {
         return context.error();
     }
     headless.context = *std::move(context);
-    Result<std::unique_ptr<gpu::Device>> device = gpu::Device::from_current_context();
+    Result<std::unique_ptr<gpu::Device>> device = gpu::Device::from_current_context(profile);
     if (!device) {
         return device.error();
     }

@@ -7,6 +7,7 @@
 #include "render/render_frame.h"
 
 #include <memory>
+#include <optional>
 
 namespace limn {
 
@@ -20,7 +21,8 @@ struct HeadlessRenderer {
 /// Fails if the device cannot render an image of that size.
 [[nodiscard]] Status check_image_size(const gpu::Device& device, const IVec2& size);
 
-/// Fails without OpenGL 4.5 or with a shader compiler's message.
-[[nodiscard]] Result<HeadlessRenderer> create_headless_renderer();
+/// Fails without OpenGL 4.5 or with a shader compiler's message. Default profile: by the device.
+[[nodiscard]] Result<HeadlessRenderer>
+create_headless_renderer(std::optional<gpu::Profile> profile = {});
 
 }  // namespace limn

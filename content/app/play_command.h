@@ -2,7 +2,9 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "render/gpu/device_caps.h"
 
+#include <optional>
 #include <string>
 
 namespace limn {
@@ -13,8 +15,9 @@ struct PlayOptions {
     std::string scene;  ///< empty: the tour
     IVec2 size = {1280, 720};
     bool fullscreen = false;
-    float scale = 0.0f;       ///< rendered pixels per window pixel; 0 = automatic
-    bool scale_auto = false;  ///< adapts the scale to hold 60 frames per second
+    float scale = 0.0f;                   ///< rendered pixels per window pixel; 0 = automatic
+    bool scale_auto = false;              ///< adapts the scale to hold 60 frames per second
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
     int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots

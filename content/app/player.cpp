@@ -151,7 +151,8 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
     if (!window) {
         return window.error();
     }
-    Result<std::unique_ptr<gpu::Device>> device = gpu::Device::from_current_context();
+    Result<std::unique_ptr<gpu::Device>> device =
+        gpu::Device::from_current_context(options.profile);
     if (!device) {
         return device.error();
     }

@@ -176,7 +176,7 @@ Status run_render(const RenderOptions& options) {
     if (!folder) {
         return folder.error();
     }
-    Result<HeadlessRenderer> headless = create_headless_renderer();
+    Result<HeadlessRenderer> headless = create_headless_renderer(options.profile);
     if (!headless) {
         return headless.error();
     }

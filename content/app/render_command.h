@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/app/command_values.h"
+#include "render/gpu/device_caps.h"
 
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ struct RenderOptions {
     std::vector<std::string> aovs;        ///< additional EXR layers
     std::vector<Assignment> assignments;  ///< applied after loading, in order
     std::string camera;                   ///< by name; empty = the level's
+    std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
 
 /// Rejects options that exclude each other and invalid output names; errors are wrong usage.

@@ -8,13 +8,15 @@
 
 namespace limn::gpu {
 
-Result<std::unique_ptr<Device>> Device::from_current_context() {
+Result<std::unique_ptr<Device>> Device::from_current_context(std::optional<Profile> profile) {
     const int version = epoxy_gl_version();
     if (version < 45 || !epoxy_is_desktop_gl()) {
         return fail(
             "OpenGL: version {}.{} found, expected at least 4.5 core", version / 10, version % 10);
     }
-    return std::unique_ptr<Device>(new Device(read_device_caps()));
+    DeviceCaps caps = read_device_caps();
+    caps.profile = profile.value_or(caps.profile);
+    return std::unique_ptr<Device>(new Device(caps));
 }
 
 Device::Device(const DeviceCaps& caps)

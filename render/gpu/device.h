@@ -11,6 +11,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace limn::gpu {
 
@@ -39,8 +40,9 @@ class Device {
   public:
     /// Fails below OpenGL 4.5 or without clip control. The context must stay current on this thread
     /// while the device is used, and outlive it. Sets reversed depth (clip control 0 .. 1, clear
-    /// 0).
-    [[nodiscard]] static Result<std::unique_ptr<Device>> from_current_context();
+    /// 0). Default profile: by the device.
+    [[nodiscard]] static Result<std::unique_ptr<Device>>
+    from_current_context(std::optional<Profile> profile = {});
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;

@@ -32,6 +32,8 @@ DeviceCaps read_device_caps() {
          {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software Rasterizer"}) {
         caps.software = caps.software || caps.renderer.find(name) != std::string::npos;
     }
+    caps.profile = caps.software ? Profile::Software : Profile::Gpu;
+    caps.opaque_uniforms = caps.software && caps.renderer.find("zink") != std::string::npos;
     caps.debug = (get_int(GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_DEBUG_BIT) != 0;
     caps.max_texture_size = get_int(GL_MAX_TEXTURE_SIZE);
     caps.max_texture_3d_size = get_int(GL_MAX_3D_TEXTURE_SIZE);

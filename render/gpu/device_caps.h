@@ -13,14 +13,25 @@ namespace limn::gpu {
 // classes of error, all found before anything is drawn: a capability is absent, the context lacks
 // something mandatory, or a capacity is exceeded.
 
+/// Choice of formats and shader definitions: those of a GPU, or those that are fast where the CPU
+/// renders. Either runs on any OpenGL; the images agree to 45 dB.
+enum class Profile : std::uint8_t { Gpu, Software };
+
 struct DeviceCaps {
     std::string vendor;
     std::string renderer;
     std::string version;
     int gl_major = 0;
     int gl_minor = 0;
-    bool software = false;  ///< rendered by the CPU: llvmpipe, softpipe, SwiftShader
-    bool debug = false;     ///< a debug context
+    bool software = false;           ///< rendered by the CPU: llvmpipe, softpipe, SwiftShader
+    Profile profile = Profile::Gpu;  ///< by `software`, unless requested
+    bool debug = false;              ///< a debug context
+    /// zink on lavapipe (Mesa 22.3.6), which compiles in uniforms that conditions and loop bounds
+    /// read at a constant offset of a block. lvp_inline_uniforms.c indexes its table of such
+    /// offsets with the wrong stride: from the third block of a stage on it writes past the end,
+    /// which gives wrong code or a crash in update_inline_shader_state(). Programs then get the
+    /// definition OPAQUE_UNIFORMS, which hides the offsets from the compiler.
+    bool opaque_uniforms = false;
 
     int max_texture_size = 0;  ///< of a side [px]
     int max_texture_3d_size = 0;

@@ -1,5 +1,7 @@
 #include "render/gpu/shader_library.h"
 
+#include "ecs/base/hash.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "render/gpu/device_caps.h"
 
@@ -7,6 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 
 namespace limn::gpu {
@@ -82,6 +87,48 @@ std::string describe(const ProgramDesc& desc) {
     return text;
 }
 
+using StageSources = std::vector<std::pair<GLenum, ShaderSource>>;
+
+const char* file_extension(GLenum stage) {
+    switch (stage) {
+    case GL_VERTEX_SHADER:
+        return "vert";
+    case GL_GEOMETRY_SHADER:
+        return "geom";
+    case GL_FRAGMENT_SHADER:
+        return "frag";
+    default:
+        return "comp";
+    }
+}
+
+/// Writes the assembled sources below the folder LIMN_SHADER_DUMP, if that is set.
+void dump_sources(const ProgramDesc& desc, const StageSources& sources) {
+    const char* root = std::getenv("LIMN_SHADER_DUMP");
+    if (root == nullptr || *root == '\0') {
+        return;
+    }
+    std::uint64_t hash = 0;
+    for (const auto& [stage, source] : sources) {
+        hash = hash_combine(hash, hash_text(source.text));
+    }
+    const std::string& name = desc.compute.empty() ? desc.fragment : desc.compute;
+    const std::filesystem::path folder =
+        std::filesystem::path(root)
+        / fmt::format("{}-{:016x}", std::filesystem::path(name).stem().string(), hash);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    std::ofstream(folder / "program.txt") << describe(desc) << '\n';
+    for (const auto& [stage, source] : sources) {
+        std::ofstream file(folder / fmt::format("program.{}", file_extension(stage)));
+        file << source.text;
+        if (!file.flush()) {
+            log_error("LIMN_SHADER_DUMP: cannot write to {}", folder.string());
+            return;
+        }
+    }
+}
+
 /// Too many textures in one stage are a capability or capacity error, by the device's limits.
 Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Program& program) {
     constexpr std::array<std::pair<GLenum, int PassRequirements::*>, 3> kStages = {{
@@ -103,6 +150,23 @@ Status check_textures(const DeviceCaps& caps, const ProgramDesc& desc, const Pro
         }
     }
     return require(caps, describe(desc).c_str(), needs);
+}
+
+/// Textures of different types on one unit, in whichever stages, are an error at draw time that not
+/// every driver reports.
+Status check_units(const ProgramDesc& desc, const Program& program) {
+    for (const ProgramBinding& a : program.bindings()) {
+        for (const ProgramBinding& b : program.bindings()) {
+            if (a.kind == BindingKind::Texture && b.kind == BindingKind::Texture
+                && a.binding == b.binding && a.type != b.type) {
+                return fail(
+                    "{}: context: {} and {} found at texture unit {}, expected one texture type "
+                    "per unit",
+                    describe(desc), a.name, b.name, a.binding);
+            }
+        }
+    }
+    return Done{};
 }
 
 }  // namespace
@@ -173,15 +237,22 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
         {GL_FRAGMENT_SHADER, &desc.fragment},
         {GL_COMPUTE_SHADER, &desc.compute},
     }};
+    std::vector<ShaderDefine> defines = desc.defines;
+    if (caps_.profile == Profile::Gpu) {
+        defines.push_back({"HALF_FLOATS"});  // lib/radiance.glsl
+    }
+    if (caps_.opaque_uniforms) {
+        defines.push_back({"OPAQUE_UNIFORMS"});
+    }
     // All files first: files that fail to compile must be watched too, or a fix would go unnoticed.
-    std::vector<std::pair<GLenum, ShaderSource>> sources;
+    StageSources sources;
     watched.clear();
     Status assembled = Done{};
     for (const auto& [stage, path] : stages) {
         if (path->empty() || !assembled) {
             continue;
         }
-        Result<ShaderSource> source = assemble_shader(files_, *path, desc.defines, &watched);
+        Result<ShaderSource> source = assemble_shader(files_, *path, defines, &watched);
         if (source) {
             sources.emplace_back(stage, *std::move(source));
         } else {
@@ -191,6 +262,7 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
     if (!assembled) {
         return assembled.error();
     }
+    dump_sources(desc, sources);
 
     std::vector<Shader> shaders;
     for (const auto& [stage, source] : sources) {
@@ -234,10 +306,8 @@ ShaderLibrary::build(const ProgramDesc& desc, std::vector<ShaderFileVersion>& wa
             log.empty() ? "the stages do not link, no reason given" : log);
     }
     Program program(id, describe(desc));
-    const Status fits = check_textures(caps_, desc, program);
-    if (!fits) {
-        return fits.error();
-    }
+    LIMN_TRY(check_units(desc, program));
+    LIMN_TRY(check_textures(caps_, desc, program));
     return program;
 }
 

@@ -16,6 +16,9 @@ struct DeviceCaps;
 //
 //     Result<const Program*> program =
 //         device.shaders().load({.vertex = "water.vert", .fragment = "water.frag"});
+//
+// With the environment variable LIMN_SHADER_DUMP, the assembled sources are also written to that
+// folder, one subfolder per program, for glslangValidator -l (tests/glslang.cmake).
 
 /// The source files of a program and its preprocessor definitions. Set either `compute` or `vertex`
 /// (with the others).

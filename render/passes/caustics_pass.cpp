@@ -93,7 +93,7 @@ bool CausticsEffect::is_used(const FrameData& frame) {
 Result<CausticsEffect> CausticsEffect::create(gpu::Device& device, const RenderSettings&) {
     CausticsEffect effect{
         .rays = ProgramVariants(device, {.compute = "caustics_rays.comp"}),
-        .on_cpu = device.caps().software,
+        .on_cpu = device.caps().profile == gpu::Profile::Software,
         .splat = LIMN_TRY(device.shaders().load({.compute = "caustics_splat.comp"})),
         .map = LIMN_TRY(device.shaders().load({.compute = "caustics_map.comp"}))};
     effect.maps = make_atlas({1, 1});

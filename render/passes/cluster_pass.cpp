@@ -8,6 +8,7 @@
 #include "render/render_frame.h"
 #include "render/view_block.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace limn {
@@ -55,8 +56,7 @@ ClusterLists build_clusters(
     }
     lists.cell_texture = &pass.cells;
     lists.index_texture = &pass.indices;
-    const auto lights = static_cast<unsigned>(clusters.lights.size());
-    const unsigned words = divide_up(lights, 32);
+    const unsigned words = divide_up(clusters.lights.size(), 32);
     const unsigned blocks = block_count(clusters.shape);
     const auto cells = static_cast<unsigned>(clusters.shape.cells());
     const BufferId masks = graph.create_buffer(
@@ -68,20 +68,19 @@ ClusterLists build_clusters(
 
     graph.add_pass(
         "clusters.blocks", {}, {masks},
-        [&pass, &clusters, &view, masks, lights, blocks, words](PassContext& context) {
+        [&pass, &clusters, &view, masks, blocks, words](PassContext& context) {
             context.device().use(*pass.blocks);
             bind_view(context, view);
-            pass.blocks->set("light_count", lights);
+            clusters.light_records.bind(context.device(), kClusterLightsUnit);
             clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
             context.device().dispatch(divide_up(blocks, kBlocksGroup), words);
         });
     graph.add_pass(
         "clusters.count", {masks}, {lists.cells},
-        [&pass, &clusters, &view, masks, lists, lights, blocks](PassContext& context) {
+        [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.count);
             bind_view(context, view);
-            pass.count->set("light_count", lights);
             clusters.light_records.bind(context.device(), kClusterLightsUnit);
             clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
@@ -96,10 +95,9 @@ ClusterLists build_clusters(
     });
     graph.add_pass(
         "clusters.fill", {masks, lists.cells}, {lists.indices},
-        [&pass, &clusters, &view, masks, lists, lights, blocks](PassContext& context) {
+        [&pass, &clusters, &view, masks, lists, blocks](PassContext& context) {
             context.device().use(*pass.fill);
             bind_view(context, view);
-            pass.fill->set("light_count", lights);
             clusters.light_records.bind(context.device(), kClusterLightsUnit);
             clusters.box_records.bind(context.device(), kBoxesUnit);
             context.bind_storage(kMasksBinding, masks);
@@ -131,13 +129,14 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& lights = view.data.publish<LightList>();
     lights = frame.data.get<LightList>();
     auto& placed = view.data.publish<ClusterLights>();
+    placed.max_entries = std::min(kMaxListEntries, BufferTexture::max_texel_count());
     place_lights(view.camera, lights, placed);
     placed.light_records.upload(*frame.ring, placed.lights);
     placed.box_records.upload(*frame.ring, placed.boxes);
     if (placed.dropped > 0 && !dropped_reported) {
         log_warn(
             "lights: {} of {} cover so much of the image that the cluster lists have no room for "
-            "them (kMaxListEntries, light_clusters.h); they are not shown",
+            "them (ClusterLights::max_entries); they are not shown",
             placed.dropped, lights.reach.size());
         dropped_reported = true;
     }

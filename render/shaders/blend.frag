@@ -19,5 +19,5 @@ void main() {
     Reflector r = make_reflector(s, to_viewer(position_ws));
     float mirror = dot(r.mirror, vec3(1.0 / 3.0));
     radiance = vec4(
-        opacity * (light.diffuse + s.emission) + light.specular, opacity + (1.0 - opacity) * mirror);
+        storable(opacity * (light.diffuse + s.emission) + light.specular), opacity + (1.0 - opacity) * mirror);
 }

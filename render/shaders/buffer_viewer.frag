@@ -1,6 +1,7 @@
 // Displays any 2D texture of the frame: a range of values becomes black to white, one channel or
 // three. NaN is magenta, infinity cyan. The target has the texture's size.
 #version 450
+#include "lib/numbers.glsl"
 
 layout(binding = 0) uniform sampler2D buffer_image;
 uniform vec2 shown_range;    // the values shown as black and white
@@ -23,10 +24,10 @@ void main() {
     vec3 value = shown_channel < 4 ? vec3(texel[shown_channel]) : texel.rgb;
     vec3 shown = clamp((value - shown_range.x) / (shown_range.y - shown_range.x), 0.0, 1.0);
     shown = encode_srgb != 0 ? srgb_from_linear(shown) : shown;
-    if (any(isinf(value))) {
+    if (is_infinite(value.r) || is_infinite(value.g) || is_infinite(value.b)) {
         shown = kInfinite;
     }
-    if (any(isnan(value))) {
+    if (any(is_nan(value))) {
         shown = kNotANumber;
     }
     color = vec4(shown, 1.0);

@@ -5,12 +5,11 @@
 #include "lib/cluster.glsl"
 
 layout(local_size_x = 32) in;  // blocks
-layout(binding = 1) uniform usamplerBuffer boxes;
+layout(binding = 0) uniform samplerBuffer cluster_lights;  // ClusterLight
+layout(binding = 1) uniform usamplerBuffer boxes;  // ClusterLights::boxes
 layout(std430, binding = 0) writeonly buffer Masks {
     uint masks[];  // words of block 0, of block 1 ...
 };
-
-uniform uint light_count;
 
 void main() {
     uvec3 blocks = block_counts();
@@ -20,9 +19,10 @@ void main() {
     }
     uvec3 first = block_position(block) * kBlockSize;
     uvec3 last = first + kBlockSize - 1u;
+    uint light_count = light_count_of(cluster_lights);
     uint word = gl_WorkGroupID.y;
     uint begin = word * 32u;
-    uint count = min(32u, light_count - begin);
+    uint count = min(32u, light_count - min(begin, light_count));
     uint bits = 0u;
     for (uint i = 0u; i < count; ++i) {
         bits |= boxes_meet(texelFetch(boxes, int(begin + i)).xy, first, last) ? 1u << i : 0u;

@@ -20,8 +20,6 @@ layout(std430, binding = 2) writeonly buffer Indices {
 };
 #endif
 
-uniform uint light_count;
-
 bool touches(int light, uvec3 cell, CellBox box, vec3 middle, float half_diagonal) {
     vec4 sphere = texelFetch(cluster_lights, light * int(kClusterLightTexels));
     vec4 apex = texelFetch(cluster_lights, light * int(kClusterLightTexels) + 1);
@@ -41,7 +39,7 @@ void main() {
     vec3 middle = 0.5 * (box.low + box.high);
     float half_diagonal = 0.5 * length(box.high - box.low);
 
-    uint words = word_count(light_count);
+    uint words = word_count(light_count_of(cluster_lights));
     uint first = gl_WorkGroupID.x * words;
     uint found = 0u;
 #ifdef FILL

@@ -8,5 +8,5 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     vec3 position_ws = world_position(gl_FragCoord.xy, gl_FragCoord.z);
-    radiance = vec4(reflect_one(forward_surface(), position_ws, gl_FragCoord.xy), 0.0);
+    radiance = vec4(storable(reflect_one(forward_surface(), position_ws, gl_FragCoord.xy)), 0.0);
 }

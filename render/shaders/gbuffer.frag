@@ -14,14 +14,15 @@ layout(location = 0) out uvec4 surface;
 
 void main() {
     vec4 color = surface_color();
-#ifdef ALPHA_MASK
-    if (color.a < material_texel(2).w) {
-        discard;
-    }
-#endif
     surface = pack_surface(surface_sample(color.rgb));
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now_ndc, previous_clip);
+#endif
+#ifdef ALPHA_MASK
+    // Last: a discard leaves the derivatives of the quad undefined, and the texture lookups above need them.
+    if (color.a < material_texel(2).w) {
+        discard;
+    }
 #endif
 }

@@ -1,5 +1,6 @@
 // Adds a half-resolution star to the image, with the colors of diffraction: longer wavelengths spread farther.
 #version 450
+#include "lib/radiance.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D star;
@@ -13,5 +14,5 @@ layout(location = 0) out vec4 radiance;
 void main() {
     vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
     vec3 glare = texture(star, 0.5 * gl_FragCoord.xy / vec2(textureSize(star, 0))).rgb;
-    radiance = vec4(scene.rgb + strength * kWavelengths * glare, scene.a);
+    radiance = vec4(storable(scene.rgb + strength * kWavelengths * glare), scene.a);
 }

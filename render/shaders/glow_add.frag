@@ -1,5 +1,6 @@
 // Adds a half-resolution mask to the image.
 #version 450
+#include "lib/radiance.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D mask;
@@ -11,5 +12,5 @@ layout(location = 0) out vec4 radiance;
 void main() {
     vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
     vec3 glow = texture(mask, 0.5 * gl_FragCoord.xy / vec2(textureSize(mask, 0))).rgb;
-    radiance = vec4(scene.rgb + strength * glow, scene.a);
+    radiance = vec4(storable(scene.rgb + strength * glow), scene.a);
 }

@@ -2,6 +2,7 @@
 // exactly 2 : 1.
 #version 450
 #include "lib/pyramid.glsl"
+#include "lib/radiance.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D glow;  // alpha: share of its light that a texel keeps, see glow_first.frag
@@ -34,5 +35,5 @@ vec4 glow_at_pixel(ivec2 size) {
 void main() {
     vec4 scene = texelFetch(scene_radiance, ivec2(gl_FragCoord.xy), 0);
     vec4 scattered = glow_at_pixel(textureSize(scene_radiance, 0));
-    radiance = vec4(scene.rgb * (1.0 - strength * scattered.a) + strength * scattered.rgb, scene.a);
+    radiance = vec4(storable(scene.rgb * (1.0 - strength * scattered.a) + strength * scattered.rgb), scene.a);
 }

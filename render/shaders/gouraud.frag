@@ -3,6 +3,7 @@
 #version 450
 #define LIT_AT_VERTICES
 #include "lib/material.glsl"
+#include "lib/radiance.glsl"
 
 layout(location = 0) in vec3 diffuse;
 layout(location = 1) in vec3 specular;
@@ -10,5 +11,5 @@ layout(location = 1) in vec3 specular;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    radiance = vec4(diffuse * base_color_texel().rgb + specular + surface_emission(), 1.0);
+    radiance = vec4(storable(diffuse * base_color_texel().rgb + specular + surface_emission()), 1.0);
 }

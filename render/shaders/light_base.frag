@@ -13,5 +13,5 @@ void main() {
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
     Reflector r = make_reflector(s, to_viewer(position_ws));
     Reflected around = reflect_surroundings(r, s, position_ws);
-    radiance = vec4(s.emission + around.diffuse + around.specular, 1.0);
+    radiance = vec4(storable(s.emission + around.diffuse + around.specular), 1.0);
 }

@@ -12,5 +12,5 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     SurfaceSample s = unpack_surface(texelFetch(gbuffer, pixel, 0));
     vec3 position_ws = world_position(gl_FragCoord.xy, texelFetch(scene_depth, pixel, 0).r);
-    radiance = vec4(reflect_one(s, position_ws, gl_FragCoord.xy), 0.0);
+    radiance = vec4(storable(reflect_one(s, position_ws, gl_FragCoord.xy)), 0.0);
 }

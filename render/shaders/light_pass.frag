@@ -13,5 +13,5 @@ void main() {
     SurfaceSample s = unpack_surface(texelFetch(gbuffer, pixel, 0));
     Reflected light = reflect_all(
         s, world_position(gl_FragCoord.xy, depth), gl_FragCoord.xy, cell_list(gl_FragCoord.xy, view_distance(depth)));
-    radiance = vec4(s.emission + light.diffuse + light.specular, 1.0);
+    radiance = vec4(storable(s.emission + light.diffuse + light.specular), 1.0);
 }

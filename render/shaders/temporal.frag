@@ -1,5 +1,6 @@
 // Blends the current frame into the history. See temporal_pass.h.
 #version 450
+#include "lib/numbers.glsl"
 #include "lib/view.glsl"
 
 layout(binding = 0) uniform sampler2D radiance;
@@ -31,7 +32,7 @@ vec3 from_ycocg(vec3 c) {
 }
 
 vec3 sanitize(vec3 c) {
-    return mix(vec3(0.0), clamp(c, vec3(0.0), vec3(65504.0)), not(isnan(c)));
+    return mix(clamp(c, vec3(0.0), vec3(65504.0)), vec3(0.0), is_nan(c));
 }
 
 // Bicubic (Catmull-Rom) without its corners: five bilinear fetches (Jimenez 2016).
@@ -93,8 +94,7 @@ void main() {
     vec2 velocity = texelFetch(velocity_map, nearest_at, 0).xy;
     vec2 moved = velocity * view.size.xy;
     vec2 from = gl_FragCoord.xy - moved;
-    // NaN counts as outside.
-    bool inside = all(greaterThanEqual(from, vec2(0.0))) && all(lessThanEqual(from, view.size.xy));
+    bool inside = is_finite(from) && all(greaterThanEqual(from, vec2(0.0))) && all(lessThanEqual(from, view.size.xy));
     if (has_history == 0 || !inside) {
         resolved = vec4(from_ycocg(center), 1.0);
         resolved_moments = vec2(1.0, 0.0);

@@ -129,7 +129,7 @@ void main() {
 #ifdef OCEAN
     color = above ? with_foam(color, bend.foam, rest, footprint, falling) : color;
 #endif
-    radiance = vec4(color, 1.0);
+    radiance = vec4(storable(color), 1.0);
 #ifdef ATTRIBUTES
     surface = pack_surface(s);
 #endif

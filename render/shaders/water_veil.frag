@@ -66,5 +66,5 @@ void main() {
     vec3 downwelling = downwelling_light(water);
 #endif
     vec3 veiled = seen * left + scattered_light(water, downwelling, below, normalize(ray)) * (1.0 - left);
-    radiance = vec4(is_under(water, lens) ? veiled : seen, 1.0);
+    radiance = vec4(storable(is_under(water, lens) ? veiled : seen), 1.0);
 }

@@ -14,7 +14,7 @@ constexpr unsigned kWaveLinesUnit = 2;
 constexpr unsigned kWaveRingsUnit = 3;
 constexpr unsigned kRipplesUnit = 4;
 constexpr unsigned kOceanShiftUnit = 6;
-constexpr unsigned kPreviousOceanShiftUnit = 13;
+constexpr unsigned kPreviousOceanShiftUnit = 28;
 constexpr unsigned kOceanSlopeUnit = 14;
 constexpr unsigned kOceanFoamUnit = 17;
 

@@ -192,6 +192,11 @@ TEST_CASE("clusters: what would overflow the lists is left out, counted, and los
     CHECK(clusters.dropped > 0);
     CHECK(clusters.capacity <= kMaxListEntries);
     CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
+
+    clusters.max_entries = 65536;  // the smallest GL_MAX_TEXTURE_BUFFER_SIZE that OpenGL allows
+    place_lights(view, list_of(reach), clusters);
+    CHECK(clusters.capacity <= 65536);
+    CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
 }
 
 TEST_CASE_FIXTURE(Scene, "clusters: the picture equals the sum of all lights at every pixel") {

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
 #include <sstream>
 
 namespace limn {
@@ -192,6 +194,56 @@ void main() { c = texture(a[0], vec2(0)) + texture(a[1], vec2(0)) + texture(a[2]
         message_of(none.load({.vertex = "v.vert", .fragment = "f.frag"}))
             .find("capability: 4 fragment textures")
         != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(test::RenderTest, "shader: textures of two types on one unit are refused") {
+    const ShaderFiles files = with_fragment(R"(#version 450
+layout(binding = 3) uniform sampler2D a;
+layout(binding = 3) uniform samplerBuffer b;
+layout(location = 0) out vec4 c;
+void main() { c = texture(a, vec2(0)) + texelFetch(b, 0); }
+)");
+    const std::string message = compile_error(files);
+    CHECK(message.find("v.vert + f.frag: context: ") == 0);
+    CHECK(message.find("found at texture unit 3, expected one texture type per unit") > 0);
+}
+
+/// Adds the type of each texture that a shader may declare, by unit; fails if a unit has two types.
+void add_units(const std::string& path, std::map<int, std::string>& types) {
+    const auto source = gpu::assemble_shader(ShaderFiles::standard(), path, {});
+    REQUIRE_MESSAGE(source.ok(), message_of(source));
+    const std::regex declaration(R"(binding = (\d+)[^)]*\) uniform (\w*sampler\w+) (\w+))");
+    for (std::sregex_iterator it(source->text.begin(), source->text.end(), declaration), end;
+         it != end; ++it) {
+        if ((*it)[3] == "sky_cube") {
+            continue;  // only for the sky, which has no surfaces
+        }
+        CAPTURE(path);
+        CAPTURE((*it)[3].str());
+        const auto unit = types.emplace(std::stoi((*it)[1]), (*it)[2]).first;
+        CHECK(unit->second == (*it)[2]);
+    }
+}
+
+TEST_CASE("shader: no definition gives a unit two types of texture") {
+    const std::vector<std::vector<std::string>> programs = {
+        {"water.vert", "water.frag"},
+        {"mesh.vert", "gbuffer.frag"},
+        {"mesh.vert", "blend.frag"},
+        {"mesh.vert", "forward_list.frag"},
+        {"mesh.vert", "forward_one.frag"},
+        {"light_pass.frag"},
+        {"light_one.frag"},
+        {"water_veil.frag"},
+        {"shadow_classify.frag"},
+        {"gouraud.vert", "gouraud.frag"},
+        {"caustics_rays.comp"}};
+    for (const std::vector<std::string>& stages : programs) {
+        std::map<int, std::string> types;
+        for (const std::string& stage : stages) {
+            add_units(stage, types);
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(test::RenderTest, "shader: stages that do not fit together do not link") {

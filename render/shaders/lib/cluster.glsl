@@ -19,6 +19,12 @@ uvec3 block_position(uint block) {
     return uvec3(block % n.x, block / n.x % n.y, block / (n.x * n.y));
 }
 
+// Number of light records. Not a uniform: zink (Mesa 22.3 on lavapipe) compiles in the value of a uniform that alone
+// bounds a loop of a compute shader, and runs the old code after the value changes.
+uint light_count_of(samplerBuffer cluster_lights) {
+    return uint(textureSize(cluster_lights)) / kClusterLightTexels;
+}
+
 // Words of the light mask of each block.
 uint word_count(uint lights) {
     return (lights + 31u) / 32u;

@@ -1,6 +1,7 @@
 // Circles of confusion and the layers that they are sorted into.
 
 #include "focus_gpu.h"
+#include "lib/numbers.glsl"
 
 layout(std140, binding = 2) uniform Focus {
     FocusBlock focus;
@@ -64,7 +65,7 @@ float front_weight(float circle, float own) {
 
 // Radiance with weight 1; all 0 for NaN and infinity.
 vec4 finite_light(vec4 light) {
-    return max(light.r, max(light.g, light.b)) <= 3e38 ? vec4(light.rgb, 1.0) : vec4(0.0);
+    return is_finite(light.rgb) ? vec4(light.rgb, 1.0) : vec4(0.0);
 }
 
 float luminance_of(vec3 light) {

@@ -11,7 +11,9 @@
 //   MIRRORS             some water reflects the sun's light upward
 
 #include "lib/light.glsl"
+#include "lib/numbers.glsl"  // must not be included first within the #ifdef below
 #include "lib/optics.glsl"
+#include "lib/radiance.glsl"
 #include "lib/reflector.glsl"
 #include "lib/surroundings.glsl"
 #include "lib/view.glsl"
@@ -135,7 +137,12 @@ float specular_occlusion(float n_v, float occlusion, float roughness) {
     return clamp(pow(n_v + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
 }
 
-const int kNoLight = 0x7fffffff / int(kLightTexels) - 1;  // reads zeros
+const int kNoLight = 0x7fffffff;
+
+// Clamps to existing records: fetches past the end of a buffer texture are undefined.
+int existing_light(int index) {
+    return min(index, textureSize(lights) / int(kLightTexels) - 1);
+}
 
 // Adds the directional lights.
 void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pixel) {
@@ -149,8 +156,8 @@ void add_directional(inout LightSum sum, Reflector r, vec3 position_ws, vec2 pix
 #endif
 }
 
-// Adds the point and spot lights of a list: begin and length in light_indices. An empty list reads zeros, which add
-// nothing. Lights with shadows or cookies come last, in a separate loop.
+// Adds the point and spot lights of a list: begin and length in light_indices. The record read for an empty list, or
+// past the end, adds nothing. Lights with shadows or cookies come last, in a separate loop.
 void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, vec2 pixel) {
 #ifdef LOCAL_LIGHTS
     WaterMedium medium = water_medium(position_ws);
@@ -164,7 +171,7 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
 #endif
     index = list.y > 0u ? index : kNoLight;
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal, medium);
+        Incoming light = incoming_local(existing_light(index), position_ws, r.normal, medium);
         light.irradiance *= index < first_shadowed ? 1.0 : 0.0;
         add_light(sum, r, light);
         i += index < first_shadowed ? 1 : 0;
@@ -172,8 +179,9 @@ void add_listed(inout LightSum sum, Reflector r, uvec2 list, vec3 position_ws, v
     } while (index < first_shadowed);
 #ifdef LIGHT_TRANSMITTANCE
     do {
-        Incoming light = incoming_local(index, position_ws, r.normal, medium);
-        vec3 transmittance = light_transmittance(index, position_ws, r.normal, light.to_light, pixel);
+        int existing = existing_light(index);
+        Incoming light = incoming_local(existing, position_ws, r.normal, medium);
+        vec3 transmittance = light_transmittance(existing, position_ws, r.normal, light.to_light, pixel);
         light.irradiance *= i < end ? transmittance : vec3(0.0);
         add_light(sum, r, light);
         ++i;

@@ -5,7 +5,7 @@
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all textures share a uv set and transform; otherwise they use the first set untransformed
 //   UV_MAPS        each has its own
-//   SRGB_BASE_COLOR SRGB_EMISSION   the texture is sRGB, filtered encoded and decoded here, because a software
+//   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
 //   DOUBLE_SIDED   normals of back faces are flipped toward the viewer
 //   LIT_AT_VERTICES  no normals, only colors
@@ -75,11 +75,7 @@ vec4 surface_color() {
 vec3 surface_emission() {
     vec3 emission = material_texel(1).rgb;
 #ifdef EMISSION_MAP
-    vec3 glow = texture(emission_map, slot_uv(4)).rgb;
-#ifdef SRGB_EMISSION
-    glow = srgb_decode(glow);
-#endif
-    emission *= glow;
+    emission *= texture(emission_map, slot_uv(4)).rgb;
 #endif
     return emission;
 }

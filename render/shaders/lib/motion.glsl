@@ -1,9 +1,11 @@
 // Motion of pixels while the shutter is open.
 
+#include "lib/numbers.glsl"
+
 // Half of a motion [px], clamped in length. NaN and infinity become no motion.
 vec2 bounded_motion(vec2 reach, float longest) {
     float len = length(reach);
-    return len < 1e7 ? reach * (min(len, longest) / max(len, 1e-6)) : vec2(0.0);
+    return is_finite(reach) && len < 1e7 ? reach * (min(len, longest) / max(len, 1e-6)) : vec2(0.0);
 }
 
 // Whether a motion of length `reach` covers the distance `offset`; a ramp one pixel wide, for edges between pixels.

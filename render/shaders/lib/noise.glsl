@@ -1,6 +1,8 @@
 // Gradient noise in one, two or three dimensions, equal to ecs/base/gradient_noise.h (which explains it) to 1e-5; and
 // per-pixel noise.
 
+#include "lib/numbers.glsl"
+
 uint lattice_hash(int x, int y, uint seed) {
     uint h = seed * 0x9e3779b9u ^ uint(x) * 0x85ebca6bu;
     h = (h ^ (h >> 15)) * 0xc2b2ae35u ^ uint(y) * 0x27d4eb2fu;
@@ -75,7 +77,7 @@ float gradient_noise(vec3 p, uint seed) {
 }
 
 bool has_fraction(float x) {
-    return !isnan(x) && abs(x) < 8388608.0;
+    return !is_nan(x) && abs(x) < 8388608.0;
 }
 
 // Noise in 0 .. 1 (shade.noise); octave i has frequency 2^i and amplitude 2^-i. 0.5 for NaN and where floats have no

@@ -29,7 +29,7 @@ vec3 mirrored_irradiance(vec3 position_ws, vec3 normal) {
     vec3 sum = vec3(0.0);
     int n = 0;
     do {
-        sum += mirrored_by(n, position_ws, normal);
+        sum += n < count ? mirrored_by(n, position_ws, normal) : vec3(0.0);
     } while (++n < count);
     return sum;
 }

@@ -3,6 +3,7 @@
 #include "lib/irradiance.glsl"
 #include "lib/reflection_map.glsl"
 #include "lib/sky.glsl"
+#include "lib/view.glsl"
 
 layout(binding = 7) uniform sampler2DArray reflection_maps;
 layout(std140, binding = 5) uniform Surroundings {
@@ -15,9 +16,16 @@ struct EnvironmentLight {
 };
 
 #ifdef PROBES
+#ifndef OPAQUE_UNIFORMS
 layout(std140, binding = 6) uniform Probes {
     ProbeBlock probe_block;
 };
+#else  // see lib/view.glsl
+layout(std140, binding = 6) uniform Probes {
+    ProbeBlock probe_blocks[1];
+};
+#define probe_block probe_blocks[min(int(view.size.x), 0)]
+#endif
 
 // Transforms from world space to the space where the probe's ball or cube is the unit one.
 vec3 into_place(ProbeRecord probe, vec3 v, float w) {

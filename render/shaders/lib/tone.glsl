@@ -1,24 +1,16 @@
 // From scene radiance to the display: luminance, curves, encodings and the dither before 8 bits.
 
 #include "lib/noise.glsl"
+#include "lib/numbers.glsl"
 
 // Of linear light (hdr.luminance). Rec. 709 has 0.2126, 0.7152, 0.0722.
 float luminance(vec3 color) {
     return dot(color, vec3(0.27, 0.67, 0.06));
 }
 
-// False for infinity and NaN; tests the bits, which no compiler optimizes away.
-bool is_finite(float x) {
-    return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u;
-}
-bool is_finite(vec3 v) {
-    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
-}
-
 // Sanitizes radiance: NaN becomes black, infinity `max_light`, negative values 0.
 vec3 sanitize_light(vec3 color, float max_light) {
-    bvec3 number = lessThanEqual(floatBitsToUint(color) & 0x7fffffffu, uvec3(0x7f800000u));
-    return mix(vec3(0.0), clamp(color, 0.0, max_light), number);
+    return mix(clamp(color, 0.0, max_light), vec3(0.0), is_nan(color));
 }
 
 // Khronos PBR neutral: the identity less a small toe up to 0.76, then compresses toward white and

@@ -85,7 +85,7 @@ FocusedLight focused_light_at(Underwater water, int light) {
         bool here = map < end && edge > 0.0;
         float share = here ? open * clamp(edge / max(place.view.y, 1e-6) - 1.0, 0.0, 1.0) : 0.0;
         share = here && map + 1 == end ? open : share;
-        sum += share * (place.rect.w > 0.0 ? caustic_texel(place, uv) : 1.0);
+        sum += here ? share * (place.rect.w > 0.0 ? caustic_texel(place, uv) : 1.0) : 0.0;
         open -= share;
         found.view = here && found.view < 0.0 ? place.view.x : found.view;
         ++map;

@@ -1,5 +1,7 @@
 // Screen-space motion since the previous frame, as a difference of texture coordinates (current - previous).
 
+#include "lib/numbers.glsl"
+
 const float kMaxVelocity = 8.0;   // image sizes
 const float kMinVelocity = 1e-6;  // less is rounding
 
@@ -8,5 +10,6 @@ const float kMinVelocity = 1e-6;  // less is rounding
 vec2 velocity_from(vec2 now, vec3 previous) {
     vec2 motion = 0.5 * (now - previous.xy / max(previous.z, 1e-6));
     float speed = length(motion);
-    return speed > kMinVelocity && speed < 1e15 ? motion * min(1.0, kMaxVelocity / speed) : vec2(0.0);
+    bool moves = is_finite(motion) && speed > kMinVelocity && speed < 1e15;
+    return moves ? motion * min(1.0, kMaxVelocity / speed) : vec2(0.0);
 }

@@ -2,9 +2,17 @@
 
 #include "view_gpu.h"
 
+#ifndef OPAQUE_UNIFORMS
 layout(std140, binding = 0) uniform View {
     ViewBlock view;
 };
+#else
+// Driver workaround (DeviceCaps::opaque_uniforms): the same block, read at an index that is 0 only at run time.
+layout(std140, binding = 0) uniform View {
+    ViewBlock view_blocks[1];
+};
+ViewBlock view = view_blocks[min(int(view_blocks[0].size.x), 0)];
+#endif
 
 // Ray through a pixel (gl_FragCoord.xy), of length 1 m along the view axis.
 vec3 view_ray(vec2 pixel) {

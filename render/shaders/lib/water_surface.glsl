@@ -9,7 +9,7 @@ layout(binding = 3) uniform samplerBuffer wave_rings;  // WaveRingRecord
 layout(binding = 4) uniform sampler2D ripple_atlas;    // height, velocity, slopes (ripple_atlas.h)
 #ifdef OCEAN  // ocean_textures.h
 layout(binding = 6) uniform sampler2DArray ocean_shift;         // shift_x, height, shift_z, current
-layout(binding = 13) uniform sampler2DArray previous_ocean_shift;  // previous frame
+layout(binding = 28) uniform sampler2DArray previous_ocean_shift;  // previous frame
 layout(binding = 14) uniform sampler2DArray ocean_slope;        // slope_x, slope_z, shift_xx, shift_zz
 layout(binding = 17) uniform sampler2DArray ocean_foam;         // shift_xz, foam
 #endif
@@ -115,14 +115,15 @@ void add_ring(inout WaterMotion motion, int ring, float there, vec2 q, float spa
 // Motion by analytic waves, as points `spacing` [m] apart resolve them, current or in the previous frame (`previous`).
 WaterMotion wave_motion(WaterRecord water, vec2 q, float spacing, bool previous) {
     WaterMotion motion = WaterMotion(vec3(0.0), WaterBend(vec3(0.0), vec3(0.0), 0.0, 0.0));
-    // Loops test after their body, see add_directional().
-    int line = int(water.waves.x);
+    // Loops test after their body, see add_directional(). Without waves they read an existing wave or zeros, which add
+    // nothing.
+    int line = min(int(water.waves.x), textureSize(wave_lines) / int(kWaveLineTexels) - 1);
     int end = line + int(water.waves.y);
     float there = water.waves.y > 0.0 ? 1.0 : 0.0;
     do {
         add_line(motion, line, there, q, spacing, previous);
     } while (++line < end);
-    int ring = int(water.waves.z);
+    int ring = min(int(water.waves.z), textureSize(wave_rings) / int(kWaveRingTexels) - 1);
     end = ring + int(water.waves.w);
     there = water.waves.w > 0.0 ? 1.0 : 0.0;
     do {

@@ -1,0 +1,25 @@
+# Links every program dumped to FOLDER (LIMN_SHADER_DUMP) with glslangValidator and fails if one is invalid:
+#
+#     LIMN_SHADER_DUMP=/tmp/shaders limn render lagoon -o /tmp/lagoon.png --size 64x36
+#     cmake -DFOLDER=/tmp/shaders -P tests/glslang.cmake
+find_program(VALIDATOR glslangValidator REQUIRED)
+file(GLOB programs ${FOLDER}/*/program.txt)
+list(LENGTH programs count)
+if(count EQUAL 0)
+    message(FATAL_ERROR "${FOLDER}: no programs found; dump some with LIMN_SHADER_DUMP")
+endif()
+set(failed 0)
+foreach(program ${programs})
+    get_filename_component(folder ${program} DIRECTORY)
+    file(GLOB stages ${folder}/program.vert ${folder}/program.geom ${folder}/program.frag ${folder}/program.comp)
+    execute_process(COMMAND ${VALIDATOR} -l ${stages} OUTPUT_VARIABLE log ERROR_VARIABLE log RESULT_VARIABLE status)
+    if(NOT status EQUAL 0)
+        file(READ ${program} name)
+        message("${name}${log}")
+        math(EXPR failed "${failed} + 1")
+    endif()
+endforeach()
+if(failed GREATER 0)
+    message(FATAL_ERROR "${failed} of ${count} programs are invalid")
+endif()
+message("${count} programs are valid")
