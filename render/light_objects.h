@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/buffer_texture.h"
 #include "render/instance_list.h"
 #include "render/light_clusters.h"
 
@@ -8,6 +9,8 @@
 #include <vector>
 
 namespace limn {
+
+class ProjectorPool;
 
 // Which objects each light reaches: the sets of engine.visibility-sets, evaluated in batches.
 //
@@ -58,5 +61,18 @@ struct LightDraws {
     std::vector<DrawCommand> commands;
 };
 void list_draws_of_lights(const LightObjects& found, const InstanceList& list, LightDraws& result);
+
+/// The lights of a view as shaders read them, published once the view's lights have their shadows.
+struct LightRecords {
+    BufferTexture records = BufferTexture("lights", GL_RGBA32F);
+    BufferTexture projectors = BufferTexture("projectors", GL_RGBA32F);
+    const ProjectorPool* projector_pool = nullptr;
+    LightObjects objects;  ///< of the forward methods
+    ObjectLights object_lights;
+    BufferTexture object_lists = BufferTexture("object lists", GL_RG32UI);
+    BufferTexture object_indices = BufferTexture("object lights", GL_R32UI);
+    LightDraws draws;  ///< of LightMethod::LightMajor
+    gpu::RingSlice commands;
+};
 
 }  // namespace limn

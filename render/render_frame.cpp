@@ -10,7 +10,6 @@
 #include "render/image.h"
 #include "render/material_pool.h"
 #include "render/mesh_pool.h"
-#include "render/passes/aov_pass.h"
 #include "render/skinning/deformed_list.h"
 
 #include <algorithm>
@@ -48,7 +47,7 @@ struct Accumulation {
     gpu::Texture sum;
     bool empty = true;
     SampleKind kind = SampleKind::Played;
-    std::vector<std::pair<int, gpu::Texture>> aovs;  ///< index into kAovs
+    std::vector<std::pair<std::string, gpu::Texture>> aovs;  ///< by name
 };
 
 }  // namespace
@@ -299,12 +298,6 @@ FrameOutput Renderer::draw(
             effects_[e].entry->report(effects_[e].state, frame_, view, out);
         }
     }
-    if (const auto* aovs = view.data.find<AovTextures>()) {
-        for (const auto& [index, texture] : aovs->textures) {
-            out.aovs.push_back(
-                {std::string(kAovs[index].name), kAovs[index].channels, graph.texture(texture)});
-        }
-    }
     out.statistics.extract_ms =
         std::chrono::duration<double, std::milli>(end_time - begin_time).count();
     return out;
@@ -331,7 +324,7 @@ void Renderer::keep_aovs(const FrameOutput& output) {
     for (const AovOutput& aov : output.aovs) {
         gpu::Texture copy(aov.name, aov.texture->desc());
         copy.copy_from(*aov.texture);
-        accumulation.aovs.emplace_back(aov_index(aov.name), std::move(copy));
+        accumulation.aovs.emplace_back(aov.name, std::move(copy));
     }
 }
 
@@ -370,8 +363,8 @@ void accumulate_aovs(
 
 FrameOutput finish_accumulation(Renderer& renderer, const World& world, const RenderView& view) {
     FrameOutput out = renderer.draw(kMeanView, world, view, {});
-    for (const auto& [index, texture] : renderer.accumulation.aovs) {
-        out.aovs.push_back({std::string(kAovs[index].name), kAovs[index].channels, &texture});
+    for (const auto& [name, texture] : renderer.accumulation.aovs) {
+        out.aovs.push_back({name, aov_channels(name), &texture});
     }
     return out;
 }

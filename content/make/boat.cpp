@@ -1,7 +1,7 @@
 #include "content/make/boat.h"
 
 #include "content/make/surface_grid.h"
-#include "content/models/boat.h"
+#include "content/models/boat_model.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -5,7 +5,7 @@
 #include "content/make/creature_gait.h"
 #include "content/make/implicit_mesh.h"
 #include "content/make/simplify_mesh.h"
-#include "content/models/fox.h"
+#include "content/models/fox_model.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

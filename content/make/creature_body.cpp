@@ -1,7 +1,7 @@
 #include "content/make/creature_body.h"
 
 #include "content/make/noise.h"
-#include "content/models/fox.h"
+#include "content/models/fox_model.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

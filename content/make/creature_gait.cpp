@@ -1,6 +1,6 @@
 #include "content/make/creature_gait.h"
 
-#include "content/models/fox.h"
+#include "content/models/fox_model.h"
 #include "ecs/base/rotation.h"
 
 #include <glm/common.hpp>

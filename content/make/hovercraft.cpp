@@ -4,7 +4,7 @@
 #include "content/make/implicit_mesh.h"
 #include "content/make/shapes.h"
 #include "content/make/simplify_mesh.h"
-#include "content/models/hovercraft.h"
+#include "content/models/hovercraft_model.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -2,8 +2,9 @@
 
 #include "render/fullscreen.h"
 #include "render/lighting.h"
-#include "render/passes/shadow_pass.h"
 #include "render/render_frame.h"
+#include "render/shadow/shadow_list.h"
+#include "render/shadow/volume_list.h"
 #include "render/view_block.h"
 
 #include <algorithm>
@@ -79,15 +80,10 @@ const std::vector<std::string_view>& aov_names() {
     return kNames;
 }
 
-int aov_index(std::string_view name) {
+int aov_channels(std::string_view name) {
     const auto found = std::find_if(
         kAovs.begin(), kAovs.end(), [name](const Aov& aov) { return aov.name == name; });
-    return found != kAovs.end() ? static_cast<int>(found - kAovs.begin()) : -1;
-}
-
-int aov_channels(std::string_view name) {
-    const int index = aov_index(name);
-    return index >= 0 ? kAovs[index].channels : 0;
+    return found != kAovs.end() ? found->channels : 0;
 }
 
 Result<AovEffect> AovEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -99,16 +95,23 @@ void AovEffect::collect(FrameData& frame) {
     frame.velocity |= is_requested(frame, kAovs[kVelocityAov].name);
 }
 
-void AovEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    auto& published = view.data.publish<AovTextures>();
-    published.textures.clear();
+void AovEffect::draw(FrameGraph& its_graph, const FrameData& frame, ViewData& view) {
+    graph = &its_graph;
+    textures.clear();
     for (int i = 0; i < kAovCount; ++i) {
         if (is_requested(frame, kAovs[i].name)) {
-            const TextureId texture = i == kVolumeLayersAov ? draw_volume_layers(graph, view)
-                                                            : draw_aov(graph, *this, view, i);
-            graph.keep(texture);
-            published.textures.emplace_back(i, texture);
+            const TextureId texture = i == kVolumeLayersAov ? draw_volume_layers(its_graph, view)
+                                                            : draw_aov(its_graph, *this, view, i);
+            its_graph.keep(texture);
+            textures.emplace_back(i, texture);
         }
+    }
+}
+
+void AovEffect::report(const FrameData&, const ViewData&, FrameOutput& out) {
+    for (const auto& [index, texture] : textures) {
+        out.aovs.push_back(
+            {std::string(kAovs[index].name), kAovs[index].channels, graph->texture(texture)});
     }
 }
 

@@ -28,21 +28,16 @@ struct Aov {
 /// In the order of AOV in aov.frag.
 extern const std::array<Aov, kAovCount> kAovs;
 
-/// Index into kAovs; -1: no such AOV.
-[[nodiscard]] int aov_index(std::string_view name);
-
-/// Those that were asked for, in the order of kAovs; published by AovEffect::draw().
-struct AovTextures {
-    std::vector<std::pair<int, TextureId>> textures;  ///< index into kAovs; kept
-};
-
 struct AovEffect {
     ProgramVariants programs;
+    const FrameGraph* graph = nullptr;                  ///< of the last frame
+    std::vector<std::pair<int, TextureId>> textures{};  ///< those requested: index into kAovs
 
     static Result<AovEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame) { return !frame.aovs.empty(); }
     void collect(FrameData& frame);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+    void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };
 
 }  // namespace limn

@@ -4,7 +4,6 @@
 #include "render/gpu/shader_library.h"
 #include "render/light_list.h"
 #include "render/lighting.h"
-#include "render/passes/light_pass.h"
 #include "render/surface_draws.h"
 
 namespace limn {

@@ -23,19 +23,6 @@ namespace limn {
 // comparison, are light_each_pass.h (one light at a time over the G-buffer) and forward_pass.h
 // (surfaces lit while they are drawn).
 
-/// What the effect uploads for a view, published once the view's lights have their shadows.
-struct LightRecords {
-    BufferTexture records = BufferTexture("lights", GL_RGBA32F);
-    BufferTexture projectors = BufferTexture("projectors", GL_RGBA32F);
-    const ProjectorPool* projector_pool = nullptr;
-    LightObjects objects;  ///< of the forward methods
-    ObjectLights object_lights;
-    BufferTexture object_lists = BufferTexture("object lists", GL_RG32UI);
-    BufferTexture object_indices = BufferTexture("object lights", GL_R32UI);
-    LightDraws draws;  ///< of LightMethod::LightMajor
-    gpu::RingSlice commands;
-};
-
 struct LightEffect {
     ProgramVariants clustered;
     std::optional<LightEachPass> each{};   ///< created when a level first asks for it

@@ -3,11 +3,11 @@
 #include "ecs/components/env_probe.h"
 #include "ecs/world.h"
 #include "render/cube_map.h"
+#include "render/environment_maps.h"
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/lighting.h"
-#include "render/passes/environment_pass.h"
 #include "render/render_frame.h"
 
 namespace limn {

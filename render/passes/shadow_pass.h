@@ -21,13 +21,6 @@ namespace limn {
 // Casters are drawn double-sided: a wall casts a shadow whichever way it faces. The maps have no
 // bias; lighting applies it (lib/shadow.glsl).
 
-/// The shadow maps of a view, published when they are declared in the frame graph.
-struct ShadowMaps {
-    const ShadowList* list = nullptr;
-    const BufferTexture* records = nullptr;  ///< layout::ShadowViewRecord
-    TextureId atlas;
-};
-
 /// Maps and volumes of a view's lights. Publishes ShadowList and VolumeList in prepare(),
 /// ShadowMaps and ShadowMasks in draw(); sets the shadows of the view's LightList.
 struct ShadowEffect {

@@ -3,7 +3,8 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/lighting.h"
-#include "render/passes/shadow_pass.h"
+#include "render/shadow/shadow_list.h"
+#include "render/shadow/volume_list.h"
 #include "render/view_block.h"
 
 namespace limn {

@@ -42,8 +42,4 @@ struct ShadowVolumePass {
 [[nodiscard]] TextureId
 draw_shadow_volumes(FrameGraph& graph, ShadowVolumePass& pass, const ViewData& view);
 
-/// Number of volume polygons over each pixel, in x: RGBA32F, named "aov.volume_layers". Counts
-/// everything that is drawn, hidden or not (shadow.density-view); 0 without volumes.
-[[nodiscard]] TextureId draw_volume_layers(FrameGraph& graph, const ViewData& view);
-
 }  // namespace limn

@@ -1,9 +1,9 @@
 #include "render/passes/sky_pass.h"
 
+#include "render/environment_maps.h"
 #include "render/fullscreen.h"
 #include "render/gpu/shader_library.h"
 #include "render/lighting.h"
-#include "render/passes/environment_pass.h"
 #include "render/view_block.h"
 
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/buffer_texture.h"
 #include "render/frame_data.h"
 #include "render/instance_list.h"
 #include "render/light_list.h"
@@ -50,6 +51,13 @@ struct ShadowList {
     bool soft = false;      ///< some map used for lighting has a filter wider than 2x2
     int atlas_size = 0;     ///< side [texels]; 0: no shadow maps
     int unserved = 0;       ///< lights without room in the atlas: they cast no shadow
+};
+
+/// The shadow maps of a view, published when they are declared in the frame graph.
+struct ShadowMaps {
+    const ShadowList* list = nullptr;
+    const BufferTexture* records = nullptr;  ///< layout::ShadowViewRecord
+    TextureId atlas;
 };
 
 /// Clamps all settings to valid ranges; rounds the resolution up to a power of two.

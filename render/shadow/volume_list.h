@@ -2,6 +2,7 @@
 
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
+#include "render/frame_data.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/instance_list.h"
 #include "render/light_list.h"
@@ -115,5 +116,9 @@ class VolumeCollector {
     std::vector<DrawCommand> commands_;
     std::set<std::string> reported_;
 };
+
+/// Number of volume polygons over each pixel, in x: RGBA32F, named "aov.volume_layers". Counts
+/// everything that is drawn, hidden or not (shadow.density-view); 0 without volumes.
+[[nodiscard]] TextureId draw_volume_layers(FrameGraph& graph, const ViewData& view);
 
 }  // namespace limn

@@ -133,14 +133,25 @@ TEST_CASE("house: the ECS includes the standard library, the system and TBB, and
 }
 
 TEST_CASE("house: a system never includes another system, nor a pass another pass") {
+    // A pass is one of the effects in the list of image.cpp; its parts may lie in files of their
+    // own.
     const std::regex include(
         R"re(^\s*#\s*include\s+"((systems|content/game|render/passes)/[^"]+)")re");
+    std::set<std::string> effects;
+    for (const SourceFile& source : own_sources()) {
+        for (const std::string& line : source.lines) {
+            std::smatch match;
+            if (source.path == "render/image.cpp" && std::regex_search(line, match, include)) {
+                effects.insert(match[1]);
+            }
+        }
+    }
+    CHECK(effects.size() > 20);
     for (const SourceFile& source : own_sources()) {
         const bool system =
             (starts_with(source.path, "systems/") || starts_with(source.path, "content/game/"))
             && source.path.find("_system.") != std::string::npos;
-        const bool pass = starts_with(source.path, "render/passes/")
-                          && source.path.find("_pass.") != std::string::npos;
+        const bool pass = starts_with(source.path, "render/") && source.path != "render/image.cpp";
         if (!system && !pass) {
             continue;
         }
@@ -150,7 +161,7 @@ TEST_CASE("house: a system never includes another system, nor a pass another pas
             if (std::regex_search(line, match, include)) {
                 const std::string stem = fs::path(match[1].str()).stem().string();
                 const bool other_effect =
-                    stem != own_stem && (stem.ends_with("_system") || stem.ends_with("_pass"));
+                    stem != own_stem && (stem.ends_with("_system") || effects.count(match[1]) == 1);
                 INFO(source.path << " includes " << match[1].str());
                 CHECK(!other_effect);
             }

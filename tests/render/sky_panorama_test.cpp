@@ -6,7 +6,7 @@
 #include "render/gpu/buffer.h"
 #include "render/graph/frame_graph.h"
 #include "render/panorama.h"
-#include "render/passes/environment_pass.h"
+#include "render/environment_maps.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,5 +1,4 @@
 #include "render/passes/vignette_pass.h"
-
 #include "tests/render/scene_fixture.h"
 
 #include <doctest/doctest.h>
@@ -22,14 +21,17 @@ struct VignetteScene : Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(VignetteScene, "vignette: the image of an even sky is the cos^4 law and the overlap") {
+TEST_CASE_FIXTURE(
+    VignetteScene, "vignette: the image of an even sky is the cos^4 law and the overlap") {
     const Vignette settings = {.natural = 0.7f, .mechanical = 0.6f};
     const gpu::FloatImage plain = radiance(view);
     const gpu::FloatImage dark = with(settings);
     for (const IVec2 p : {IVec2(0, 0), IVec2(63, 31), IVec2(40, 3), IVec2(31, 16), IVec2(5, 20)}) {
         const Vec2 ndc = 2.0f * (Vec2(p) + 0.5f) / Vec2(64, 32) - 1.0f;
         const float expected = vignette(settings, {ndc.x, -ndc.y}, view.tangent);
-        CHECK(dark.at(p.x, p.y, 1) == doctest::Approx(expected * plain.at(p.x, p.y, 1)).epsilon(1e-4));
+        CHECK(
+            dark.at(p.x, p.y, 1)
+            == doctest::Approx(expected * plain.at(p.x, p.y, 1)).epsilon(1e-4));
     }
 }
 
