@@ -40,7 +40,7 @@ void write_picture_exr(const std::string& path, const std::vector<glm::vec3>& pi
     ExrImage image{.width = kWidth, .height = kHeight};
     std::vector<float> values;
     for (const glm::vec3& pixel : pixels) {
-        values.insert(values.end(), {pixel.r, pixel.g, pixel.b});
+        values.insert(values.end(), {pixel.x, pixel.y, pixel.z});
     }
     add_layer(image, "", "RGB", values, false);
     REQUIRE(write_exr(path, image).ok());
@@ -125,8 +125,8 @@ TEST_CASE("view: says what the picture holds, and what no number is") {
     CHECK(run.out.find("1e+05:1") != std::string::npos);
     CHECK(run.out.find("NaN") == std::string::npos);
 
-    pixels[5].g = std::numeric_limits<float>::quiet_NaN();
-    pixels[6].r = std::numeric_limits<float>::infinity();
+    pixels[5].y = std::numeric_limits<float>::quiet_NaN();
+    pixels[6].x = std::numeric_limits<float>::infinity();
     write_picture_exr(folder.file("a.exr"), pixels);
     run = run_limn(folder, {"view", "a.exr", "-o", "a.png", "--dither", "false"});
     CHECK(run.exit_code == 0);
