@@ -6,9 +6,11 @@
 #include "render/lighting.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -32,9 +34,13 @@ void draw_levels(
     FrameGraph& graph, const ReflectionPass& pass, const gpu::RingSlice& block,
     const gpu::Program& program, const gpu::Texture* cube, int layer, int samples) {
     const TextureId maps = graph.import("reflection map", pass.maps);
+    std::vector<Use> reads;
+    if (cube != nullptr) {
+        reads.emplace_back(graph.import("cube levels", *cube));
+    }
     for (int level = 0; level < pass.maps.desc().levels; ++level) {
         graph.add_pass(
-            "reflection map", {}, {target_level(discarded(maps), level, layer)},
+            "reflection map", reads, std::array{target_level(discarded(maps), level, layer)},
             [&pass, block, &program, cube, level, samples](PassContext& context) {
                 context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
                 context.device().bind_uniforms(

@@ -83,6 +83,11 @@ bool use_run(
 }  // namespace
 
 std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads) {
+    if (const auto* images = frame.data.find<DrawnImages>()) {
+        for (const gpu::Texture* texture : images->textures) {
+            reads.emplace_back(graph.import("drawn image", *texture));
+        }
+    }
     const DeformedVertices& vertices = frame.shapes->vertices();
     if (!frame.shapes->work().batches.empty()) {
         reads.emplace_back(graph.import("deformed positions", vertices.positions()));

@@ -48,8 +48,13 @@ void draw_motions(
     PassContext& context, const ViewData& view, ProgramVariants& programs,
     const gpu::PipelineState& state, Prepare prepare);
 
-/// `reads` and, where meshes are deformed in this frame, their vertices: what passes that call the
-/// functions above must declare.
+/// Material images that passes of this frame draw; published before the views are drawn.
+struct DrawnImages {
+    std::vector<const gpu::Texture*> textures;
+};
+
+/// `reads`, the DrawnImages and, where meshes are deformed in this frame, their vertices: what
+/// passes that call the functions above must declare.
 [[nodiscard]] std::vector<Use>
 mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 

@@ -107,8 +107,7 @@ LightImage make_black_image(int width, int height) {
         std::vector<glm::dvec3>(static_cast<std::size_t>(width) * height, glm::dvec3(0))};
 }
 
-LightImage
-scatter(const LightImage& picture, double strength, std::span<const Scattering> parts) {
+LightImage scatter(const LightImage& picture, double strength, std::span<const Scattering> parts) {
     LightImage sum = picture;
     for (glm::dvec3& pixel : sum.pixels) {
         pixel *= 1 - strength;

@@ -39,8 +39,7 @@ scatter(const LightImage& picture, double strength, std::span<const Scattering> 
 [[nodiscard]] std::vector<Scattering> scattering_of_levels(std::span<const float> weights);
 
 /// post.separable-blur: the full 49 weights of the outer product, edges clamped.
-[[nodiscard]] LightImage
-blur_7x7(const LightImage& picture, const std::array<double, 7>& weights);
+[[nodiscard]] LightImage blur_7x7(const LightImage& picture, const std::array<double, 7>& weights);
 
 [[nodiscard]] glm::dvec3 sum_of(const LightImage& picture);
 

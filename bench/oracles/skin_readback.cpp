@@ -63,8 +63,8 @@ void SkinReadback::forget() {
 }
 
 std::vector<SkinReadbackVertices> SkinReadback::run(
-    const World& world, std::span<const Entity> drawn, float alpha, float previous_alpha, bool before,
-    int views) {
+    const World& world, std::span<const Entity> drawn, float alpha, float previous_alpha,
+    bool before, int views) {
     Machine& m = *machine_;
     const auto& assets = world.resource<Assets>();
     m.meshes.append(std::span(assets.meshes).subspan(m.meshes.meshes().size()));

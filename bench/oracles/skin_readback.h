@@ -34,8 +34,8 @@ class SkinReadback {
 
     /// Runs one frame in which the entities `drawn` are drawn, `views` times each.
     std::vector<SkinReadbackVertices>
-    run(const World& world, std::span<const Entity> drawn, float alpha = 1, float previous_alpha = 0,
-        bool before = true, int views = 1);
+    run(const World& world, std::span<const Entity> drawn, float alpha = 1,
+        float previous_alpha = 0, bool before = true, int views = 1);
 
     /// Call before the next run of a different world.
     void forget();

@@ -1,7 +1,7 @@
 #include "content/app/compare_command.h"
 
-#include "content/bake/image_compare.h"
 #include "content/app/image_file.h"
+#include "content/bake/image_compare.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
 #include "content/load/image_write.h"

@@ -9,7 +9,7 @@ namespace limn {
 // Carpenter, "Distributed Ray Tracing", 1984).
 
 struct ExposureSample {
-    double time = 0;         ///< in exposures from its middle, -0.5 .. 0.5
+    double time = 0;           ///< in exposures from its middle, -0.5 .. 0.5
     Vec2 jitter = {0, 0};      ///< offset within the pixel [px], -0.5 .. 0.5
     Vec2 square = {0.5, 0.5};  ///< point on the lens, 0 .. 1, for point_on_aperture()
 };

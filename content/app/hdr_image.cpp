@@ -78,7 +78,8 @@ Result<std::unique_ptr<HdrImage>> HdrImage::load(gpu::Device& device, const std:
 void HdrImage::measure() {
     graph_.begin_frame();
     static_cast<void>(measure_image(
-        graph_, tone_mapper_.statistics, graph_.import("radiance", radiance_), {.histogram = true}));
+        graph_, tone_mapper_.statistics, graph_.import("radiance", radiance_),
+        {.histogram = true}));
     graph_.execute();
     const auto measure = tone_mapper_.statistics.measure.read_value<layout::ImageStatistics>(0);
     statistics_ = {
@@ -94,8 +95,8 @@ void HdrImage::measure() {
 
 const gpu::Texture& HdrImage::show(const Exposure& exposure) {
     graph_.begin_frame();
-    const TextureId display =
-        apply_tone_mapper(graph_, tone_mapper_, exposure, std::nullopt, graph_.import("radiance", radiance_));
+    const TextureId display = apply_tone_mapper(
+        graph_, tone_mapper_, exposure, std::nullopt, graph_.import("radiance", radiance_));
     graph_.keep(display);
     graph_.execute();
     return *graph_.texture(display);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "ecs/base/result.h"
-#include "render/tone_mapper.h"
 #include "render/gpu/texture.h"
 #include "render/graph/frame_graph.h"
+#include "render/tone_mapper.h"
 
 #include <cstdint>
 #include <memory>
@@ -21,13 +21,13 @@ class Device;
 
 /// hdr.log-average, hdr.defog and hdr.dynamic-range of the whole image.
 struct HdrStatistics {
-    std::uint32_t pixels = 0;      ///< without NaN or infinity
-    std::uint32_t not_finite = 0;  ///< pixels with NaN or infinity in them
-    double log_average = 0.0;      ///< luminance
-    Vec3 mean = {0, 0, 0};         ///< color
-    double least = 0.0;            ///< smallest luminance > 0
-    double largest = 0.0;          ///< largest luminance
-    double clipped_min_luminance = 0.0;    ///< `least` without the darkest 0.1 %
+    std::uint32_t pixels = 0;            ///< without NaN or infinity
+    std::uint32_t not_finite = 0;        ///< pixels with NaN or infinity in them
+    double log_average = 0.0;            ///< luminance
+    Vec3 mean = {0, 0, 0};               ///< color
+    double least = 0.0;                  ///< smallest luminance > 0
+    double largest = 0.0;                ///< largest luminance
+    double clipped_min_luminance = 0.0;  ///< `least` without the darkest 0.1 %
     double clipped_max_luminance = 0.0;  ///< `largest` without the brightest 0.1 %
 };
 

@@ -127,7 +127,8 @@ std::string numbered_path(std::string_view path, int frame) {
         path.substr(placeholder.end));
 }
 
-Status write_image_file(const std::string& path, const FrameOutput& frame, const ImageAttributes& notes) {
+Status
+write_image_file(const std::string& path, const FrameOutput& frame, const ImageAttributes& notes) {
     const Result<ImageFileKind> kind = image_file_kind(path);
     if (!kind) {
         return kind.error();

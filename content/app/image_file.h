@@ -31,7 +31,7 @@ using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
 
 /// PNG: the display's sRGB bytes. EXR: linear radiance as R, G, B, A and every AOV of `frame` as a
 /// layer: depth.Z, normal.X ... albedo.R ... velocity.X ... emission.R ..., all as 32-bit floats.
-[[nodiscard]] Status
-write_image_file(const std::string& path, const FrameOutput& frame, const ImageAttributes& notes = {});
+[[nodiscard]] Status write_image_file(
+    const std::string& path, const FrameOutput& frame, const ImageAttributes& notes = {});
 
 }  // namespace limn

@@ -1,8 +1,8 @@
 #include "content/app/list_commands.h"
 
+#include "content/game/game.h"
 #include "content/load/level_list.h"
 #include "content/load/level_schema.h"
-#include "content/game/game.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
 

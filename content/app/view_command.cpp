@@ -4,10 +4,10 @@
 #include "content/app/headless.h"
 #include "content/app/image_viewer.h"
 #include "content/app/window.h"
+#include "content/game/game.h"
 #include "content/load/image_write.h"
 #include "content/load/set_value.h"
 #include "ecs/base/text.h"
-#include "content/game/game.h"
 #include "ecs/world.h"
 #include "render/gpu/readback.h"
 

@@ -25,7 +25,8 @@ struct Plane {
 inline constexpr float kFarPlane = 10000.0f;  ///< distance for rays that hit no plane [m]
 
 /// Distance along `ray` to the plane; kFarPlane if it lies behind or the ray is parallel to it.
-[[nodiscard]] inline float distance_to_plane(const Vec3& from, const Vec3& ray, const Plane& plane) {
+[[nodiscard]] inline float
+distance_to_plane(const Vec3& from, const Vec3& ray, const Plane& plane) {
     const float along = glm::dot(plane.normal, ray);
     if (std::abs(along) <= 1e-9f) {
         return kFarPlane;
@@ -72,7 +73,7 @@ struct MirroredVertex {
 struct MirrorFalloff {
     float plane_exponent = 3;     ///< exponent of the cosine at the plane; the book's text: 1
     float surface_exponent = 3;   ///< exponent of the cosine at the surface; the book's text: 4
-    float max_distance = 1000;     ///< maximum ray length [m]
+    float max_distance = 1000;    ///< maximum ray length [m]
     float max_height = INFINITY;  ///< hits higher above the plane are not lit [m]
 };
 

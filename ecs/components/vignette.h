@@ -14,8 +14,9 @@ struct Vignette {
 
 LIMN_FIELDS(Vignette) {
     LIMN_FIELD(
-        natural, "how much of the cos^4 law of an ideal lens; 1 = all, at the camera's field of view",
-        "", 0, 1);
+        natural,
+        "how much of the cos^4 law of an ideal lens; 1 = all, at the camera's field of view", "", 0,
+        1);
     LIMN_FIELD(
         mechanical,
         "shift of the rim of the lens against the pupil in the corners, in pupil diameters", "", 0,

@@ -1,7 +1,5 @@
 #include "render/passes/probe_pass.h"
 
-#include "ecs/components/env_probe.h"
-#include "ecs/world.h"
 #include "render/cube_map.h"
 #include "render/environment_maps.h"
 #include "render/fullscreen.h"
@@ -39,10 +37,6 @@ struct ProbeFace {
 };
 
 }  // namespace
-
-bool ProbeEffect::is_used(const FrameData& frame) {
-    return !frame.world->query<const EnvProbe>().empty();
-}
 
 Result<ProbeEffect> ProbeEffect::create(gpu::Device& device, const RenderSettings&) {
     return ProbeEffect{LIMN_TRY(

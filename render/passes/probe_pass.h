@@ -20,7 +20,6 @@ struct ProbeEffect {
     EnvProbeList probes{};
     int faces_drawn = 0;  ///< in this frame
 
-    [[nodiscard]] static bool is_used(const FrameData& frame);
     [[nodiscard]] static Result<ProbeEffect> create(gpu::Device& device, const RenderSettings&);
     void request_views(FrameData& frame);
     bool prepare(const FrameData& frame, ViewData& view);

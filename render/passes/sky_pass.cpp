@@ -1,12 +1,13 @@
 #include "render/passes/sky_pass.h"
 
 #include "render/environment_maps.h"
-#include "render/fullscreen.h"
+#include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/lighting.h"
 #include "render/view_block.h"
 
 #include <string>
+#include <vector>
 
 namespace limn {
 
@@ -27,18 +28,23 @@ void SkyEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) 
     if (!environment.settings.visible && !for_light) {
         return;
     }
-    add_fullscreen_pass(
-        graph, "sky", {depth_tested(view.gbuffer.depth)}, {view.radiance},
-        programs[static_cast<int>(environment.settings.sky)], kWhereBackground,
-        [&view, &environment, for_light](PassContext& context, const gpu::Program& program) {
-            gpu::Device& device = context.device();
+    const bool panorama = environment.settings.sky == SkyKind::Panorama;
+    std::vector<Use> reads = {depth_tested(view.gbuffer.depth)};
+    if (panorama) {
+        reads.push_back(sampled(graph.import("sky cube", *environment.cube), kGbufferUnit));
+    }
+    const Use writes[] = {view.radiance};
+    graph.add_pass(
+        "sky", reads, writes,
+        [program = programs[static_cast<int>(environment.settings.sky)], &view, &environment,
+         for_light](PassContext& context) {
             const gpu::RingSlice& block = environment.block_slice;
+            context.device().use(gpu::Pipeline{program, kWhereBackground});
             bind_view(context, view);
-            device.bind_uniforms(kEnvironmentBinding, block.buffer, block.offset, block.size);
-            if (environment.settings.sky == SkyKind::Panorama) {
-                device.bind_texture(kGbufferUnit, *environment.cube);
-            }
-            program.set("for_light", for_light ? 1 : 0);
+            context.device().bind_uniforms(
+                kEnvironmentBinding, block.buffer, block.offset, block.size);
+            program->set("for_light", for_light ? 1 : 0);
+            context.device().draw_fullscreen();
         });
 }
 

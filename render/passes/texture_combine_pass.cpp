@@ -4,6 +4,7 @@
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/material_pool.h"
+#include "render/surface_draws.h"
 
 #include <cmath>
 
@@ -27,6 +28,16 @@ bool TextureCombineEffect::is_used(const FrameData& frame) {
     return !frame.world->query<const TextureCombine>().empty();
 }
 
+void TextureCombineEffect::collect(FrameData& frame) {
+    auto& drawn = frame.data.publish<DrawnImages>();
+    drawn.textures.clear();
+    frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
+        if (const gpu::Texture* texture = frame.materials->find_image(combine.target)) {
+            drawn.textures.push_back(texture);
+        }
+    });
+}
+
 void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
         const gpu::Texture* water = frame.materials->find_image(combine.water);
@@ -41,11 +52,11 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
             wrapped(frame.time * static_cast<double>(combine.speed.y)));
         const TextureId target = graph.import("combined texture", *texture);
         add_fullscreen_pass(
-            graph, "combine textures", {}, {target_level(discarded(target), 0)}, program,
-            [this, water, grating, texture, offset,
-             gain = combine.gain](PassContext& context, const gpu::Program& its) {
-                context.device().bind_texture(0, *water, &repeat);
-                context.device().bind_texture(1, *grating, &repeat);
+            graph, "combine textures",
+            {sampled(graph.import("combined image", *water), 0, &repeat),
+             sampled(graph.import("combined image", *grating), 1, &repeat)},
+            {target_level(discarded(target), 0)}, program,
+            [texture, offset, gain = combine.gain](PassContext&, const gpu::Program& its) {
                 its.set("size", Vec2(texture->width(), texture->height()));
                 its.set("offset", offset);
                 its.set("gain", gain);

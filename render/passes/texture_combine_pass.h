@@ -22,6 +22,7 @@ struct TextureCombineEffect {
     static Result<TextureCombineEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     /// Skips a TextureCombine that lacks an image or reads its own target.
+    void collect(FrameData& frame);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
 };
 

@@ -171,6 +171,11 @@ void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view
     if (waters->list.details.needed && wave_tiles) {
         reads.emplace_back(graph.import("wave tiles", wave_tiles));
     }
+    for (const gpu::Texture* map : {detail_map(frame, *waters), floor_map(frame, *waters)}) {
+        if (map != nullptr) {
+            reads.emplace_back(graph.import("water map", *map));
+        }
+    }
     std::vector<Use> writes = {view.radiance, view.gbuffer.depth};
     if (view.velocity) {
         writes.emplace_back(view.gbuffer.velocity);

@@ -24,7 +24,7 @@ void main() {
     vec3 value = shown_channel < 4 ? vec3(texel[shown_channel]) : texel.rgb;
     vec3 shown = clamp((value - shown_range.x) / (shown_range.y - shown_range.x), 0.0, 1.0);
     shown = encode_srgb != 0 ? srgb_from_linear(shown) : shown;
-    if (is_infinite(value.r) || is_infinite(value.g) || is_infinite(value.b)) {
+    if (any(is_infinite(value.rgb))) {
         shown = kInfinite;
     }
     if (any(is_nan(value))) {

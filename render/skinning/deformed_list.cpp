@@ -230,8 +230,8 @@ std::uint32_t DeformedList::flags_of(const Entry& entry) {
         flags |= layout::kDeformCurrent;
     }
     if (entry.previous_requested && entry.drawn_previous != entry.previous_shape) {
-        flags |=
-            entry.drawn == entry.previous_shape ? layout::kDeformCopyPrevious : layout::kDeformPrevious;
+        flags |= entry.drawn == entry.previous_shape ? layout::kDeformCopyPrevious
+                                                     : layout::kDeformPrevious;
     }
     if (!entry.requested || flags == 0) {
         return 0;

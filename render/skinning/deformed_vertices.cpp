@@ -51,7 +51,8 @@ void DeformedVertices::grow(std::uint32_t needed) {
     slots_.grow(capacity);
     vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
     vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
-    vertices_.set_vertices(kPreviousPositionStream, before_ ? before_ : positions_, 0, sizeof(Vec3));
+    vertices_.set_vertices(
+        kPreviousPositionStream, before_ ? before_ : positions_, 0, sizeof(Vec3));
 }
 
 void DeformedVertices::require_previous_positions() {

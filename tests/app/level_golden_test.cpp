@@ -3,9 +3,9 @@
 // with other roundings, so the comparison is FLIP's, not equality. The target `golden` draws them
 // anew.
 
-#include "content/bake/image_compare.h"
 #include "content/app/headless.h"
 #include "content/app/stage.h"
+#include "content/bake/image_compare.h"
 #include "content/load/image_load.h"
 #include "content/load/image_write.h"
 #include "content/load/level_list.h"

@@ -220,7 +220,8 @@ TEST_CASE("rotation: slerp does not jump where it becomes a straight line, nor d
         const Quat stays = slerp_along(kNone, -kNone, u);
         CHECK(glm::length(stays) == doctest::Approx(1));
         // Half a turn may go either way, but goes evenly.
-        const AxisAngle half = axis_angle(to_same_hemisphere(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
+        const AxisAngle half =
+            axis_angle(to_same_hemisphere(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
         CHECK(half.angle == doctest::Approx(u * kPi).epsilon(1e-5));
         CHECK(std::abs(half.axis.y) == doctest::Approx(1));
     }

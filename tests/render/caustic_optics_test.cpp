@@ -160,8 +160,8 @@ TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book recko
     CHECK(glm::length(moved.position) < 1e-5f);
     CHECK(glm::distance(moved.position, vertex) == doctest::Approx(1.414214));
     CHECK(moved.light == doctest::Approx(0.125));
-    const MirroredVertex text =
-        mirror_vertex(vertex, {-1, 0, 0}, light, plane, {.plane_exponent = 1, .surface_exponent = 4});
+    const MirroredVertex text = mirror_vertex(
+        vertex, {-1, 0, 0}, light, plane, {.plane_exponent = 1, .surface_exponent = 4});
     CHECK(text.light == doctest::Approx(0.176777));
 
     const MirroredVertex away = mirror_vertex(vertex, {1, 0, 0}, light, plane);

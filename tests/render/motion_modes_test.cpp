@@ -333,8 +333,8 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: two pictures of a box make the ra
         return affine_from({x, 0, 0}, {1, 0, 0, 0}, {12 / Shutter::kPerMeter, 1, 0.01f});
     };
     const Entity entity = place(box, unlit({1, 1, 1}), pose(-8 / Shutter::kPerMeter));
-    world.insert_resource(
-        MotionBlur{.mode = MotionBlurMode::Stretch, .shutter = 360, .samples = 10, .max_length = 1});
+    world.insert_resource(MotionBlur{
+        .mode = MotionBlurMode::Stretch, .shutter = 360, .samples = 10, .max_length = 1});
     static_cast<void>(picture());
     world.get<PreviousWorldTransform>(entity).world = pose(-8 / Shutter::kPerMeter);
     world.get<WorldTransform>(entity).world = pose(8 / Shutter::kPerMeter);

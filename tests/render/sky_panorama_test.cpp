@@ -3,10 +3,10 @@
 // clang-format on
 #include "bench/oracles/environment_oracle.h"
 #include "render/environment_light.h"
+#include "render/environment_maps.h"
 #include "render/gpu/buffer.h"
 #include "render/graph/frame_graph.h"
 #include "render/panorama.h"
-#include "render/environment_maps.h"
 
 #include <glm/geometric.hpp>
 

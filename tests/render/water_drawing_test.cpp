@@ -67,7 +67,8 @@ WaterWaves all_waves() {
         .waves =
             {{.amplitude = 0.2f, .length = 9, .direction = 1, .sharpness = 1},
              {.amplitude = 0.1f, .length = 5, .direction = -1, .lean = 0.5f}},
-        .radial = {{.amplitude = 0.15f, .length = 6, .fade_radius = 2}, {.length = 4, .inward = true}},
+        .radial =
+            {{.amplitude = 0.15f, .length = 6, .fade_radius = 2}, {.length = 4, .inward = true}},
         .packets = {
             {.center = {1, -2}, .age = 1.5f, .amplitude = 0.1f, .length = 4, .waves = 1},
             {.center = {-2, 0},

@@ -153,7 +153,9 @@ TEST_CASE("water reflection: its camera is the picture's, mirrored, and mirrored
     const RenderView again = make_reflected_view(mirrored, kLevel, 1);
     for (int c = 0; c < 4; ++c) {
         for (int r = 0; r < 4; ++r) {
-            CHECK(again.unjittered_from_world[c][r] == doctest::Approx(view.unjittered_from_world[c][r]));
+            CHECK(
+                again.unjittered_from_world[c][r]
+                == doctest::Approx(view.unjittered_from_world[c][r]));
         }
     }
 }
