@@ -1,7 +1,7 @@
 # Links every program dumped to FOLDER (LIMN_SHADER_DUMP) with glslangValidator and fails if one is invalid:
 #
-#     LIMN_SHADER_DUMP=/tmp/shaders limn render lagoon -o /tmp/lagoon.png --size 64x36
-#     cmake -DFOLDER=/tmp/shaders -P tests/glslang.cmake
+#     LIMN_SHADER_DUMP=shaders limn render lagoon -o lagoon.png --size 64x36
+#     cmake -DFOLDER=shaders -P tests/glslang.cmake
 find_program(VALIDATOR glslangValidator REQUIRED)
 file(GLOB programs ${FOLDER}/*/program.txt)
 list(LENGTH programs count)
