@@ -54,7 +54,7 @@ std::vector<Vec3> make_noise(int count, float scale = 1.0f) {
     return pixels;
 }
 
-oracle::ImageStatistics measure(const std::vector<Vec3>& pixels) {
+oracle::ImageStatistics expected_statistics(const std::vector<Vec3>& pixels) {
     std::vector<glm::dvec3> exact;
     for (const Vec3& pixel : pixels) {
         exact.emplace_back(pixel);
@@ -72,7 +72,7 @@ TEST_CASE_FIXTURE(
     Statistics, "hdr: statistics on the GPU are those of the oracle to a thousandth") {
     for (const IVec2 size : {IVec2(1, 1), IVec2(64, 64), IVec2(65, 63), IVec2(317, 181)}) {
         const std::vector<Vec3> pixels = make_noise(size.x * size.y);
-        const oracle::ImageStatistics want = measure(pixels);
+        const oracle::ImageStatistics want = expected_statistics(pixels);
         const layout::ImageStatistics got = measure(pixels, size.x);
         CAPTURE(size.x);
         CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
@@ -113,7 +113,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(
     Statistics, "hdr: the clipped range is the oracle's to the width of a bin, twice too") {
     const std::vector<Vec3> pixels = make_noise(300 * 100);
-    const oracle::ImageStatistics want = measure(pixels);
+    const oracle::ImageStatistics want = expected_statistics(pixels);
     const double bin = std::exp2(1.1 / layout::kBinsPerStop);
     for (int again = 0; again < 2; ++again) {  // the histogram is empty again
         const layout::ImageStatistics got = measure(pixels, 300, {.histogram = true});
@@ -136,7 +136,7 @@ TEST_CASE_FIXTURE(Statistics, "hdr: NaN and infinity are counted and change noth
     bad.insert(bad.begin() + 30, {Vec3(kNan, 1, 1), Vec3(1, kInfinity, 1), Vec3(1, 1, -kInfinity)});
     bad.insert(bad.end(), 3, Vec3(kNan));
     const layout::ImageStatistics got = measure(bad, 8);
-    const oracle::ImageStatistics want = measure(good);
+    const oracle::ImageStatistics want = expected_statistics(good);
     CHECK(got.pixels.x == 90);
     CHECK(got.pixels.y == 6);
     CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
@@ -171,7 +171,7 @@ TEST_CASE_FIXTURE(
         const layout::ImageStatistics got = measure(pixels, 64, {.key = 0.18f});
         CHECK(got.mean_scale.w * got.luminance.x == doctest::Approx(0.18).epsilon(1e-5));
         CHECK(
-            unit * got.mean_scale.w * measure(make_noise(64 * 64)).log_average
+            unit * got.mean_scale.w * expected_statistics(make_noise(64 * 64)).log_average
             == doctest::Approx(0.18).epsilon(2e-3));
     }
     const std::vector<Vec3> two = {Vec3(1), Vec3(100)};
