@@ -42,15 +42,20 @@ struct BoxBlock {
     alignas(64) float half_z[kCullBlock];
 };
 
-/// The box around `box` after `transform` (Arvo 1990).
-[[nodiscard]] inline Bounds transform_bounds(const Affine& transform, const Bounds& box) {
-    const Vec3 c = transform_point(transform, center(box));
-    const Vec3 h = half_extent(box);
+/// Half extent of the box around a box of half extent `h` after `transform` (Arvo 1990).
+[[nodiscard]] inline Vec3 transform_half_extent(const Affine& transform, const Vec3& h) {
     Vec3 half;
     for (int i = 0; i < 3; ++i) {
         const Vec4& r = transform.row[i];
         half[i] = std::abs(r.x) * h.x + std::abs(r.y) * h.y + std::abs(r.z) * h.z;
     }
+    return half;
+}
+
+/// The box around `box` after `transform`.
+[[nodiscard]] inline Bounds transform_bounds(const Affine& transform, const Bounds& box) {
+    const Vec3 c = transform_point(transform, center(box));
+    const Vec3 half = transform_half_extent(transform, half_extent(box));
     return {c - half, c + half};
 }
 

@@ -25,6 +25,7 @@ struct Assets;
 class DeformedList;
 class MaterialPool;
 class MeshPool;
+class RenderItems;
 class World;
 
 // The data of a frame, by lifetime:
@@ -74,6 +75,7 @@ struct FrameData {
     MeshPool* meshes = nullptr;
     MaterialPool* materials = nullptr;
     DeformedList* shapes = nullptr;
+    RenderItems* items = nullptr;  ///< what is drawn; read after every collect()
     GLenum radiance_format = GL_RGBA16F;
     GLenum velocity_format = GL_RG16F;
 

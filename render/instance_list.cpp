@@ -1,11 +1,11 @@
 #include "render/instance_list.h"
 
-#include "ecs/components/shadow.h"
-#include "ecs/components/transform.h"
+#include "ecs/base/jobs.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
-#include "render/instance_rows.h"
+#include "render/mesh_pool.h"
 #include "render/shaders/instance_gpu.h"
+#include "render/skinning/deformed_list.h"
 
 #include <glm/geometric.hpp>
 
@@ -18,44 +18,14 @@ namespace limn {
 namespace {
 
 constexpr std::uint16_t kHidden = 0xffff;
-static_assert(kChunkRows <= kCullBlock);
-
-// Sort key, from the high bits: blended, inflated, deformed, batch, mirrored, mesh or deformed
-// instance.
-constexpr std::uint64_t make_key(
-    bool blend, bool inflated, bool deformed, std::uint32_t batch, bool mirrored,
-    std::uint32_t what) {
-    return static_cast<std::uint64_t>(blend) << 63 | static_cast<std::uint64_t>(inflated) << 62
-           | static_cast<std::uint64_t>(deformed) << 61 | static_cast<std::uint64_t>(batch) << 33
-           | static_cast<std::uint64_t>(mirrored) << 32 | what;
-}
-constexpr bool is_blended(std::uint64_t key) {
-    return key >> 63 != 0;
-}
-constexpr bool is_inflated(std::uint64_t key) {
-    return (key >> 62 & 1) != 0;
-}
-constexpr bool is_deformed(std::uint64_t key) {
-    return (key >> 61 & 1) != 0;
-}
-constexpr std::uint32_t batch_of(std::uint64_t key) {
-    return static_cast<std::uint32_t>(key >> 33) & 0x0fffffffu;
-}
-constexpr bool is_mirrored(std::uint64_t key) {
-    return (key >> 32 & 1) != 0;
-}
-/// Index of the deformed instance or, for other keys, of the mesh.
-constexpr std::uint32_t index_of(std::uint64_t key) {
-    return static_cast<std::uint32_t>(key);
-}
 
 /// Whether `entity` is `whole` or one of its descendants; false if `whole` is null.
-bool is_part_of(const World* world, Entity entity, Entity whole) {
+bool is_part_of(const World& world, Entity entity, Entity whole) {
     if (whole.is_null()) {
         return false;
     }
     while (entity != whole) {
-        const auto* parent = world->find<Parent>(entity);
+        const auto* parent = world.find<Parent>(entity);
         if (parent == nullptr) {
             return false;
         }
@@ -113,150 +83,63 @@ class InstanceCollector::KeyTable {
 };
 
 void InstanceCollector::collect(
-    const World& world, const RenderView& view, const MeshPool& meshes,
-    const MaterialPool& materials, DeformedList& shapes, bool velocity, gpu::RingBuffer& ring,
+    const RenderItems& items, const RenderView& view, bool velocity, gpu::RingBuffer& ring,
     InstanceList& list, bool boxes) {
-    const auto query = world.query<
-        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>, Optional<const Deformed>>();
     const auto& camera = view.world_from_camera.row;
     const Selection selection = {
         .frustum = make_frustum(view.clip_from_world),
         .eye = {camera[0].w, camera[1].w, camera[2].w},
         .forward = {-camera[0].z, -camera[1].z, -camera[2].z},
-        .alpha = view.alpha,
         .previous_alpha = view.previous_alpha,
         .velocity = velocity,
-        .world = &world,
         .hidden = view.hidden,
         .boxes = boxes};
-    collect_from(query, selection, {meshes, materials, shapes}, ring, list);
+    collect_from(items, selection, ring, list);
 }
 
 void InstanceCollector::collect_casters(
-    const World& world, const CasterVolume& volume, float alpha, const MeshPool& meshes,
-    const MaterialPool& materials, DeformedList& shapes, gpu::RingBuffer& ring,
+    const RenderItems& items, const CasterVolume& volume, gpu::RingBuffer& ring,
     InstanceList& list) {
-    const auto query = world.query<
-        const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
-        Optional<const Inflate>, Optional<const Deformed>, Without<NoShadow>>();
     const Selection casters = {
         .frustum = volume.frustum,
         .shading = volume.shading,
         .eye = volume.eye,
         .reach = volume.reach,
-        .alpha = alpha,
         .casters = true};
-    collect_from(query, casters, {meshes, materials, shapes}, ring, list);
+    collect_from(items, casters, ring, list);
 }
 
-template <typename Instances>
 void InstanceCollector::collect_from(
-    const Instances& query, const Selection& selection, const Sources& from, gpu::RingBuffer& ring,
+    const RenderItems& items, const Selection& selection, gpu::RingBuffer& ring,
     InstanceList& list) {
-    const std::vector<MeshRange>& meshes = from.meshes.meshes();
-    const MaterialPool& materials = from.materials;
     list = {};
-    list.total = static_cast<int>(query.count());
-    chunks_.resize(query.chunk_count());
-
-    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
-                         std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate, std::span<const Deformed> deformed) {
-        BoxBlock boxes;
-        std::uint8_t mirrored[kCullBlock];
-        std::uint8_t visible[kCullBlock];
-        const auto count = static_cast<int>(chunk.size());
-        ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {surfaces,         now,        before, inflate, deformed,
-                                   chunk.entities(), from.shapes};
-        fill_boxes(rows, selection.alpha, meshes, boxes, mirrored);
-        cull_boxes(selection.frustum, boxes, count, visible);
-        if (selection.casters) {
-            cull_visible_boxes(selection.shading, boxes, count, visible);
-            cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
-        }
-        KeyTable table(work.keys);
-        for (std::uint32_t i = 0; i < chunk.size(); ++i) {
-            work.local[i] = kHidden;
-            if (visible[i] == 0
-                || is_part_of(selection.world, chunk.entities()[i], selection.hidden)) {
-                continue;
-            }
-            const std::uint32_t batch =
-                materials.batch_of(materials.record_of(surfaces[i].material));
-            const bool blend = materials.batch(batch).blend;
-            if (selection.casters && blend) {
-                continue;
-            }
-            // Distance to the far side of the box, so that large surroundings (floor, walls) come
-            // last.
-            const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
-            const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-            const float far_side = glm::dot(selection.forward, c - selection.eye)
-                                   + glm::dot(glm::abs(selection.forward), h);
-            const std::uint32_t shape = rows.shape(i);
-            const bool own = shape != DeformedList::kNone;
-            const std::uint64_t key = make_key(
-                blend, !inflate.empty(), own, batch, mirrored[i] != 0,
-                own ? shape : surfaces[i].mesh.index);
-            work.local[i] = table.count(key, far_side);
+    list.total = static_cast<int>(items.size());
+    const std::size_t count = items.block_count();
+    const std::size_t grain = 1 + count / (32 * static_cast<std::size_t>(thread_count()));
+    blocks_.resize(count);
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            count_block(items, items.block(b), selection, blocks_[b]);
         }
     });
 
     commands_.clear();
-    const bool velocity = selection.velocity;
-    place_keys(from, velocity, list);
+    place_keys(items, selection.velocity, list);
     list.visible = static_cast<int>(visible_count_);
     list.opaque_instances = static_cast<int>(opaque_count_);
     if (selection.boxes) {
         list.boxes.resize((visible_count_ + kCullBlock - 1) / kCullBlock);
     }
     list.instances = ring.allocate(visible_count_ * sizeof(layout::InstanceRecord));
-    list.before = ring.allocate(velocity ? visible_count_ * sizeof(Affine) : 0);
+    list.before = ring.allocate(selection.velocity ? visible_count_ * sizeof(Affine) : 0);
     blended_.resize(visible_count_ - opaque_count_);
-
-    auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
-    auto* previous_transforms = reinterpret_cast<Affine*>(list.before.data);
-    query.par_chunks([&](ChunkView chunk, std::span<const MeshInstance> surfaces,
-                         std::span<const WorldTransform> now,
-                         std::span<const PreviousWorldTransform> before,
-                         std::span<const Inflate> inflate, std::span<const Deformed> deformed) {
-        ChunkWork& work = chunks_[chunk.index()];
-        const InstanceRows rows = {surfaces,         now,        before, inflate, deformed,
-                                   chunk.entities(), from.shapes};
-        for (std::uint32_t i = 0; i < chunk.size(); ++i) {
-            if (work.local[i] == kHidden) {
-                continue;
-            }
-            KeyCount& kind = work.keys[work.local[i]];
-            const std::uint32_t place = kind.place++;
-            const Affine a = rows.at(i, selection.alpha);
-            const std::uint32_t record = materials.record_of(surfaces[i].material);
-            instances[place] = {
-                {a.row[0], a.row[1], a.row[2]},
-                record,
-                (is_mirrored(kind.key) ? 1u : 0u) | materials.model_of(record) << 8,
-                place,
-                inflate.empty() ? 0.0f : inflate[i].distance};
-            if (selection.boxes) {
-                set_box(
-                    list.boxes[place / kCullBlock], place % kCullBlock,
-                    transform_bounds(a, rows.bounds(i, meshes)));
-            }
-            if (velocity) {
-                previous_transforms[place] = rows.at(i, selection.previous_alpha);
-            }
-            if (is_blended(kind.key)) {
-                const Vec3 middle = transform_point(a, center(rows.bounds(i, meshes)));
-                blended_[place - opaque_count_] = {
-                    glm::dot(selection.forward, middle), place, kind.key};
-            }
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            write_block(items, items.block(b), selection, blocks_[b], list);
         }
     });
 
-    order_blended(from, velocity, list);
+    order_blended(items, selection.velocity, list);
     list.command_values = commands_;
     list.commands = ring.push(list.command_values);
     for (const DrawCommand& command : commands_) {
@@ -264,17 +147,85 @@ void InstanceCollector::collect_from(
     }
 }
 
+void InstanceCollector::count_block(
+    const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
+    BlockWork& work) const {
+    KeyTable table(work.keys);
+    if (selection.casters && !block.casts_shadows) {
+        return;
+    }
+    const BoxBlock& boxes = block.boxes;
+    const auto count = static_cast<int>(block.size());
+    std::uint8_t visible[kCullBlock];
+    cull_boxes(selection.frustum, boxes, count, visible);
+    if (selection.casters) {
+        cull_visible_boxes(selection.shading, boxes, count, visible);
+        cull_boxes_by_distance(selection.eye, selection.reach, boxes, count, visible);
+    }
+    for (std::uint32_t i = 0; i < block.size(); ++i) {
+        const DrawKey key = block.keys[i];
+        work.local[i] = kHidden;
+        if (visible[i] == 0 || (selection.casters && is_blended(key))
+            || is_part_of(items.world(), block.entities[i], selection.hidden)) {
+            continue;
+        }
+        // Distance to the far side of the box, so that large surroundings (floor, walls) come last.
+        const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
+        const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
+        const float far_side = glm::dot(selection.forward, c - selection.eye)
+                               + glm::dot(glm::abs(selection.forward), h);
+        work.local[i] = table.count(key, far_side);
+    }
+}
+
+void InstanceCollector::write_block(
+    const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
+    BlockWork& work, InstanceList& list) {
+    const MaterialPool& materials = items.materials();
+    auto* instances = reinterpret_cast<layout::InstanceRecord*>(list.instances.data);
+    auto* previous_transforms = reinterpret_cast<Affine*>(list.before.data);
+    if (work.keys.empty()) {
+        return;
+    }
+    for (std::uint32_t i = 0; i < block.size(); ++i) {
+        if (work.local[i] == kHidden) {
+            continue;
+        }
+        KeyCount& kind = work.keys[work.local[i]];
+        const std::uint32_t place = kind.place++;
+        const Affine a = block.world_at(i, items.alpha());
+        const std::uint32_t record = materials.record_of(block.surfaces[i].material);
+        instances[place] = {
+            {a.row[0], a.row[1], a.row[2]},
+            record,
+            (draw_state(kind.key).mirrored ? 1u : 0u) | materials.model_of(record) << 8,
+            place,
+            block.inflation(i)};
+        if (selection.boxes) {
+            set_box(list.boxes[place / kCullBlock], place % kCullBlock, block.box(i));
+        }
+        if (selection.velocity) {
+            previous_transforms[place] = block.world_at(i, selection.previous_alpha);
+        }
+        if (is_blended(kind.key)) {
+            const Vec3 middle = transform_point(a, center(items.local_bounds(block, i)));
+            blended_[place - opaque_count_] = {
+                glm::dot(selection.forward, middle), place, kind.key};
+        }
+    }
+}
+
 /// Sorts groups into draw order: front to back, so that early depth testing rejects hidden
 /// fragments, but with equal programs and textures together; blended groups last.
 void InstanceCollector::group_keys() {
     entries_.clear();
-    for (std::uint32_t c = 0; c < chunks_.size(); ++c) {
-        for (std::uint32_t k = 0; k < chunks_[c].keys.size(); ++k) {
-            entries_.push_back({chunks_[c].keys[k].key, c, k});
+    for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
+        for (std::uint32_t k = 0; k < blocks_[b].keys.size(); ++k) {
+            entries_.push_back({blocks_[b].keys[k].key, b, k});
         }
     }
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-        return a.key != b.key ? a.key < b.key : a.chunk < b.chunk;
+        return a.key != b.key ? a.key < b.key : a.block < b.block;
     });
     groups_.clear();
     for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -284,7 +235,7 @@ void InstanceCollector::group_keys() {
         }
         Group& group = groups_.back();
         ++group.end_entry;
-        group.distance = std::min(group.distance, chunks_[entry.chunk].keys[entry.local].distance);
+        group.distance = std::min(group.distance, blocks_[entry.block].keys[entry.local].distance);
     }
     const auto run_of = [](const Group& group) { return group.key >> 32; };
     for (std::size_t begin = 0; begin < groups_.size();) {
@@ -303,53 +254,54 @@ void InstanceCollector::group_keys() {
     });
 }
 
-void InstanceCollector::place_keys(const Sources& from, bool velocity, InstanceList& list) {
+void InstanceCollector::place_keys(const RenderItems& items, bool velocity, InstanceList& list) {
     group_keys();
     std::uint32_t place = 0;
     opaque_count_ = 0;
     for (const Group& group : groups_) {
         const std::uint32_t first = place;
         for (std::size_t i = group.first_entry; i < group.end_entry; ++i) {
-            KeyCount& kind = chunks_[entries_[i].chunk].keys[entries_[i].local];
+            KeyCount& kind = blocks_[entries_[i].block].keys[entries_[i].local];
             kind.place = place;
             place += kind.count;
         }
         if (!is_blended(group.key)) {
-            add_command(group.key, first, place - first, from, velocity, list);
+            add_command(group.key, first, place - first, items, velocity, list);
             opaque_count_ = place;
         }
     }
     visible_count_ = place;
 }
 
-void InstanceCollector::order_blended(const Sources& from, bool velocity, InstanceList& list) {
+void InstanceCollector::order_blended(const RenderItems& items, bool velocity, InstanceList& list) {
     std::sort(blended_.begin(), blended_.end(), [](const Blended& a, const Blended& b) {
         return a.distance != b.distance ? a.distance > b.distance : a.instance < b.instance;
     });
     for (const Blended& one : blended_) {
-        add_command(one.key, one.instance, 1, from, velocity, list);
+        add_command(one.key, one.instance, 1, items, velocity, list);
     }
 }
 
 void InstanceCollector::add_command(
-    std::uint64_t key, std::uint32_t first, std::uint32_t count, const Sources& from, bool velocity,
+    DrawKey key, std::uint32_t first, std::uint32_t count, const RenderItems& items, bool velocity,
     InstanceList& list) {
-    std::vector<DrawRun>& runs = is_blended(key) ? list.blended : list.opaque;
-    const bool own = is_deformed(key);
-    const std::uint32_t mesh_index = own ? from.shapes[index_of(key)].mesh.index : index_of(key);
-    const MeshRange& mesh = from.meshes.meshes()[mesh_index];
+    const DrawState state = draw_state(key);
+    std::vector<DrawRun>& runs = state.blended ? list.blended : list.opaque;
+    const std::uint32_t mesh_index =
+        state.deformed ? items.shapes()[state.index].mesh.index : state.index;
+    const MeshRange& mesh = items.meshes().meshes()[mesh_index];
     const std::int32_t base_vertex =
-        own ? from.shapes.request(index_of(key), velocity) : mesh.base_vertex;
-    const SurfaceBatch& batch = from.materials.batch(batch_of(key));
+        state.deformed ? items.shapes().request(state.index, velocity) : mesh.base_vertex;
+    const SurfaceBatch& batch = items.materials().batch(state.batch);
     DrawRun run;
     run.features = batch.features | (mesh.colored ? kVertexColor : 0u)
-                   | (is_inflated(key) ? kInflate : 0u) | (own ? kDeformed : 0u);
+                   | (state.inflated ? kInflate : 0u) | (state.deformed ? kDeformed : 0u);
     if ((run.features & kNormalMap) != 0 && !mesh.tangents) {
         run.features &= ~static_cast<std::uint32_t>(kNormalMap);
         list.without_tangents.push_back(mesh_index);
     }
     run.textures = batch.textures;
-    run.mirrored = is_mirrored(key);
+    run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());
     run.command_count = 1;
     commands_.push_back({mesh.index_count, count, mesh.first_index, base_vertex, first});

@@ -3,22 +3,19 @@
 #include "render/culling.h"
 #include "render/gpu/ring_buffer.h"
 #include "render/material_pool.h"
-#include "render/mesh_pool.h"
+#include "render/render_items.h"
 #include "render/render_view.h"
-#include "render/skinning/deformed_list.h"
 
 #include <vector>
 
 namespace limn {
 
-class World;
-
-// From entities to draw calls. Every chunk of mesh instances is culled and each visible row gets a
-// sort key of its draw state; the keys are counted and prefix-summed, and every visible row writes
-// its record to its slot: equal keys are contiguous, in world order, whatever thread wrote them. A
-// key is one command of a multi-draw and all commands of a batch are one draw: ten thousand equal
-// meshes are one. Only visible instances are written. A mesh without tangents is drawn without its
-// normal map. A deformed instance has a key of its own, since its vertices are its own.
+// From items to draw calls. Every block of items is culled; the draw keys of visible items are
+// counted and prefix-summed, and every visible item writes its record to its slot: equal keys are
+// contiguous, in world order, whatever thread wrote them. A key is one command of a multi-draw and
+// all commands of a batch are one draw: ten thousand equal meshes are one. Only visible instances
+// are written. A mesh without tangents is drawn without its normal map. A deformed instance has a
+// key of its own, since its vertices are its own.
 //
 // 100,000 moving boxes, all visible, take 1.6 ms of one core (instance_bench).
 
@@ -70,50 +67,46 @@ class InstanceCollector {
   public:
     /// Culls, sorts and writes into `ring`. `velocity` also fills `before`; `boxes` the boxes.
     void collect(
-        const World& world, const RenderView& view, const MeshPool& meshes,
-        const MaterialPool& materials, DeformedList& shapes, bool velocity, gpu::RingBuffer& ring,
+        const RenderItems& items, const RenderView& view, bool velocity, gpu::RingBuffer& ring,
         InstanceList& list, bool boxes = false);
     /// The same for shadow casters within `volume`: no blended surfaces, no NoShadow.
     void collect_casters(
-        const World& world, const CasterVolume& volume, float alpha, const MeshPool& meshes,
-        const MaterialPool& materials, DeformedList& shapes, gpu::RingBuffer& ring,
+        const RenderItems& items, const CasterVolume& volume, gpu::RingBuffer& ring,
         InstanceList& list);
 
   private:
-    /// Which instances, and at what time.
+    /// Which items.
     struct Selection {
         Frustum frustum;
         Frustum shading = kEverywhere;  ///< of casters
         Vec3 eye = {0, 0, 0};
         Vec3 forward = {0, 0, 0};
         float reach = INFINITY;
-        float alpha = 1;
         float previous_alpha = 0;
         bool velocity = false;
         bool casters = false;
-        const World* world = nullptr;  ///< only set if something is hidden
         Entity hidden = {};
         bool boxes = false;
     };
-    /// A sort key that occurs in a chunk, and how often; later, the slot of its next instance.
+    /// A key that occurs in a block, and how often; later, the slot of its next instance.
     struct KeyCount {
-        std::uint64_t key = 0;
+        DrawKey key = 0;
         std::uint32_t count = 0;
         std::uint32_t place = 0;
         float distance = INFINITY;  ///< to the far side of the nearest box [m]
     };
-    struct ChunkWork {
+    struct BlockWork {
         std::vector<KeyCount> keys;
         std::uint16_t local[kCullBlock];  ///< index into keys; kHidden if not drawn
     };
     struct Entry {
-        std::uint64_t key;
-        std::uint32_t chunk;
+        DrawKey key;
+        std::uint32_t block;
         std::uint32_t local;
     };
     /// All instances of one key.
     struct Group {
-        std::uint64_t key = 0;
+        DrawKey key = 0;
         std::size_t first_entry = 0;
         std::size_t end_entry = 0;
         float distance = INFINITY;      ///< of the nearest [m]
@@ -122,28 +115,28 @@ class InstanceCollector {
     struct Blended {
         float distance;
         std::uint32_t instance;
-        std::uint64_t key;
+        DrawKey key;
     };
     class KeyTable;
-    /// What instances are drawn from.
-    struct Sources {
-        const MeshPool& meshes;
-        const MaterialPool& materials;
-        DeformedList& shapes;
-    };
 
-    template <typename Instances>
     void collect_from(
-        const Instances& query, const Selection& selection, const Sources& from,
-        gpu::RingBuffer& ring, InstanceList& list);
+        const RenderItems& items, const Selection& selection, gpu::RingBuffer& ring,
+        InstanceList& list);
+    /// Culls a block and counts the keys of what is visible.
+    void count_block(
+        const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
+        BlockWork& work) const;
+    void write_block(
+        const RenderItems& items, const RenderItemBlock& block, const Selection& selection,
+        BlockWork& work, InstanceList& list);
     void group_keys();
-    void place_keys(const Sources& from, bool velocity, InstanceList& list);
-    void order_blended(const Sources& from, bool velocity, InstanceList& list);
+    void place_keys(const RenderItems& items, bool velocity, InstanceList& list);
+    void order_blended(const RenderItems& items, bool velocity, InstanceList& list);
     void add_command(
-        std::uint64_t key, std::uint32_t first, std::uint32_t count, const Sources& from,
+        DrawKey key, std::uint32_t first, std::uint32_t count, const RenderItems& items,
         bool velocity, InstanceList& list);
 
-    std::vector<ChunkWork> chunks_;
+    std::vector<BlockWork> blocks_;
     std::vector<Entry> entries_;
     std::vector<Group> groups_;
     std::vector<DrawCommand> commands_;

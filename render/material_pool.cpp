@@ -132,6 +132,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
         return;
     }
 
+    ++revision_;
     records_.clear();
     batches_.clear();
     batch_of_.clear();

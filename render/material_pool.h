@@ -50,6 +50,8 @@ class MaterialPool {
         return id.index == kNoAsset ? 0 : id.index + 2 < batch_of_.size() ? id.index + 2 : 1;
     }
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
+    /// Counts the changes of records and batches.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
     /// kModel* of lib/gbuffer.glsl.
     [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
@@ -100,6 +102,7 @@ class MaterialPool {
     BufferTexture record_texture_;
     std::size_t material_count_ = 0;
     std::uint64_t material_version_ = 0;
+    std::uint64_t revision_ = 0;
     bool has_classic_ = false;
 };
 

@@ -126,6 +126,7 @@ void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
 }
 
 void MeshPool::append(std::span<const MeshData> meshes) {
+    revision_ += meshes.empty() ? 0 : 1;
     std::vector<PackedVertex> packed;
     for (const MeshData& mesh : meshes) {
         MeshRange range;
@@ -158,6 +159,7 @@ void MeshPool::append(std::span<const MeshData> meshes) {
 }
 
 void MeshPool::clear() {
+    ++revision_;
     meshes_.clear();
     vertex_count_ = 0;
     index_count_ = 0;

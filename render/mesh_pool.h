@@ -47,6 +47,8 @@ class MeshPool {
     void clear();
 
     [[nodiscard]] const std::vector<MeshRange>& meshes() const { return meshes_; }
+    /// Counts the changes of meshes().
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
     /// Attributes 0 .. 4 of mesh.vert; the caller binds the instance streams.
     [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
     [[nodiscard]] const gpu::Buffer& positions() const { return positions_; }
@@ -57,6 +59,7 @@ class MeshPool {
     void reserve(std::size_t vertices, std::size_t indices);
 
     std::vector<MeshRange> meshes_;
+    std::uint64_t revision_ = 0;
     gpu::Buffer positions_;
     gpu::Buffer attributes_;
     gpu::Buffer indices_;

@@ -10,6 +10,7 @@
 #include "render/image.h"
 #include "render/material_pool.h"
 #include "render/mesh_pool.h"
+#include "render/render_items.h"
 #include "render/skinning/deformed_list.h"
 
 #include <algorithm>
@@ -70,6 +71,7 @@ class Renderer {
         frame_.meshes = &meshes_;
         frame_.materials = &materials_;
         frame_.shapes = &shapes_;
+        frame_.items = &items_;
         for (const EffectEntry& entry :
              its_settings.image.empty() ? standard_image() : its_settings.image) {
             effects_.push_back({&entry});
@@ -121,6 +123,7 @@ class Renderer {
     MeshPool meshes_;
     MaterialPool materials_;
     DeformedList shapes_;
+    RenderItems items_;
     FrameData frame_;
     std::vector<std::unique_ptr<ViewSlot>>
         views_;                   ///< the main one first; kept from frame to frame
@@ -273,6 +276,8 @@ FrameOutput Renderer::draw(
             effect.entry->request_views(effect.state, frame_);
         }
     }
+    shapes_.update(world, meshes_, camera.alpha, camera.previous_alpha);
+    items_.update(world, meshes_, materials_, shapes_, camera.alpha);
     prepare_views();
     const auto end_time = std::chrono::steady_clock::now();
     draw_views();

@@ -1,5 +1,5 @@
-// Culling and filling the instance buffer, the renderer's CPU work per frame: 100,000 moving boxes
-// of one mesh; `visible` is the number in view.
+// Reading the world, culling and filling the instance buffer, the renderer's CPU work per frame:
+// 100,000 boxes of one mesh that move or are at rest; `visible` is the number in view.
 
 #include "ecs/base/jobs.h"
 #include "ecs/components/transform.h"
@@ -7,6 +7,8 @@
 #include "render/gpu/context.h"
 #include "render/gpu/device.h"
 #include "render/instance_list.h"
+#include "render/mesh_pool.h"
+#include "render/skinning/deformed_list.h"
 
 #include <benchmark/benchmark.h>
 
@@ -56,21 +58,28 @@ void collect_100k(benchmark::State& state) {
     const float distance = state.range(1) == 100 ? 400.0f : 55.0f;
     const Affine eye = look_at({0, 0, distance}, {0, 0, 0});
     const RenderView view = make_render_view({}, eye, eye);
+    const bool moving = state.range(2) != 0;
     InstanceCollector collector;
+    RenderItems items;
     InstanceList list;
     DeformedList shapes(1 << 27);
     for (auto _ : state) {
+        if (moving) {
+            state.PauseTiming();
+            crowd.world.query<WorldTransform>().each([](WorldTransform&) {});
+            state.ResumeTiming();
+        }
         crowd.ring->begin_frame();
-        collector.collect(
-            crowd.world, view, *crowd.meshes, *crowd.materials, shapes, false, *crowd.ring, list);
+        items.update(crowd.world, *crowd.meshes, *crowd.materials, shapes, 1);
+        collector.collect(items, view, false, *crowd.ring, list);
         crowd.ring->end_frame();
     }
     state.counters["visible"] = list.visible;
     state.SetItemsProcessed(state.iterations() * kBoxes);
 }
 BENCHMARK(collect_100k)
-    ->ArgNames({"threads", "visible_percent"})
-    ->ArgsProduct({{1, 2}, {10, 100}})
+    ->ArgNames({"threads", "visible_percent", "moving"})
+    ->ArgsProduct({{1, 2}, {10, 100}, {0, 1}})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 

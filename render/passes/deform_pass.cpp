@@ -105,11 +105,6 @@ Result<DeformEffect> DeformEffect::create(gpu::Device& device, const RenderSetti
     return DeformEffect{LIMN_TRY(create_deform_pass(device))};
 }
 
-void DeformEffect::collect(FrameData& frame) {
-    frame.shapes->update(
-        *frame.world, *frame.meshes, frame.camera.alpha, frame.camera.previous_alpha);
-}
-
 void DeformEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     frame.shapes->write_jobs(*frame.ring);
     deform_meshes(graph, pass, *frame.shapes);

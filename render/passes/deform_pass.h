@@ -36,7 +36,6 @@ struct DeformEffect {
     DeformPass pass;
 
     [[nodiscard]] static Result<DeformEffect> create(gpu::Device& device, const RenderSettings&);
-    void collect(FrameData& frame);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };

@@ -62,8 +62,8 @@ Result<GbufferEffect> GbufferEffect::create(gpu::Device& device, const RenderSet
 bool GbufferEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& list = view.data.publish<InstanceList>();
     collector.collect(
-        *frame.world, view.camera, *frame.meshes, *frame.materials, *frame.shapes, view.velocity,
-        *frame.ring, list, view.data.get<LightingMethod>().is_forward());
+        *frame.items, view.camera, view.velocity, *frame.ring, list,
+        view.data.get<LightingMethod>().is_forward());
     for (const std::uint32_t mesh : list.without_tangents) {
         if (reported_meshes.insert(mesh).second) {
             log_warn(

@@ -96,7 +96,7 @@ void ShadowEffect::collect(FrameData& frame) {
 bool ShadowEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& lights = view.data.publish<LightList>();
     auto& volume_list = view.data.publish<VolumeList>();
-    volumes.collect(*frame.world, view.camera, *frame.shapes, *frame.ring, lights, volume_list);
+    volumes.collect(*frame.items, view.camera, *frame.ring, lights, volume_list);
     auto& list = view.data.publish<ShadowList>();
     const auto* waters = view.data.find<WaterShadows>();
     maps.collect(

@@ -8,8 +8,6 @@
 
 namespace limn {
 
-class World;
-
 // The shadow casters of a view: opaque and alpha-tested mesh instances without NoShadow that touch
 // the view's frustum and the light's range. Not culled by the camera: objects out of sight may cast
 // visible shadows.
@@ -20,8 +18,6 @@ class World;
 /// mesh, shape, material or Inflate: equal hashes, equal shadow map. The order of the casters does
 /// not matter.
 void hash_casters(
-    const World& world, float alpha, const MeshPool& meshes, const MaterialPool& materials,
-    const DeformedList& shapes, std::span<const CasterVolume> volumes,
-    std::span<std::uint64_t> signatures);
+    RenderItems& items, std::span<const CasterVolume> volumes, std::span<std::uint64_t> signatures);
 
 }  // namespace limn

@@ -335,9 +335,7 @@ void ShadowCollector::collect(
         volumes_.push_back(make_caster_volume(one));
     }
     signatures_.resize(views_.size());
-    hash_casters(
-        *frame.world, view.camera.alpha, *frame.meshes, *frame.materials, *frame.shapes, volumes_,
-        signatures_);
+    hash_casters(*frame.items, volumes_, signatures_);
     for (const LightViews& request : requests_) {
         for (std::size_t i = 0; request.placed && i < request.count; ++i) {
             const std::size_t v = request.first_view + i;
@@ -356,9 +354,7 @@ void ShadowCollector::collect(
             draw.place = map.place;
             draw.clamp_depth = views_[v].clamp_depth;
             draw.view_block = frame.ring->push_value(block);
-            collector_.collect_casters(
-                *frame.world, volumes_[v], view.camera.alpha, *frame.meshes, *frame.materials,
-                *frame.shapes, *frame.ring, draw.casters);
+            collector_.collect_casters(*frame.items, volumes_[v], *frame.ring, draw.casters);
         }
     }
 }

@@ -72,13 +72,6 @@ Interval project(const Bounds& box, const Vec3& n) {
     return {middle - half, middle + half};
 }
 
-/// Instances with non-finite bounds or transforms are not drawn (fill_boxes) and cast nothing.
-bool is_finite(const Bounds& box, const Affine& world_from_mesh) {
-    const Vec3 sum = box.min + box.max;
-    const glm::mat3 linear = glm::mat3(to_mat4(world_from_mesh));
-    return std::isfinite(sum.x + sum.y + sum.z + glm::determinant(linear));
-}
-
 }  // namespace
 
 ShadowMethod choose_shadow_method(ShadowMethod requested, bool has_volume) {
@@ -125,8 +118,9 @@ bool shadow_is_outside(const Bounds& box, const Vec4& light, const Frustum& frus
 }
 
 void VolumeCollector::collect(
-    const World& world, const RenderView& view, const DeformedList& shapes, gpu::RingBuffer& ring,
-    LightList& lights, VolumeList& list) {
+    const RenderItems& items, const RenderView& view, gpu::RingBuffer& ring, LightList& lights,
+    VolumeList& list) {
+    const World& world = items.world();
     list = {};
     list.meshes = &meshes_;
     casters_.clear();
@@ -135,7 +129,7 @@ void VolumeCollector::collect(
     if (candidates_.empty() || assets == nullptr) {
         return;
     }
-    find_casters(world, view, shapes);
+    find_casters(items, view);
 
     // Layers in the order of the records. Lights without a visible range or without casters need
     // none.
@@ -229,51 +223,39 @@ void VolumeCollector::find_candidates(const World& world, const LightList& light
     }
 }
 
-void VolumeCollector::find_casters(
-    const World& world, const RenderView& view, const DeformedList& shapes) {
-    const auto& assets = world.resource<Assets>();
+void VolumeCollector::find_casters(const RenderItems& items, const RenderView& view) {
     const Frustum frustum = make_frustum(view.clip_from_world);
-    world
-        .query<
-            const MeshInstance, const WorldTransform, Optional<const PreviousWorldTransform>,
-            Optional<const Inflate>, Without<NoShadow>>()
-        .each([&](Entity entity, const MeshInstance& surface, const WorldTransform& now,
-                  const PreviousWorldTransform* before, const Inflate* inflate) {
-            if (surface.mesh.index >= assets.meshes.size()
-                || assets.meshes[surface.mesh.index].indices.size() < 3) {
-                return;
+    for (std::size_t b = 0; b < items.block_count(); ++b) {
+        const RenderItemBlock& block = items.block(b);
+        for (std::uint32_t i = 0; block.casts_shadows && i < block.size(); ++i) {
+            if (block.is_drawable(i) && !is_blended(block.keys[i])) {
+                add_item(items, block, i, view, frustum);
             }
-            const bool blended =
-                surface.material.index < assets.materials.size()
-                && assets.materials[surface.material.index].alpha_mode == AlphaMode::Blend;
-            if (blended) {
-                return;
-            }
-            const Affine a = view.alpha == 1.0f || before == nullptr
-                                 ? now.world
-                                 : mix_affine(before->world, now.world, view.alpha);
-            const MeshData& mesh = assets.meshes[surface.mesh.index];
-            const std::uint32_t shape = shapes.find(entity);
-            const bool deformed = shape != DeformedList::kNone;
-            const Bounds& own = deformed ? shapes[shape].bounds : mesh.bounds;
-            const Bounds box = transform_bounds(a, inflate ? inflated(own, *inflate) : own);
-            if (!is_finite(box, a)) {
-                return;
-            }
-            for (Candidate& candidate : candidates_) {
-                if (!candidate.served || !reaches_box(candidate.reach, box)) {
-                    continue;
-                }
-                if (inflate != nullptr || deformed) {
-                    refuse(
-                        candidate, "shadow volumes: mesh " + mesh.name
-                                       + (deformed ? " is deformed" : " is inflated")
-                                       + "; lights that reach it use shadow maps");
-                } else {
-                    add_caster(candidate, view, frustum, assets, surface, a, box);
-                }
-            }
-        });
+        }
+    }
+}
+
+void VolumeCollector::add_item(
+    const RenderItems& items, const RenderItemBlock& block, std::uint32_t i, const RenderView& view,
+    const Frustum& frustum) {
+    const auto& assets = items.world().resource<Assets>();
+    const MeshInstance& surface = block.surfaces[i];
+    const DrawState state = draw_state(block.keys[i]);
+    const Bounds box = block.box(i);
+    for (Candidate& candidate : candidates_) {
+        if (!candidate.served || !reaches_box(candidate.reach, box)) {
+            continue;
+        }
+        if (state.inflated || state.deformed) {
+            refuse(
+                candidate, "shadow volumes: mesh " + assets.meshes[surface.mesh.index].name
+                               + (state.deformed ? " is deformed" : " is inflated")
+                               + "; lights that reach it use shadow maps");
+        } else {
+            add_caster(
+                candidate, view, frustum, assets, surface, block.world_at(i, items.alpha()), box);
+        }
+    }
 }
 
 void VolumeCollector::add_caster(

@@ -79,8 +79,8 @@ class VolumeCollector {
     /// LightRecord::shadow and removes them from LightList::shadowed. Lights it cannot serve, and
     /// the maps of hybrid ones, become lights with maps.
     void collect(
-        const World& world, const RenderView& view, const DeformedList& shapes,
-        gpu::RingBuffer& ring, LightList& lights, VolumeList& list);
+        const RenderItems& items, const RenderView& view, gpu::RingBuffer& ring, LightList& lights,
+        VolumeList& list);
     /// Call after the shadow maps: switches hybrid lights to the mask.
     static void assign_hybrid_masks(LightList& lights, VolumeList& list);
     /// Forgets all meshes, for other assets.
@@ -103,7 +103,11 @@ class VolumeCollector {
     };
 
     void find_candidates(const World& world, const LightList& lights);
-    void find_casters(const World& world, const RenderView& view, const DeformedList& shapes);
+    void find_casters(const RenderItems& items, const RenderView& view);
+    /// Adds an item to the lights that it casts volumes for.
+    void add_item(
+        const RenderItems& items, const RenderItemBlock& block, std::uint32_t i,
+        const RenderView& view, const Frustum& frustum);
     void add_caster(
         Candidate& candidate, const RenderView& view, const Frustum& frustum, const Assets& assets,
         const MeshInstance& surface, const Affine& world_from_mesh, const Bounds& box);

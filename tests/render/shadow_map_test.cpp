@@ -1,5 +1,7 @@
 #include "render/light_list.h"
+#include "render/mesh_pool.h"
 #include "render/shadow/shadow_list.h"
+#include "render/skinning/deformed_list.h"
 #include "tests/render/shadow_fixture.h"
 
 #include <array>
@@ -735,6 +737,9 @@ TEST_CASE_FIXTURE(
     frame.meshes = &meshes;
     frame.materials = &materials;
     frame.shapes = &shapes;
+    RenderItems items;
+    items.update(world, meshes, materials, shapes, 1);
+    frame.items = &items;
     ViewData view;
     view.camera = look({0, 1, 1}, {0, 0, 0});
     const auto collect = [&] {

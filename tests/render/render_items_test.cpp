@@ -1,0 +1,187 @@
+#include "ecs/components/shadow.h"
+#include "ecs/world.h"
+#include "render/material_pool.h"
+#include "render/mesh_pool.h"
+#include "render/render_items.h"
+#include "render/skinning/deformed_list.h"
+#include "tests/render/render_fixture.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+namespace limn::test {
+namespace {
+
+/// 3000 triangles, moved by update_transforms and not: blocks of 1024, 1024, 952 and the moving 2.
+struct ItemsTest : RenderTest {
+    ItemsTest() {
+        MeshData triangle;
+        triangle.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+        triangle.indices = {0, 1, 2};
+        assets.meshes = {triangle, triangle, {}};
+        assets.meshes[1].positions[2].y = 3;
+        assets.materials.resize(2);
+        assets.materials[1].alpha_mode = AlphaMode::Blend;
+        meshes.append(assets.meshes);
+        materials.update(assets, true);
+        fill(world);
+    }
+    void fill(World& into) {
+        standing.clear();
+        for (int i = 0; i < 3000; ++i) {
+            standing.push_back(into.create(
+                MeshInstance{
+                    {static_cast<std::uint32_t>(i) % 3}, {static_cast<std::uint32_t>(i) % 2}},
+                WorldTransform{affine_from({i, 0, 0}, {1, 0, 0, 0}, {1, i % 5 == 0 ? -1 : 1, 1})}));
+        }
+        for (int i = 0; i < 2; ++i) {
+            moving.push_back(into.create(
+                MeshInstance{{0}, {0}},
+                WorldTransform{affine_from({0, i, 0}, {1, 0, 0, 0}, Vec3(1))},
+                PreviousWorldTransform{affine_from({0, -i, 0}, {1, 0, 0, 0}, Vec3(1))}));
+        }
+    }
+    void update(World& from, float alpha = 1) {
+        items.update(from, meshes, materials, shapes, alpha);
+        items.hash_casters();
+    }
+    /// Whether the items are what they would be if nothing had been kept.
+    [[nodiscard]] bool is_fresh(World& from, float alpha = 1) {
+        RenderItems fresh;
+        fresh.update(from, meshes, materials, shapes, alpha);
+        fresh.hash_casters();
+        bool same = fresh.size() == items.size() && fresh.block_count() == items.block_count();
+        for (std::size_t b = 0; same && b < fresh.block_count(); ++b) {
+            const RenderItemBlock& want = fresh.block(b);
+            const RenderItemBlock& got = items.block(b);
+            same = got.size() == want.size() && got.casts_shadows == want.casts_shadows
+                   && std::equal(got.entities.begin(), got.entities.end(), want.entities.begin());
+            for (std::uint32_t i = 0; same && i < want.size(); ++i) {
+                const Bounds a = got.box(i);
+                const Bounds w = want.box(i);
+                same = a.min == w.min && a.max == w.max && got.keys[i] == want.keys[i]
+                       && (!want.casts_shadows || got.caster_hashes[i] == want.caster_hashes[i]);
+            }
+        }
+        return same;
+    }
+
+    Assets assets;
+    World world;
+    std::vector<Entity> standing;
+    std::vector<Entity> moving;
+    MeshPool meshes;
+    MaterialPool materials{device(), 1};
+    DeformedList shapes{1 << 27};
+    RenderItems items;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(ItemsTest, "render items: every mesh instance once, with its box and its state") {
+    update(world);
+    CHECK(items.size() == 3002);
+    CHECK(items.refreshed() == 4);
+    const RenderItemBlock& block = items.block(0);
+    CHECK(block.size() == 1024);
+    CHECK(block.box(4).min == Vec3(3, -1, 0));  // the tall triangle
+    CHECK(block.box(4).max == Vec3(5, 3, 0));
+    CHECK_FALSE(block.is_drawable(5));  // without triangles
+    CHECK(block.is_drawable(6));
+    CHECK(draw_state(block.keys[10]).mirrored);
+    CHECK_FALSE(draw_state(block.keys[9]).mirrored);
+    CHECK(is_blended(block.keys[1]));
+    CHECK(block.caster_hashes[1] == 0);
+    CHECK(block.caster_hashes[0] != 0);
+    CHECK(block.caster_hashes[0] != block.caster_hashes[6]);  // elsewhere
+}
+
+TEST_CASE_FIXTURE(ItemsTest, "render items: the state of a draw survives its key") {
+    for (int bits = 0; bits < 16; ++bits) {
+        const DrawState state = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+                                 (bits & 8) != 0, 0x0abcdef1,      0xfedcba98};
+        const DrawState back = draw_state(make_draw_key(state));
+        CHECK(back.blended == state.blended);
+        CHECK(back.inflated == state.inflated);
+        CHECK(back.deformed == state.deformed);
+        CHECK(back.mirrored == state.mirrored);
+        CHECK(back.batch == state.batch);
+        CHECK(back.index == state.index);
+    }
+}
+
+TEST_CASE_FIXTURE(ItemsTest, "render items: only blocks that changed are read again") {
+    update(world);
+    update(world);
+    CHECK(items.refreshed() == 0);
+    const auto refreshed_after = [&](const std::function<void()>& change) {
+        change();
+        update(world);
+        CHECK(is_fresh(world));
+        return items.refreshed();
+    };
+    CHECK(
+        refreshed_after([&] { world.get<WorldTransform>(standing[2000]).world.row[0].w = -7; })
+        == 1);
+    CHECK(refreshed_after([&] { world.get<MeshInstance>(standing[5]).material = {1}; }) == 1);
+    CHECK(refreshed_after([&] { world.get<MeshInstance>(standing[2999]).mesh = {1}; }) == 1);
+    CHECK(refreshed_after([&] { world.destroy(standing[100]); }) >= 1);
+    CHECK(refreshed_after([&] { world.add(standing[200], Inflate{0.5f}); }) >= 1);
+    CHECK(refreshed_after([&] { world.get<Inflate>(standing[200]).distance = -0.5f; }) == 1);
+    CHECK(refreshed_after([&] { world.add(standing[300], NoShadow{}); }) >= 1);
+    CHECK(refreshed_after([&] { world.remove<NoShadow>(standing[300]); }) >= 1);
+    CHECK(refreshed_after([] {}) == 0);
+}
+
+TEST_CASE_FIXTURE(ItemsTest, "render items: other materials or meshes are read again") {
+    update(world);
+    assets.materials[0].alpha_mode = AlphaMode::Blend;
+    ++assets.material_version;
+    materials.update(assets, false);
+    update(world);
+    CHECK(items.refreshed() == 4);
+    CHECK(is_fresh(world));
+    assets.meshes[2] = assets.meshes[0];
+    meshes.clear();
+    meshes.append(assets.meshes);
+    update(world);
+    CHECK(items.block(0).is_drawable(5));
+    CHECK(is_fresh(world));
+}
+
+TEST_CASE_FIXTURE(
+    ItemsTest, "render items: what moves is read at every alpha, what rests is kept") {
+    for (const float alpha : {0.25f, 0.5f, 1.0f}) {
+        update(world, alpha);
+        CHECK(items.block(3).box(1).min.y == doctest::Approx(2 * alpha - 2).scale(1));
+        CHECK(is_fresh(world, alpha));
+    }
+    update(world, 0.5f);
+    CHECK(items.refreshed() == 1);  // the moving two
+    // At rest the previous matrix has caught up, later than the last change of the current one.
+    static_cast<void>(world.version());
+    world.query<const WorldTransform, PreviousWorldTransform>().each(
+        [](const WorldTransform& now, PreviousWorldTransform& before) {
+            before.world = now.world;
+        });
+    update(world, 0.25f);
+    update(world, 0.75f);
+    CHECK(items.refreshed() == 0);
+    CHECK(is_fresh(world, 0.75f));
+}
+
+TEST_CASE_FIXTURE(ItemsTest, "render items: a new world at the address of an old one is read") {
+    std::optional<World> other(std::in_place);
+    other->create(
+        MeshInstance{{0}, {0}}, WorldTransform{affine_from({1, 0, 0}, {1, 0, 0, 0}, Vec3(1))});
+    update(*other);
+    CHECK(items.block(0).box(0).min.x == 0);
+    other.emplace();
+    other->create(
+        MeshInstance{{0}, {0}}, WorldTransform{affine_from({5, 0, 0}, {1, 0, 0, 0}, Vec3(1))});
+    update(*other);
+    CHECK(items.block(0).box(0).min.x == 4);
+}
+
+}  // namespace limn::test
