@@ -2,57 +2,18 @@
 
 #include "ecs/base/log.h"
 #include "render/gpu/grown_buffer.h"
-#include "render/shaders/instance_gpu.h"
 
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstddef>
 
 namespace limn {
 namespace {
 
-constexpr std::size_t kInitialVertices = 1 << 16;
-constexpr std::size_t kInitialIndices = 1 << 18;
-
-constexpr gpu::VertexAttribute kMeshAttributes[] = {
-    {.location = 0, .stream = kPositionStream, .components = 3},
-    {.location = 1,
-     .stream = kAttributeStream,
-     .components = 3,
-     .type = GL_SHORT,
-     .offset = offsetof(PackedVertex, normal),
-     .normalized = true},
-    {.location = 2,
-     .stream = kAttributeStream,
-     .components = 4,
-     .type = GL_SHORT,
-     .offset = offsetof(PackedVertex, tangent),
-     .normalized = true},
-    {.location = 3,
-     .stream = kAttributeStream,
-     .components = 4,
-     .offset = offsetof(PackedVertex, uv)},
-    {.location = 4,
-     .stream = kAttributeStream,
-     .components = 4,
-     .type = GL_HALF_FLOAT,
-     .offset = offsetof(PackedVertex, color)},
-    {.location = 5, .stream = kInstanceStream, .components = 4, .offset = 0},
-    {.location = 6, .stream = kInstanceStream, .components = 4, .offset = 16},
-    {.location = 7, .stream = kInstanceStream, .components = 4, .offset = 32},
-    {.location = 8,
-     .stream = kInstanceStream,
-     .components = 4,
-     .type = GL_UNSIGNED_INT,
-     .offset = offsetof(layout::InstanceRecord, material),
-     .integer = true},
-    {.location = 9, .stream = kPreviousTransformStream, .components = 4, .offset = 0},
-    {.location = 10, .stream = kPreviousTransformStream, .components = 4, .offset = 16},
-    {.location = 11, .stream = kPreviousTransformStream, .components = 4, .offset = 32},
-    {.location = 12, .stream = kPreviousPositionStream, .components = 3},
-};
+constexpr std::uint32_t kInitialVertices = 1 << 16;
+constexpr std::uint32_t kInitialIndices = 1 << 18;
 
 std::int16_t to_snorm(float x) {
     return static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f));
@@ -62,24 +23,42 @@ std::uint16_t to_half(float x) {
     return glm::packHalf1x16(std::isnan(x) ? 0.0f : std::clamp(x, -kMaxHalf, kMaxHalf));
 }
 
-PackedVertex pack_vertex(const MeshData& mesh, std::size_t i) {
-    const auto at = [i](const auto& values, const auto& fallback) {
-        return i < values.size() ? values[i] : fallback;
-    };
-    const Vec3 n = normalize_or(at(mesh.normals, Vec3(0, 0, 1)), {0, 0, 1});
-    const Vec4 t = at(mesh.tangents, Vec4(any_perpendicular(n), 1));
+PackedFrame pack_frame(const MeshData& mesh, std::size_t i) {
+    const Vec3 n =
+        normalize_or(i < mesh.normals.size() ? mesh.normals[i] : Vec3(0, 0, 1), {0, 0, 1});
+    const Vec4 t = i < mesh.tangents.size() ? mesh.tangents[i] : Vec4(any_perpendicular(n), 1);
     const Vec3 t3 = normalize_or(Vec3(t), any_perpendicular(n));
-    const Vec4 c = at(mesh.colors, Vec4(1));
-    const Vec2 uv = at(mesh.uvs, Vec2(0));
     return {
         {to_snorm(n.x), to_snorm(n.y), to_snorm(n.z), 0},
-        {to_snorm(t3.x), to_snorm(t3.y), to_snorm(t3.z), to_snorm(t.w < 0 ? -1.0f : 1.0f)},
-        uv,
-        at(mesh.uvs1, uv),
-        {to_half(c.x), to_half(c.y), to_half(c.z), to_half(c.w)}};
+        {to_snorm(t3.x), to_snorm(t3.y), to_snorm(t3.z), to_snorm(t.w < 0 ? -1.0f : 1.0f)}};
 }
 
-bool drawable(const MeshData& mesh) {
+using PackedColor = std::array<std::uint16_t, 4>;
+PackedColor pack_color(const MeshData& mesh, std::size_t i) {
+    const Vec4 c = i < mesh.colors.size() ? mesh.colors[i] : Vec4(1);
+    return {to_half(c.x), to_half(c.y), to_half(c.z), to_half(c.w)};
+}
+
+Vec2 first_uv(const MeshData& mesh, std::size_t i) {
+    return i < mesh.uvs.size() ? mesh.uvs[i] : Vec2(0);
+}
+Vec2 second_uv(const MeshData& mesh, std::size_t i) {
+    return i < mesh.uvs1.size() ? mesh.uvs1[i] : first_uv(mesh, i);
+}
+
+/// Writes what `pack(mesh, i)` makes of every vertex.
+template <typename Pack>
+void write_stream(
+    VertexStreams& streams, VertexStream stream, std::uint32_t first, const MeshData& mesh,
+    Pack pack) {
+    std::vector<decltype(pack(mesh, 0))> values(mesh.positions.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = pack(mesh, i);
+    }
+    streams.write(stream, first, std::span<const decltype(pack(mesh, 0))>(values));
+}
+
+bool is_drawable(const MeshData& mesh) {
     const auto past = [&](std::uint32_t index) { return index >= mesh.positions.size(); };
     if (mesh.positions.empty() || mesh.indices.size() < 3) {
         return false;
@@ -95,74 +74,83 @@ bool drawable(const MeshData& mesh) {
 
 }  // namespace
 
-std::span<const gpu::VertexAttribute> mesh_attributes() {
-    return kMeshAttributes;
+MeshPool::MeshPool() : streams_("meshes") {
+    vertex_slots_.grow(kInitialVertices);
+    streams_.reserve(kInitialVertices);
+    index_slots_.grow(kInitialIndices);
+    indices_ = gpu::grown_buffer("mesh indices", {}, 0, std::size_t{4} * kInitialIndices);
+    streams_.vertices().set_indices(indices_);
 }
 
-MeshPool::MeshPool() : vertices_("meshes", kMeshAttributes) {
-    reserve(kInitialVertices, kInitialIndices);
-}
-
-void MeshPool::reserve(std::size_t vertices, std::size_t indices) {
-    if (vertices > vertex_capacity_) {
-        const std::size_t capacity = std::max(vertices, 2 * vertex_capacity_);
-        positions_ = gpu::grown_buffer(
-            "mesh positions", positions_, vertex_count_ * sizeof(Vec3), capacity * sizeof(Vec3));
-        attributes_ = gpu::grown_buffer(
-            "mesh attributes", attributes_, vertex_count_ * sizeof(PackedVertex),
-            capacity * sizeof(PackedVertex));
-        vertex_capacity_ = capacity;
-        vertices_.set_vertices(kPositionStream, positions_, 0, sizeof(Vec3));
-        vertices_.set_vertices(kAttributeStream, attributes_, 0, sizeof(PackedVertex));
-        // Not read for undeformed meshes, but something must be bound.
-        vertices_.set_vertices(kPreviousPositionStream, positions_, 0, sizeof(Vec3));
-    }
-    if (indices > index_capacity_) {
-        const std::size_t capacity = std::max(indices, 2 * index_capacity_);
-        indices_ = gpu::grown_buffer("mesh indices", indices_, index_count_ * 4, capacity * 4);
-        index_capacity_ = capacity;
-        vertices_.set_indices(indices_);
-    }
-}
-
-void MeshPool::append(std::span<const MeshData> meshes) {
-    revision_ += meshes.empty() ? 0 : 1;
-    std::vector<PackedVertex> packed;
-    for (const MeshData& mesh : meshes) {
-        MeshRange range;
-        range.bounds = mesh.bounds;
-        if (drawable(mesh)) {
-            if (is_empty(range.bounds)) {
-                for (const Vec3& p : mesh.positions) {
-                    grow(range.bounds, p);
-                }
+void MeshPool::update(std::span<const MeshData> meshes) {
+    const std::size_t known = std::min(meshes_.size(), meshes.size());
+    meshes_.resize(std::max(meshes_.size(), meshes.size()));
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (i >= known || meshes_[i].version != meshes[i].version) {
+            release(meshes_[i]);
+            meshes_[i] = {};
+            meshes_[i].version = meshes[i].version;
+            meshes_[i].bounds = meshes[i].bounds;
+            if (is_drawable(meshes[i])) {
+                upload(meshes[i], meshes_[i]);
             }
-            reserve(vertex_count_ + mesh.positions.size(), index_count_ + mesh.indices.size());
-            packed.resize(mesh.positions.size());
-            for (std::size_t i = 0; i < packed.size(); ++i) {
-                packed[i] = pack_vertex(mesh, i);
-            }
-            positions_.write(vertex_count_ * sizeof(Vec3), std::span<const Vec3>(mesh.positions));
-            attributes_.write(
-                vertex_count_ * sizeof(PackedVertex), std::span<const PackedVertex>(packed));
-            indices_.write(index_count_ * 4, std::span<const std::uint32_t>(mesh.indices));
-            range.first_index = static_cast<std::uint32_t>(index_count_);
-            range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
-            range.base_vertex = static_cast<std::int32_t>(vertex_count_);
-            range.colored = !mesh.colors.empty();
-            range.tangents = !mesh.tangents.empty();
-            vertex_count_ += mesh.positions.size();
-            index_count_ += mesh.indices.size();
+            ++revision_;
         }
-        meshes_.push_back(range);
+    }
+}
+
+void MeshPool::upload(const MeshData& mesh, MeshRange& range) {
+    if (is_empty(range.bounds)) {
+        for (const Vec3& p : mesh.positions) {
+            grow(range.bounds, p);
+        }
+    }
+    range.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    range.index_count = static_cast<std::uint32_t>(mesh.indices.size() / 3 * 3);
+    range.colored = !mesh.colors.empty();
+    range.tangents = !mesh.tangents.empty();
+    const std::uint32_t first = vertex_slots_.allocate_or_grow(range.vertex_count);
+    range.base_vertex = static_cast<std::int32_t>(first);
+    streams_.reserve(vertex_slots_.capacity());
+    const std::size_t old_indices = index_slots_.capacity();
+    range.first_index = index_slots_.allocate_or_grow(range.index_count, kInitialIndices);
+    if (index_slots_.capacity() > old_indices) {
+        indices_ = gpu::grown_buffer(
+            "mesh indices", indices_, 4 * old_indices, std::size_t{4} * index_slots_.capacity());
+        streams_.vertices().set_indices(indices_);
+    }
+    if (range.colored) {
+        streams_.require(VertexStream::Color);
+    }
+    if (!mesh.uvs1.empty()) {
+        streams_.require(VertexStream::Uv1);
+    }
+    streams_.write(VertexStream::Position, first, std::span<const Vec3>(mesh.positions));
+    write_stream(streams_, VertexStream::Frame, first, mesh, pack_frame);
+    write_stream(streams_, VertexStream::Uv, first, mesh, first_uv);
+    if (streams_.has(VertexStream::Uv1)) {
+        write_stream(streams_, VertexStream::Uv1, first, mesh, second_uv);
+    }
+    if (streams_.has(VertexStream::Color)) {
+        write_stream(streams_, VertexStream::Color, first, mesh, pack_color);
+    }
+    indices_.write(
+        std::size_t{4} * range.first_index,
+        std::span<const std::uint32_t>(mesh.indices).first(range.index_count));
+}
+
+void MeshPool::release(const MeshRange& range) {
+    if (range.index_count > 0) {
+        vertex_slots_.release(static_cast<std::uint32_t>(range.base_vertex), range.vertex_count);
+        index_slots_.release(range.first_index, range.index_count);
     }
 }
 
 void MeshPool::clear() {
     ++revision_;
     meshes_.clear();
-    vertex_count_ = 0;
-    index_count_ = 0;
+    vertex_slots_.clear();
+    index_slots_.clear();
 }
 
 }  // namespace limn

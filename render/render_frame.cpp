@@ -172,7 +172,7 @@ void Renderer::update_assets() {
     }
     frame_.assets_identity = assets_;
     frame_.assets_replaced = replaced;
-    meshes_.append(std::span(assets.meshes).subspan(meshes_.meshes().size()));
+    meshes_.update(assets.meshes);
     materials_.update(assets, replaced);
 }
 

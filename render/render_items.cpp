@@ -167,12 +167,15 @@ void RenderItems::hash_casters() {
 }
 
 void RenderItems::hash_block(RenderItemBlock& block) const {
+    const std::vector<MeshRange>& meshes = meshes_->meshes();
     for (std::uint32_t i = 0; i < block.size(); ++i) {
         const DrawState state = draw_state(block.keys[i]);
         const std::uint64_t drawn = static_cast<std::uint64_t>(block.surfaces[i].mesh.index) << 32
                                     | materials_->record_of(block.surfaces[i].material);
-        const std::uint64_t what =
-            state.deformed ? hash_combine(drawn, (*shapes_)[state.index].shape) : drawn;
+        const std::uint64_t shape = state.deformed         ? (*shapes_)[state.index].shape
+                                    : block.is_drawable(i) ? meshes[state.index].version
+                                                           : 0;
+        const std::uint64_t what = hash_combine(drawn, shape);
         const Affine a = block.world_at(i, alpha_);
         const float inflation = block.inflation(i);
         block.caster_hashes[i] =

@@ -31,7 +31,8 @@ void draw_commands(
     std::uint32_t first, std::uint32_t count) {
     const bool deformed = (run.features & kDeformed) != 0;
     device.bind_vertex_array(
-        deformed ? frame.shapes->vertices().vertices() : frame.meshes->vertices());
+        deformed ? frame.shapes->vertices().streams().vertices()
+                 : frame.meshes->streams().vertices());
     device.draw_indexed_indirect(
         GL_TRIANGLES, GL_UNSIGNED_INT, commands.offset + first * sizeof(DrawCommand),
         static_cast<int>(count));
@@ -88,20 +89,17 @@ std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vect
             reads.emplace_back(graph.import("drawn image", *texture));
         }
     }
-    const DeformedVertices& vertices = frame.shapes->vertices();
     if (!frame.shapes->work().batches.empty()) {
-        reads.emplace_back(graph.import("deformed positions", vertices.positions()));
-        reads.emplace_back(graph.import("deformed attributes", vertices.attributes()));
-        if (vertices.before()) {
-            reads.emplace_back(graph.import("previous deformed positions", vertices.before()));
+        for (const BufferId buffer : import_deformed(graph, frame.shapes->vertices())) {
+            reads.emplace_back(buffer);
         }
     }
     return reads;
 }
 
 void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceList& list) {
-    set_instance_streams(frame.meshes->vertices(), list);
-    set_instance_streams(frame.shapes->vertices().vertices(), list);
+    set_instance_streams(frame.meshes->streams().vertices(), list);
+    set_instance_streams(frame.shapes->vertices().streams().vertices(), list);
     frame.materials->records().bind(device, kMaterialsUnit);
     device.bind_indirect(list.commands.buffer);
 }

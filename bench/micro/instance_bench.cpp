@@ -32,7 +32,7 @@ struct Crowd {
         box.indices = {0, 1, 2};
         assets.meshes.push_back(box);
         assets.materials.resize(8);
-        meshes->append(assets.meshes);
+        meshes->update(assets.meshes);
         materials->update(assets, true);
         for (int i = 0; i < kBoxes; ++i) {
             const Vec3 place = {i % 317 - 158, i / 317 - 158, 0};

@@ -67,7 +67,7 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
     bool before, int views) {
     Machine& m = *machine_;
     const auto& assets = world.resource<Assets>();
-    m.meshes.append(std::span(assets.meshes).subspan(m.meshes.meshes().size()));
+    m.meshes.update(assets.meshes);
     m.ring.begin_frame();
     m.graph.begin_frame();
     m.shapes.update(world, m.meshes, alpha, previous_alpha);
@@ -99,7 +99,7 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
         if (before) {
             skin.before = read<Vec3>(vertices.before(), first, count);
         }
-        for (const PackedVertex& v : read<PackedVertex>(vertices.attributes(), first, count)) {
+        for (const PackedFrame& v : read<PackedFrame>(vertices.frames(), first, count)) {
             skin.normals.emplace_back(
                 from_snorm(v.normal[0]), from_snorm(v.normal[1]), from_snorm(v.normal[2]));
             skin.tangents.emplace_back(

@@ -38,7 +38,7 @@ template <>
 inline constexpr const char* asset_kind<MaterialId> = "material";
 
 /// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
-/// empty.
+/// empty. After editing it in place, increment `version`: the renderer uploads it again.
 struct MeshData {
     std::string name;
     std::vector<Vec3> positions;  ///< [m]
@@ -53,6 +53,7 @@ struct MeshData {
     SkinWeights skin;                 ///< empty: not skinned
     std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
     Bounds bounds;                    ///< of the undeformed mesh
+    std::uint32_t version = 0;
 };
 
 enum class PixelFormat : std::uint8_t { Rgba8, Rgba16F, Rgba32F };
@@ -183,7 +184,8 @@ class AssetsIdentity {
     std::uint64_t value_ = next();
 };
 
-/// Resource: all loaded or generated assets. Append only.
+/// Resource: all loaded or generated assets. Entries are only appended; a mesh that nothing draws
+/// any more can be freed.
 struct Assets {
     std::vector<MeshData> meshes;
     std::vector<ImageData> images;
@@ -195,6 +197,15 @@ struct Assets {
     std::uint64_t material_version = 1;  ///< increment after editing a material in place
     AssetsIdentity identity;
 };
+
+/// Frees the memory of a mesh, on the GPU at the next frame. Its index stays; what draws it draws
+/// nothing.
+inline void free_mesh(Assets& assets, MeshId mesh) {
+    MeshData freed;
+    freed.name = assets.meshes[mesh.index].name;
+    freed.version = assets.meshes[mesh.index].version + 1;
+    assets.meshes[mesh.index] = std::move(freed);
+}
 
 /// Draws `mesh` with `material` at the entity's WorldTransform.
 struct MeshInstance {

@@ -18,7 +18,7 @@ constexpr unsigned kPalettesUnit = 3;
 constexpr unsigned kWeightsUnit = 4;
 constexpr unsigned kPositionsBinding = 0;
 constexpr unsigned kBeforeBinding = 1;
-constexpr unsigned kAttributesBinding = 2;
+constexpr unsigned kFramesBinding = 2;
 
 /// Binds the vertices of a batch in one of their streams.
 void bind_stream(
@@ -35,7 +35,7 @@ void run_batch(
     const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
     bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
     bind_stream(device, kBeforeBinding, before, batch, sizeof(Vec3));
-    bind_stream(device, kAttributesBinding, vertices.attributes(), batch, sizeof(PackedVertex));
+    bind_stream(device, kFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
     program.set("first_group", batch.first_group);
     program.set("group_count", batch.group_count);
     program.set("first_vertex", batch.first_vertex);
@@ -79,11 +79,9 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
     pass.palettes.set(work.palettes);
     pass.weights.set(work.weights);
     const DeformedVertices& vertices = shapes.vertices();
-    std::vector<Use> writes = {
-        graph.import("deformed positions", vertices.positions()),
-        graph.import("deformed attributes", vertices.attributes())};
-    if (vertices.before()) {
-        writes.emplace_back(graph.import("previous deformed positions", vertices.before()));
+    std::vector<Use> writes;
+    for (const BufferId buffer : import_deformed(graph, vertices)) {
+        writes.emplace_back(buffer);
     }
     graph.add_pass("deform", {}, writes, [&pass, &shapes](PassContext& context) {
         gpu::Device& device = context.device();

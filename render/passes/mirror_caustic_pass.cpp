@@ -85,7 +85,7 @@ void MirrorCausticEffect::draw(FrameGraph& graph, const FrameData&, ViewData& vi
             context.device().use(gpu::Pipeline{
                 program, {.depth = {.write = false}, .blend = gpu::kBlendAdd, .cull = GL_NONE}});
             bind_view(context, view);
-            context.device().bind_vertex_array(view.frame->meshes->vertices());
+            context.device().bind_vertex_array(view.frame->meshes->streams().vertices());
             for (const CausticMirror& mirror : mirrors) {
                 draw_mirror(context.device(), *program, view, mirror);
             }

@@ -17,8 +17,8 @@ layout(std430, binding = 0) buffer Positions {
 layout(std430, binding = 1) writeonly buffer Previous {
     float previous[];
 };
-layout(std430, binding = 2) writeonly buffer Attributes {
-    uint attributes[];  // layout of PackedVertex
+layout(std430, binding = 2) writeonly buffer Frames {
+    uvec4 frames[];  // PackedFrame
 };
 
 uniform uint first_group;
@@ -26,7 +26,6 @@ uniform uint group_count;
 uniform uint first_vertex;  // in the bound range of the three buffers
 
 const uint kFlags = uint(DEFORM_FLAGS);
-const uint kVertexWords = 10u;
 
 struct Vertex {
     vec3 position;
@@ -160,9 +159,10 @@ void main() {
         positions[3u * place + 2u] = now.position.z;
         vec3 normal = unit_or(now.normal, uintBitsToFloat(b.xyz));
         vec3 tangent = unit_or(now.tangent, uintBitsToFloat(c.xyz));
-        attributes[kVertexWords * place] = packSnorm2x16(normal.xy);
-        attributes[kVertexWords * place + 1u] = packSnorm2x16(vec2(normal.z, 0.0));
-        attributes[kVertexWords * place + 2u] = packSnorm2x16(tangent.xy);
-        attributes[kVertexWords * place + 3u] = packSnorm2x16(vec2(tangent.z, uintBitsToFloat(c.w)));
+        frames[place] = uvec4(
+            packSnorm2x16(normal.xy),
+            packSnorm2x16(vec2(normal.z, 0.0)),
+            packSnorm2x16(tangent.xy),
+            packSnorm2x16(vec2(tangent.z, uintBitsToFloat(c.w))));
     }
 }

@@ -60,7 +60,7 @@ void main() {
     Reflected light = reflect_all(s, position_ws, pixel, list);
     diffuse = light.diffuse + s.emission;
     specular = light.specular;
-    uv = uvs;
+    uv = vec4(first_uv, second_uv);
     vertex_color = color;
     material_and_flags = instance.xy;
 }

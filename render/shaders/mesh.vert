@@ -33,7 +33,7 @@ void main() {
     normal_ws = vertex_normal_ws();
     vec3 t = vec3(dot(world_row0.xyz, tangent_ms.xyz), dot(world_row1.xyz, tangent_ms.xyz), dot(world_row2.xyz, tangent_ms.xyz));
     tangent_ws = vec4(t * inversesqrt(max(dot(t, t), 1e-30)), tangent_ms.w * vertex_side());
-    uv = uvs;
+    uv = vec4(first_uv, second_uv);
     vertex_color = color;
     material_and_flags = instance.xy;
 #ifdef OBJECT_LIGHTS

@@ -10,8 +10,8 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kInitialVertices = 1 << 14;
-constexpr std::size_t kInitialIndices = 1 << 16;
+constexpr std::uint32_t kInitialVertices = 1 << 14;
+constexpr std::uint32_t kInitialIndices = 1 << 16;
 
 constexpr gpu::VertexAttribute kVolumeAttributes[] = {
     {.location = 0, .stream = kVolumeCornerStream, .components = 4},
@@ -36,8 +36,13 @@ ShadowMeshPool::Entry& ShadowMeshPool::examine(const Assets& assets, MeshId mesh
     LIMN_CHECK(mesh.index < assets.meshes.size());
     entries_.resize(std::max(entries_.size(), assets.meshes.size()));
     Entry& entry = entries_[mesh.index];
-    if (!entry.examined) {
+    const std::uint32_t version = assets.meshes[mesh.index].version;
+    if (!entry.examined || entry.version != version) {
+        release(entry.by_edge);
+        release(entry.by_triangle);
+        entry = {};
         entry.examined = true;
+        entry.version = version;
         entry.report = make_shadow_mesh(assets.meshes[mesh.index]).report;
     }
     return entry;
@@ -65,43 +70,48 @@ const VolumeRange& ShadowMeshPool::triangle_volume(const Assets& assets, MeshId 
     return *entry.by_triangle;
 }
 
-void ShadowMeshPool::reserve(std::size_t vertices, std::size_t indices) {
-    if (vertices > vertex_capacity_) {
-        const std::size_t capacity = std::max({vertices, 2 * vertex_capacity_, kInitialVertices});
+VolumeRange ShadowMeshPool::upload(const VolumeGeometry& geometry) {
+    VolumeRange range;
+    if (geometry.indices.empty()) {
+        return range;
+    }
+    range.index_count = static_cast<std::uint32_t>(geometry.indices.size());
+    range.cap_indices = geometry.cap_indices;
+    range.vertex_count = static_cast<std::uint32_t>(geometry.vertices.size());
+    const std::size_t old_vertices = vertex_slots_.capacity();
+    const std::uint32_t first =
+        vertex_slots_.allocate_or_grow(range.vertex_count, kInitialVertices);
+    if (vertex_slots_.capacity() > old_vertices) {
         corners_ = gpu::grown_buffer(
-            "volume corners", corners_, vertex_count_ * sizeof(VolumeVertex),
-            capacity * sizeof(VolumeVertex));
-        vertex_capacity_ = capacity;
+            "volume corners", corners_, old_vertices * sizeof(VolumeVertex),
+            vertex_slots_.capacity() * sizeof(VolumeVertex));
         vertices_.set_vertices(kVolumeCornerStream, corners_, 0, sizeof(VolumeVertex));
     }
-    if (indices > index_capacity_) {
-        const std::size_t capacity = std::max({indices, 2 * index_capacity_, kInitialIndices});
-        indices_ = gpu::grown_buffer("volume indices", indices_, index_count_ * 4, capacity * 4);
-        index_capacity_ = capacity;
+    const std::size_t old_indices = index_slots_.capacity();
+    range.first_index = index_slots_.allocate_or_grow(range.index_count, kInitialIndices);
+    if (index_slots_.capacity() > old_indices) {
+        indices_ = gpu::grown_buffer(
+            "volume indices", indices_, 4 * old_indices, std::size_t{4} * index_slots_.capacity());
         vertices_.set_indices(indices_);
     }
+    range.base_vertex = static_cast<std::int32_t>(first);
+    corners_.write(first * sizeof(VolumeVertex), std::span<const VolumeVertex>(geometry.vertices));
+    indices_.write(
+        std::size_t{4} * range.first_index, std::span<const std::uint32_t>(geometry.indices));
+    return range;
 }
 
-VolumeRange ShadowMeshPool::upload(const VolumeGeometry& geometry) {
-    reserve(vertex_count_ + geometry.vertices.size(), index_count_ + geometry.indices.size());
-    const VolumeRange range = {
-        static_cast<std::uint32_t>(index_count_),
-        static_cast<std::uint32_t>(geometry.indices.size()), geometry.cap_indices,
-        static_cast<std::int32_t>(vertex_count_)};
-    if (!geometry.indices.empty()) {
-        corners_.write(
-            vertex_count_ * sizeof(VolumeVertex), std::span<const VolumeVertex>(geometry.vertices));
-        indices_.write(index_count_ * 4, std::span<const std::uint32_t>(geometry.indices));
+void ShadowMeshPool::release(const std::optional<VolumeRange>& range) {
+    if (range && range->index_count > 0) {
+        vertex_slots_.release(static_cast<std::uint32_t>(range->base_vertex), range->vertex_count);
+        index_slots_.release(range->first_index, range->index_count);
     }
-    vertex_count_ += geometry.vertices.size();
-    index_count_ += geometry.indices.size();
-    return range;
 }
 
 void ShadowMeshPool::clear() {
     entries_.clear();
-    vertex_count_ = 0;
-    index_count_ = 0;
+    vertex_slots_.clear();
+    index_slots_.clear();
 }
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/vertex_array.h"
 #include "render/shadow/shadow_mesh.h"
+#include "render/slot_allocator.h"
 
 #include <optional>
 #include <vector>
@@ -19,6 +20,7 @@ struct VolumeRange {
     std::uint32_t index_count = 0;
     std::uint32_t cap_indices = 0;
     std::int32_t base_vertex = 0;
+    std::uint32_t vertex_count = 0;
 };
 
 class ShadowMeshPool {
@@ -38,22 +40,21 @@ class ShadowMeshPool {
   private:
     struct Entry {
         bool examined = false;
+        std::uint32_t version = 0;  ///< of the MeshData
         ManifoldReport report;
         std::optional<VolumeRange> by_edge;
         std::optional<VolumeRange> by_triangle;
     };
     Entry& examine(const Assets& assets, MeshId mesh);
     VolumeRange upload(const VolumeGeometry& geometry);
-    void reserve(std::size_t vertices, std::size_t indices);
+    void release(const std::optional<VolumeRange>& range);
 
     std::vector<Entry> entries_;  ///< by mesh
     gpu::Buffer corners_;
     gpu::Buffer indices_;
     gpu::VertexArray vertices_;
-    std::size_t vertex_count_ = 0;
-    std::size_t vertex_capacity_ = 0;
-    std::size_t index_count_ = 0;
-    std::size_t index_capacity_ = 0;
+    SlotAllocator vertex_slots_;
+    SlotAllocator index_slots_;
 };
 
 /// Vertex buffer bindings of shadow_volume.vert.

@@ -113,6 +113,7 @@ void DeformedList::evaluate(Entry& entry) const {
     const Deformed& settings = entry.settings;
     const auto hash_shape = [&](float alpha) {
         std::uint64_t shape = hash_combine(entry.mesh.index, settings.skin.index);
+        shape = hash_combine(shape, entry.mesh_version);
         shape = hash_combine(shape, static_cast<std::uint64_t>(settings.skinning));
         shape = hash_combine(shape, settings.first_morph);
         if (entry.skin != nullptr) {
@@ -161,11 +162,14 @@ void DeformedList::update(
                 return;
             }
             Entry& entry = entry_of(entity);
-            if (entry.mesh != instance.mesh) {
+            const std::uint32_t version = meshes.meshes()[mesh].version;
+            if (entry.mesh != instance.mesh || entry.mesh_version != version) {
                 release(entry);
+                entry.evaluated = 0;
             }
             entry.found = true;
             entry.mesh = instance.mesh;
+            entry.mesh_version = version;
             entry.settings = settings;
             std::string fault;
             entry.active = resolve(world, *assets, entry, fault);
@@ -211,8 +215,7 @@ std::int32_t DeformedList::request(std::uint32_t index, bool before) {
     Entry& entry = entries_[index];
     if (!entry.placed) {
         entry.vertex_count = entry.rest->vertex_count;
-        entry.first_vertex =
-            vertices_.allocate(*meshes_, meshes_->meshes()[entry.mesh.index], entry.vertex_count);
+        entry.first_vertex = vertices_.allocate(*meshes_, meshes_->meshes()[entry.mesh.index]);
         entry.placed = true;
     }
     entry.requested = true;
@@ -284,7 +287,7 @@ void DeformedList::add_job(Entry& entry, std::uint32_t flags) {
 
     // As many per dispatch as fit into one storage block.
     const std::uint32_t end = job.slot + job.vertex_count;
-    const auto max_vertices = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedVertex));
+    const auto max_vertices = static_cast<std::uint32_t>(storage_bytes_ / sizeof(PackedFrame));
     if (work_.batches.empty() || work_.batches.back().flags != flags
         || end - work_.batches.back().first_vertex > max_vertices) {
         const std::uint32_t aligned = job.slot / layout::kDeformGroup * layout::kDeformGroup;

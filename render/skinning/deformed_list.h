@@ -94,6 +94,7 @@ class DeformedList {
   private:
     struct Entry : DeformedInstance {
         Entity entity;
+        std::uint32_t mesh_version = 0;
         Deformed settings;
         bool found = false;      ///< found by this update
         bool active = false;     ///< deformed in this frame

@@ -1,50 +1,53 @@
 #pragma once
 
-#include "render/gpu/buffer.h"
-#include "render/gpu/vertex_array.h"
-#include "render/skinning/slot_allocator.h"
+#include "render/slot_allocator.h"
+#include "render/vertex_streams.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace limn {
 
+class FrameGraph;
 class MeshPool;
+struct BufferId;
 struct MeshRange;
 
 // Vertex storage of deformed meshes: each instance has its own copy, so that every pass draws it
-// like any other mesh. The buffers have the MeshPool's format and are drawn with its indices;
-// deform_pass writes positions, normals and tangents, the rest is copied from the mesh. A further
-// stream holds the positions of the previous frame, created when velocity is first requested.
-// Buffers grow and never shrink.
+// like any other mesh. The streams are those of the MeshPool and are drawn with its indices;
+// deform_pass writes positions and frames, the rest is copied from the mesh. The positions of the
+// previous frame are a stream that exists since velocity was first requested.
 
 class DeformedVertices {
   public:
     DeformedVertices();
 
-    /// Copies the mesh's `count` vertices in rest pose; returns the first.
-    [[nodiscard]] std::uint32_t
-    allocate(const MeshPool& meshes, const MeshRange& mesh, std::uint32_t count);
+    /// Copies the mesh's vertices in rest pose; returns the first.
+    [[nodiscard]] std::uint32_t allocate(const MeshPool& meshes, const MeshRange& mesh);
     void release(std::uint32_t first, std::uint32_t count) { slots_.release(first, count); }
     void clear() { slots_.clear(); }
-    /// Creates the stream of previous positions, with undefined contents.
-    void require_previous_positions();
+    void require_previous_positions() { streams_.require(VertexStream::PreviousPosition); }
     /// Binds the mesh pool's index buffer, which is replaced when it grows.
     void use_indices_of(const MeshPool& meshes);
 
-    [[nodiscard]] const gpu::Buffer& positions() const { return positions_; }
-    [[nodiscard]] const gpu::Buffer& attributes() const { return attributes_; }
-    [[nodiscard]] const gpu::Buffer& before() const { return before_; }  ///< null until needed
-    [[nodiscard]] gpu::VertexArray& vertices() { return vertices_; }
+    [[nodiscard]] const gpu::Buffer& positions() const {
+        return streams_.buffer(VertexStream::Position);
+    }
+    [[nodiscard]] const gpu::Buffer& frames() const { return streams_.buffer(VertexStream::Frame); }
+    /// Null until needed.
+    [[nodiscard]] const gpu::Buffer& before() const {
+        return streams_.buffer(VertexStream::PreviousPosition);
+    }
+    [[nodiscard]] VertexStreams& streams() { return streams_; }
     [[nodiscard]] const SlotAllocator& slots() const { return slots_; }
 
   private:
-    void grow(std::uint32_t needed);
-
     SlotAllocator slots_;
-    gpu::Buffer positions_;
-    gpu::Buffer attributes_;
-    gpu::Buffer before_;
-    gpu::VertexArray vertices_;
+    VertexStreams streams_;
 };
+
+/// The buffers that deform_pass writes, as the graph knows them.
+[[nodiscard]] std::vector<BufferId>
+import_deformed(FrameGraph& graph, const DeformedVertices& vertices);
 
 }  // namespace limn

@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kInitialTexels = 1 << 14;
+constexpr std::uint32_t kInitialTexels = 1 << 14;
 constexpr std::size_t kTexelBytes = 16;
 
 using Texels = std::vector<layout::uvec4>;
@@ -91,7 +91,10 @@ Texels offset_texels(const MeshData& mesh, std::vector<std::size_t>& first) {
 const RestMesh& RestPool::get(const Assets& assets, MeshId mesh) {
     meshes_.resize(std::max<std::size_t>(meshes_.size(), mesh.index + 1));
     std::optional<RestMesh>& made = meshes_[mesh.index];
-    if (!made) {
+    if (!made || made->version != assets.meshes[mesh.index].version) {
+        if (made && made->texel_count > 0) {
+            slots_.release(made->first_texel, made->texel_count);
+        }
         made = upload(assets.meshes[mesh.index]);
     }
     return *made;
@@ -99,6 +102,7 @@ const RestMesh& RestPool::get(const Assets& assets, MeshId mesh) {
 
 RestMesh RestPool::upload(const MeshData& mesh) {
     RestMesh made;
+    made.version = mesh.version;
     made.fault = check_deformable(mesh);
     if (!made.fault.empty()) {
         return made;
@@ -133,20 +137,20 @@ RestMesh RestPool::upload(const MeshData& mesh) {
     texels.insert(texels.end(), influences.begin(), influences.end());
     texels.insert(texels.end(), offsets.begin(), offsets.end());
 
-    if (used_ + texels.size() > capacity_) {
-        capacity_ = std::max({used_ + texels.size(), 2 * capacity_, kInitialTexels});
+    made.texel_count = static_cast<std::uint32_t>(texels.size());
+    const std::uint32_t old = slots_.capacity();
+    made.first_texel = slots_.allocate_or_grow(made.texel_count, kInitialTexels);
+    if (slots_.capacity() > old) {
         buffer_ = gpu::grown_buffer(
-            "meshes at rest", buffer_, used_ * kTexelBytes, capacity_ * kTexelBytes);
+            "meshes at rest", buffer_, old * kTexelBytes, slots_.capacity() * kTexelBytes);
     }
-    buffer_.write(used_ * kTexelBytes, std::span<const layout::uvec4>(texels));
-    made.first_texel = static_cast<std::uint32_t>(used_);
-    used_ += texels.size();
+    buffer_.write(made.first_texel * kTexelBytes, std::span<const layout::uvec4>(texels));
     return made;
 }
 
 void RestPool::clear() {
     meshes_.clear();
-    used_ = 0;
+    slots_.clear();
 }
 
 }  // namespace limn

@@ -3,6 +3,7 @@
 #include "ecs/components/surface.h"
 #include "render/gpu/buffer.h"
 #include "render/skinning/posed_bounds.h"
+#include "render/slot_allocator.h"
 
 #include <cstddef>
 #include <optional>
@@ -14,14 +15,16 @@ namespace limn {
 /// A mesh in rest pose, as deform.comp reads it.
 struct RestMesh {
     std::uint32_t first_texel = 0;
+    std::uint32_t texel_count = 0;  ///< 0: not uploaded
     std::uint32_t vertex_count = 0;
     std::uint32_t joint_count = 0;  ///< required of its skin; 0: not skinned
     SkinBounds bounds;
-    std::string fault;  ///< why it cannot be deformed; empty if it can
+    std::uint32_t version = 0;  ///< of the MeshData
+    std::string fault;          ///< why it cannot be deformed; empty if it can
 };
 
-/// Rest poses of deformable meshes on the GPU: one buffer of texels (deform_gpu.h), appended to
-/// when the first instance of a mesh appears.
+/// Rest poses of deformable meshes on the GPU: one buffer of texels (deform_gpu.h). A mesh is
+/// uploaded when its first instance appears, and again after it was edited.
 class RestPool {
   public:
     [[nodiscard]] const RestMesh& get(const Assets& assets, MeshId mesh);
@@ -36,8 +39,7 @@ class RestPool {
 
     std::vector<std::optional<RestMesh>> meshes_;  ///< by mesh
     gpu::Buffer buffer_;
-    std::size_t used_ = 0;      // texels
-    std::size_t capacity_ = 0;  // texels
+    SlotAllocator slots_;  // texels
 };
 
 }  // namespace limn

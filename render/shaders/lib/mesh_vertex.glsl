@@ -6,12 +6,13 @@
 layout(location = 0) in vec3 position_ms;
 layout(location = 1) in vec3 normal_ms;
 layout(location = 2) in vec4 tangent_ms;  // w: sign of the bitangent
-layout(location = 3) in vec4 uvs;         // both sets
+layout(location = 3) in vec2 first_uv;
 layout(location = 4) in vec4 color;
 layout(location = 5) in vec4 world_row0;  // world_from_mesh
 layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
 layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
+layout(location = 13) in vec2 second_uv;
 
 // Inflated or not.
 vec3 moved_vertex(vec3 position) {

@@ -1,7 +1,8 @@
-#include "render/skinning/slot_allocator.h"
+#include "render/slot_allocator.h"
 
 #include "ecs/base/check.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace limn {
@@ -21,6 +22,15 @@ std::optional<std::uint32_t> SlotAllocator::allocate(std::uint32_t count) {
         return first;
     }
     return std::nullopt;
+}
+
+std::uint32_t SlotAllocator::allocate_or_grow(std::uint32_t count, std::uint32_t least) {
+    std::optional<std::uint32_t> first = allocate(count);
+    if (!first) {
+        grow(std::max({capacity_ + count, 2 * capacity_, least}));
+        first = allocate(count);
+    }
+    return *first;
 }
 
 void SlotAllocator::release(std::uint32_t first, std::uint32_t count) {

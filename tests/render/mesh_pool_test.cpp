@@ -1,0 +1,144 @@
+#include "render/mesh_pool.h"
+#include "tests/render/scene_fixture.h"
+
+namespace limn::test {
+namespace {
+
+MeshData make_quads(int count) {
+    MeshData mesh;
+    for (int i = 0; i < count; ++i) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const auto x = static_cast<float>(i);
+        mesh.positions.insert(
+            mesh.positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}});
+        mesh.indices.insert(
+            mesh.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+    }
+    mesh.normals.assign(mesh.positions.size(), {0, 0, 1});
+    mesh.uvs.assign(mesh.positions.size(), {0.25f, 0.75f});
+    return mesh;
+}
+
+template <typename T>
+std::vector<T> read_stream(const MeshPool& pool, VertexStream stream, std::size_t mesh) {
+    const MeshRange& range = pool.meshes()[mesh];
+    std::vector<T> values(range.vertex_count);
+    pool.streams().buffer(stream).read(
+        static_cast<std::size_t>(range.base_vertex) * sizeof(T),
+        std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(RenderTest, "mesh pool: an edited mesh is uploaded again, others stay") {
+    std::vector<MeshData> meshes = {make_quads(2), make_quads(3), make_quads(4)};
+    MeshPool pool;
+    pool.update(meshes);
+    const std::uint64_t revision = pool.revision();
+    const std::vector<MeshRange> before = pool.meshes();
+    meshes[1].positions[0] = {-5, 0, 0};
+    pool.update(meshes);
+    CHECK(pool.revision() == revision);  // nobody said that it changed
+    ++meshes[1].version;
+    pool.update(meshes);
+    CHECK(pool.revision() != revision);
+    CHECK(pool.meshes()[1].base_vertex == before[1].base_vertex);  // it still fits
+    CHECK(read_stream<Vec3>(pool, VertexStream::Position, 1) == meshes[1].positions);
+    CHECK(pool.meshes()[1].bounds.min.x == -5);
+    for (const std::size_t i : {0, 2}) {
+        CHECK(pool.meshes()[i].base_vertex == before[i].base_vertex);
+        CHECK(read_stream<Vec3>(pool, VertexStream::Position, i) == meshes[i].positions);
+    }
+    // One that grew goes where there is room, and its old place is free.
+    meshes[0] = make_quads(5);
+    meshes[0].version = 1;
+    pool.update(meshes);
+    CHECK(pool.used_vertices() == 4 * (5 + 3 + 4));
+    CHECK(pool.used_indices() == 6 * (5 + 3 + 4));
+    CHECK(read_stream<Vec3>(pool, VertexStream::Position, 0) == meshes[0].positions);
+    CHECK(read_stream<Vec3>(pool, VertexStream::Position, 2) == meshes[2].positions);
+}
+
+TEST_CASE_FIXTURE(RenderTest, "mesh pool: a thousand edits and frees take no further memory") {
+    Assets assets;
+    MeshPool pool;
+    for (int i = 0; i < 1000; ++i) {
+        if (i >= 10) {
+            free_mesh(assets, {static_cast<std::uint32_t>(i - 10)});
+        }
+        assets.meshes.push_back(make_quads(1 + i % 50));
+        pool.update(assets.meshes);
+    }
+    std::size_t vertices = 0;
+    for (const MeshData& mesh : assets.meshes) {
+        vertices += mesh.positions.size();
+    }
+    CHECK(pool.used_vertices() == vertices);
+    CHECK(pool.streams().capacity() == 1 << 16);  // as at first; all together have 102,000
+    CHECK(pool.meshes()[0].index_count == 0);
+    CHECK(read_stream<Vec3>(pool, VertexStream::Position, 999) == assets.meshes[999].positions);
+}
+
+TEST_CASE_FIXTURE(RenderTest, "mesh pool: growing keeps every stream") {
+    std::vector<MeshData> meshes = {make_quads(7)};
+    meshes[0].colors.assign(28, {0.5f, 1, 0.25f, 1});
+    MeshPool pool;
+    pool.update(meshes);
+    meshes.push_back(make_quads(20000));  // 80,000 vertices
+    pool.update(meshes);
+    CHECK(pool.streams().capacity() > 1 << 16);
+    CHECK(read_stream<Vec3>(pool, VertexStream::Position, 0) == meshes[0].positions);
+    CHECK(read_stream<Vec2>(pool, VertexStream::Uv, 0) == meshes[0].uvs);
+    using Color = std::array<std::uint16_t, 4>;
+    CHECK(
+        read_stream<Color>(pool, VertexStream::Color, 0)
+        == std::vector<Color>(28, Color{0x3800, 0x3c00, 0x3400, 0x3c00}));
+    CHECK(
+        read_stream<Color>(pool, VertexStream::Color, 1)
+        == std::vector<Color>(80000, Color{0x3c00, 0x3c00, 0x3c00, 0x3c00}));
+}
+
+TEST_CASE_FIXTURE(RenderTest, "mesh pool: streams exist when a mesh has them, with what stood in") {
+    std::vector<MeshData> meshes = {make_quads(1)};
+    MeshPool pool;
+    pool.update(meshes);
+    CHECK_FALSE(pool.streams().has(VertexStream::Color));
+    CHECK_FALSE(pool.streams().has(VertexStream::Uv1));
+    meshes.push_back(make_quads(1));
+    meshes[1].colors.assign(4, {0, 0, 0, 1});
+    meshes[1].uvs1.assign(4, {0.5f, 0.5f});
+    pool.update(meshes);
+    using Color = std::array<std::uint16_t, 4>;
+    CHECK(
+        read_stream<Color>(pool, VertexStream::Color, 0)
+        == std::vector<Color>(4, Color{0x3c00, 0x3c00, 0x3c00, 0x3c00}));
+    CHECK(read_stream<Vec2>(pool, VertexStream::Uv1, 0) == meshes[0].uvs);
+    CHECK(read_stream<Vec2>(pool, VertexStream::Uv1, 1) == meshes[1].uvs1);
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "mesh pool: an edited mesh is drawn as a new one would be, a freed one not") {
+    const MeshId ball = add(make_ball(8));
+    const MaterialId gray = add(Material{});
+    const Entity entity = place(ball, gray, affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.5f)));
+    shine(PointLight{}, affine_from({1, 1, 2}, {1, 0, 0, 0}, Vec3(1)));
+    const RenderView view = look({0, 0, 2}, {0, 0, 0}, 64, 64);
+    const gpu::FloatImage round = radiance(view);
+    auto& assets = world.resource<Assets>();
+    MeshData flat = make_ball(8);
+    for (Vec3& p : flat.positions) {
+        p.y *= 0.5f;
+    }
+    flat.bounds = {};
+    flat.version = assets.meshes[ball.index].version + 1;
+    assets.meshes[ball.index] = flat;
+    const gpu::FloatImage edited = radiance(view);
+    CHECK(edited.pixels != round.pixels);
+    world.get<MeshInstance>(entity).mesh = add(flat);
+    CHECK(radiance(view).pixels == edited.pixels);
+    free_mesh(assets, world.get<MeshInstance>(entity).mesh);
+    CHECK(draw(view).statistics.visible_instances == 0);
+}
+
+}  // namespace limn::test
