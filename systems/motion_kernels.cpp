@@ -16,7 +16,6 @@ static_assert(sizeof(limn::Transform) == 10 * sizeof(float));
 static_assert(sizeof(limn::WorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::PreviousWorldTransform) == 12 * sizeof(float));
 static_assert(sizeof(limn::Spin) == 4 * sizeof(float));
-static_assert(sizeof(limn::Sway) == 12 * sizeof(float));
 
 #ifndef LIMN_MOTION_CONSTANTS
 #define LIMN_MOTION_CONSTANTS
@@ -51,7 +50,7 @@ std::size_t compose_worlds_vector(
 std::size_t turn_rotations_vector(std::span<const Spin>, float, std::span<Transform>) {
     return 0;
 }
-std::size_t sway_positions_vector(std::span<const Sway>, double, std::span<Transform>) {
+std::size_t sway_positions_vector(const SwayArrays&, double, std::span<Transform>) {
     return 0;
 }
 
@@ -261,23 +260,20 @@ turn_rotations_vector(std::span<const Spin> spin, float dt, std::span<Transform>
 }
 
 std::size_t
-sway_positions_vector(std::span<const Sway> sway, double time, std::span<Transform> transform) {
+sway_positions_vector(const SwayArrays& sway, double time, std::span<Transform> transform) {
     const std::size_t lanes = hn::Lanes(d);
     HWY_ALIGN float moved[3 * hn::MaxLanes(Floats())];
     std::size_t first = 0;
     for (; first + lanes <= sway.size(); first += lanes) {
-        const float* in = reinterpret_cast<const float*>(&sway[first]);
-        V center[3];
-        V amplitude[3];
-        V frequency[3];
-        V phase[3];
-        load_fields<12>(in, center[0], center[1], center[2], amplitude[0]);
-        load_fields<12>(in + 4, amplitude[1], amplitude[2], frequency[0], frequency[1]);
-        load_fields<12>(in + 8, frequency[2], phase[0], phase[1], phase[2]);
+        const auto load = [&](const SwayArrays::Axes& field, int axis) {
+            return hn::LoadU(d, field[axis].data() + first);
+        };
         V position[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const SinCos parts = sin_cos_parts(frequency[axis], time, phase[axis]);
-            position[axis] = hn::Add(center[axis], hn::Mul(amplitude[axis], pick_sine(parts)));
+            const SinCos parts =
+                sin_cos_parts(load(sway.frequency, axis), time, load(sway.phase, axis));
+            position[axis] = hn::Add(
+                load(sway.center, axis), hn::Mul(load(sway.amplitude, axis), pick_sine(parts)));
         }
         hn::StoreInterleaved3(position[0], position[1], position[2], d, moved);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -369,15 +365,23 @@ void turn_rotations_scalar(std::span<const Spin> spin, float dt, std::span<Trans
     }
 }
 
-void sway_positions_scalar(
-    std::span<const Sway> sway, double time, std::span<Transform> transform) {
+SwayArrays SwayArrays::subspan(std::size_t first, std::size_t count) const {
+    SwayArrays part = *this;
+    for (Axes* field : {&part.center, &part.amplitude, &part.frequency, &part.phase}) {
+        for (std::span<const float>& axis : *field) {
+            axis = axis.subspan(first, count);
+        }
+    }
+    return part;
+}
+
+void sway_positions_scalar(const SwayArrays& sway, double time, std::span<Transform> transform) {
     for (std::size_t i = 0; i < sway.size(); ++i) {
-        const Sway& s = sway[i];
         for (int axis = 0; axis < 3; ++axis) {
-            const double angle =
-                static_cast<double>(s.frequency[axis]) * time + static_cast<double>(s.phase[axis]);
+            const double angle = static_cast<double>(sway.frequency[axis][i]) * time
+                                 + static_cast<double>(sway.phase[axis][i]);
             transform[i].position[axis] =
-                s.center[axis] + s.amplitude[axis] * pick_sine(sin_cos_parts(angle));
+                sway.center[axis][i] + sway.amplitude[axis][i] * pick_sine(sin_cos_parts(angle));
         }
     }
 }
@@ -396,10 +400,10 @@ void turn_rotations(std::span<const Spin> spin, float dt, std::span<Transform> t
     turn_rotations_scalar(spin.subspan(done), dt, transform.subspan(done));
 }
 
-void sway_positions(std::span<const Sway> sway, double time, std::span<Transform> transform) {
+void sway_positions(const SwayArrays& sway, double time, std::span<Transform> transform) {
     LIMN_CHECK(sway.size() == transform.size());
     const std::size_t done = HWY_DYNAMIC_DISPATCH(sway_positions_vector)(sway, time, transform);
-    sway_positions_scalar(sway.subspan(done), time, transform.subspan(done));
+    sway_positions_scalar(sway.subspan(done, sway.size() - done), time, transform.subspan(done));
 }
 
 }  // namespace limn

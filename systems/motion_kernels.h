@@ -2,6 +2,8 @@
 
 #include "ecs/components/transform.h"
 
+#include <array>
+#include <cstddef>
 #include <span>
 
 namespace limn {
@@ -30,9 +32,21 @@ void compose_worlds_scalar(
 void turn_rotations(std::span<const Spin> spin, float dt, std::span<Transform> transform);
 void turn_rotations_scalar(std::span<const Spin> spin, float dt, std::span<Transform> transform);
 
+/// The fields of many Sways, an array per scalar.
+struct SwayArrays {
+    using Axes = std::array<std::span<const float>, 3>;
+    Axes center;
+    Axes amplitude;
+    Axes frequency;
+    Axes phase;
+
+    [[nodiscard]] std::size_t size() const { return center[0].size(); }
+    [[nodiscard]] SwayArrays subspan(std::size_t first, std::size_t count) const;
+};
+
 /// position_i = center_i + amplitude_i sin(frequency_i time + phase_i).
-void sway_positions(std::span<const Sway> sway, double time, std::span<Transform> transform);
-void sway_positions_scalar(std::span<const Sway> sway, double time, std::span<Transform> transform);
+void sway_positions(const SwayArrays& sway, double time, std::span<Transform> transform);
+void sway_positions_scalar(const SwayArrays& sway, double time, std::span<Transform> transform);
 
 /// Whether no step has been computed yet.
 [[nodiscard]] inline bool is_unset(const PreviousWorldTransform& previous) {

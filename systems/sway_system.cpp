@@ -7,8 +7,11 @@ namespace limn {
 void update_sways(Query<const Sway, Transform> swaying, Res<const FrameTime> time) {
     const double now = time->time;
     swaying.par_chunks(
-        [now](ChunkView, std::span<const Sway> sway, std::span<Transform> transform) {
-            sway_positions(sway, now, transform);
+        [now](ChunkView, SplitSpan<const Sway> sway, std::span<Transform> transform) {
+            sway_positions(
+                {sway.field<&Sway::center>(), sway.field<&Sway::amplitude>(),
+                 sway.field<&Sway::frequency>(), sway.field<&Sway::phase>()},
+                now, transform);
         });
 }
 

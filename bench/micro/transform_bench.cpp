@@ -5,6 +5,7 @@
 #include "ecs/world.h"
 #include "systems/motion_kernels.h"
 #include "systems/update_world.h"
+#include "tests/systems/sway_table.h"
 
 #include <benchmark/benchmark.h>
 
@@ -83,10 +84,11 @@ void spin(benchmark::State& state) {
 
 void sway(benchmark::State& state) {
     Boxes boxes;
+    const test::SwayTable table(boxes.sway);
     const auto kernel = state.range(0) != 0 ? sway_positions : sway_positions_scalar;
     double time = 0;
     for (auto _ : state) {
-        kernel(boxes.sway, time += 1.0 / 60.0, boxes.transform);
+        kernel(table.arrays(), time += 1.0 / 60.0, boxes.transform);
         benchmark::ClobberMemory();
     }
     per_box(state);

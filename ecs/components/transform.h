@@ -64,6 +64,12 @@ struct Sway {
     Vec3 phase = {0, 0, 0};
 };
 
+/// Split: sway_positions loads each field for many entities at once.
+template <>
+struct ComponentTraits<Sway> : DefaultTraits {
+    static constexpr Storage storage = Storage::Split;
+};
+
 LIMN_FIELDS(Sway) {
     LIMN_FIELD(center, "rest position, relative to the parent", "m");
     LIMN_FIELD(amplitude, "amplitude along each axis", "m");

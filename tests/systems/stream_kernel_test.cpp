@@ -4,6 +4,7 @@
 #include "ecs/world.h"
 #include "systems/motion_kernels.h"
 #include "systems/transform_system.h"
+#include "tests/systems/sway_table.h"
 
 #include <doctest/doctest.h>
 
@@ -57,7 +58,7 @@ Elements make_elements(std::size_t count) {
 void step(Elements& all, std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     const std::span local = std::span(all.local).subspan(begin, count);
-    sway_positions(std::span<const Sway>(all.sway).subspan(begin, count), 3.7, local);
+    sway_positions(test::SwayTable(std::span(all.sway).subspan(begin, count)).arrays(), 3.7, local);
     turn_rotations(std::span<const Spin>(all.spin).subspan(begin, count), 0.02f, local);
     compose_worlds(
         local, std::span(all.world).subspan(begin, count),

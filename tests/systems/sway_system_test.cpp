@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/motion_kernels.h"
 #include "systems/sway_system.h"
+#include "tests/systems/sway_table.h"
 
 #include <doctest/doctest.h>
 
@@ -82,9 +83,10 @@ TEST_CASE("sway: the kernel with vectors gives the bits of the plain one, whatev
                 .phase = 4.0f * random.direction()};
         }
         std::vector<Transform> plain = transform;
+        const test::SwayTable table(sway);
         for (const double time : {0.0, 0.016666, 1000.3}) {
-            sway_positions(sway, time, transform);
-            sway_positions_scalar(sway, time, plain);
+            sway_positions(table.arrays(), time, transform);
+            sway_positions_scalar(table.arrays(), time, plain);
             CHECK(std::memcmp(transform.data(), plain.data(), count * sizeof(Transform)) == 0);
         }
     }
