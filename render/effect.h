@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace limn {
 
 struct FrameOutput;
 struct RenderSettings;
+struct RenderView;
 
 // What the list of effects (image.h) needs to know of each. An effect is a struct with some of
 // these functions; only create() is needed:
@@ -25,10 +27,20 @@ struct RenderSettings;
 //         void draw(FrameGraph&, const FrameData&, ViewData&);
 //         void report(const FrameData&, const ViewData&, FrameOutput&);  // after the frame, of the
 //         main view
+//         static void add_warm_up_views(const FrameData&, std::vector<RenderView>&);  // see below
 //     };
 //
 // Each step is done for all effects, in the order of the list, before the next begins. The struct
-// is the effect's state and lives as long as the renderer; passes may capture its address.
+// is the effect's state and lives until the renderer does or begins anew (warm_up,
+// render_frame.h); passes may capture its address.
+//
+// No program should be compiled while a level is played. A level is warmed up when it is loaded:
+// drawn from the cameras that it has and from far enough to see all of it; once more with every
+// light on, if some are off. An effect takes part without doing anything if the definitions of its
+// shaders follow from what the level holds (all lights of FrameData's LightList, all materials)
+// rather than from what a view shows of it. Definitions that must follow
+// the camera are met by add_warm_up_views(): it adds places from which each of them is drawn. What
+// has no place, such as a shadow map that a caster may enter later, looks at FrameData::warm_up.
 
 struct EffectEntry {
     std::uint32_t views;  ///< of ViewKind: in which prepare() and draw() are called
@@ -42,6 +54,7 @@ struct EffectEntry {
     void (*draw_shared)(void*, FrameGraph&, const FrameData&);
     void (*draw)(void*, FrameGraph&, const FrameData&, ViewData&);
     void (*report)(void*, const FrameData&, const ViewData&, FrameOutput&);
+    void (*add_warm_up_views)(const FrameData&, std::vector<RenderView>&);
 };
 
 /// The entry of an effect in the list; functions that it lacks are null.
@@ -83,6 +96,9 @@ template <typename E>
         entry.report = [](void* e, const FrameData& frame, const ViewData& view, FrameOutput& out) {
             static_cast<E*>(e)->report(frame, view, out);
         };
+    }
+    if constexpr (requires { &E::add_warm_up_views; }) {
+        entry.add_warm_up_views = &E::add_warm_up_views;
     }
     return entry;
 }

@@ -16,7 +16,6 @@ namespace limn {
 namespace {
 
 constexpr int kMinFace = 16;  ///< [px]
-constexpr int kMaxFace = 1024;
 
 /// Unit axis `i` of a pose.
 Vec3 axis_of(const Affine& pose, int i) {
@@ -41,7 +40,7 @@ void fill_region(const EnvProbe& probe, const Affine& pose, ProbeSlot& slot) {
 
 }  // namespace
 
-void EnvProbeList::collect(const World& world, float alpha) {
+void EnvProbeList::collect(const World& world, float alpha, int max_resolution) {
     for (ProbeSlot& slot : slots_) {
         slot.seen = false;
     }
@@ -54,7 +53,7 @@ void EnvProbeList::collect(const World& world, float alpha) {
     std::vector<Found> added;
     const auto take = [&](ProbeSlot& slot, const Found& found) {
         const auto asked =
-            static_cast<unsigned>(std::clamp(found.probe->resolution, kMinFace, kMaxFace));
+            static_cast<unsigned>(std::clamp(found.probe->resolution, kMinFace, max_resolution));
         const int resolution = static_cast<int>(std::bit_floor(asked));
         if (slot.entity != found.entity || slot.resolution != resolution) {
             gpu::Texture cube = std::move(slot.cube);

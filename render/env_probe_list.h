@@ -33,10 +33,13 @@ struct ProbeSlot {
     gpu::Texture cube;           ///< RGBA16F or RGBA32F with a full mip chain
 };
 
+inline constexpr int kMaxProbeResolution = 1024;  ///< [px]
+
 class EnvProbeList {
   public:
-    /// Finds the probes at time `alpha` (RenderView), and which faces are due.
-    void collect(const World& world, float alpha);
+    /// Finds the probes at time `alpha` (RenderView), and which faces are due, of at most
+    /// `max_resolution` >= 16 [px].
+    void collect(const World& world, float alpha, int max_resolution);
 
     /// Marks every face for redrawing, whatever the probes' update policies say.
     void forget();

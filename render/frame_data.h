@@ -88,7 +88,8 @@ struct FrameData {
     std::span<const std::string> aovs;  ///< asked for
     bool velocity = false;              ///< the main view needs motion vectors; set in collect()
     bool attributes = false;            ///< the main view needs its G-buffer; set in collect()
-    bool warm_up = false;               ///< compile what later frames may need, too
+    bool warm_up = false;               ///< drawn to compile programs, not to be seen (warm_up())
+    bool all_lights = false;            ///< of a warm-up: as if every light were on
     std::vector<ExtraView> views;       ///< filled in request_views()
 
     TypedStore data;

@@ -30,14 +30,29 @@ Vec3 axis_of(const Affine& a) {
     return normalize_or({-a.row[0].z, -a.row[1].z, -a.row[2].z}, {0, 0, -1});
 }
 
-/// Whether the light adds anything: not black, not negative, no NaN or infinity in it.
-bool shines(const layout::LightRecord& r) {
+/// Whether nothing in it is negative, NaN or infinite.
+bool is_valid(const layout::LightRecord& r) {
     float sum = 0;
     for (const Vec4* v : {&r.position, &r.color, &r.polynomial, &r.axis}) {
         sum += v->x + v->y + v->z + v->w;
     }
-    return std::isfinite(sum) && r.color.x >= 0 && r.color.y >= 0 && r.color.z >= 0
-           && r.color.x + r.color.y + r.color.z > 0;
+    return std::isfinite(sum) && r.color.x >= 0 && r.color.y >= 0 && r.color.z >= 0;
+}
+
+float power_of(const PointLight& light) {
+    return light.intensity;
+}
+float power_of(const SpotLight& light) {
+    return light.intensity;
+}
+float power_of(const DirectionalLight& light) {
+    return light.illuminance;
+}
+
+/// Whatever its pulse: what a frame needs would change with that.
+template <typename Light>
+bool is_on(const Light& light) {
+    return light.enabled && light.color * power_of(light) != Vec3(0);
 }
 
 void set_attenuation(layout::LightRecord& record, const Attenuation& attenuation, float radius) {
@@ -73,9 +88,9 @@ struct LightEntity {
     const Projector* projector;
 };
 
-/// Calls use(light, LightEntity) for every enabled light of a type.
+/// Calls use(light, LightEntity) for every light of a type that is on, or for all.
 template <typename Light, typename Use>
-void each_light(const World& world, double time, float alpha, Use&& use) {
+void each_light(const World& world, double time, float alpha, bool all, Use&& use) {
     world
         .query<
             const Light, const WorldTransform, Optional<const PreviousWorldTransform>,
@@ -83,7 +98,7 @@ void each_light(const World& world, double time, float alpha, Use&& use) {
         .each([&](Entity entity, const Light& light, const WorldTransform& now,
                   const PreviousWorldTransform* before, const LightPulse* pulse,
                   const Shadow* shadow, const Projector* projector) {
-            if (light.enabled) {
+            if (all || is_on(light)) {
                 const Affine world_from_light = alpha == 1.0f || before == nullptr
                                                     ? now.world
                                                     : mix_affine(before->world, now.world, alpha);
@@ -167,7 +182,7 @@ layout::LightRecord make_record(const DirectionalLight& light, const Vec3& axis,
     return record;
 }
 
-void collect_lights(const World& world, float alpha, LightList& list) {
+void collect_lights(const World& world, float alpha, LightList& list, bool all) {
     list.records.clear();
     list.reach.clear();
     list.shadowed.clear();
@@ -184,9 +199,9 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     list.time = time;
 
     each_light<DirectionalLight>(
-        world, time, alpha, [&](const DirectionalLight& light, const LightEntity& its) {
+        world, time, alpha, all, [&](const DirectionalLight& light, const LightEntity& its) {
             const layout::LightRecord record = make_record(light, axis_of(its.pose), its.factor);
-            if (shines(record)) {
+            if (is_valid(record)) {
                 if (list.records.empty()) {
                     list.sun_direction = Vec3(record.position);
                     list.sun_color = Vec3(record.color);
@@ -201,10 +216,10 @@ void collect_lights(const World& world, float alpha, LightList& list) {
     for (const bool last : {false, true}) {
         list.first_shadowed = static_cast<int>(list.records.size());
         each_light<PointLight>(
-            world, time, alpha, [&](const PointLight& light, const LightEntity& its) {
+            world, time, alpha, all, [&](const PointLight& light, const LightEntity& its) {
                 const layout::LightRecord record =
                     make_record(light, position_of(its.pose), its.factor);
-                if (shines(record) && last == (its.shadow != nullptr)) {
+                if (is_valid(record) && last == (its.shadow != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.records.push_back(record);
                     list.reach.push_back({position_of(its.pose), reach_radius(record)});
@@ -213,10 +228,11 @@ void collect_lights(const World& world, float alpha, LightList& list) {
                 }
             });
         each_light<SpotLight>(
-            world, time, alpha, [&](const SpotLight& light, const LightEntity& its) {
+            world, time, alpha, all, [&](const SpotLight& light, const LightEntity& its) {
                 const layout::LightRecord record =
                     make_record(light, position_of(its.pose), axis_of(its.pose), its.factor);
-                if (shines(record) && last == (its.shadow != nullptr || its.projector != nullptr)) {
+                if (is_valid(record)
+                    && last == (its.shadow != nullptr || its.projector != nullptr)) {
                     list.linear_fade = list.linear_fade || record.polynomial.y != 0;
                     list.spot_angles =
                         list.spot_angles || light.profile == SpotProfile::LinearAngle;
@@ -229,6 +245,15 @@ void collect_lights(const World& world, float alpha, LightList& list) {
                 }
             });
     }
+}
+
+bool any_light_off(const World& world) {
+    bool off = false;
+    const auto look = [&off](const auto& light) { off = off || !is_on(light); };
+    world.query<const PointLight>().each([&](const PointLight& light) { look(light); });
+    world.query<const SpotLight>().each([&](const SpotLight& light) { look(light); });
+    world.query<const DirectionalLight>().each([&](const DirectionalLight& light) { look(light); });
+    return off;
 }
 
 }  // namespace limn

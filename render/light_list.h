@@ -16,7 +16,8 @@ class World;
 // The world's lights as one packed array that shaders loop over without testing types: directional
 // lights first, then point lights, then spots, then point lights and spots that cast shadows or
 // project cookies, each in world order. Disabled, black and broken (not finite) lights are left
-// out, LightPulse is applied. Formulas: bench/oracles/light_oracle.h.
+// out, LightPulse is applied; a light that it turns black for a moment stays. Formulas:
+// bench/oracles/light_oracle.h.
 
 /// The range of a point or spot light: a sphere, for spots cut to a cone.
 struct LightReach {
@@ -68,8 +69,12 @@ struct LightList {
     Vec3 sun_color = {0, 0, 0};      ///< [lx]; black: no sun
 };
 
-/// Fills `list` from the entities with WorldTransform and a light; `alpha` as in RenderView.
-void collect_lights(const World& world, float alpha, LightList& list);
+/// Fills `list` from the entities with WorldTransform and a light; `alpha` as in RenderView. With
+/// `all` lights also from those that are off.
+void collect_lights(const World& world, float alpha, LightList& list, bool all = false);
+
+/// Whether some light is off: disabled or black.
+[[nodiscard]] bool any_light_off(const World& world);
 
 /// Factor on the intensity at `time` [s] (engine.light-object), >= 0.
 [[nodiscard]] float pulse_factor(const LightPulse& pulse, double time);

@@ -1,31 +1,90 @@
 #include "render/render_frame.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/camera.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/culling.h"
 #include "render/frame_clock.h"
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/image.h"
+#include "render/light_list.h"
 #include "render/material_pool.h"
 #include "render/mesh_pool.h"
 #include "render/render_items.h"
 #include "render/skinning/deformed_list.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace limn {
 namespace {
 
 constexpr std::size_t kRingBytes = std::size_t{8} << 20;  ///< at start; grows with the scene
+constexpr int kWarmUpHeight = 44;       ///< of images [px]; no side is a power of two
+constexpr int kWarmUpEnvironment = 16;  ///< RenderSettings::environment_size
 
 /// Simulated time that `view` shows [s].
 double shown_time(const World& world, const RenderView& view) {
     const auto* time = world.find_resource<FrameTime>();
     return time != nullptr ? time->time - (1.0 - view.alpha) * time->step : 0.0;
+}
+
+/// The same view in fewer pixels, with circles of confusion as large, and in motion.
+RenderView make_small(const RenderView& view) {
+    RenderView small = view;
+    if (view.height > kWarmUpHeight) {
+        const float scale = static_cast<float>(view.height) / static_cast<float>(kWarmUpHeight);
+        const int width = static_cast<int>(static_cast<float>(view.width) / scale);
+        // Halving an odd side is another case for some effects.
+        small.height = kWarmUpHeight + view.height % 2;
+        small.width = std::max(width - width % 2, 2) + view.width % 2;
+        small.lens.aperture_radius *= scale;
+        small.lens.max_blur *= scale;
+    }
+    small.previous_clip_from_world[3][0] += 0.01f;
+    return with_jitter(small, {0, 0});
+}
+
+/// Of all that is drawn or lights, as far as it is finite.
+Bounds bounds_of(const World& world, const Assets& assets) {
+    Bounds all;
+    const auto add = [&all](const Bounds& box) {
+        const Vec3 sum = box.min + box.max;
+        if (std::isfinite(sum.x + sum.y + sum.z)) {
+            grow(all, box);
+        }
+    };
+    world.query<const WorldTransform, Optional<const MeshInstance>>().each(
+        [&](const WorldTransform& place, const MeshInstance* surface) {
+            const Vec3 origin = transform_point(place.world, Vec3(0));
+            add({origin, origin});
+            if (surface != nullptr && surface->mesh.index < assets.meshes.size()) {
+                add(transform_bounds(place.world, assets.meshes[surface->mesh.index].bounds));
+            }
+        });
+    return all;
+}
+
+/// From above and aside, from so far that everything is in view.
+RenderView make_overview(const Bounds& all, const RenderView& view) {
+    constexpr Camera kCamera{};
+    const float radius = std::max(glm::length(half_extent(all)), 1.0f);
+    const Vec3 eye = center(all) + 4 * radius * glm::normalize(Vec3(1, 1, 1));
+    const Affine pose = look_at(eye, center(all));
+    return make_render_view(
+        kCamera, pose, pose,
+        {.width = view.width,
+         .height = view.height,
+         .alpha = view.alpha,
+         .previous_alpha = view.previous_alpha});
 }
 
 /// An effect of the list and its state.
@@ -77,13 +136,7 @@ class Renderer {
             effects_.push_back({&entry});
         }
     }
-    ~Renderer() {
-        for (const EffectSlot& effect : effects_) {
-            if (effect.state != nullptr) {
-                effect.entry->destroy(effect.state);
-            }
-        }
-    }
+    ~Renderer() { destroy_effects(); }
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
@@ -102,12 +155,18 @@ class Renderer {
         ViewKind kind, const World& world, const RenderView& camera, const FrameRequest& request,
         float weight = 0);
     void keep_aovs(const FrameOutput& output);
+    int warm_up(const World& world, const RenderView& view, const WarmUpProgress& progress);
 
     gpu::Device& device;
     FrameGraph graph;
     Accumulation accumulation;
 
   private:
+    void destroy_effects();
+    /// Drops all that earlier frames left, except for uploaded assets.
+    void forget_frames();
+    [[nodiscard]] std::vector<RenderView>
+    find_warm_up_views(const World& world, const RenderView& view);
     void begin(ViewKind kind, const World& world, const RenderView& camera);
     void update_assets();
     void choose_effects();
@@ -135,6 +194,77 @@ class Renderer {
 
 void RendererDeleter::operator()(Renderer* renderer) const {
     delete renderer;
+}
+
+void Renderer::destroy_effects() {
+    for (EffectSlot& effect : effects_) {
+        if (effect.state != nullptr) {
+            effect.entry->destroy(effect.state);
+        }
+        effect = {effect.entry};
+    }
+}
+
+void Renderer::forget_frames() {
+    graph.begin_frame();  // its passes point at effects
+    destroy_effects();
+    views_.clear();
+    shapes_.forget();
+    frame_.data.clear();
+    frame_.number = 0;
+    clock_ = {};
+}
+
+std::vector<RenderView> Renderer::find_warm_up_views(const World& world, const RenderView& view) {
+    std::vector<RenderView> views = {view};
+    world.query<const Camera, const WorldTransform>().each(
+        [&](Entity entity, const Camera&, const WorldTransform&) {
+            const ViewRequest request = {
+                .width = view.width,
+                .height = view.height,
+                .alpha = view.alpha,
+                .previous_alpha = view.previous_alpha};
+            const RenderView seen = make_render_view(world, entity, request);
+            if (seen.unjittered_from_world != view.unjittered_from_world) {
+                views.push_back(seen);
+            }
+        });
+    if (const Bounds all = bounds_of(world, *frame_.assets); !is_empty(all)) {
+        views.push_back(make_overview(all, view));
+    }
+    for (const EffectSlot& effect : effects_) {
+        const EffectEntry& entry = *effect.entry;
+        if (entry.add_warm_up_views != nullptr
+            && (entry.is_used == nullptr || entry.is_used(frame_))) {
+            entry.add_warm_up_views(frame_, views);
+        }
+    }
+    return views;
+}
+
+int Renderer::warm_up(const World& world, const RenderView& view, const WarmUpProgress& progress) {
+    device.shaders().count_loaded();
+    const int environment_size = std::exchange(settings_.environment_size, kWarmUpEnvironment);
+    frame_.warm_up = true;
+    begin(kCameraView, world, view);
+    const std::vector<RenderView> views = find_warm_up_views(world, view);
+    const int rounds = any_light_off(world) ? 2 : 1;
+    const int total = rounds * static_cast<int>(views.size());
+    int done = 0;
+    for (int round = 0; round < rounds; ++round) {
+        forget_frames();  // so that effects ask for all their programs, and draw their caches
+        frame_.all_lights = round == 1;
+        for (const RenderView& one : views) {
+            if (progress) {
+                progress(done++, total);
+            }
+            draw(kCameraView, world, make_small(one), {});
+        }
+    }
+    frame_.warm_up = frame_.all_lights = false;
+    settings_.environment_size = environment_size;
+    forget_frames();
+    return static_cast<int>(device.shaders().loaded_count());
 }
 
 void Renderer::begin(ViewKind kind, const World& world, const RenderView& camera) {
@@ -260,6 +390,7 @@ void Renderer::draw_views() {
 FrameOutput Renderer::draw(
     ViewKind kind, const World& world, const RenderView& camera, const FrameRequest& request,
     float weight) {
+    const std::size_t programs = device.shaders().program_count();
     frame_.aovs = request.aovs;
     graph.begin_frame();
     ring_.begin_frame();
@@ -303,6 +434,8 @@ FrameOutput Renderer::draw(
             effects_[e].entry->report(effects_[e].state, frame_, view, out);
         }
     }
+    out.statistics.programs = static_cast<int>(device.shaders().program_count());
+    out.statistics.compiled = out.statistics.programs - static_cast<int>(programs);
     out.statistics.extract_ms =
         std::chrono::duration<double, std::milli>(end_time - begin_time).count();
     return out;
@@ -342,6 +475,12 @@ Result<RendererPtr> create_renderer(gpu::Device& device, const RenderSettings& s
 FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view, const FrameRequest& request) {
     return renderer.draw(kCameraView, world, view, request);
+}
+
+int warm_up(
+    Renderer& renderer, const World& world, const RenderView& view,
+    const WarmUpProgress& progress) {
+    return renderer.warm_up(world, view, progress);
 }
 
 void begin_accumulation(Renderer& renderer, const IVec2& size, SampleKind kind) {

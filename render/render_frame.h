@@ -6,6 +6,7 @@
 #include "render/render_view.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -74,6 +75,8 @@ struct FrameStatistics {
     int probe_faces = 0;         ///< of environment probes, drawn for this frame
     int water_reflections = 0;   ///< planar ones, drawn for this frame
     int lit_objects = 0;    ///< drawn for a light, each once per light (LightMethod::LightMajor)
+    int programs = 0;       ///< of the device, for whatever it has drawn
+    int compiled = 0;       ///< of them, in this frame
     double extract_ms = 0;  ///< CPU time of culling and filling instance and light buffers
 };
 
@@ -106,6 +109,22 @@ create_renderer(gpu::Device& device, const RenderSettings& settings = {});
 FrameOutput render_frame(
     Renderer& renderer, const World& world, const RenderView& view,
     const FrameRequest& request = {});
+
+/// Told of a warm-up: views drawn, and views in all.
+using WarmUpProgress = std::function<void(int done, int total)>;
+
+/// Compiles and first uses the programs that frames of this world need, so that none of them has to
+/// wait for that: draws it, small, from `view` and from its cameras, from afar, and from where
+/// effects ask (effect.h), also with all lights on that are off. Then begins anew: no view, history
+/// or cache of an earlier frame is left, and the next frame has the bits of a renderer's first;
+/// only the world's assets stay uploaded. Returns how many programs that took, compiled now or
+/// before.
+///
+/// What appears later (a light that is switched on, a material that the world did not have, another
+/// setting) is compiled when it is first drawn: FrameStatistics::compiled.
+int warm_up(
+    Renderer& renderer, const World& world, const RenderView& view,
+    const WarmUpProgress& progress = {});
 
 /// The mean radiance of `samples` >= 1 images whose pixels are shifted by sample_jitter: anti-
 /// aliased edges. Radiance is RGBA32F; AOVs are those of the pixel centers. One sample equals the

@@ -18,10 +18,14 @@ class TypedStore {
     TypedStore() = default;
     TypedStore(const TypedStore&) = delete;
     TypedStore& operator=(const TypedStore&) = delete;
-    ~TypedStore() {
+    ~TypedStore() { clear(); }
+
+    /// Destroys all values.
+    void clear() {
         for (const Slot& slot : slots_) {
             slot.destroy(slot.value);
         }
+        slots_.clear();
     }
 
     /// A new frame: nothing is published yet.

@@ -53,7 +53,7 @@ class Variant {
 };
 
 /// The programs made of one set of shader files, by variant. Each is compiled when it is first
-/// asked for; renderers warm up the variants of a level when it loads (warm_up, render_frame.h). A
+/// asked for: by a warm-up, when a level is loaded (warm_up, render_frame.h), or in mid-frame. A
 /// variant that does not compile is logged once and is null.
 class ProgramVariants {
   public:

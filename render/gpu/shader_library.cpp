@@ -20,6 +20,7 @@ struct ShaderLibrary::Entry {
     ProgramDesc desc;
     Program program;
     std::vector<ShaderFileVersion> watched;
+    bool counted = true;  ///< by loaded_count()
 };
 
 namespace {
@@ -180,6 +181,7 @@ Result<const Program*> ShaderLibrary::load(const ProgramDesc& desc) {
     LIMN_CHECK(desc.compute.empty() != desc.vertex.empty());
     for (const std::unique_ptr<Entry>& entry : entries_) {
         if (entry->desc == desc) {
+            entry->counted = true;
             return &entry->program;
         }
     }
@@ -192,6 +194,19 @@ Result<const Program*> ShaderLibrary::load(const ProgramDesc& desc) {
     entry->program = *std::move(program);
     entries_.push_back(std::move(entry));
     return &entries_.back()->program;
+}
+
+std::size_t ShaderLibrary::loaded_count() const {
+    return static_cast<std::size_t>(
+        std::count_if(entries_.begin(), entries_.end(), [](const std::unique_ptr<Entry>& entry) {
+            return entry->counted;
+        }));
+}
+
+void ShaderLibrary::count_loaded() {
+    for (const std::unique_ptr<Entry>& entry : entries_) {
+        entry->counted = false;
+    }
 }
 
 ReloadReport ShaderLibrary::reload_changed() {

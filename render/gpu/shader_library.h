@@ -56,6 +56,9 @@ class ShaderLibrary {
     ReloadReport reload_all();
 
     [[nodiscard]] std::size_t program_count() const { return entries_.size(); }
+    /// Programs that load() has returned since the last call of count_loaded().
+    [[nodiscard]] std::size_t loaded_count() const;
+    void count_loaded();
     [[nodiscard]] ShaderFiles& files() { return files_; }
 
   private:

@@ -8,6 +8,8 @@
 #include "render/shadow/shadow_list.h"
 #include "render/view_block.h"
 
+#include <algorithm>
+
 namespace limn {
 namespace {
 
@@ -84,6 +86,15 @@ void bind_water_lights(PassContext& context, const WaterLights& its) {
     context.device().bind_texture(kCausticMapsUnit, *its.maps);
 }
 
+/// Whether some water of the level reflects sunlight upward, even if the sun is low in this frame.
+bool may_mirror(const ViewData& view) {
+    const std::vector<const Caustics*>& waters = view.data.get<WaterSurfaces>().list.caustics;
+    return view.is(kMainViews) && view.data.get<LightList>().directional > 0
+           && std::any_of(waters.begin(), waters.end(), [](const Caustics* caustics) {
+                  return caustics != nullptr && caustics->mirror_reach > 0;
+              });
+}
+
 }  // namespace
 
 bool CausticsEffect::is_used(const FrameData& frame) {
@@ -108,7 +119,7 @@ bool CausticsEffect::prepare(const FrameData& frame, ViewData& view) {
     place_caustics(view.data.get<LightList>(), view.data.get<ShadowList>(), list);
     list.record_texture.upload(*frame.ring, list.texels);
     view.lighting.variant.add("WATERS");
-    view.lighting.variant.add_if(!list.mirrors.empty(), "MIRRORS");
+    view.lighting.variant.add_if(may_mirror(view), "MIRRORS");
     auto& lights = view.data.publish<WaterLights>();
     lights = {&list.record_texture, &maps};
     view.lighting.add_binding<bind_water_lights>(lights);
@@ -145,10 +156,9 @@ void CausticsEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
             }
             use_with_jobs(device, list, *program);
             bind_view(context, view);
-            if (view.data.get<LightList>().shadows) {
-                device.bind_texture(
-                    kShadowAtlasUnit, context.texture(view.data.get<ShadowMaps>().atlas));
-                view.data.get<ShadowMaps>().records->bind(device, kShadowViewsUnit);
+            if (const auto& shadows = view.data.get<ShadowMaps>(); shadows.atlas.valid()) {
+                device.bind_texture(kShadowAtlasUnit, context.texture(shadows.atlas));
+                shadows.records->bind(device, kShadowViewsUnit);
             }
             bind_water_surfaces(device, waters);
             context.bind_storage(kRaysBinding, ray_buffer);

@@ -36,6 +36,30 @@ std::size_t rounded(std::size_t bytes) {
     return std::bit_ceil(std::max<std::size_t>(bytes, 1024));
 }
 
+BufferId create_cells(FrameGraph& graph, const ClusterShape& shape) {
+    const auto cells = static_cast<std::size_t>(shape.cells());
+    return graph.create_buffer({.name = "light cells", .bytes = rounded(8 * cells)});
+}
+
+BufferId create_indices(FrameGraph& graph, std::size_t capacity) {
+    return graph.create_buffer({.name = "light indices", .bytes = rounded(4 * capacity)});
+}
+
+/// The lists of a view that no light reaches.
+ClusterLists clear_clusters(FrameGraph& graph, ClusterPass& pass, const ClusterShape& shape) {
+    const ClusterLists lists = {
+        create_cells(graph, shape), create_indices(graph, 0), &pass.cells, &pass.indices};
+    graph.add_pass(
+        "clusters.none", {}, {lists.cells, lists.indices}, [&pass, lists](PassContext& context) {
+            const std::uint32_t none = 0;
+            glClearNamedBufferData(
+                context.buffer(lists.cells).id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+            pass.cells.set(context.buffer(lists.cells));
+            pass.indices.set(context.buffer(lists.indices));
+        });
+    return lists;
+}
+
 }  // namespace
 
 Result<ClusterPass> create_cluster_pass(gpu::Device& device) {
@@ -61,10 +85,8 @@ ClusterLists build_clusters(
     const auto cells = static_cast<unsigned>(clusters.shape.cells());
     const BufferId masks = graph.create_buffer(
         {.name = "cluster masks", .bytes = rounded(std::size_t{4} * blocks * words)});
-    lists.cells =
-        graph.create_buffer({.name = "light cells", .bytes = rounded(std::size_t{8} * cells)});
-    lists.indices = graph.create_buffer(
-        {.name = "light indices", .bytes = rounded(std::size_t{4} * clusters.capacity)});
+    lists.cells = create_cells(graph, clusters.shape);
+    lists.indices = create_indices(graph, clusters.capacity);
 
     graph.add_pass(
         "clusters.blocks", {}, {masks},
@@ -115,7 +137,8 @@ Result<LightListEffect> LightListEffect::create(gpu::Device& device, const Rende
 }
 
 void LightListEffect::collect(FrameData& frame) {
-    collect_lights(*frame.world, frame.camera.alpha, frame.data.publish<LightList>());
+    collect_lights(
+        *frame.world, frame.camera.alpha, frame.data.publish<LightList>(), frame.all_lights);
 }
 
 bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
@@ -148,7 +171,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.spots > 0, "SPOT_LIGHTS");
     variant.add_if(lights.spot_angles, "SPOT_ANGLES");
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
-    variant.add_if(!placed.lights.empty(), "LOCAL_LIGHTS");
+    variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
     variant.add_if(frame.materials->has_classic(), "CLASSIC_MODELS");
     return true;
 }
@@ -156,14 +179,13 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
 void LightListEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     const bool by_clusters = view.data.get<LightingMethod>().method == LightMethod::Clustered
                              || !view.data.get<InstanceList>().blended.empty();
-    if (!by_clusters) {
+    if (!by_clusters || view.data.get<LightList>().reach.empty()) {
         return;
     }
-    const ClusterLists lists =
-        build_clusters(graph, clusters, view.data.get<ClusterLights>(), view);
-    if (!lists.cells.valid()) {
-        return;
-    }
+    const auto& placed = view.data.get<ClusterLights>();
+    const ClusterLists lists = placed.lights.empty()
+                                   ? clear_clusters(graph, clusters, placed.shape)
+                                   : build_clusters(graph, clusters, placed, view);
     auto& published = view.data.publish<ClusterLists>();
     published = lists;
     view.lighting.reads.insert(view.lighting.reads.end(), {lists.cells, lists.indices});

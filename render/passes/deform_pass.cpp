@@ -29,18 +29,19 @@ void bind_stream(
         (batch.end_vertex - batch.first_vertex) * stride);
 }
 
-void run_batch(
-    gpu::Device& device, const gpu::Program& program, const DeformedVertices& vertices,
-    const DeformBatch& batch) {
-    const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
-    bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
-    bind_stream(device, kBeforeBinding, before, batch, sizeof(Vec3));
-    bind_stream(device, kFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
-    program.set("first_group", batch.first_group);
-    program.set("group_count", batch.group_count);
-    program.set("first_vertex", batch.first_vertex);
-    const unsigned wide = std::min(batch.group_count, layout::kDeformGroupsWide);
-    device.dispatch(wide, (batch.group_count + wide - 1) / wide);
+/// What a job does depends on which shapes have changed since the last frame, and the one before.
+/// All that may come to that, for jobs that are otherwise alike.
+std::vector<std::uint32_t> flags_of_later_frames(std::uint32_t flags, bool with_previous) {
+    constexpr std::uint32_t kCurrent = layout::kDeformCurrent;
+    constexpr std::uint32_t kPrevious = layout::kDeformPrevious;
+    constexpr std::uint32_t kCopy = layout::kDeformCopyPrevious;
+    const std::uint32_t shape = flags & ~(kCurrent | kPrevious | kCopy);
+    if (!with_previous) {
+        return {shape | kCurrent};
+    }
+    return {
+        shape | kPrevious, shape | kCopy, shape | kCurrent | kCopy, shape | kCurrent,
+        shape | kCurrent | kPrevious};
 }
 
 Result<const gpu::Program*> load_program(gpu::Device& device, std::uint32_t flags) {
@@ -61,6 +62,25 @@ const gpu::Program* program_of(gpu::Device& device, DeformPass& pass, std::uint3
     return found->second;
 }
 
+void run_batch(
+    gpu::Device& device, DeformPass& pass, const DeformedVertices& vertices,
+    const DeformBatch& batch, std::uint32_t flags) {
+    const gpu::Program* program = program_of(device, pass, flags);
+    if (program == nullptr) {
+        return;
+    }
+    device.use(*program);
+    const gpu::Buffer& before = vertices.before() ? vertices.before() : vertices.positions();
+    bind_stream(device, kPositionsBinding, vertices.positions(), batch, sizeof(Vec3));
+    bind_stream(device, kBeforeBinding, before, batch, sizeof(Vec3));
+    bind_stream(device, kFramesBinding, vertices.frames(), batch, sizeof(PackedFrame));
+    program->set("first_group", batch.first_group);
+    program->set("group_count", batch.group_count);
+    program->set("first_vertex", batch.first_vertex);
+    const unsigned wide = std::min(batch.group_count, layout::kDeformGroupsWide);
+    device.dispatch(wide, (batch.group_count + wide - 1) / wide);
+}
+
 }  // namespace
 
 Result<DeformPass> create_deform_pass(gpu::Device& device) {
@@ -68,7 +88,7 @@ Result<DeformPass> create_deform_pass(gpu::Device& device) {
     return DeformPass{};
 }
 
-void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
+void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bool warm_up) {
     const DeformWork& work = shapes.work();
     if (work.batches.empty()) {
         return;
@@ -83,7 +103,7 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
     for (const BufferId buffer : import_deformed(graph, vertices)) {
         writes.emplace_back(buffer);
     }
-    graph.add_pass("deform", {}, writes, [&pass, &shapes](PassContext& context) {
+    graph.add_pass("deform", {}, writes, [&pass, &shapes, warm_up](PassContext& context) {
         gpu::Device& device = context.device();
         pass.jobs.bind(device, kJobsUnit);
         pass.groups.bind(device, kGroupsUnit);
@@ -91,10 +111,13 @@ void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes) {
         pass.palettes.bind(device, kPalettesUnit);
         pass.weights.bind(device, kWeightsUnit);
         for (const DeformBatch& batch : shapes.work().batches) {
-            if (const gpu::Program* program = program_of(device, pass, batch.flags)) {
-                device.use(*program);
-                run_batch(device, *program, shapes.vertices(), batch);
+            if (warm_up) {
+                const bool before{shapes.vertices().before()};
+                for (const std::uint32_t flags : flags_of_later_frames(batch.flags, before)) {
+                    run_batch(device, pass, shapes.vertices(), batch, flags);
+                }
             }
+            run_batch(device, pass, shapes.vertices(), batch, batch.flags);
         }
     });
 }
@@ -105,7 +128,7 @@ Result<DeformEffect> DeformEffect::create(gpu::Device& device, const RenderSetti
 
 void DeformEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     frame.shapes->write_jobs(*frame.ring);
-    deform_meshes(graph, pass, *frame.shapes);
+    deform_meshes(graph, pass, *frame.shapes, frame.warm_up);
 }
 
 void DeformEffect::report(const FrameData& frame, const ViewData&, FrameOutput& out) {

@@ -28,8 +28,9 @@ struct DeformPass {
 
 [[nodiscard]] Result<DeformPass> create_deform_pass(gpu::Device& device);
 
-/// Adds no pass if no shape changed.
-void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes);
+/// Adds no pass if no shape changed. With `warm_up` the programs that other frames may need run
+/// first; their results are overwritten, or of no use.
+void deform_meshes(FrameGraph& graph, DeformPass& pass, DeformedList& shapes, bool warm_up = false);
 
 /// Computes them once a frame, for all views: they request what they draw in prepare().
 struct DeformEffect {

@@ -12,7 +12,8 @@ namespace limn {
 namespace {
 
 constexpr unsigned kProbesBinding = 6;
-constexpr int kSamples = 64;  ///< per texel of a probe's reflection map
+constexpr int kWarmUpResolution = 16;  ///< of faces that nobody sees [px]
+constexpr int kSamples = 64;           ///< per texel of a probe's reflection map
 
 /// The probes as lit passes read them in a view.
 struct ProbeBlockSlice {
@@ -47,7 +48,8 @@ void ProbeEffect::request_views(FrameData& frame) {
     if (frame.data.get<SceneEnvironment>().changed) {
         probes.forget();
     }
-    probes.collect(*frame.world, frame.camera.alpha);
+    probes.collect(
+        *frame.world, frame.camera.alpha, frame.warm_up ? kWarmUpResolution : kMaxProbeResolution);
     faces_drawn = 0;
     for (std::size_t i = 0; i < probes.slots().size(); ++i) {
         ProbeSlot& slot = probes.slots()[i];

@@ -1,6 +1,10 @@
 #include "render/passes/shadow_pass.h"
 
 #include "ecs/base/log.h"
+#include "ecs/components/caustics.h"
+#include "ecs/components/shadow_volume.h"
+#include "ecs/components/water.h"
+#include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/lighting.h"
 #include "render/render_frame.h"
@@ -54,12 +58,12 @@ void draw_map(
     draw_casters(context, view, draw.casters, programs, state);
 }
 
-/// The atlas with this view's maps; not valid if nothing casts shadows.
+/// The atlas with this view's maps; not valid if nothing in the level has one.
 TextureId draw_maps(
     FrameGraph& graph, ProgramVariants& programs, const gpu::Texture& texture,
     const ViewData& view) {
     const auto& list = view.data.get<ShadowList>();
-    if (list.atlas_size == 0) {
+    if (!list.kinds.maps) {
         return {};
     }
     const TextureId atlas = graph.import("shadow.atlas", texture);
@@ -77,6 +81,35 @@ TextureId draw_maps(
     return atlas;
 }
 
+/// Of all lights and waters of the level: which of them a view shows must not change programs.
+ShadowKinds find_shadow_kinds(const World& world, const LightList& lights) {
+    ShadowKinds kinds;
+    for (const ShadowedLight& light : lights.shadowed) {
+        const bool has_volume = world.find<ShadowVolume>(light.entity) != nullptr;
+        const ShadowMethod method = choose_shadow_method(light.settings.method, has_volume);
+        kinds.masks |= method == ShadowMethod::Volume || method == ShadowMethod::Hybrid;
+        if (method == ShadowMethod::Volume) {
+            continue;
+        }
+        const bool sun = light.kind == LightKind::Directional;
+        const bool narrow = light.kind == LightKind::Spot && light.outer_angle <= kMaxSpotViewAngle;
+        kinds.maps = true;
+        kinds.cubes |= !sun && !narrow;
+        kinds.cascades |= sun || method == ShadowMethod::Perspective;
+        kinds.soft |= method != ShadowMethod::Hybrid && light.settings.filter >= ShadowFilter::Soft;
+    }
+    // Caustics are of directional light, and shadows fall on and into the water.
+    kinds.maps |= lights.directional > 0 && !world.query<const Water, const Caustics>().empty();
+    return kinds;
+}
+
+/// What either needs: a light may have another kind of shadow than it asks for.
+ShadowKinds both(const ShadowKinds& a, const ShadowKinds& b) {
+    return {
+        a.maps || b.maps, a.masks || b.masks, a.cubes || b.cubes, a.cascades || b.cascades,
+        a.soft || b.soft};
+}
+
 }  // namespace
 
 Result<ShadowEffect> ShadowEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -87,6 +120,7 @@ Result<ShadowEffect> ShadowEffect::create(gpu::Device& device, const RenderSetti
 }
 
 void ShadowEffect::collect(FrameData& frame) {
+    level = find_shadow_kinds(*frame.world, frame.data.get<LightList>());
     maps.begin_frame();
     if (frame.assets_replaced) {
         volumes.forget();
@@ -102,25 +136,28 @@ bool ShadowEffect::prepare(const FrameData& frame, ViewData& view) {
     maps.collect(
         frame, view, waters != nullptr ? waters->requests : std::span<const WaterShadow>(), lights,
         list);
+    list.kinds = both(list.kinds, level);
     grow_atlas(atlas, list.atlas_size);
     VolumeCollector::assign_hybrid_masks(lights, volume_list);
-    if (!volume_list.lights.empty()) {
+    if (list.kinds.masks) {
         volume_list.pass = create_volume_pass(frame);
     }
 
     auto& bindings = view.data.publish<ShadowBindings>();
     bindings.records.upload(*frame.ring, list.records);
     bindings.atlas = &atlas;
-    if (lights.shadows) {
+    const ShadowKinds& kinds = list.kinds;
+    const bool shadows = kinds.maps || kinds.masks;
+    if (shadows) {
         view.lighting.add_binding<bind_shadows>(bindings);
     }
     Variant& variant = view.lighting.variant;
-    variant.add_if(lights.shadows, "SHADOWS");
-    variant.add_if(list.cubes, "SHADOW_CUBES");
-    variant.add_if(list.cascades, "SHADOW_CASCADES");
-    variant.add_if(list.soft, "SHADOW_SOFT");
-    variant.add_if(!list.records.empty(), "SHADOW_MAPS");
-    variant.add_if(!volume_list.lights.empty(), "SHADOW_MASKS");
+    variant.add_if(shadows, "SHADOWS");
+    variant.add_if(kinds.cubes, "SHADOW_CUBES");
+    variant.add_if(kinds.cascades, "SHADOW_CASCADES");
+    variant.add_if(kinds.soft, "SHADOW_SOFT");
+    variant.add_if(kinds.maps, "SHADOW_MAPS");
+    variant.add_if(kinds.masks, "SHADOW_MASKS");
     return true;
 }
 
@@ -145,12 +182,13 @@ void ShadowEffect::draw(FrameGraph& graph, const FrameData&, ViewData& view) {
     if (published.atlas.valid()) {
         view.lighting.reads.emplace_back(published.atlas);
     }
-    const VolumeList& volume_list = view.data.get<VolumeList>();
-    if (volume_list.lights.empty() || !volume_pass) {
+    if (!published.list->kinds.masks || !volume_pass) {
         return;
     }
+    const bool none = view.data.get<VolumeList>().lights.empty();
     auto& masks = view.data.publish<ShadowMasks>();
-    masks.layers = draw_shadow_volumes(graph, *volume_pass, view);
+    masks.layers = none ? graph.import("no shadow masks", volume_pass->no_masks)
+                        : draw_shadow_volumes(graph, *volume_pass, view);
     view.lighting.reads.emplace_back(masks.layers);
 }
 

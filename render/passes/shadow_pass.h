@@ -25,7 +25,8 @@ namespace limn {
 /// ShadowMaps and ShadowMasks in draw(); sets the shadows of the view's LightList.
 struct ShadowEffect {
     ProgramVariants casters;
-    gpu::Texture atlas;  ///< 1x1 until there is a shadow
+    gpu::Texture atlas;   ///< 1x1 until there is a shadow
+    ShadowKinds level{};  ///< of this frame: what the lights of the level may need
     ShadowCollector maps{};
     VolumeCollector volumes{};
     std::optional<ShadowVolumePass> volume_pass{};  ///< created with the first volume

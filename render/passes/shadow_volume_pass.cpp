@@ -127,11 +127,11 @@ void add_classification(
         sampled(depth_tested(view.gbuffer.depth), kDepthUnit), view.data.get<ShadowMaps>().atlas};
     const Use writes[] = {target_level(cleared(mask), 0, layer)};
     graph.add_pass("shadow classes", reads, writes, [&pass, &view, layer](PassContext& context) {
-        const auto& maps = view.data.get<ShadowList>();
+        const ShadowKinds& kinds = view.data.get<ShadowList>().kinds;
         Variant variant("SHADOW_MAPS");
         variant.add("SHADOW_SOFT");
-        variant.add_if(maps.cubes, "SHADOW_CUBES");
-        variant.add_if(maps.cascades, "SHADOW_CASCADES");
+        variant.add_if(kinds.cubes, "SHADOW_CUBES");
+        variant.add_if(kinds.cascades, "SHADOW_CASCADES");
         const gpu::Program* program = pass.classify.get(variant);
         if (program == nullptr) {
             return;
@@ -190,6 +190,9 @@ Result<ShadowVolumePass> create_shadow_volume_pass(gpu::Device& device) {
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_mask.frag"}));
     pass.edges = LIMN_TRY(
         device.shaders().load({.vertex = "fullscreen.vert", .fragment = "shadow_edge.frag"}));
+    pass.no_masks = gpu::Texture(
+        "no shadow masks",
+        {.format = GL_R8, .width = 1, .height = 1, .target = GL_TEXTURE_2D_ARRAY});
     return pass;
 }
 

@@ -34,6 +34,7 @@ struct ShadowVolumePass {
     const gpu::Program* volumes[2] = {};  ///< by VolumeRun::prisms: per edge, per triangle
     const gpu::Program* layers[2] = {};
     const gpu::Program* mask = nullptr;
+    gpu::Texture no_masks{};  ///< a layer, bound where no light in view has volumes
 };
 
 [[nodiscard]] Result<ShadowVolumePass> create_shadow_volume_pass(gpu::Device& device);

@@ -1,5 +1,8 @@
 #include "render/passes/water_pass.h"
 
+#include "ecs/components/transform.h"
+#include "ecs/components/water_frame.h"
+#include "ecs/components/water_look.h"
 #include "ecs/world.h"
 #include "render/fullscreen.h"
 #include "render/gpu/device.h"
@@ -14,6 +17,7 @@
 #include "render/water/water_surfaces.h"
 
 #include <array>
+#include <utility>
 
 namespace limn {
 
@@ -105,7 +109,6 @@ void bind_foam(gpu::Device& device, WaterEffect& pass) {
     device.bind_texture(kFoamUnit, pass.foam);
 }
 
-/// Copies radiance and distance of the scene.
 /// Copies radiance and distance [m along the view axis, 0: nothing] of what lies behind the water.
 void copy_behind(
     FrameGraph& graph, std::string_view name, const gpu::Program* program, const ViewData& view,
@@ -117,6 +120,15 @@ void copy_behind(
 
 bool any_water(const FrameData& frame) {
     return !frame.world->query<const Water>().empty();
+}
+
+/// The frame's view from a point in the space of a water, straight up or down.
+RenderView
+view_of_water(const FrameData& frame, const WaterFrame& water, float height, bool upward) {
+    const Vec3 eye = water.world({0, height, 0});
+    const Affine pose = look_at(eye, eye + Vec3(0, upward ? 1 : -1, 0));
+    return make_render_view(
+        Camera{}, pose, pose, {.width = frame.camera.width, .height = frame.camera.height});
 }
 
 }  // namespace
@@ -139,6 +151,23 @@ Result<WaterEffect> WaterEffect::create(gpu::Device& device, const RenderSetting
     effect.grid = gpu::VertexArray("water grid");
     effect.grid.set_indices(effect.indices);
     return effect;
+}
+
+/// A water with a planar reflection, and one without, each from above and below.
+void WaterEffect::add_warm_up_views(const FrameData& frame, std::vector<RenderView>& views) {
+    constexpr float kAbove = 50;  // waves [m]
+    constexpr float kBelow = -1;  // the surface of a sea [m]
+    bool added[2] = {};
+    frame.world->query<const Water, const WorldTransform, Optional<const WaterLook>>().each(
+        [&](const Water& water, const WorldTransform& place, const WaterLook* look) {
+            const bool planar = look != nullptr && look->reflection == WaterReflection::Planar;
+            if (!std::exchange(added[planar ? 1 : 0], true)) {
+                const WaterFrame its = water_frame(place.world);
+                const float below = water.depth > 0 ? -0.5f * water.depth : kBelow;
+                views.push_back(view_of_water(frame, its, kAbove, false));
+                views.push_back(view_of_water(frame, its, below, true));
+            }
+        });
 }
 
 void WaterEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {

@@ -35,6 +35,7 @@ struct WaterEffect {
 
     [[nodiscard]] static bool is_used(const FrameData& frame);
     [[nodiscard]] static Result<WaterEffect> create(gpu::Device& device, const RenderSettings&);
+    static void add_warm_up_views(const FrameData& frame, std::vector<RenderView>& views);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
     void report(const FrameData& frame, const ViewData& view, FrameOutput& out);
 };

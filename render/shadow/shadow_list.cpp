@@ -285,11 +285,12 @@ void ShadowCollector::write_records(LightList& lights, ShadowList& list) {
             continue;
         }
         lights.shadows = true;
-        list.cubes = list.cubes || request.kind == layout::kShadowCube;
-        list.cascades = list.cascades || request.kind == layout::kShadowCascades;
+        list.kinds.maps = true;
+        list.kinds.cubes = list.kinds.cubes || request.kind == layout::kShadowCube;
+        list.kinds.cascades = list.kinds.cascades || request.kind == layout::kShadowCascades;
         const bool soft = request.settings.filter >= ShadowFilter::Soft;
         const bool used_for_lighting = request.water != nullptr || !request.light->for_volumes;
-        list.soft = list.soft || (soft && used_for_lighting);
+        list.kinds.soft = list.kinds.soft || (soft && used_for_lighting);
         if (request.water != nullptr) {
             request.water->record = static_cast<int>(list.records.size());
         } else {
@@ -314,7 +315,7 @@ void ShadowCollector::collect(
     list.records.clear();
     list.due.clear();
     list.unserved = 0;
-    list.cubes = list.cascades = list.soft = false;
+    list.kinds = {};
     request_views(view.camera, view.kind, lights, list);
     place_views();
     write_records(lights, list);
@@ -354,7 +355,11 @@ void ShadowCollector::collect(
             draw.place = map.place;
             draw.clamp_depth = views_[v].clamp_depth;
             draw.view_block = frame.ring->push_value(block);
-            collector_.collect_casters(*frame.items, volumes_[v], *frame.ring, draw.casters);
+            // All that casts shadows may enter a map later.
+            const bool all = frame.warm_up && list.due.size() == 1;
+            collector_.collect_casters(
+                *frame.items, all ? CasterVolume{kEverywhere} : volumes_[v], *frame.ring,
+                draw.casters);
         }
     }
 }

@@ -42,15 +42,22 @@ struct WaterShadows {
     std::vector<WaterShadow> requests;
 };
 
+/// What shaders must know of shadows: the definitions of lib/shadow.glsl.
+struct ShadowKinds {
+    bool maps = false;      ///< some light, or water, has a map
+    bool masks = false;     ///< some light has shadow volumes
+    bool cubes = false;     ///< some light has six faces
+    bool cascades = false;  ///< some light has cascades
+    bool soft = false;      ///< some map used for lighting has a filter wider than 2x2
+};
+
 struct ShadowList {
     std::vector<WaterShadow> waters;  ///< as requested, with their records
     std::vector<layout::ShadowViewRecord> records;
     std::vector<ShadowDraw> due;
-    bool cubes = false;     ///< some light has six faces
-    bool cascades = false;  ///< some light has cascades
-    bool soft = false;      ///< some map used for lighting has a filter wider than 2x2
-    int atlas_size = 0;     ///< side [texels]; 0: no shadow maps
-    int unserved = 0;       ///< lights without room in the atlas: they cast no shadow
+    ShadowKinds kinds;   ///< of the maps of this view; ShadowEffect adds those of the whole level
+    int atlas_size = 0;  ///< side [texels]; 0: no shadow maps
+    int unserved = 0;    ///< lights without room in the atlas: they cast no shadow
 };
 
 /// The shadow maps of a view, published when they are declared in the frame graph.

@@ -6,7 +6,7 @@
 //   LINEAR_FADE         some polynomial has a linear term
 //   SHADOWS             some light has a shadow
 //   PROJECTORS          some light projects a cookie
-//   LOCAL_LIGHTS        some point or spot light is in view
+//   LOCAL_LIGHTS        there are point or spot lights
 //   WATERS              there is water; ON_WATER: and its surface is being shaded
 //   MIRRORS             some water reflects the sun's light upward
 
