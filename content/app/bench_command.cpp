@@ -109,6 +109,8 @@ void run_bench_frame(
     add(BenchKind::Frame, BenchClock::Gpu, "passes", gpu_ms);
     report->draws = frame.statistics.draws;
     report->triangles = frame.statistics.triangles;
+    report->programs = frame.statistics.programs;
+    report->compiled += frame.statistics.compiled;
 }
 
 BenchReport
@@ -147,6 +149,9 @@ Status run_bench(const BenchOptions& options) {
     BenchReport report = machine_report(stage, *headless, options);
     report.frames = options.frames;
     report.warmup = options.warmup;
+    const Clock::time_point begin = Clock::now();
+    warm_up_world(*headless, stage.world, stage.scene.camera, options.size);
+    report.compile_ms = ms_between(begin, Clock::now());
     {
         Progress progress("frame", options.warmup + options.frames);
         for (int i = 0; i < options.warmup + options.frames; ++i) {

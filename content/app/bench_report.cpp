@@ -63,10 +63,11 @@ std::string bench_table(const BenchReport& report) {
         out,
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
         "{} entities, {} draws, {} triangles, {:.0f} MiB resident, {:.0f} MiB of render "
-        "targets\n\n",
+        "targets\n{} shader programs, compiled and tried in {:.0f} ms; {} more while measuring\n\n",
         report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
         report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
-        report.resident_mib, report.gpu_mib);
+        report.resident_mib, report.gpu_mib, report.programs - report.compiled, report.compile_ms,
+        report.compiled);
     fmt::format_to(out, "{:<34} {:>3} {:>11} {:>11} {:>11}\n", "[ms]", "", "median", "p95", "max");
     for (const BenchKind kind : kKinds) {
         std::vector<Line> lines = lines_of(report, kind);
@@ -95,7 +96,10 @@ std::string bench_json(const BenchReport& report) {
         {"counts",
          {{"entities", report.entities},
           {"draws", report.draws},
-          {"triangles", report.triangles}}}};
+          {"triangles", report.triangles},
+          {"programs", report.programs},
+          {"compiled", report.compiled}}},
+        {"compile_ms", report.compile_ms}};
     for (const BenchKind kind : kKinds) {
         const char* key = kind == BenchKind::Frame    ? "frame"
                           : kind == BenchKind::System ? "systems"

@@ -224,12 +224,18 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
         ->type_name("FILE");
     app->footer(
-        "Every frame simulates one step and renders off screen. Times are in milliseconds.\n\n"
+        "Every frame simulates one step and renders off screen. Times are in milliseconds. Shaders "
+        "are\n"
+        "compiled before the first frame (\"compile_ms\"); \"compiled\" counts those that a "
+        "measured "
+        "frame\n"
+        "had to compile.\n\n"
         "JSON: {\"scene\", \"size\": [w, h], \"frames\", \"warmup\", \"threads\", \"gl\": "
         "{\"renderer\",\n"
         "\"version\"}, \"memory\": {\"resident_mib\", \"gpu_mib\"}, \"counts\": {\"entities\", "
         "\"draws\",\n"
-        "\"triangles\"}, and arrays \"frame\", \"systems\", \"passes\" of {\"name\", \"clock\": "
+        "\"triangles\", \"programs\", \"compiled\"}, \"compile_ms\", and arrays \"frame\", "
+        "\"systems\", \"passes\" of {\"name\", \"clock\": "
         "\"cpu\" or\n"
         "\"gpu\", \"median_ms\", \"p95_ms\", \"max_ms\"}}\n"
         "CSV: kind,name,clock,median_ms,p95_ms,max_ms\n\n"
@@ -352,7 +358,8 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
 }
 
 Command add_info(CLI::App& program, std::string& file) {
-    CLI::App* app = program.add_subcommand("info", "Print the contents of a file");
+    CLI::App* app = program.add_subcommand(
+        "info", "Print the contents of a file; for a scene, the number of shader programs, too");
     app->add_option("file", file, ".level.json, .gltf, .glb, .png, .exr ...")
         ->type_name("FILE")
         ->required();

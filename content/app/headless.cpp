@@ -1,6 +1,8 @@
 #include "content/app/headless.h"
 
+#include "content/app/progress.h"
 #include "ecs/base/text.h"
+#include "render/render_view.h"
 
 #include <utility>
 
@@ -34,6 +36,18 @@ Result<HeadlessRenderer> create_headless_renderer(std::optional<gpu::Profile> pr
     }
     headless.renderer = *std::move(renderer);
     return headless;
+}
+
+int warm_up_world(
+    HeadlessRenderer& headless, const World& world, Entity camera, const IVec2& size) {
+    std::optional<Progress> progress;
+    const RenderView view = make_render_view(world, camera, {.width = size.x, .height = size.y});
+    return warm_up(*headless.renderer, world, view, [&progress](int done, int total) {
+        if (!progress) {
+            progress.emplace("compiling shaders, view", total);
+        }
+        progress->update(done);
+    });
 }
 
 }  // namespace limn

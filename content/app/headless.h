@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "ecs/entity.h"
 #include "render/gpu/context.h"
 #include "render/gpu/device.h"
 #include "render/render_frame.h"
@@ -24,5 +25,9 @@ struct HeadlessRenderer {
 /// Fails without OpenGL 4.5 or with a shader compiler's message. Default profile: by the device.
 [[nodiscard]] Result<HeadlessRenderer>
 create_headless_renderer(std::optional<gpu::Profile> profile = {});
+
+/// Compiles what the world needs (warm_up, render_frame.h), for images of this size; on a terminal,
+/// with a progress line. Returns the number of programs.
+int warm_up_world(HeadlessRenderer& headless, const World& world, Entity camera, const IVec2& size);
 
 }  // namespace limn

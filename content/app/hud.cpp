@@ -206,7 +206,7 @@ void Hud::draw_status(const HudStatus& status) {
     }
 }
 
-void Hud::draw_loading(const std::string& what) {
+void Hud::draw_loading(const std::string& what, const std::string& step) {
     begin_frame(0.0f);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -216,6 +216,7 @@ void Hud::draw_loading(const std::string& what) {
         ImGui::PushFont(style_.title);
         ImGui::TextUnformatted(what.c_str());
         ImGui::PopFont();
+        ImGui::TextColored(kHudDim, "%s", step.c_str());
     }
     ImGui::End();
     end_frame();

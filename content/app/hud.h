@@ -49,7 +49,7 @@ class Hud {
     void begin_frame(float dt);
     void draw_status(const HudStatus& status);
     /// Draws a whole frame that says what is being loaded.
-    void draw_loading(const std::string& what);
+    void draw_loading(const std::string& what, const std::string& step);
     /// Draws everything since begin_frame into the window's framebuffer.
     void end_frame();
 

@@ -1,5 +1,6 @@
 #include "content/app/info_command.h"
 
+#include "content/app/headless.h"
 #include "content/game/game.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
@@ -21,7 +22,8 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kMaxLines = 40;  // of a list; the rest is only counted
+constexpr std::size_t kMaxLines = 40;         // of a list; the rest is only counted
+constexpr IVec2 kProgramsSize = {1280, 720};  // of the images that the programs are for
 
 /// The file name's extension in lower case: ".png".
 std::string extension_of(const std::string& path) {
@@ -100,6 +102,17 @@ void print_assets(const Assets& assets) {
     print_rest(assets.clips.size());
 }
 
+/// Needs OpenGL, which need not be there.
+void print_programs(World& world, Entity camera) {
+    Result<HeadlessRenderer> headless = create_headless_renderer();
+    if (!headless) {
+        fmt::print("shader programs not counted: {}\n", headless.error().message);
+        return;
+    }
+    start_world(world, add_game_systems);
+    fmt::print("{} shader programs\n", warm_up_world(*headless, world, camera, kProgramsSize));
+}
+
 Status print_scene(const std::string& file) {
     World world;
     register_game_components();
@@ -123,6 +136,7 @@ Status print_scene(const std::string& file) {
     if (const Assets* assets = world.find_resource<Assets>()) {
         print_assets(*assets);
     }
+    print_programs(world, scene->camera);
     return Done{};
 }
 

@@ -203,15 +203,28 @@ Status Player::load(const std::string& scene) {
     unsimulated_ = 0.0;
     shown_time_ = stage_time(*stage_);
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
+    warm_up_level();
     return Done{};
 }
 
-void Player::draw_loading(const std::string& scene) {
+/// Compiles the level's shaders, so that its frames need not.
+void Player::warm_up_level() {
+    const IVec2 size = render_size(scale_, window_->framebuffer_size());
+    const RenderView view = make_render_view(
+        stage_->world, stage_->scene.camera,
+        {.width = std::max(size.x, 1), .height = std::max(size.y, 1)});
+    warm_up(*renderer_, stage_->world, view, [this](int done, int total) {
+        draw_loading(
+            options_.scene, fmt::format("compiling shaders, view {} of {}", done + 1, total));
+    });
+}
+
+void Player::draw_loading(const std::string& scene, const std::string& step) {
     const IVec2 size = window_->framebuffer_size();
     device_->bind_window(size.x, size.y);
     glClearColor(0.02f, 0.02f, 0.025f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    hud_->draw_loading(std::filesystem::path(scene).filename().string());
+    hud_->draw_loading(std::filesystem::path(scene).filename().string(), step);
     device_->invalidate_state();
     window_->swap();
 }

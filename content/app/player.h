@@ -46,7 +46,8 @@ class Player {
 
     /// Replaces the level; keeps the old one if the new one cannot be loaded.
     [[nodiscard]] Status load(const std::string& scene);
-    void draw_loading(const std::string& scene);
+    void draw_loading(const std::string& scene, const std::string& step = {});
+    void warm_up_level();
     void load_or_report(const std::string& scene);
     void load_neighbor(int offset);
 

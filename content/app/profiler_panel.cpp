@@ -89,6 +89,7 @@ void ProfilerPanel::add_frame(const FrameCost& cost) {
     smooth(cost_.render_ms, cost.render_ms);
     cost_.frame_ms = cost.frame_ms;
     cost_.statistics = cost.statistics;
+    compiled_ += cost.statistics.compiled;
     history_.add(cost.frame_ms);
     recent_.add(cost.frame_ms);
     summary_ = recent_.summary();
@@ -178,6 +179,8 @@ void ProfilerPanel::draw_counts(
     pair("instances", statistics.instances, "{:.0f}");
     pair("lights", statistics.lights, "{:.0f}");
     pair("entities", static_cast<double>(world.entity_count()), "{:.0f}");
+    pair("programs", statistics.programs, "{:.0f}");
+    pair("compiled late", compiled_, "{:.0f}");
     pair("memory", resident_mib_, "{:.0f} MiB");
     pair("targets", target_bytes * mib, "{:.1f} MiB");
     ImGui::EndTable();

@@ -49,6 +49,7 @@ class ProfilerPanel {
     Summary summary_;
     FrameCost cost_;
     std::vector<double> system_ms_;  ///< smoothed, in the order of the schedule
+    int compiled_ = 0;               ///< programs, in all frames so far
     double resident_mib_ = 0.0;
     int frames_until_memory_ = 0;
 };
