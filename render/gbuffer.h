@@ -8,6 +8,8 @@ namespace limn {
 /// depth 0; their other attributes are undefined.
 struct Gbuffer {
     TextureId surface;   ///< RGBA32UI
+    TextureId material;  ///< R32UI: index of the material's record; only valid() where lighting
+                         ///< passes read it
     TextureId depth;     ///< D32F, reversed: 1 at the near plane, 0 for background; plus 8 bits of
                          ///< stencil, all 0, if needs_stencil()
     TextureId velocity;  ///< RG16F or RG32F: current uv - previous uv, also for the sky; not

@@ -17,6 +17,15 @@ std::vector<Use> lighting_reads(const ViewData& view, std::initializer_list<Use>
     return all;
 }
 
+std::vector<Use> surface_reads(const ViewData& view, Use depth) {
+    std::vector<Use> reads =
+        lighting_reads(view, {sampled(view.gbuffer.surface, kGbufferUnit), depth});
+    if (view.gbuffer.material.valid()) {
+        reads.push_back(sampled(view.gbuffer.material, kGbufferMaterialUnit));
+    }
+    return reads;
+}
+
 void bind_shadow_masks(PassContext& context, const ViewData& view) {
     if (const auto* masks = view.data.find<ShadowMasks>()) {
         context.bind_texture(kShadowMasksUnit, masks->layers);

@@ -9,14 +9,16 @@
 
 namespace limn {
 
-// What passes that light surfaces share: texture units of lib/lighting.glsl and lib/gbuffer.glsl,
-// and the LightingInputs of a view. Units 0 .. 4 are the material's own.
+// What passes that light surfaces share: texture units of lib/lighting.glsl and
+// lib/stored_surface.glsl, and the LightingInputs of a view. Units 0 .. 4 are the material's own.
 
 inline constexpr unsigned kEnvironmentBinding = 1;
 inline constexpr unsigned kGbufferUnit = 5;
 inline constexpr unsigned kDepthUnit = 6;
 inline constexpr unsigned kLightIndicesUnit = 10;
 inline constexpr unsigned kLightCellsUnit = 11;
+inline constexpr unsigned kMaterialsUnit = 12;
+inline constexpr unsigned kGbufferMaterialUnit = 13;
 inline constexpr unsigned kVelocityUnit = 14;
 inline constexpr unsigned kShadowAtlasUnit = 15;
 inline constexpr unsigned kShadowViewsUnit = 16;
@@ -47,6 +49,10 @@ void bind_lighting(PassContext& context, const ViewData& view);
 /// `reads` and those of the view's LightingInputs.
 [[nodiscard]] std::vector<Use>
 lighting_reads(const ViewData& view, std::initializer_list<Use> reads);
+
+/// `depth`, the other targets of the G-buffer that lib/stored_surface.glsl reads, and those of the
+/// view's LightingInputs.
+[[nodiscard]] std::vector<Use> surface_reads(const ViewData& view, Use depth);
 
 /// The layers of shadow masks, as this frame's graph knows them: one per light with a shadow volume
 /// (shadow_volume_pass.h). They hold for the opaque surfaces alone.

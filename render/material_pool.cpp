@@ -8,11 +8,6 @@
 namespace limn {
 namespace {
 
-/// kModel* of lib/gbuffer.glsl.
-std::uint8_t stored_model(ShadingModel model) {
-    return static_cast<std::uint8_t>(static_cast<int>(model) + 1);
-}
-
 const TextureSlot* slots_of(const Material& m, int i) {
     const TextureSlot* slots[kMaterialTextures] = {
         &m.base_color_texture, &m.metal_rough_texture, &m.normal_texture, &m.occlusion_texture,
@@ -138,7 +133,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     batch_of_.clear();
     models_.clear();
     sets_.clear();
-    has_classic_ = false;
+    shading_models_ = 0;
     add_material(Material{});
     Material missing;
     missing.shading = ShadingModel::Unlit;
@@ -224,10 +219,8 @@ void MaterialPool::add_material(const Material& material) {
         batches_.push_back(batch);
     }
     records_.push_back(make_record(material));
-    models_.push_back(stored_model(material.shading));
-    has_classic_ = has_classic_ || material.shading == ShadingModel::Blinn
-                   || material.shading == ShadingModel::Phong
-                   || material.shading == ShadingModel::Skin;
+    models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
+    shading_models_ |= 1u << stored_number(material.shading);
 }
 
 std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) {

@@ -5,6 +5,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/texture.h"
 #include "render/shaders/material_gpu.h"
+#include "render/shading_models.h"
 #include "render/surface_features.h"
 
 #include <array>
@@ -52,12 +53,12 @@ class MaterialPool {
     [[nodiscard]] std::uint32_t batch_of(std::uint32_t record) const { return batch_of_[record]; }
     /// Counts the changes of records and batches.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
-    /// kModel* of lib/gbuffer.glsl.
+    /// stored_number() of its shading model.
     [[nodiscard]] std::uint32_t model_of(std::uint32_t record) const { return models_[record]; }
     [[nodiscard]] const SurfaceBatch& batch(std::uint32_t index) const { return batches_[index]; }
     [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
-    /// Whether any material is Blinn or Phong.
-    [[nodiscard]] bool has_classic() const { return has_classic_; }
+    /// Those that some material has.
+    [[nodiscard]] ShadingModelSet shading_models() const { return shading_models_; }
 
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
@@ -103,7 +104,7 @@ class MaterialPool {
     std::size_t material_count_ = 0;
     std::uint64_t material_version_ = 0;
     std::uint64_t revision_ = 0;
-    bool has_classic_ = false;
+    ShadingModelSet shading_models_ = 0;
 };
 
 }  // namespace limn

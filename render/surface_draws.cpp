@@ -1,6 +1,7 @@
 #include "render/surface_draws.h"
 
 #include "render/gpu/device.h"
+#include "render/lighting.h"
 #include "render/material_pool.h"
 #include "render/mesh_pool.h"
 #include "render/shaders/instance_gpu.h"
@@ -8,8 +9,6 @@
 
 namespace limn {
 namespace {
-
-constexpr unsigned kMaterialsUnit = 12;
 
 /// The instance streams point into this frame's part of the ring.
 void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) {

@@ -19,7 +19,7 @@ class Device;
 /// nothing.
 class Variant {
   public:
-    static constexpr int kMaxDefinitions = 32;
+    static constexpr int kMaxDefinitions = 64;
 
     Variant() = default;
     explicit Variant(const char* name) { add(name); }

@@ -272,6 +272,9 @@ class Assembler {
 ShaderFiles ShaderFiles::standard() {
     ShaderFiles files;
     files.embedded_ = true;
+    for (unsigned i = 0; i < kGeneratedShaderCount; ++i) {
+        files.put(kGeneratedShaders[i].path, kGeneratedShaders[i].text());
+    }
     std::error_code ignored;
     if (std::filesystem::is_directory(LIMN_SHADER_DIR, ignored)) {
         files.folder_ = LIMN_SHADER_DIR;

@@ -20,7 +20,8 @@ namespace limn::gpu {
 /// embedded in the program.
 class ShaderFiles {
   public:
-    /// The embedded files, and the folder they came from if it still exists, so that edits work.
+    /// The embedded files, and the folder they came from if it still exists, so that edits work;
+    /// and the generated ones.
     [[nodiscard]] static ShaderFiles standard();
     /// Only what put() adds.
     ShaderFiles() = default;

@@ -172,7 +172,7 @@ bool LightListEffect::prepare(const FrameData& frame, ViewData& view) {
     variant.add_if(lights.spot_angles, "SPOT_ANGLES");
     variant.add_if(lights.linear_fade, "LINEAR_FADE");
     variant.add_if(!lights.reach.empty(), "LOCAL_LIGHTS");
-    variant.add_if(frame.materials->has_classic(), "CLASSIC_MODELS");
+    add_shading_models(variant, frame.materials->shading_models());
     return true;
 }
 

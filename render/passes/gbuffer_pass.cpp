@@ -6,6 +6,7 @@
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/lighting.h"
+#include "render/material_pool.h"
 #include "render/render_frame.h"
 #include "render/shadow/volume_list.h"
 #include "render/surface_draws.h"
@@ -83,7 +84,8 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
              .height = view.camera.height});
     };
     const bool attributes = view.attributes || view.velocity || needs_normals(view);
-    if (view.data.get<LightingMethod>().is_forward() && !attributes) {
+    const bool forward = view.data.get<LightingMethod>().is_forward();
+    if (forward && !attributes) {
         view.gbuffer.depth = create("depth", depth_format(view));
         graph.add_pass(
             "depth", mesh_reads(graph, frame), std::array{cleared(view.gbuffer.depth)},
@@ -100,12 +102,17 @@ void GbufferEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
         view.gbuffer.velocity = create("gbuffer.velocity", frame.velocity_format);
         writes.push_back(cleared(view.gbuffer.velocity));
     }
+    if (!forward && reads_material_records(frame.materials->shading_models())) {
+        view.gbuffer.material = create("gbuffer.material", GL_R32UI);
+        writes.push_back(discarded(view.gbuffer.material));
+    }
     writes.push_back(cleared(view.gbuffer.depth));
     graph.add_pass(
         "gbuffer", mesh_reads(graph, frame), writes, [this, &view](PassContext& context) {
             const bool clipped = is_clipped(view);
             Variant variant;
             variant.add_if(clipped, "CLIPPED");
+            variant.add_if(view.gbuffer.material.valid(), "MATERIAL_RECORDS");
             bind_view(context, view);
             draw_runs(
                 context, view, view.data.get<InstanceList>().opaque, programs,

@@ -10,7 +10,8 @@ namespace limn {
 // Draws the attributes of every opaque and alpha-tested surface, unlit, for the passes that follow.
 //
 // Reads    InstanceList
-// Writes   surface attributes (lib/gbuffer.glsl), depth, and velocity if requested
+// Writes   surface attributes (lib/gbuffer.glsl), depth, velocity if requested, and the material
+//          where a shading model reads its record when lit
 // Order    first pass of the frame
 // Shaders  mesh.vert, gbuffer.frag, lib/material.glsl; sky_velocity.frag
 //

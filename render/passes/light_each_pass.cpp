@@ -77,11 +77,10 @@ void add_in_volume(
 
 /// What the light shaders read and test: G-buffer and depth. Volumes write the stencil of the depth
 /// buffer, and OpenGL leaves sampling its depth at the same time undefined: they sample a copy.
-std::vector<Use> surface_reads(FrameGraph& graph, const ViewData& view) {
-    const Use surface = sampled(view.gbuffer.surface, kGbufferUnit);
+std::vector<Use> gbuffer_reads(FrameGraph& graph, const ViewData& view) {
     const TextureId depth = view.gbuffer.depth;
     if (view.data.get<LightingMethod>().method != LightMethod::Volumes) {
-        return lighting_reads(view, {surface, sampled(depth_tested(depth), kDepthUnit)});
+        return surface_reads(view, sampled(depth_tested(depth), kDepthUnit));
     }
     const TextureId copy = graph.create(
         {.name = "lights.depth",
@@ -95,7 +94,9 @@ std::vector<Use> surface_reads(FrameGraph& graph, const ViewData& view) {
             from.id(), GL_TEXTURE_2D, 0, 0, 0, 0, to.id(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(),
             from.height(), 1);
     });
-    return lighting_reads(view, {surface, sampled(copy, kDepthUnit), depth_tested(depth)});
+    std::vector<Use> reads = surface_reads(view, sampled(copy, kDepthUnit));
+    reads.push_back(depth_tested(depth));
+    return reads;
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ Result<LightEachPass> create_light_each_pass(gpu::Device& device) {
 }
 
 void draw_each_light(FrameGraph& graph, LightEachPass& pass, const ViewData& view) {
-    const std::vector<Use> reads = surface_reads(graph, view);
+    const std::vector<Use> reads = gbuffer_reads(graph, view);
     const Use base[] = {cleared(view.radiance)};
     graph.add_pass("lights.base", std::span(reads), base, [&pass, &view](PassContext& context) {
         if (const gpu::Program* program = pass.base.get(view.lighting.variant)) {

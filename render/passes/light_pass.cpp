@@ -12,7 +12,6 @@ namespace limn {
 namespace {
 
 constexpr unsigned kLightsUnit = 9;
-constexpr unsigned kSurfaceMaterialsUnit = 13;
 constexpr unsigned kProjectorImagesUnit = 18;
 constexpr unsigned kProjectorsUnit = 19;
 
@@ -25,7 +24,7 @@ void bind_records(PassContext& context, const LightRecords& its) {
 }
 
 void bind_materials(PassContext& context, const MaterialPool& materials) {
-    materials.records().bind(context.device(), kSurfaceMaterialsUnit);
+    materials.records().bind(context.device(), kMaterialsUnit);
 }
 
 /// What the forward methods loop over.
@@ -59,9 +58,8 @@ Pass* get_or_create(
 }
 
 void draw_clustered(FrameGraph& graph, ProgramVariants& programs, const ViewData& view) {
-    const std::vector<Use> reads = lighting_reads(
-        view, {sampled(view.gbuffer.surface, kGbufferUnit),
-               sampled(depth_tested(view.gbuffer.depth), kDepthUnit)});
+    const std::vector<Use> reads =
+        surface_reads(view, sampled(depth_tested(view.gbuffer.depth), kDepthUnit));
     const Use writes[] = {cleared(view.radiance)};
     graph.add_pass("lights", std::span(reads), writes, [&programs, &view](PassContext& context) {
         const gpu::Program* program = programs.get(view.lighting.variant);

@@ -1,6 +1,7 @@
 // Attributes of opaque surfaces. Definitions of lib/material.glsl, and
 //   ALPHA_MASK  holes where the opacity is below the cutoff
 //   VELOCITY    motion since the previous frame, as a difference of texture coordinates (current - previous)
+//   MATERIAL_RECORDS  also the index of the material
 #version 450
 #include "lib/view.glsl"
 #include "lib/material.glsl"
@@ -11,10 +12,20 @@ layout(location = 5) in vec3 previous_clip;
 layout(location = 1) out vec2 velocity;
 #endif
 layout(location = 0) out uvec4 surface;
+#ifdef MATERIAL_RECORDS
+#ifdef VELOCITY
+layout(location = 2) out uint material;
+#else
+layout(location = 1) out uint material;
+#endif
+#endif
 
 void main() {
     vec4 color = surface_color();
     surface = pack_surface(surface_sample(color.rgb));
+#ifdef MATERIAL_RECORDS
+    material = material_and_flags.x;
+#endif
 #ifdef VELOCITY
     vec2 now_ndc = gl_FragCoord.xy * view.size.zw * 2.0 - 1.0 - vec2(view.ray_right.w, view.ray_up.w);
     velocity = velocity_from(now_ndc, previous_clip);

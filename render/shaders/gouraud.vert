@@ -4,8 +4,7 @@
 #define UNMASKED  // shadow masks are in screen space
 #include "lib/mesh_vertex.glsl"
 #include "lib/lighting.glsl"
-
-layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord
+#include "lib/material_record.glsl"
 
 #ifdef METAL_ROUGH_MAP
 layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
@@ -20,9 +19,8 @@ layout(location = 4) flat out uvec2 material_and_flags;
 invariant gl_Position;  // the depth must equal that of depth_first.frag
 
 SurfaceSample vertex_surface() {
-    int texel = int(instance.x * kMaterialTexels);
-    vec4 base = texelFetch(materials, texel);
-    vec4 factors = texelFetch(materials, texel + 2);
+    vec4 base = material_texel(instance.x, 0);
+    vec4 factors = material_texel(instance.x, 2);
     SurfaceSample s;
     s.normal_ws = vertex_normal_ws();
     s.albedo = base.rgb;

@@ -1,5 +1,6 @@
 #include "render/graph/frame_graph.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/render/shader_eval.h"
 
 #include <glm/geometric.hpp>
 
@@ -146,6 +147,53 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: attributes come back as they were written") {
     world.resource<Assets>().materials[0].emission = {1, 0.5f, 0.25f};
     ++world.resource<Assets>().material_version;
     CHECK(rgb_at(aov(view, "emission"), 4, 4) == Vec3(1, 0.5f, 0.25f));
+}
+
+TEST_CASE_FIXTURE(
+    RenderTest, "gbuffer: each field keeps its precision beside any of 31 shading models") {
+    // Inputs: model; albedo, of which red is the first number and the others lie elsewhere; the
+    // three factors, shifted likewise.
+    std::vector<Vec4> inputs;
+    for (int model = 1; model < 32; ++model) {
+        for (int i = 0; i <= 16; ++i) {
+            const auto x = static_cast<float>(i) / 16;
+            inputs.emplace_back(static_cast<float>(model), x, 1 - x, std::abs(2 * x - 1));
+        }
+    }
+    const std::string before = "#include \"lib/gbuffer.glsl\"\n"
+                               "SurfaceSample stored(vec4 x) {\n"
+                               "    SurfaceSample s;\n"
+                               "    s.normal_ws = normalize(x.yzw - 0.3);\n"
+                               "    s.albedo = x.yzw;\n"
+                               "    s.emission = x.wyz;\n"
+                               "    s.occlusion = x.y;\n"
+                               "    s.roughness = x.z;\n"
+                               "    s.metalness = x.w;\n"
+                               "    s.material = 0u;\n"
+                               "    s.model = uint(x.x);\n"
+                               "    return unpack_surface(pack_surface(s));\n"
+                               "}\n";
+    const std::vector<Vec4> factors = evaluate_shader(
+        before,
+        "SurfaceSample s = stored(x);"
+        "y = vec4(float(s.model), s.occlusion, s.roughness, s.metalness);",
+        inputs);
+    const std::vector<Vec4> colors = evaluate_shader(
+        before,
+        "SurfaceSample s = stored(x);"
+        "y = vec4(sqrt(s.albedo), distance(s.normal_ws, normalize(x.yzw - 0.3)));",
+        inputs);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const Vec4& in = inputs[i];
+        CHECK(factors[i].x == in.x);
+        CHECK(std::abs(factors[i].y - in.y) <= 0.5001f / 255);
+        CHECK(std::abs(factors[i].z - in.z) <= 0.5001f / 1023);
+        CHECK(std::abs(factors[i].w - in.w) <= 0.5001f / 127);
+        CHECK(std::abs(colors[i].x - std::sqrt(in.y)) <= 0.501f / 2047);
+        CHECK(std::abs(colors[i].y - std::sqrt(in.z)) <= 0.501f / 2047);
+        CHECK(std::abs(colors[i].z - std::sqrt(in.w)) <= 0.501f / 4095);
+        CHECK(colors[i].w < 1e-4f);
+    }
 }
 
 TEST_CASE_FIXTURE(Scene, "gbuffer: the number of draws does not depend on lights") {

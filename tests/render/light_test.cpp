@@ -3,6 +3,7 @@
 #include "ecs/components/time.h"
 #include "render/gpu/shader_source.h"
 #include "render/light_list.h"
+#include "render/shading_models.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -229,10 +230,17 @@ TEST_CASE("light: the halfway vector has the values of light.halfway-vector") {
 }
 
 TEST_CASE("light: what a surface makes of light names no type of light") {
-    const auto text = gpu::ShaderFiles::standard().read("lib/reflector.glsl");
-    REQUIRE(text);
-    for (const char* type : {"directional", "Directional", "spot", "Spot", "point light"}) {
-        CHECK(text->find(type) == std::string::npos);
+    std::vector<std::string> files = {"lib/reflector.glsl"};
+    for (const ShadingModelRow& row : kShadingModels) {
+        files.push_back(std::string("shade_") + row.name + ".glsl");
+    }
+    for (const std::string& file : files) {
+        CAPTURE(file);
+        const auto text = gpu::ShaderFiles::standard().read(file);
+        REQUIRE(text);
+        for (const char* type : {"directional", "Directional", "spot", "Spot", "point light"}) {
+            CHECK(text->find(type) == std::string::npos);
+        }
     }
 }
 

@@ -35,7 +35,8 @@ float green(const gpu::FloatImage& image, int x, int y) {
 
 TEST_CASE_FIXTURE(RenderTest, "skin shade: the rim has the values of both printed forms") {
     const std::vector<Vec4> found = evaluate_shader(
-        "#include \"lib/brdf.glsl\"\n", "y.x = skin_rim(x.x, true); y.y = skin_rim(x.x, false);",
+        "#include \"lib/reflector.glsl\"\n",
+        "y.x = skin_rim(x.x, true); y.y = skin_rim(x.x, false);",
         {Vec4(0), Vec4(0.25f), Vec4(0.5f), Vec4(0.75f), Vec4(1), Vec4(-0.5f), Vec4(1.5f)});
     const float wide[] = {1, 0.9375f, 0.75f, 0.4375f, 0, 1, 0};
     const float narrow[] = {1, 0.5625f, 0.25f, 0.0625f, 0, 1, 0};

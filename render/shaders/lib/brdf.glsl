@@ -10,12 +10,6 @@ vec4 lit(float n_l, float n_h, float shininess) {
     return vec4(1.0, diffuse, specular, 1.0);
 }
 
-// Rim light of skin by the cosine to the viewer (char.skin-shade): the listing's form, or the text's, which is wider.
-float skin_rim(float n_v, bool wide) {
-    float away = 1.0 - clamp(n_v, 0.0, 1.0);
-    return wide ? away * (2.0 - away) : away * away;
-}
-
 // (n.h, v.h) of the half vector h of l and v, from cosines alone: |l + v| = sqrt(2 + 2 l.v). Both 0 where l = -v.
 vec2 half_cosines(float n_l, float n_v, float l_v) {
     float inverse_length = inversesqrt(max(2.0 + 2.0 * l_v, 1e-8));

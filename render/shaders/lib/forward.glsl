@@ -5,5 +5,7 @@
 // The surface quantized as in the G-buffer, so that forward and deferred shading give the same image. Alpha-masked
 // holes need no test: the depth prepass has left them out.
 SurfaceSample forward_surface() {
-    return unpack_surface(pack_surface(surface_sample(surface_color().rgb)));
+    SurfaceSample s = unpack_surface(pack_surface(surface_sample(surface_color().rgb)));
+    s.material = material_and_flags.x;
+    return s;
 }

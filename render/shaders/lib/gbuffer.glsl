@@ -2,28 +2,17 @@
 // integer target is written without conversion and read in one fetch, which is fast on a software OpenGL,
 // and keeps more bits than four 8-bit targets would.
 //
-//     x   normal, octahedral                16 + 16
-//     y   albedo r, g (square roots)        12 + 12,  occlusion 8
-//     z   albedo b 12,  roughness 10, metalness 7 - or material 17 -,  shading model 3
-//     w   emission, shared exponent         9 + 9 + 9 + 5
+//     x   normal, octahedral              16 + 16
+//     y   albedo r, g (square roots)      11 + 11,  low bits of b 10
+//     z   occlusion 8, roughness 10, metalness 7, shading model 5,  high bits of albedo b 2
+//     w   emission, shared exponent       9 + 9 + 9 + 5
 //
-// Blinn, Phong and Skin take their coefficients from the material, whose index replaces roughness and metalness. For
-// Unlit, albedo is the mirrored share and its color is in emission. All zero: no surface here.
+// For Unlit, albedo is the mirrored share and its color is in emission. All zero: no surface here. The index of the
+// material is in a target of its own, which exists only where shading models read their material's record when lit
+// (lib/stored_surface.glsl).
 
+#include "generated/model_numbers.glsl"
 #include "lib/octahedral.glsl"
-
-// Stored shading models: ShadingModel + 1.
-const uint kModelNone = 0u;
-const uint kModelPbr = 1u;
-const uint kModelBlinn = 2u;
-const uint kModelPhong = 3u;
-const uint kModelUnlit = 4u;
-const uint kModelSkin = 5u;
-
-// Whether the coefficients are in the material.
-bool is_classic(uint model) {
-    return model == kModelBlinn || model == kModelPhong || model == kModelSkin;
-}
 
 struct SurfaceSample {
     vec3 normal_ws;   // unit
@@ -32,7 +21,7 @@ struct SurfaceSample {
     float occlusion;  // 0 occluded .. 1 open
     float roughness;  // perceptual, 0 .. 1
     float metalness;  // 0 .. 1
-    uint material;    // index; stored only if is_classic()
+    uint material;    // index; not in pack_surface()
     uint model;       // kModel*
 };
 
@@ -61,25 +50,31 @@ vec3 unpack_rgb9e5(uint bits) {
     return vec3(bits & 511u, bits >> 9 & 511u, bits >> 18 & 511u) * scale;
 }
 
+const vec3 kAlbedoRange = vec3(2047.0, 2047.0, 4095.0);
+const vec3 kFactorRange = vec3(255.0, 1023.0, 127.0);  // occlusion, roughness, metalness
+
 uvec4 pack_surface(SurfaceSample s) {
     uvec2 n = uvec2(clamp(octahedral_encode(s.normal_ws) * 32767.0 + 32768.5, 1.0, 65535.0));
-    uvec3 a = uvec3(sqrt(clamp(s.albedo, 0.0, 1.0)) * 4095.0 + 0.5);
-    uint ao = uint(clamp(s.occlusion, 0.0, 1.0) * 255.0 + 0.5);
-    uint pbr = uint(clamp(s.roughness, 0.0, 1.0) * 1023.0 + 0.5) | uint(clamp(s.metalness, 0.0, 1.0) * 127.0 + 0.5) << 10;
-    uint word = is_classic(s.model) ? s.material & 0x1ffffu : pbr;
-    return uvec4(n.x | n.y << 16, a.r | a.g << 12 | ao << 24, a.b | word << 12 | s.model << 29, pack_rgb9e5(s.emission));
+    uvec3 a = uvec3(sqrt(clamp(s.albedo, 0.0, 1.0)) * kAlbedoRange + 0.5);
+    uvec3 factors = uvec3(clamp(vec3(s.occlusion, s.roughness, s.metalness), 0.0, 1.0) * kFactorRange + 0.5);
+    return uvec4(
+        n.x | n.y << 16,
+        a.r | a.g << 11 | a.b << 22,
+        factors.x | factors.y << 8 | factors.z << 18 | s.model << 25 | a.b >> 10 << 30,
+        pack_rgb9e5(s.emission));
 }
 
 SurfaceSample unpack_surface(uvec4 g) {
     SurfaceSample s;
     s.normal_ws = octahedral_decode((vec2(g.x & 0xffffu, g.x >> 16) - 32768.0) / 32767.0);
-    vec3 root = vec3(g.y & 0xfffu, g.y >> 12 & 0xfffu, g.z & 0xfffu) / 4095.0;
+    vec3 root = vec3(g.y & 2047u, g.y >> 11 & 2047u, g.y >> 22 | g.z >> 30 << 10) / kAlbedoRange;
     s.albedo = root * root;
-    s.occlusion = float(g.y >> 24) / 255.0;
-    s.roughness = float(g.z >> 12 & 1023u) / 1023.0;
-    s.metalness = float(g.z >> 22 & 127u) / 127.0;
-    s.material = g.z >> 12 & 0x1ffffu;
-    s.model = g.z >> 29;
+    vec3 factors = vec3(g.z & 255u, g.z >> 8 & 1023u, g.z >> 18 & 127u) / kFactorRange;
+    s.occlusion = factors.x;
+    s.roughness = factors.y;
+    s.metalness = factors.z;
+    s.material = 0u;
+    s.model = g.z >> 25 & 31u;
     s.emission = unpack_rgb9e5(g.w);
     return s;
 }

@@ -11,14 +11,13 @@
 //   LIT_AT_VERTICES  no normals, only colors
 
 #include "lib/gbuffer.glsl"
-#include "material_gpu.h"
+#include "lib/material_record.glsl"
 
 layout(binding = 0) uniform sampler2D base_color_map;
 layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
 layout(binding = 2) uniform sampler2D normal_map;       // tangent space, green up
 layout(binding = 3) uniform sampler2D occlusion_map;    // r
 layout(binding = 4) uniform sampler2D emission_map;
-layout(binding = 12) uniform samplerBuffer materials;   // MaterialRecord
 
 #ifndef LIT_AT_VERTICES
 layout(location = 0) in vec3 normal_ws;
@@ -29,7 +28,7 @@ layout(location = 3) in vec4 vertex_color;
 layout(location = 4) flat in uvec2 material_and_flags;
 
 vec4 material_texel(int i) {
-    return texelFetch(materials, int(material_and_flags.x * kMaterialTexels) + i);
+    return material_texel(material_and_flags.x, i);
 }
 
 // Texture coordinates of texture `slot` (base color 0 .. emission 4).

@@ -1,17 +1,15 @@
 // Reflection of incoming light by a surface. Lights are reduced to direction and irradiance, whatever their type
-// (light.interface). Definition CLASSIC_MODELS: some surface is Blinn, Phong or Skin; it only saves a software OpenGL
-// needless work.
+// (light.interface). A shading model is a file shade_<model>.glsl and a row of the table in render/shading_models.h.
+// The file has
+//
+//     void prepare_<model>(inout Reflector r, SurfaceSample s)  terms that are the same for all lights
+//     Response lobe_<lobe>(Reflector r, Cosines c)              reflection of one light; models may share it
+//
+// prepare_pbr() has run before the prepare function of any other model. SHADE_<MODEL> is defined if some surface may
+// use the model; that only saves a software OpenGL needless work.
 
 #include "lib/brdf.glsl"
 #include "lib/gbuffer.glsl"
-#include "material_gpu.h"
-
-layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
-#ifdef CLASSIC_MODELS
-layout(binding = 13) uniform samplerBuffer surface_materials;  // MaterialRecord
-#endif
-
-const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
 
 struct Incoming {
     vec3 to_light;    // unit
@@ -23,15 +21,31 @@ struct Reflector {
     vec3 normal;
     vec3 to_camera;
     float n_v;
+    uint model;        // kModel*
     float alpha2;      // roughness^4
     vec3 diffuse;      // albedo of the diffuse part, less what the specular part reflects
-    vec3 specular_0;   // reflectance at normal incidence, with multiple scattering; ks of the classic models
-    vec3 specular_90;  // the same at grazing angles
+    vec3 specular_0;   // reflectance at normal incidence, with multiple scattering; factor of Response::specular
+    vec3 specular_90;  // the same at grazing angles; factor of Response::fresnel
     vec3 mirror;       // specular reflectance for a uniform environment
-    float classic;     // 0: Pbr, 1: Blinn and Skin, 2: Phong
-    float shininess;
-    vec3 rim;          // of Skin: added to n.l for every light, whatever its direction
+    vec4 own;          // of the lobe: its file says what
 };
+
+// Between normal, light, viewer and the half vector h.
+struct Cosines {
+    float n_l;  // >= 0
+    float n_h;
+    float v_h;
+    float l_v;
+};
+
+// What a surface makes of an irradiance of 1, before the factors of its Reflector.
+struct Response {
+    vec3 diffuse;    // n.l
+    float specular;  // lobe
+    float fresnel;   // lobe (1 - v.h)^5, the part of it with grazing reflectance
+};
+
+#include "generated/model_functions.glsl"
 
 Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     Reflector r;
@@ -39,72 +53,27 @@ Reflector make_reflector(SurfaceSample s, vec3 to_camera) {
     r.to_camera = to_camera;
     // Normal maps and interpolation turn some normals away from the viewer: treated as grazing.
     r.n_v = max(dot(s.normal_ws, to_camera), 1e-3);
-    float roughness = max(s.roughness, kMinRoughness);
-    r.alpha2 = roughness * roughness * roughness * roughness;
-
-    // Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate
-    // the energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet
-    // Models", 2019.
-    vec2 size = vec2(textureSize(specular_albedo, 0));
-    vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
-    float lost = 1.0 / (fit.x + fit.y) - 1.0;
-    float dielectric_90 = 1.0 + kDielectric * lost;
-    float dielectric_mirror = dielectric_90 * (kDielectric * fit.x + fit.y);
-    vec3 metal_90 = 1.0 + s.albedo * lost;
-    r.specular_0 = mix(vec3(kDielectric * dielectric_90), s.albedo * metal_90, s.metalness);
-    r.specular_90 = mix(vec3(dielectric_90), metal_90, s.metalness);
-    r.mirror = r.specular_0 * fit.x + r.specular_90 * fit.y;
-    r.diffuse = s.albedo * ((1.0 - s.metalness) * (1.0 - dielectric_mirror));
-    if (s.model == kModelUnlit) {
-        r.specular_0 = vec3(0.0);
-        r.specular_90 = vec3(0.0);
-        r.mirror = s.albedo;  // the mirrored share, see split_unlit()
-        r.diffuse = vec3(0.0);
-    }
-    r.classic = 0.0;
-    r.shininess = 1.0;
-    r.rim = vec3(0.0);
-#ifdef CLASSIC_MODELS
-    if (is_classic(s.model)) {
-        vec4 specular = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 3);
-        r.classic = s.model == kModelPhong ? 2.0 : 1.0;
-        r.specular_0 = specular.rgb;
-        r.shininess = specular.a;
-        r.mirror = vec3(0.0);
-        r.diffuse = s.albedo;
-        if (s.model == kModelSkin) {
-            vec4 skin = texelFetch(surface_materials, int(s.material * kMaterialTexels) + 14);
-            r.rim = skin_rim(dot(s.normal_ws, to_camera), skin.w > 0.5) * skin.rgb;
-        }
-    }
-#endif
+    r.model = s.model;
+    r.own = vec4(0.0);
+    prepare_model(r, s);
     return r;
 }
 
 // Sums over lights, before the material's factors (light.multi).
 struct LightSum {
-    vec3 diffuse;   // E n.l
-    vec3 specular;  // E lobe
-    vec3 fresnel;   // E lobe (1 - v.h)^5, the part of it with grazing reflectance
+    vec3 diffuse;
+    vec3 specular;
+    vec3 fresnel;
 };
 
 void add_light(inout LightSum sum, Reflector r, Incoming light) {
     float n_l = max(dot(r.normal, light.to_light), 0.0);
     float l_v = dot(light.to_light, r.to_camera);
-    vec2 h = half_cosines(n_l, r.n_v, l_v);  // n.h, v.h
-    float lobe = ggx_lobe(n_l, r.n_v, h.x, r.alpha2);
-    float p = schlick_weight(h.y);
-#ifdef CLASSIC_MODELS
-    float r_v = 2.0 * n_l * r.n_v - l_v;
-    float classic = lit(n_l, r.classic > 1.5 ? r_v : h.x, r.shininess).z / kPi;
-    lobe = r.classic > 0.5 ? classic : lobe;
-    p = r.classic > 0.5 ? 0.0 : p;
-    sum.diffuse += light.irradiance * (n_l + r.rim);
-#else
-    sum.diffuse += light.irradiance * n_l;
-#endif
-    sum.specular += light.irradiance * lobe;
-    sum.fresnel += light.irradiance * (lobe * p);
+    vec2 h = half_cosines(n_l, r.n_v, l_v);
+    Response response = model_response(r, Cosines(n_l, h.x, h.y, l_v));
+    sum.diffuse += light.irradiance * response.diffuse;
+    sum.specular += light.irradiance * response.specular;
+    sum.fresnel += light.irradiance * response.fresnel;
 }
 
 struct Reflected {

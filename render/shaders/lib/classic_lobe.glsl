@@ -1,0 +1,20 @@
+// The response of Blinn, Phong and Skin to one light. They share it, since a software OpenGL would evaluate the power
+// of each of them for every pixel. Reflector::own: x = shininess, yzw = added to n.l.
+
+#include "lib/brdf.glsl"
+#include "lib/material_record.glsl"
+
+// Nothing is added to n.l, and no surroundings are mirrored.
+void prepare_classic(inout Reflector r, SurfaceSample s) {
+    vec4 specular = material_texel(s.material, 3);
+    r.diffuse = s.albedo;
+    r.specular_0 = specular.rgb;
+    r.mirror = vec3(0.0);
+    r.own = vec4(specular.a, 0.0, 0.0, 0.0);
+}
+
+Response lobe_classic(Reflector r, Cosines c) {
+    float mirrored = 2.0 * c.n_l * r.n_v - c.l_v;
+    vec4 light = lit(c.n_l, r.model == kModelPhong ? mirrored : c.n_h, r.own.x);
+    return Response(light.y + r.own.yzw, light.z / kPi, 0.0);
+}

@@ -1,0 +1,18 @@
+// Surfaces of the G-buffer as the lighting passes read them. Definition MATERIAL_RECORDS: some shading model reads the
+// record of its material when lit.
+
+#include "lib/gbuffer.glsl"
+
+layout(binding = 5) uniform usampler2D gbuffer;
+layout(binding = 6) uniform sampler2D scene_depth;
+#ifdef MATERIAL_RECORDS
+layout(binding = 13) uniform usampler2D gbuffer_material;
+#endif
+
+SurfaceSample stored_surface(ivec2 pixel) {
+    SurfaceSample s = unpack_surface(texelFetch(gbuffer, pixel, 0));
+#ifdef MATERIAL_RECORDS
+    s.material = texelFetch(gbuffer_material, pixel, 0).r;
+#endif
+    return s;
+}

@@ -1,0 +1,8 @@
+// Shading model Blinn: kd n.l + ks (n.h)^shininess, h halfway between light and viewer (light.halfway-vector). Reflects
+// no surroundings. kd is the albedo; ks and shininess are in the material's record.
+
+#include "lib/classic_lobe.glsl"
+
+void prepare_blinn(inout Reflector r, SurfaceSample s) {
+    prepare_classic(r, s);
+}

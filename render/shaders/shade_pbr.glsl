@@ -1,0 +1,30 @@
+// Shading model Pbr: metallic-roughness as in glTF. GGX with height-correlated Smith visibility, compensated for
+// multiple scattering, over Lambert. The base of all models: those that follow override what differs.
+
+#include "lib/brdf.glsl"
+
+layout(binding = 8) uniform sampler2D specular_albedo;  // (scale, bias) of f0 by n.v and roughness
+
+const float kDielectric = 0.04;  // reflectance head on, index of refraction 1.5
+
+// Metalness is the share of the surface that is metal (env.control-map); the rest is dielectric. Both compensate the
+// energy lost by single scattering: Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019.
+void prepare_pbr(inout Reflector r, SurfaceSample s) {
+    float roughness = max(s.roughness, kMinRoughness);
+    r.alpha2 = roughness * roughness * roughness * roughness;
+    vec2 size = vec2(textureSize(specular_albedo, 0));
+    vec2 fit = texture(specular_albedo, (vec2(min(r.n_v, 1.0), s.roughness) * (size - 1.0) + 0.5) / size).rg;
+    float lost = 1.0 / (fit.x + fit.y) - 1.0;
+    float dielectric_90 = 1.0 + kDielectric * lost;
+    float dielectric_mirror = dielectric_90 * (kDielectric * fit.x + fit.y);
+    vec3 metal_90 = 1.0 + s.albedo * lost;
+    r.specular_0 = mix(vec3(kDielectric * dielectric_90), s.albedo * metal_90, s.metalness);
+    r.specular_90 = mix(vec3(dielectric_90), metal_90, s.metalness);
+    r.mirror = r.specular_0 * fit.x + r.specular_90 * fit.y;
+    r.diffuse = s.albedo * ((1.0 - s.metalness) * (1.0 - dielectric_mirror));
+}
+
+Response lobe_pbr(Reflector r, Cosines c) {
+    float lobe = ggx_lobe(c.n_l, r.n_v, c.n_h, r.alpha2);
+    return Response(vec3(c.n_l), lobe, lobe * schlick_weight(c.v_h));
+}

@@ -1,0 +1,7 @@
+// Shading model Phong: kd n.l + ks (r.v)^shininess, r the mirrored light (light.phong-model). Otherwise as Blinn.
+
+#include "lib/classic_lobe.glsl"
+
+void prepare_phong(inout Reflector r, SurfaceSample s) {
+    prepare_classic(r, s);
+}

@@ -1,0 +1,16 @@
+// Shading model Skin: Blinn plus a rim that each light adds, whatever its direction; it imitates light scattered in soft
+// skin (char.skin-shade).
+
+#include "lib/classic_lobe.glsl"
+
+// Rim light by the cosine to the viewer: the listing's form, or the text's, which is wider.
+float skin_rim(float n_v, bool wide) {
+    float away = 1.0 - clamp(n_v, 0.0, 1.0);
+    return wide ? away * (2.0 - away) : away * away;
+}
+
+void prepare_skin(inout Reflector r, SurfaceSample s) {
+    prepare_classic(r, s);
+    vec4 skin = material_texel(s.material, 14);
+    r.own.yzw = skin_rim(dot(r.normal, r.to_camera), skin.w > 0.5) * skin.rgb;
+}

@@ -1,0 +1,9 @@
+// Shading model Unlit: (1 - m) color + m surroundings, m = metalness (env.control-map). split_unlit() has moved the
+// first part into the emission and left the mirrored share m as albedo; lights add nothing.
+
+void prepare_unlit(inout Reflector r, SurfaceSample s) {
+    r.specular_0 = vec3(0.0);
+    r.specular_90 = vec3(0.0);
+    r.mirror = s.albedo;
+    r.diffuse = vec3(0.0);
+}

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+
+#include <cstdint>
+#include <iterator>
+#include <string>
+
+namespace limn {
+
+class Variant;
+
+// The shading models that surfaces are lit with. A model is a value of ShadingModel, a row here and
+// a file render/shaders/shade_<name>.glsl; lib/reflector.glsl says what the file contains. From the
+// rows come the numbers in the G-buffer, the definitions of lit programs, and the GLSL that calls
+// the functions of each model. A program calls only the models that some material of the level has.
+
+struct ShadingModelRow {
+    ShadingModel model;
+    const char* name;           ///< of the file and its prepare function
+    const char* number;         ///< constant of the stored number
+    const char* definition;     ///< set if some material has the model; null: every program has it
+    const char* lobe = "pbr";   ///< of the function lobe_<lobe>
+    bool reads_record = false;  ///< its functions read the material's record
+};
+
+/// In the order of ShadingModel.
+inline constexpr ShadingModelRow kShadingModels[] = {
+    {ShadingModel::Pbr, "pbr", "kModelPbr", nullptr},
+    {ShadingModel::Blinn, "blinn", "kModelBlinn", "SHADE_BLINN", "classic", true},
+    {ShadingModel::Phong, "phong", "kModelPhong", "SHADE_PHONG", "classic", true},
+    {ShadingModel::Unlit, "unlit", "kModelUnlit", "SHADE_UNLIT"},
+    {ShadingModel::Skin, "skin", "kModelSkin", "SHADE_SKIN", "classic", true},
+};
+static_assert(std::size(kShadingModels) < 32, "five bits in the G-buffer, and 0 is no surface");
+
+/// The number in the G-buffer; 0 is no surface.
+[[nodiscard]] constexpr std::uint32_t stored_number(ShadingModel model) {
+    return static_cast<std::uint32_t>(model) + 1;
+}
+
+/// A set of models: bit n is the one stored as n.
+using ShadingModelSet = std::uint32_t;
+
+/// Whether lighting passes need the material of each pixel.
+[[nodiscard]] bool reads_material_records(ShadingModelSet models);
+
+/// Adds the definitions of lit programs: those of the models, and MATERIAL_RECORDS.
+void add_shading_models(Variant& variant, ShadingModelSet models);
+
+/// GLSL: the constants of the stored numbers.
+[[nodiscard]] std::string model_numbers_glsl();
+/// GLSL: the files of all models; prepare_model() and model_response(), which choose among them.
+[[nodiscard]] std::string model_functions_glsl();
+
+}  // namespace limn

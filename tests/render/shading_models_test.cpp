@@ -1,0 +1,171 @@
+#include "ecs/components/rendering.h"
+#include "render/graph/frame_graph.h"
+#include "render/shading_models.h"
+#include "render/variant.h"
+#include "tests/render/scene_fixture.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+std::set<std::string> definitions_of(std::initializer_list<ShadingModel> models) {
+    ShadingModelSet set = 0;
+    for (const ShadingModel model : models) {
+        set |= 1u << stored_number(model);
+    }
+    Variant variant;
+    add_shading_models(variant, set);
+    std::set<std::string> names;
+    for (const gpu::ShaderDefine& define : variant.definitions()) {
+        names.insert(define.name);
+    }
+    return names;
+}
+
+Material colored(ShadingModel model) {
+    return {
+        .shading = model,
+        .base_color = {0.8f, 0.5f, 0.3f, 1},
+        .metalness = 0.3f,
+        .roughness = 0.4f,
+        .specular = {0.3f, 0.4f, 0.5f},
+        .shininess = 12};
+}
+
+/// Every model of the table.
+const std::vector<std::optional<ShadingModel>> kAllModels = [] {
+    std::vector<std::optional<ShadingModel>> models;
+    for (const ShadingModelRow& row : kShadingModels) {
+        models.emplace_back(row.model);
+    }
+    return models;
+}();
+
+/// Balls in a row under a lamp, one for each model, with something to mirror; the first is seen
+/// around pixel 136, the others 12 pixels apart. A gap for each nullopt.
+class Balls : public Scene {
+  public:
+    explicit Balls(const std::vector<std::optional<ShadingModel>>& models) {
+        const MeshId ball = add(make_ball(16));
+        for (std::size_t i = 0; i < models.size(); ++i) {
+            if (models[i]) {
+                const float x = -2.4f + 1.2f * static_cast<float>(i);
+                place(
+                    ball, add(colored(*models[i])),
+                    affine_from({x, 0, 0}, {1, 0, 0, 0}, Vec3(0.55f)));
+            }
+        }
+        shine(PointLight{.intensity = 30, .radius = 0}, at({1, 2, 3}));
+        world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0.1f, 0.2f, 0.3f}});
+    }
+    gpu::FloatImage picture(LightMethod method) {
+        world.insert_resource(Rendering{method});
+        return radiance(look({0, 0, 4}, {0, 0, 0}, 320, 80));  // 10 pixels per meter
+    }
+};
+
+/// The square of side 2 with one material, under a lamp.
+gpu::FloatImage lit_square(const Material& material, std::size_t materials_before) {
+    Scene scene;
+    for (std::size_t i = 0; i < materials_before; ++i) {
+        scene.add(Material{});
+    }
+    scene.place(scene.add(make_square()), scene.add(material), at({0, 0, 0}));
+    scene.shine(PointLight{.intensity = 4, .radius = 0}, at({0.3f, 0.2f, 1}));
+    return scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 16, 16));
+}
+
+}  // namespace
+
+TEST_CASE("shading models: every row has its file, and every file its row") {
+    std::set<std::string> rows;
+    for (const ShadingModelRow& row : kShadingModels) {
+        rows.insert(std::string("shade_") + row.name + ".glsl");
+    }
+    std::set<std::string> files;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(LIMN_SOURCE_DIR "/render/shaders")) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("shade_")) {
+            files.insert(name);
+        }
+    }
+    CHECK(rows == files);
+}
+
+TEST_CASE("shading models: a program has those of the level's materials, and no others") {
+    CHECK(definitions_of({ShadingModel::Pbr}).empty());
+    CHECK(
+        definitions_of({ShadingModel::Pbr, ShadingModel::Unlit})
+        == std::set<std::string>{"SHADE_UNLIT"});
+    CHECK(
+        definitions_of({ShadingModel::Pbr, ShadingModel::Skin})
+        == std::set<std::string>{"MATERIAL_RECORDS", "SHADE_SKIN"});
+}
+
+TEST_CASE("shading models: each is the same lit deferred, forward or one by one") {
+    Balls balls(kAllModels);
+    const gpu::FloatImage clustered = balls.picture(LightMethod::Clustered);
+    for (const LightMethod method :
+         {LightMethod::FullScreen, LightMethod::Volumes, LightMethod::ObjectMajor,
+          LightMethod::LightMajor}) {
+        CAPTURE(static_cast<int>(method));
+        const gpu::FloatImage other = balls.picture(method);
+        float worst = 0;
+        for (std::size_t i = 0; i < other.pixels.size(); ++i) {
+            const float a = clustered.pixels[i];
+            worst = std::max(worst, std::abs(a - other.pixels[i]) / (0.05f + a));
+        }
+        CHECK(worst <= 1e-3f);
+    }
+}
+
+TEST_CASE("shading models: no two look alike") {
+    std::set<std::vector<float>> looks;
+    for (const ShadingModelRow& row : kShadingModels) {
+        looks.insert(Balls({row.model}).picture(LightMethod::Clustered).pixels);
+    }
+    CHECK(looks.size() == std::size(kShadingModels));
+}
+
+TEST_CASE("shading models: none changes the others") {
+    const gpu::FloatImage all = Balls(kAllModels).picture(LightMethod::Clustered);
+    for (std::size_t i = 0; i < kAllModels.size(); ++i) {
+        CAPTURE(kShadingModels[i].name);
+        std::vector<std::optional<ShadingModel>> alone(kAllModels.size());
+        alone[i] = kAllModels[i];
+        const gpu::FloatImage one = Balls(alone).picture(LightMethod::Clustered);
+        const int x = 136 + 12 * static_cast<int>(i);
+        for (int y = 37; y < 43; ++y) {
+            for (int c = 0; c < 3; ++c) {
+                CHECK(one.at(x, y, c) > 0.01f);
+                CHECK(one.at(x, y, c) == doctest::Approx(all.at(x, y, c)).epsilon(1e-4));
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Scene, "shading models: only those that read records store the material") {
+    const MeshId square = add(make_square());
+    place(square, add(Material{}), at({0, 0, 0}));
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 9, 9);
+    draw(view);
+    CHECK(!frame_graph(shared_renderer()).find("gbuffer.material").valid());
+    add(colored(ShadingModel::Blinn));
+    draw(view);
+    CHECK(frame_graph(shared_renderer()).find("gbuffer.material").valid());
+}
+
+TEST_CASE("shading models: the record is found however many materials there are") {
+    const Material shiny = colored(ShadingModel::Blinn);
+    const gpu::FloatImage first = lit_square(shiny, 0);
+    CHECK(first.at(8, 8, 0) > 0.1f);
+    CHECK(lit_square(shiny, 70000).pixels == first.pixels);
+}
+
+}  // namespace limn::test
