@@ -2,23 +2,13 @@
 
 #include "ecs/base/log.h"
 #include "render/gpu/device.h"
+#include "render/material_blocks.h"
+#include "render/material_uv.h"
 
 #include <algorithm>
 
 namespace limn {
 namespace {
-
-const TextureSlot* slots_of(const Material& m, int i) {
-    const TextureSlot* slots[kMaterialTextures] = {
-        &m.base_color_texture, &m.metal_rough_texture, &m.normal_texture, &m.occlusion_texture,
-        &m.emission_texture};
-    return slots[i];
-}
-
-bool same_uv(const TextureSlot& a, const TextureSlot& b) {
-    return a.uv_set == b.uv_set && a.offset == b.offset && a.scale == b.scale
-           && a.rotation == b.rotation;
-}
 
 /// Whether one fetch gives occlusion, roughness and metalness, as most exporters pack them.
 bool shares_occlusion(const Material& m) {
@@ -28,51 +18,12 @@ bool shares_occlusion(const Material& m) {
            && a.wrap_v == b.wrap_v && a.nearest == b.nearest && same_uv(a, b);
 }
 
-/// kUvMap, kUvMaps or 0.
-std::uint32_t uv_feature(const Material& m) {
-    const TextureSlot plain;
-    const TextureSlot* first = nullptr;
-    bool shared = true;
-    for (int i = 0; i < kMaterialTextures; ++i) {
-        const TextureSlot& slot = *slots_of(m, i);
-        if (slot.image.index != kNoAsset) {
-            first = first == nullptr ? &slot : first;
-            shared = shared && same_uv(slot, *first);
-        }
-    }
-    return !shared ? kUvMaps : first == nullptr || same_uv(*first, plain) ? 0u : kUvMap;
-}
-
-/// The slot whose uv map goes to slot `i` of the record: if all textures share one uv map, the
-/// first used slot.
-const TextureSlot& uv_slot(const Material& m, int i) {
-    if (uv_feature(m) == kUvMap) {
-        for (int k = 0; k < kMaterialTextures; ++k) {
-            if (slots_of(m, k)->image.index != kNoAsset) {
-                return *slots_of(m, k);
-            }
-        }
-    }
-    return *slots_of(m, i);
-}
-
-layout::MaterialRecord make_record(const Material& m) {
-    layout::MaterialRecord record{};
-    record.base_color = m.base_color;
-    record.emission = Vec4(m.emission, m.normal_scale);
-    record.factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff};
-    record.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f));
-    record.skin = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f);
-    for (int i = 0; i < kMaterialTextures; ++i) {
-        const TextureSlot& slot = uv_slot(m, i);
-        // Counter-clockwise, as in the Khronos glTF viewer; v runs down the image.
-        const float c = std::cos(slot.rotation);
-        const float s = std::sin(slot.rotation);
-        record.uv_map[2 * i] = {
-            c * slot.scale.x, s * slot.scale.y, -s * slot.scale.x, c * slot.scale.y};
-        record.uv_map[2 * i + 1] = {slot.offset.x, slot.offset.y, slot.uv_set, 0};
-    }
-    return record;
+layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks) {
+    return {
+        .base_color = m.base_color,
+        .emission = Vec4(m.emission, m.normal_scale),
+        .factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff},
+        .blocks = append_blocks(m, blocks)};
 }
 
 GLenum wrap_mode(Wrap wrap) {
@@ -129,6 +80,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
 
     ++revision_;
     records_.clear();
+    blocks_.clear();
     batches_.clear();
     batch_of_.clear();
     models_.clear();
@@ -144,8 +96,21 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     }
     material_count_ = assets.materials.size();
     material_version_ = assets.material_version;
-    record_buffer_ =
-        gpu::Buffer::of("materials", std::span<const layout::MaterialRecord>(records_));
+    upload_records();
+}
+
+/// The blocks follow the records.
+void MaterialPool::upload_records() {
+    const auto first_block = static_cast<float>(records_.size() * layout::kMaterialTexels);
+    for (layout::MaterialRecord& record : records_) {
+        record.blocks.x += first_block;
+    }
+    const std::span<const layout::MaterialRecord> records = records_;
+    const std::span<const Vec4> blocks = blocks_;
+    record_buffer_ = gpu::Buffer(
+        "materials", records.size_bytes() + blocks.size_bytes(), gpu::BufferUse::Dynamic);
+    record_buffer_.write(0, records);
+    record_buffer_.write(records.size_bytes(), blocks);
     record_texture_.set(record_buffer_);
 }
 
@@ -193,7 +158,7 @@ void MaterialPool::add_material(const Material& material) {
     batch.blend = material.alpha_mode == AlphaMode::Blend;
     TextureSet set;
     for (int i = 0; i < kMaterialTextures; ++i) {
-        const TextureSlot& slot = *slots_of(material, i);
+        const TextureSlot& slot = texture_slot(material, i);
         if (slot.image.index != kNoAsset) {
             batch.features |= kBaseColorMap << i;
             set[i] = {slot.image.index, sampler_of(slot, i == 0 || !device_.caps().software)};
@@ -218,7 +183,7 @@ void MaterialPool::add_material(const Material& material) {
     if (found == batches_.end()) {
         batches_.push_back(batch);
     }
-    records_.push_back(make_record(material));
+    records_.push_back(make_record(material, blocks_));
     models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
     shading_models_ |= 1u << stored_number(material.shading);
 }

@@ -4,6 +4,7 @@
 #include "render/buffer_texture.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/texture.h"
+#include "render/material_uv.h"
 #include "render/shaders/material_gpu.h"
 #include "render/shading_models.h"
 #include "render/surface_features.h"
@@ -18,7 +19,8 @@ namespace gpu {
 class Device;
 }
 
-// Images as textures with full mip chains, and materials as one array of records. Materials with
+// Images as textures with full mip chains, and materials as one array of records, followed by
+// their blocks (material_blocks.h). Materials with
 // the same program, fixed state and textures share a batch: instances of a batch are drawn
 // together, whatever their mesh and material. An image that is missing, broken or too large is
 // magenta.
@@ -27,9 +29,6 @@ class Device;
 // color is decoded after filtering (a third of the cost), only the base color is filtered
 // trilinearly, and nothing anisotropically (five times the cost). Emission is decoded before
 // filtering: between lit and dark windows the error would show.
-
-inline constexpr int kMaterialTextures =
-    5;  ///< base color, metal-rough, normal, occlusion, emission
 
 /// Materials that share a draw state.
 struct SurfaceBatch {
@@ -82,6 +81,7 @@ class MaterialPool {
     };
     using TextureSet = std::array<BoundTexture, kMaterialTextures>;
 
+    void upload_records();
     void upload_image(const ImageData& image);
     void add_material(const Material& material);
     [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
@@ -99,6 +99,7 @@ class MaterialPool {
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
     std::vector<std::uint8_t> models_;     ///< by record
     std::vector<layout::MaterialRecord> records_;
+    std::vector<Vec4> blocks_;  ///< of all materials, one after the other
     gpu::Buffer record_buffer_;
     BufferTexture record_texture_;
     std::size_t material_count_ = 0;

@@ -1,4 +1,5 @@
-// One material, read from a texture buffer as kMaterialTexels RGBA32F texels.
+// One material, read from a texture buffer as kMaterialTexels RGBA32F texels, by its index. What only some materials
+// have follows after all records, as blocks (material_blocks_gpu.h).
 
 #ifdef __cplusplus
 #pragma once
@@ -10,13 +11,10 @@ struct MaterialRecord {
     vec4 base_color;  // linear, opacity
     vec4 emission;    // w: strength of the normal map
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
-    vec4 specular;    // ks of Blinn, Phong and Skin; w: shininess
-    vec4 uv_map[10];  // of texture i: 2 i = rows (u: xy, v: zw) of its 2x3 map, 2 i + 1 = offset xy, uv set z
-    vec4 skin;        // color of Skin's rim; w: 1 = wide rim
-    vec4 unused;
+    vec4 blocks;      // x: texel at which its blocks begin; yzw: where each kind is from there
 };
 
-const uint kMaterialTexels = 16u;
+const uint kMaterialTexels = 4u;
 
 #ifdef __cplusplus
 static_assert(sizeof(MaterialRecord) == 16 * kMaterialTexels);

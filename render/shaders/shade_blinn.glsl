@@ -1,5 +1,5 @@
 // Shading model Blinn: kd n.l + ks (n.h)^shininess, h halfway between light and viewer (light.halfway-vector). Reflects
-// no surroundings. kd is the albedo; ks and shininess are in the material's record.
+// no surroundings. kd is the albedo; ks and shininess are in its ClassicBlock.
 
 #include "lib/classic_lobe.glsl"
 

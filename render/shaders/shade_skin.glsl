@@ -1,5 +1,5 @@
-// Shading model Skin: Blinn plus a rim that each light adds, whatever its direction; it imitates light scattered in soft
-// skin (char.skin-shade).
+// Shading model Skin: Blinn plus a rim that each light adds, whatever its direction; it imitates light scattered in
+// soft skin (char.skin-shade).
 
 #include "lib/classic_lobe.glsl"
 
@@ -11,6 +11,6 @@ float skin_rim(float n_v, bool wide) {
 
 void prepare_skin(inout Reflector r, SurfaceSample s) {
     prepare_classic(r, s);
-    vec4 skin = material_texel(s.material, 14);
-    r.own.yzw = skin_rim(dot(r.normal, r.to_camera), skin.w > 0.5) * skin.rgb;
+    vec4 rim = block_texel(s.material, kSkinBlock, 0);
+    r.own.yzw = skin_rim(dot(r.normal, r.to_camera), rim.w > 0.5) * rim.rgb;
 }

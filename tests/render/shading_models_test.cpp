@@ -73,7 +73,7 @@ class Balls : public Scene {
 gpu::FloatImage lit_square(const Material& material, std::size_t materials_before) {
     Scene scene;
     for (std::size_t i = 0; i < materials_before; ++i) {
-        scene.add(Material{});
+        scene.add(colored(ShadingModel::Phong));
     }
     scene.place(scene.add(make_square()), scene.add(material), at({0, 0, 0}));
     scene.shine(PointLight{.intensity = 4, .radius = 0}, at({0.3f, 0.2f, 1}));

@@ -6,7 +6,7 @@
 
 // Nothing is added to n.l, and no surroundings are mirrored.
 void prepare_classic(inout Reflector r, SurfaceSample s) {
-    vec4 specular = material_texel(s.material, 3);
+    vec4 specular = block_texel(s.material, kClassicBlock, 0);
     r.diffuse = s.albedo;
     r.specular_0 = specular.rgb;
     r.mirror = vec3(0.0);

@@ -37,8 +37,8 @@ vec2 slot_uv(int slot) {
 #ifdef UV_MAP
     slot = 0;  // all are the same
 #endif
-    vec4 rows = material_texel(4 + 2 * slot);
-    vec4 offset = material_texel(5 + 2 * slot);
+    vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * slot);
+    vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * slot + 1);
     vec2 set = offset.z > 0.5 ? uv.zw : uv.xy;
     return vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy;
 #else

@@ -1,10 +1,19 @@
 // The records of materials, by index.
 
+#include "material_blocks_gpu.h"
 #include "material_gpu.h"
 
-layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord
+layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord, then blocks
 
 // Texel `i` of a MaterialRecord.
 vec4 material_texel(uint material, int i) {
     return texelFetch(materials, int(material * kMaterialTexels) + i);
+}
+
+// Texel `i` of a block that the material has; of one that it lacks, some texel of no meaning.
+vec4 block_texel(uint material, uint kind, int i) {
+    vec4 blocks = material_texel(material, 3);
+    uint offsets = uint(blocks[1u + kind / kBlocksPerFloat]);
+    uint offset = bitfieldExtract(offsets, int(kind % kBlocksPerFloat * kBlockOffsetBits), int(kBlockOffsetBits));
+    return texelFetch(materials, int(blocks.x) + int(offset) + i);
 }

@@ -1,0 +1,90 @@
+#include "render/material_blocks.h"
+
+#include "ecs/components/surface.h"
+#include "render/material_uv.h"
+#include "render/shaders/material_blocks_gpu.h"
+#include "render/shaders/material_classic_gpu.h"
+#include "render/shaders/material_skin_gpu.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <optional>
+
+namespace limn {
+namespace {
+
+std::optional<layout::ClassicBlock> make_classic_block(const Material& m) {
+    const bool classic = m.shading == ShadingModel::Blinn || m.shading == ShadingModel::Phong
+                         || m.shading == ShadingModel::Skin;
+    return classic ? std::optional(
+               layout::ClassicBlock{.specular = Vec4(m.specular, std::max(m.shininess, 1e-3f))})
+                   : std::nullopt;
+}
+
+std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
+    return m.shading == ShadingModel::Skin ? std::optional(
+               layout::SkinBlock{.rim = Vec4(m.skin_color, m.wide_rim ? 1.0f : 0.0f)})
+                                           : std::nullopt;
+}
+
+struct BlockKind {
+    std::uint32_t number;
+    std::uint32_t texels;
+    /// Appends the block of a material; false if it has none.
+    bool (*append)(const Material&, std::vector<Vec4>&);
+};
+
+template <auto make>
+constexpr BlockKind block_kind(std::uint32_t number) {
+    using Block = typename decltype(make(Material()))::value_type;
+    static_assert(sizeof(Block) % sizeof(Vec4) == 0);
+    constexpr std::size_t kTexels = sizeof(Block) / sizeof(Vec4);
+    return {
+        number, static_cast<std::uint32_t>(kTexels),
+        [](const Material& material, std::vector<Vec4>& blocks) {
+            const std::optional<Block> block = make(material);
+            if (block) {
+                blocks.resize(blocks.size() + kTexels);
+                std::memcpy(blocks.data() + blocks.size() - kTexels, &*block, sizeof(Block));
+            }
+            return block.has_value();
+        }};
+}
+
+constexpr BlockKind kKinds[] = {
+    block_kind<make_uv_block>(layout::kUvBlock),
+    block_kind<make_classic_block>(layout::kClassicBlock),
+    block_kind<make_skin_block>(layout::kSkinBlock),
+};
+
+/// What a material with all blocks needs fits the offsets, and each kind has its number.
+constexpr bool kinds_fit() {
+    std::uint32_t texels = 0;
+    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+        if (kKinds[i].number != i || texels >> layout::kBlockOffsetBits != 0) {
+            return false;
+        }
+        texels += kKinds[i].texels;
+    }
+    return std::size(kKinds) <= layout::kMaxBlockKinds;
+}
+static_assert(kinds_fit());
+
+}  // namespace
+
+Vec4 append_blocks(const Material& material, std::vector<Vec4>& blocks) {
+    const std::size_t first = blocks.size();
+    std::uint32_t offsets[3] = {};
+    for (const BlockKind& kind : kKinds) {
+        const auto offset = static_cast<std::uint32_t>(blocks.size() - first);
+        if (kind.append(material, blocks)) {
+            const std::uint32_t shift =
+                kind.number % layout::kBlocksPerFloat * layout::kBlockOffsetBits;
+            offsets[kind.number / layout::kBlocksPerFloat] |= offset << shift;
+        }
+    }
+    return {first, offsets[0], offsets[1], offsets[2]};
+}
+
+}  // namespace limn

@@ -1,0 +1,22 @@
+// Blocks: parts of a material's record that only some materials have. A kind of block is a struct in a header of its
+// own, a number here and a row in render/material_blocks.cpp; shaders read it with block_texel()
+// (lib/material_record.glsl). Of each kind the record holds the first texel, counted from the material's first block:
+// four to a float, as an integer that a float stores exactly; so are texels, up to 2^24 of them (a million materials).
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+const uint kUvBlock = 0u;       // material_uv_gpu.h
+const uint kClassicBlock = 1u;  // material_classic_gpu.h
+const uint kSkinBlock = 2u;     // material_skin_gpu.h
+
+const uint kBlockOffsetBits = 6u;
+const uint kBlocksPerFloat = 4u;
+const uint kMaxBlockKinds = 3u * kBlocksPerFloat;
+
+#ifdef __cplusplus
+}  // namespace limn::layout
+#endif
