@@ -1,5 +1,5 @@
 // What a level needs is compiled when it is loaded: no frame of any level compiles a program, none
-// needs more programs than agreed, and a warm-up leaves no trace in the picture.
+// needs more programs than agreed, and a warm-up leaves no trace in the image.
 
 #include "content/app/headless.h"
 #include "content/app/stage.h"

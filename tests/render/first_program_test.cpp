@@ -279,7 +279,7 @@ TEST_CASE_FIXTURE(
     for (const char* fragment : {"gbuffer.frag", "shadow_map.frag"}) {
         for (const std::vector<gpu::ShaderDefine>& defines :
              {std::vector<gpu::ShaderDefine>{},
-              {{"NORMAL_MAP"}, {"BASE_COLOR_MAP"}, {"VERTEX_COLOR"}, {"VELOCITY"}},
+              {{"NORMAL_MAP"}, {"BASE_COLOR_MAP"}, {"UV_MAP"}, {"VERTEX_COLOR"}, {"VELOCITY"}},
               {{"VELOCITY"}, {"DEFORMED"}},
               {{"INFLATE"}, {"ALPHA_MASK"}}}) {
             const auto program = device().shaders().load(

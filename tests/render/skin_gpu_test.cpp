@@ -427,8 +427,9 @@ TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, an
     for (std::size_t i = 0; i < herd.size(); i += 111) {
         CHECK(largest_error(got[i].positions, want(herd[i])) <= 1e-4);
     }
-    // Where a storage block shows few vertices, several dispatches do the same.
-    oracle::SkinReadback narrow = *oracle::SkinReadback::create(device(), 40 * 1024);
+    // Where a storage block shows 1024 vertices, several dispatches do the same.
+    oracle::SkinReadback narrow =
+        *oracle::SkinReadback::create(device(), 1024 * sizeof(PackedFrame));
     device().reset_stats();
     const std::vector<oracle::SkinReadbackVertices> same = narrow.run(world, herd);
     CHECK(device().stats().dispatches > 50);
