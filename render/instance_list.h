@@ -17,7 +17,7 @@ namespace limn {
 // are written. A mesh without tangents is drawn without its normal map. A deformed instance has a
 // key of its own, since its vertices are its own.
 //
-// 100,000 moving boxes, all visible, take 1.6 ms of one core (instance_bench).
+// With RenderItems, 100,000 boxes in view take 4 ms of a core, 1.4 at rest (instance_bench).
 
 /// Layout of glMultiDrawElementsIndirect.
 struct DrawCommand {
