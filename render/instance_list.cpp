@@ -294,10 +294,11 @@ void InstanceCollector::add_command(
         state.deformed ? items.shapes().request(state.index, velocity) : mesh.base_vertex;
     const SurfaceBatch& batch = items.materials().batch(state.batch);
     DrawRun run;
-    run.features = batch.features | (mesh.colored ? kVertexColor : 0u)
-                   | (state.inflated ? kInflate : 0u) | (state.deformed ? kDeformed : 0u);
-    if ((run.features & kNormalMap) != 0 && !mesh.tangents) {
-        run.features &= ~static_cast<std::uint32_t>(kNormalMap);
+    run.features = batch.features;
+    run.features.bits |= (mesh.colored ? kVertexColor : 0u) | (state.inflated ? kInflate : 0u)
+                         | (state.deformed ? kDeformed : 0u);
+    if (run.features.maps.has(layout::kNormalSlot) && !mesh.tangents) {
+        run.features.maps.remove(layout::kNormalSlot);
         list.without_tangents.push_back(mesh_index);
     }
     run.textures = batch.textures;

@@ -30,9 +30,9 @@ struct DrawCommand {
 
 /// Consecutive commands with the same program, state and textures.
 struct DrawRun {
-    std::uint32_t features = 0;  ///< SurfaceFeature bits, without kVelocity
-    std::uint32_t textures = 0;  ///< index for MaterialPool::bind_textures
-    bool mirrored = false;       ///< front faces are clockwise
+    SurfaceFeatures features = {};  ///< without kVelocity
+    std::uint32_t textures = 0;     ///< index for MaterialPool::bind_textures
+    bool mirrored = false;          ///< front faces are clockwise
     std::uint32_t first_command = 0;
     std::uint32_t command_count = 0;
 };

@@ -1,7 +1,7 @@
 #include "render/material_blocks.h"
 
 #include "ecs/components/surface.h"
-#include "render/material_uv.h"
+#include "render/material_maps.h"
 #include "render/shaders/material_blocks_gpu.h"
 #include "render/shaders/material_classic_gpu.h"
 #include "render/shaders/material_skin_gpu.h"
@@ -30,7 +30,7 @@ std::optional<layout::SkinBlock> make_skin_block(const Material& m) {
 
 struct BlockKind {
     std::uint32_t number;
-    std::uint32_t texels;
+    std::uint32_t texels;  ///< at most
     /// Appends the block of a material; false if it has none.
     bool (*append)(const Material&, std::vector<Vec4>&);
 };
@@ -53,7 +53,7 @@ constexpr BlockKind block_kind(std::uint32_t number) {
 }
 
 constexpr BlockKind kKinds[] = {
-    block_kind<make_uv_block>(layout::kUvBlock),
+    {layout::kUvBlock, 2 * layout::kMaxMapSlots, append_uv_block},
     block_kind<make_classic_block>(layout::kClassicBlock),
     block_kind<make_skin_block>(layout::kSkinBlock),
 };

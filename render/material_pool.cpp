@@ -3,7 +3,6 @@
 #include "ecs/base/log.h"
 #include "render/gpu/device.h"
 #include "render/material_blocks.h"
-#include "render/material_uv.h"
 
 #include <algorithm>
 
@@ -14,8 +13,8 @@ namespace {
 bool shares_occlusion(const Material& m) {
     const TextureSlot& a = m.occlusion_texture;
     const TextureSlot& b = m.metal_rough_texture;
-    return a.image.index != kNoAsset && a.image == b.image && a.wrap_u == b.wrap_u
-           && a.wrap_v == b.wrap_v && a.nearest == b.nearest && same_uv(a, b);
+    return is_used(a) && a.image == b.image && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v
+           && a.nearest == b.nearest && same_uv(a, b);
 }
 
 layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks) {
@@ -23,31 +22,14 @@ layout::MaterialRecord make_record(const Material& m, std::vector<Vec4>& blocks)
         .base_color = m.base_color,
         .emission = Vec4(m.emission, m.normal_scale),
         .factors = {m.metalness, m.roughness, m.occlusion_strength, m.alpha_cutoff},
-        .blocks = append_blocks(m, blocks)};
+        .blocks = append_blocks(m, blocks),
+        .maps = {}};
 }
 
 GLenum wrap_mode(Wrap wrap) {
     return wrap == Wrap::Repeat   ? GL_REPEAT
            : wrap == Wrap::Mirror ? GL_MIRRORED_REPEAT
                                   : GL_CLAMP_TO_EDGE;
-}
-
-struct ImageFormat {
-    GLenum format;
-    GLenum type;
-    std::size_t bytes;
-};
-
-ImageFormat image_format(const ImageData& image) {
-    switch (image.format) {
-    case PixelFormat::Rgba8:
-        return {static_cast<GLenum>(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8), GL_UNSIGNED_BYTE, 4};
-    case PixelFormat::Rgba16F:
-        return {GL_RGBA16F, GL_HALF_FLOAT, 8};
-    case PixelFormat::Rgba32F:
-        return {GL_RGBA32F, GL_FLOAT, 16};
-    }
-    return {GL_RGBA8, GL_UNSIGNED_BYTE, 4};
 }
 
 }  // namespace
@@ -58,10 +40,7 @@ MaterialPool::MaterialPool(gpu::Device& device, float anisotropy)
           device.caps().software  // not by profile: filters change quality, not formats
               ? 1.0f
               : std::clamp(anisotropy, 1.0f, std::max(device.caps().max_anisotropy, 1.0f))),
-      magenta_("magenta", {.format = GL_RGBA8}), record_texture_("materials", GL_RGBA32F) {
-    const std::uint8_t pixel[4] = {255, 0, 255, 255};
-    magenta_.upload(std::span<const std::uint8_t>(pixel), GL_RGBA, GL_UNSIGNED_BYTE);
-}
+      images_(device), record_texture_("materials", GL_RGBA32F) {}
 
 void MaterialPool::update(const Assets& assets, bool fresh) {
     if (fresh) {
@@ -70,9 +49,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
         material_version_ = 0;
     }
     const bool more_images = images_.size() < assets.images.size();
-    for (std::size_t i = images_.size(); i < assets.images.size(); ++i) {
-        upload_image(assets.images[i]);
-    }
+    images_.update(assets.images);
     if (!fresh && !more_images && material_version_ == assets.material_version
         && material_count_ == assets.materials.size()) {
         return;
@@ -84,7 +61,7 @@ void MaterialPool::update(const Assets& assets, bool fresh) {
     batches_.clear();
     batch_of_.clear();
     models_.clear();
-    sets_.clear();
+    textures_.clear();
     shading_models_ = 0;
     add_material(Material{});
     Material missing;
@@ -114,65 +91,46 @@ void MaterialPool::upload_records() {
     record_texture_.set(record_buffer_);
 }
 
-void MaterialPool::upload_image(const ImageData& image) {
-    const ImageFormat format = image_format(image);
-    const std::size_t needed =
-        image.width > 0 && image.height > 0
-            ? static_cast<std::size_t>(image.width) * image.height * format.bytes
-            : 1;
-    const int limit = device_.caps().max_texture_size;
-    if (image.width <= 0 || image.height <= 0 || image.width > limit || image.height > limit
-        || image.pixels.size() < needed) {
-        log_error(
-            "image {}: found {}x{} pixels in {} bytes, expected 1 .. {} pixels per side and "
-            "complete "
-            "data; shown magenta",
-            image.name, image.width, image.height, image.pixels.size(), limit);
-        images_.emplace_back();
-        return;
+void MaterialPool::add_maps(
+    const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record) {
+    MapBindings bindings;
+    for (const MapSlot& slot : map_slots()) {
+        const TextureSlot& texture = material.*slot.texture;
+        if (!is_used(texture)) {
+            continue;
+        }
+        if (slot.number == layout::kOcclusionSlot && shares_occlusion(material)) {
+            batch.features.bits |= kOcclusionShared;
+            continue;
+        }
+        const ImageLayer image = images_.find(texture.image);
+        const bool encoded = slot.number == layout::kBaseColorSlot && images_.encoded(image.array);
+        const auto unit = bindings.add(
+            {.array = image.array,
+             .sampler = sampler_of(texture, slot.trilinear || !device_.caps().software),
+             .encoded = encoded});
+        if (!unit) {
+            log_error(
+                "material {}: its maps need more than {} texture arrays, one per size, format and "
+                "sampler; drawn without {}",
+                material.name, layout::kMapUnits, slot.definition);
+            continue;
+        }
+        batch.features.maps.set(slot.number, *unit);
+        batch.features.bits |= encoded ? kSrgbBaseColor : 0u;
+        set_layer(record.maps, slot.number, image.layer);
     }
-    gpu::Texture texture(
-        image.name,
-        {.format = format.format, .width = image.width, .height = image.height, .levels = 0});
-    // The first row of the image is row 0 of the texture, where v = 0, as in glTF.
-    texture.upload<std::uint8_t>(std::span(image.pixels).first(needed), GL_RGBA, format.type);
-    texture.generate_mipmaps();
-    gpu::GlObject<gpu::ObjectKind::Texture> encoded;
-    if (device_.caps().profile == gpu::Profile::Software && format.format == GL_SRGB8_ALPHA8) {
-        GLuint id = 0;
-        glGenTextures(1, &id);
-        glTextureView(
-            id, GL_TEXTURE_2D, texture.id(), GL_RGBA8, 0,
-            static_cast<GLuint>(texture.desc().levels), 0, 1);
-        encoded = gpu::GlObject<gpu::ObjectKind::Texture>(id, image.name);
-    }
-    images_.push_back({std::move(texture), std::move(encoded)});
-}
-
-bool MaterialPool::reads_encoded(ImageId image) const {
-    return image.index < images_.size() && static_cast<bool>(images_[image.index].encoded);
+    batch.textures = index_of(bindings);
 }
 
 void MaterialPool::add_material(const Material& material) {
+    layout::MaterialRecord record = make_record(material, blocks_);
     SurfaceBatch batch;
     batch.blend = material.alpha_mode == AlphaMode::Blend;
-    TextureSet set;
-    for (int i = 0; i < kMaterialTextures; ++i) {
-        const TextureSlot& slot = texture_slot(material, i);
-        if (slot.image.index != kNoAsset) {
-            batch.features |= kBaseColorMap << i;
-            set[i] = {slot.image.index, sampler_of(slot, i == 0 || !device_.caps().software)};
-        }
-    }
-    if (shares_occlusion(material)) {
-        batch.features = (batch.features & ~kOcclusionMap) | kOcclusionShared;
-        set[3] = {};
-    }
-    batch.features |= uv_feature(material);
-    batch.features |= reads_encoded(material.base_color_texture.image) ? kSrgbBaseColor : 0u;
-    batch.features |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
-    batch.features |= material.double_sided ? kDoubleSided : 0u;
-    batch.textures = texture_set(set);
+    batch.features.bits = uv_feature(material);
+    batch.features.bits |= material.alpha_mode == AlphaMode::Mask ? kAlphaMask : 0u;
+    batch.features.bits |= material.double_sided ? kDoubleSided : 0u;
+    add_maps(material, batch, record);
 
     const auto same = [&](const SurfaceBatch& b) {
         return b.features == batch.features && b.blend == batch.blend
@@ -183,7 +141,7 @@ void MaterialPool::add_material(const Material& material) {
     if (found == batches_.end()) {
         batches_.push_back(batch);
     }
-    records_.push_back(make_record(material, blocks_));
+    records_.push_back(record);
     models_.push_back(static_cast<std::uint8_t>(stored_number(material.shading)));
     shading_models_ |= 1u << stored_number(material.shading);
 }
@@ -210,29 +168,21 @@ std::uint32_t MaterialPool::sampler_of(const TextureSlot& slot, bool trilinear) 
     return static_cast<std::uint32_t>(found - sampler_keys_.begin());
 }
 
-std::uint32_t MaterialPool::texture_set(const TextureSet& set) {
-    const auto found = std::find(sets_.begin(), sets_.end(), set);
-    const auto index = static_cast<std::uint32_t>(found - sets_.begin());
-    if (found == sets_.end()) {
-        sets_.push_back(set);
+std::uint32_t MaterialPool::index_of(const MapBindings& bindings) {
+    const auto found = std::find(textures_.begin(), textures_.end(), bindings);
+    const auto index = static_cast<std::uint32_t>(found - textures_.begin());
+    if (found == textures_.end()) {
+        textures_.push_back(bindings);
     }
     return index;
 }
 
 void MaterialPool::bind_textures(std::uint32_t textures) const {
-    const TextureSet& set = sets_[textures];
-    for (unsigned i = 0; i < set.size(); ++i) {
-        const std::uint32_t image = set[i].image;
-        if (image != kNoAsset) {
-            const gpu::Sampler* sampler = &samplers_[set[i].sampler];
-            if (image >= images_.size() || !images_[image].texture) {
-                device_.bind_texture(i, magenta_, sampler);
-            } else if (images_[image].encoded && i == 0) {
-                device_.bind_texture_name(i, images_[image].encoded.id(), sampler);
-            } else {
-                device_.bind_texture(i, images_[image].texture, sampler);
-            }
-        }
+    unsigned unit = 0;
+    for (const MapBinding& map : textures_[textures].used()) {
+        const gpu::Texture& texture =
+            map.encoded ? images_.encoded(map.array) : images_.array(map.array);
+        device_.bind_texture(unit++, texture, &samplers_[map.sampler]);
     }
 }
 

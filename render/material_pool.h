@@ -4,12 +4,12 @@
 #include "render/buffer_texture.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/texture.h"
-#include "render/material_uv.h"
+#include "render/image_pool.h"
+#include "render/material_maps.h"
 #include "render/shaders/material_gpu.h"
 #include "render/shading_models.h"
 #include "render/surface_features.h"
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -19,11 +19,9 @@ namespace gpu {
 class Device;
 }
 
-// Images as textures with full mip chains, and materials as one array of records, followed by
-// their blocks (material_blocks.h). Materials with
-// the same program, fixed state and textures share a batch: instances of a batch are drawn
-// together, whatever their mesh and material. An image that is missing, broken or too large is
-// magenta.
+// Materials as one array of records, followed by their blocks (material_blocks.h). Materials with
+// the same program, fixed state, texture arrays and samplers share a batch: instances of a batch
+// are drawn together, whatever their mesh and material.
 //
 // Cheaper settings on a software OpenGL, which pays for what is free on a GPU: the sRGB of the base
 // color is decoded after filtering (a third of the cost), only the base color is filtered
@@ -32,7 +30,7 @@ class Device;
 
 /// Materials that share a draw state.
 struct SurfaceBatch {
-    std::uint32_t features = 0;  ///< SurfaceFeature bits
+    SurfaceFeatures features;
     bool blend = false;
     std::uint32_t textures = 0;  ///< index for MaterialPool::bind_textures
 };
@@ -42,7 +40,8 @@ class MaterialPool {
     MaterialPool(gpu::Device& device, float anisotropy);
 
     /// Uploads what is new in `assets`: images beyond those it has, and all materials if any were
-    /// added or their version changed. `fresh`: these are other assets than last time.
+    /// added or their version changed. `fresh`: these are other assets than last time. A map that
+    /// would need one texture array more than a material has units is left out, with an error.
     void update(const Assets& assets, bool fresh);
 
     /// Record index of a material; 0 for none, 1 for an unknown one.
@@ -61,40 +60,22 @@ class MaterialPool {
 
     void bind_textures(std::uint32_t textures) const;
     [[nodiscard]] const BufferTexture& records() const { return record_texture_; }
-    [[nodiscard]] std::size_t image_count() const { return images_.size(); }
-    /// Null if there is no such image, or it is broken.
-    [[nodiscard]] const gpu::Texture* find_image(ImageId id) const {
-        return id.index < images_.size() && images_[id.index].texture ? &images_[id.index].texture
-                                                                      : nullptr;
-    }
+    [[nodiscard]] const ImagePool& images() const { return images_; }
 
   private:
-    struct BoundTexture {
-        std::uint32_t image = kNoAsset;  ///< kNoAsset: not used
-        std::uint32_t sampler = 0;
-        bool operator==(const BoundTexture&) const = default;
-    };
-    /// On a software OpenGL base colors are read through a view that does not decode sRGB.
-    struct Image {
-        gpu::Texture texture;
-        gpu::GlObject<gpu::ObjectKind::Texture> encoded;
-    };
-    using TextureSet = std::array<BoundTexture, kMaterialTextures>;
-
     void upload_records();
-    void upload_image(const ImageData& image);
     void add_material(const Material& material);
+    /// Chooses the units of its maps and writes their layers.
+    void add_maps(const Material& material, SurfaceBatch& batch, layout::MaterialRecord& record);
     [[nodiscard]] std::uint32_t sampler_of(const TextureSlot& slot, bool trilinear);
-    [[nodiscard]] bool reads_encoded(ImageId image) const;
-    [[nodiscard]] std::uint32_t texture_set(const TextureSet& set);
+    [[nodiscard]] std::uint32_t index_of(const MapBindings& bindings);
 
     gpu::Device& device_;
     float anisotropy_;
-    gpu::Texture magenta_;
-    std::vector<Image> images_;
+    ImagePool images_;
     std::vector<gpu::Sampler> samplers_;
     std::vector<std::uint32_t> sampler_keys_;
-    std::vector<TextureSet> sets_;
+    std::vector<MapBindings> textures_;
     std::vector<SurfaceBatch> batches_;
     std::vector<std::uint32_t> batch_of_;  ///< by record; 0: default material, 1: missing material
     std::vector<std::uint8_t> models_;     ///< by record

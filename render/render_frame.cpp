@@ -294,7 +294,7 @@ void Renderer::update_assets() {
     const Assets& assets = *frame_.assets;
     const bool replaced = assets_ != assets.identity.value()
                           || meshes_.meshes().size() > assets.meshes.size()
-                          || materials_.image_count() > assets.images.size();
+                          || materials_.images().size() > assets.images.size();
     if (replaced) {
         meshes_.clear();
         shapes_.forget();
@@ -461,7 +461,7 @@ void Renderer::add_to_sum(const ViewData& view, float weight) {
 void Renderer::keep_aovs(const FrameOutput& output) {
     for (const AovOutput& aov : output.aovs) {
         gpu::Texture copy(aov.name, aov.texture->desc());
-        copy.copy_from(*aov.texture);
+        aov.texture->copy_to(copy);
         accumulation.aovs.emplace_back(aov.name, std::move(copy));
     }
 }

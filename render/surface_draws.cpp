@@ -28,7 +28,7 @@ void set_instance_streams(gpu::VertexArray& vertices, const InstanceList& list) 
 void draw_commands(
     gpu::Device& device, const FrameData& frame, const DrawRun& run, const gpu::RingSlice& commands,
     std::uint32_t first, std::uint32_t count) {
-    const bool deformed = (run.features & kDeformed) != 0;
+    const bool deformed = run.features.has(kDeformed);
     device.bind_vertex_array(
         deformed ? frame.shapes->vertices().streams().vertices()
                  : frame.meshes->streams().vertices());
@@ -42,10 +42,14 @@ void draw_commands(
 void draw_depth(
     PassContext& context, const ViewData& view, const InstanceList& list, const DrawRun& run,
     ProgramVariants& programs, const gpu::PipelineState& state) {
-    constexpr std::uint32_t kHoles = kAlphaMask | kBaseColorMap | kUvMap | kUvMaps | kVertexColor;
-    const bool holes = (run.features & kAlphaMask) != 0;
-    const gpu::Program* program =
-        programs.get({}, run.features & (holes ? kHoles | kInflate : kInflate));
+    constexpr std::uint32_t kHoles = kAlphaMask | kUvMap | kUvMaps | kVertexColor;
+    const bool holes = run.features.has(kAlphaMask);
+    SurfaceFeatures features = {.bits = run.features.bits & kInflate};
+    if (holes) {
+        features.bits |= run.features.bits & kHoles;
+        features.maps = run.features.maps.only(layout::kBaseColorSlot);
+    }
+    const gpu::Program* program = programs.get({}, features);
     if (program == nullptr) {
         return;
     }
@@ -56,9 +60,11 @@ void draw_depth(
     draw_run(context.device(), *view.frame, list, run);
 }
 
-/// A vertex that is not measured for its motion is drawn alike wherever it comes from.
-std::uint32_t program_features(std::uint32_t features) {
-    return (features & kVelocity) != 0 ? features : features & ~std::uint32_t{kDeformed};
+SurfaceFeatures program_features(SurfaceFeatures features, std::uint32_t more) {
+    features.bits |= more;
+    // A vertex that is not measured for its motion is drawn alike wherever it comes from.
+    features.bits &= features.has(kVelocity) ? ~0u : ~std::uint32_t{kDeformed};
+    return features;
 }
 
 /// The program of a run, in use with its uniforms and textures; false if it does not compile.
@@ -68,7 +74,7 @@ bool use_run(
     static const Variant kNone{};
     const Variant& variant = draw.variant != nullptr ? *draw.variant : kNone;
     const gpu::Program* program =
-        programs.get(variant, program_features(run.features | draw.features));
+        programs.get(variant, program_features(run.features, draw.features));
     if (program == nullptr) {
         return false;
     }
@@ -84,8 +90,8 @@ bool use_run(
 
 std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads) {
     if (const auto* images = frame.data.find<DrawnImages>()) {
-        for (const gpu::Texture* texture : images->textures) {
-            reads.emplace_back(graph.import("drawn image", *texture));
+        for (const gpu::Texture* array : images->arrays) {
+            reads.emplace_back(graph.import("images", *array));
         }
     }
     if (!frame.shapes->work().batches.empty()) {
@@ -104,7 +110,7 @@ void bind_instances(gpu::Device& device, const FrameData& frame, const InstanceL
 }
 
 gpu::PipelineState visible_sides(gpu::PipelineState state, const DrawRun& run) {
-    const bool both_sides = (run.features & kDoubleSided) != 0;
+    const bool both_sides = run.features.has(kDoubleSided);
     state.cull = static_cast<GLenum>(both_sides ? GL_NONE : run.mirrored ? GL_FRONT : GL_BACK);
     return state;
 }

@@ -48,9 +48,9 @@ void draw_motions(
     PassContext& context, const ViewData& view, ProgramVariants& programs,
     const gpu::PipelineState& state, Prepare prepare);
 
-/// Material images that passes of this frame draw; published before the views are drawn.
+/// Texture arrays with images that passes of this frame draw; published before the views are drawn.
 struct DrawnImages {
-    std::vector<const gpu::Texture*> textures;
+    std::vector<const gpu::Texture*> arrays;
 };
 
 /// `reads`, the DrawnImages and, where meshes are deformed in this frame, their vertices: what
@@ -75,7 +75,7 @@ void draw_motions(
     bind_instances(context.device(), *view.frame, list);
     for (const DrawRun& run : list.opaque) {
         const gpu::Program* program =
-            programs.get({}, (run.features & (kInflate | kDeformed)) | kVelocity);
+            programs.get({}, {.bits = (run.features.bits & (kInflate | kDeformed)) | kVelocity});
         if (program != nullptr) {
             context.device().use(gpu::Pipeline{program, visible_sides(state, run)});
             prepare(*program);

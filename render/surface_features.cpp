@@ -10,29 +10,29 @@ struct FeatureName {
     const char* definition;
 };
 constexpr FeatureName kNames[] = {
-    {kBaseColorMap, "BASE_COLOR_MAP"},
-    {kMetalRoughMap, "METAL_ROUGH_MAP"},
-    {kNormalMap, "NORMAL_MAP"},
-    {kOcclusionMap, "OCCLUSION_MAP"},
-    {kEmissionMap, "EMISSION_MAP"},
     {kUvMap, "UV_MAP"},
     {kUvMaps, "UV_MAPS"},
     {kAlphaMask, "ALPHA_MASK"},
     {kDoubleSided, "DOUBLE_SIDED"},
     {kSrgbBaseColor, "SRGB_BASE_COLOR"},
-    {kVertexColor, "VERTEX_COLOR"},
-    {kVelocity, "VELOCITY"},
     {kOcclusionShared, "OCCLUSION_SHARED"},
+    {kVertexColor, "VERTEX_COLOR"},
     {kInflate, "INFLATE"},
     {kDeformed, "DEFORMED"},
+    {kVelocity, "VELOCITY"},
 };
 
 }  // namespace
 
-void add_features(Variant& variant, std::uint32_t features) {
+void add_features(Variant& variant, const SurfaceFeatures& features) {
     for (const FeatureName& feature : kNames) {
-        if ((features & feature.bit) != 0) {
+        if (features.has(feature.bit)) {
             variant.add(feature.definition);
+        }
+    }
+    for (const MapSlot& slot : map_slots()) {
+        if (features.maps.has(slot.number)) {
+            variant.add(slot.definition, static_cast<int>(features.maps.unit(slot.number)));
         }
     }
 }

@@ -1,32 +1,37 @@
 #pragma once
 
+#include "render/material_maps.h"
+
 #include <cstdint>
 
 namespace limn {
 
 class Variant;
 
-/// What the program of a surface must do. Each bit is a definition of lib/material.glsl, mesh.vert
-/// and gbuffer.frag; their names are in surface_features.cpp.
+/// What the program of a surface must do, beside reading its maps. Each bit is a definition of
+/// lib/material.glsl, mesh.vert and gbuffer.frag; their names are in surface_features.cpp.
 enum SurfaceFeature : std::uint32_t {
-    kBaseColorMap = 1u << 0,  // the five maps in the order of the texture units
-    kMetalRoughMap = 1u << 1,
-    kNormalMap = 1u << 2,
-    kOcclusionMap = 1u << 3,
-    kEmissionMap = 1u << 4,
-    kUvMap = 1u << 5,
-    kUvMaps = 1u << 6,
-    kAlphaMask = 1u << 7,
-    kDoubleSided = 1u << 8,
-    kSrgbBaseColor = 1u << 9,
-    kVertexColor = 1u << 11,      // added by the mesh
-    kVelocity = 1u << 12,         // added by the view
-    kOcclusionShared = 1u << 13,  // occlusion is the red channel of the metal-rough texture
-    kInflate = 1u << 14,          // added by the instance
-    kDeformed = 1u << 15,         // added by the instance: its vertices are its own (skinning/)
+    kUvMap = 1u << 0,
+    kUvMaps = 1u << 1,
+    kAlphaMask = 1u << 2,
+    kDoubleSided = 1u << 3,
+    kSrgbBaseColor = 1u << 4,
+    kOcclusionShared = 1u << 5,  // occlusion is the red channel of the metal-rough map
+    kVertexColor = 1u << 6,      // added by the mesh
+    kInflate = 1u << 7,          // added by the instance
+    kDeformed = 1u << 8,         // added by the instance: its vertices are its own (skinning/)
+    kVelocity = 1u << 9,         // added by the view
 };
 
-/// Adds the definition of each bit.
-void add_features(Variant& variant, std::uint32_t features);
+struct SurfaceFeatures {
+    std::uint32_t bits = 0;  ///< of SurfaceFeature
+    MapUnits maps = {};
+
+    [[nodiscard]] bool has(SurfaceFeature feature) const { return (bits & feature) != 0; }
+    bool operator==(const SurfaceFeatures&) const = default;
+};
+
+/// Adds the definition of each bit and each map.
+void add_features(Variant& variant, const SurfaceFeatures& features);
 
 }  // namespace limn

@@ -80,8 +80,9 @@ ProgramVariants ProgramVariants::fullscreen(gpu::Device& device, const char* fra
     return {device, {.vertex = "fullscreen.vert", .fragment = fragment}};
 }
 
-const gpu::Program* ProgramVariants::get(const Variant& variant, std::uint32_t features) {
-    const std::uint64_t key = variant.key() ^ features * 0xd6e8feb86659fd93ull;
+const gpu::Program* ProgramVariants::get(const Variant& variant, const SurfaceFeatures& features) {
+    const std::uint64_t key = variant.key() ^ features.bits * 0xd6e8feb86659fd93ull
+                              ^ features.maps.bits() * 0x9e3779b97f4a7c15ull;
     if (const auto found = entries_.find(key); found != entries_.end()) {
         const Entry& entry = found->second;
         LIMN_CHECK(entry.features == features && entry.variant == variant);
@@ -101,7 +102,7 @@ const gpu::Program* ProgramVariants::get(const Variant& variant, std::uint32_t f
     return (entries_[key] = {variant, features, fits ? *program : nullptr}).program;
 }
 
-Status ProgramVariants::load(const Variant& variant, std::uint32_t features) {
+Status ProgramVariants::load(const Variant& variant, const SurfaceFeatures& features) {
     if (get(variant, features) == nullptr) {
         return fail("{}{}: does not compile, see the log", files_.fragment, files_.compute);
     }

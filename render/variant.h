@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/gpu/shader_library.h"
+#include "render/surface_features.h"
 
 #include <array>
 #include <cstdint>
@@ -64,15 +65,16 @@ class ProgramVariants {
     of_meshes(gpu::Device& device, const char* fragment, const char* vertex = "mesh.vert");
     [[nodiscard]] static ProgramVariants fullscreen(gpu::Device& device, const char* fragment);
 
-    /// `features`: bits of SurfaceFeature, whose definitions are added.
-    [[nodiscard]] const gpu::Program* get(const Variant& variant, std::uint32_t features = 0);
+    /// The definitions of `features` are added.
+    [[nodiscard]] const gpu::Program*
+    get(const Variant& variant, const SurfaceFeatures& features = {});
     /// Compiles one now, to know that it can be done.
-    [[nodiscard]] Status load(const Variant& variant = {}, std::uint32_t features = 0);
+    [[nodiscard]] Status load(const Variant& variant = {}, const SurfaceFeatures& features = {});
 
   private:
     struct Entry {
         Variant variant;
-        std::uint32_t features = 0;
+        SurfaceFeatures features;
         const gpu::Program* program = nullptr;
     };
     gpu::Device* device_;

@@ -198,8 +198,7 @@ Status check_texture(const DeviceCaps& caps, const TextureDesc& desc) {
 Texture::Texture(std::string_view label, const TextureDesc& desc)
     : object_(create_texture_name(resolve_target(desc)), label), desc_(desc),
       target_(resolve_target(desc)) {
-    const FormatInfo& info = format_info(desc.format);
-    LIMN_CHECK(info.bytes > 0);
+    LIMN_CHECK(format_info(desc.format).bytes > 0);
     LIMN_CHECK(desc.width > 0 && desc.height > 0 && desc.depth > 0);
     if (desc_.levels == 0) {
         desc_.levels = full_level_count(
@@ -219,15 +218,41 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
         glTextureStorage2D(id(), desc_.levels, desc.format, desc.width, desc.height);
     }
     if (desc.samples == 0) {
-        const bool nearest = info.integer || info.depth;
-        set_filter(
-            nearest            ? GL_NEAREST
-            : desc_.levels > 1 ? GL_LINEAR_MIPMAP_LINEAR
-                               : GL_LINEAR,
-            nearest ? GL_NEAREST : GL_LINEAR);
-        set_wrap(GL_CLAMP_TO_EDGE);
+        set_defaults();
     }
     object_.set_bytes(texture_bytes(desc_));
+}
+
+void Texture::set_defaults() {
+    const FormatInfo& info = format_info(desc_.format);
+    const bool nearest = info.integer || info.depth;
+    set_filter(
+        nearest            ? GL_NEAREST
+        : desc_.levels > 1 ? GL_LINEAR_MIPMAP_LINEAR
+                           : GL_LINEAR,
+        nearest ? GL_NEAREST : GL_LINEAR);
+    set_wrap(GL_CLAMP_TO_EDGE);
+}
+
+Texture Texture::view(std::string_view label, GLenum format, int layer) const {
+    LIMN_CHECK(layer < layers() && desc_.samples == 0);
+    LIMN_CHECK(format_info(format).bytes == format_info(desc_.format).bytes);
+    Texture view;
+    view.desc_ = desc_;
+    view.desc_.format = format;
+    if (layer >= 0) {
+        view.desc_.target = GL_TEXTURE_2D;
+        view.desc_.depth = 1;
+    }
+    view.target_ = view.desc_.target;
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    glTextureView(
+        name, view.target_, id(), format, 0, static_cast<GLuint>(desc_.levels),
+        static_cast<GLuint>(std::max(layer, 0)), static_cast<GLuint>(view.layers()));
+    view.object_ = GlObject<ObjectKind::Texture>(name, label);
+    view.set_defaults();
+    return view;
 }
 
 int Texture::layers(int level) const {
@@ -260,13 +285,16 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int layer) {
     upload(pixels, info.pixel_format, info.pixel_type, level, layer);
 }
 
-void Texture::copy_from(const Texture& other) {
+void Texture::copy_to(const Texture& target, int layer) const {
     LIMN_CHECK(
-        other.desc_.format == desc_.format && other.width() == width() && other.height() == height()
-        && other.layers() == layers());
-    glCopyImageSubData(
-        other.id(), other.target_, 0, 0, 0, 0, id(), target_, 0, 0, 0, 0, width(), height(),
-        layers());
+        target.desc_.format == desc_.format && target.width() == width()
+        && target.height() == height() && target.desc_.levels == desc_.levels);
+    LIMN_CHECK(layer < 0 ? target.layers() == layers() : layer < target.layers() && layers() == 1);
+    for (int level = 0; level < desc_.levels; ++level) {
+        glCopyImageSubData(
+            id(), target_, level, 0, 0, 0, target.id(), target.target_, level, 0, 0,
+            std::max(layer, 0), width(level), height(level), layers(level));
+    }
 }
 
 void Texture::clear(const Vec4& value, int level) {

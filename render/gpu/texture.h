@@ -55,6 +55,10 @@ class Texture {
     /// Immutable storage, contents undefined. A level count of 0 becomes the full one.
     Texture(std::string_view label, const TextureDesc& desc);
 
+    /// The same texels as `format`, which must be of the same size per texel: all layers, or one as
+    /// a 2D texture. Shares the storage, which lives as long as either.
+    [[nodiscard]] Texture view(std::string_view label, GLenum format, int layer = -1) const;
+
     /// Replaces one level (all layers, or only `layer` if >= 0; a face of a cube is a layer). Rows
     /// are tightly packed, bottom row first; `pixels` must hold the whole region in `format` and
     /// `type`.
@@ -69,8 +73,9 @@ class Texture {
         upload(std::as_bytes(pixels), format, type, level, layer);
     }
 
-    /// Copies level 0 of a texture of the same size, format and layers.
-    void copy_from(const Texture& other);
+    /// Copies all levels into a texture of the same size, format and layers; a 2D texture may
+    /// become one `layer` of an array.
+    void copy_to(const Texture& target, int layer = -1) const;
 
     /// Sets every texel of a level, converted as a shader would write it; not for integer formats.
     void clear(const Vec4& value, int level = 0);
@@ -93,6 +98,8 @@ class Texture {
     explicit operator bool() const { return static_cast<bool>(object_); }
 
   private:
+    void set_defaults();
+
     GlObject<ObjectKind::Texture> object_;
     TextureDesc desc_;
     GLenum target_ = GL_TEXTURE_2D;

@@ -23,7 +23,7 @@ Environment displayed_environment(const FrameData& frame) {
             ? *found
             : Environment{.sky = SkyKind::Uniform, .zenith = Vec3(0), .visible = false};
     if (environment.sky == SkyKind::Panorama
-        && frame.materials->find_image(environment.panorama) == nullptr) {
+        && frame.materials->images().find_texture(environment.panorama) == nullptr) {
         environment.sky = SkyKind::Uniform;
         environment.zenith = {1, 0, 1};
     }
@@ -87,7 +87,7 @@ void EnvironmentEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     }
     if (environment.settings.sky == SkyKind::Panorama) {
         draw_panorama(
-            graph, panorama, *frame.materials->find_image(environment.settings.panorama),
+            graph, panorama, *frame.materials->images().find_texture(environment.settings.panorama),
             environment.settings);
     }
     draw_sky_reflection(graph, reflection, environment);

@@ -88,7 +88,7 @@ MotionCamera::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData
 Result<MotionFlow> MotionFlow::create(gpu::Device& device) {
     MotionFlow flow = {
         ProgramVariants::of_meshes(device, "motion_flow_field.frag", "motion_flow.vert")};
-    LIMN_TRY(flow.field.load({}, kVelocity));
+    LIMN_TRY(flow.field.load({}, {.bits = kVelocity}));
     flow.warp = LIMN_TRY(load_fullscreen(device, "motion_flow.frag"));
     return flow;
 }
@@ -136,7 +136,7 @@ MotionFlow::blur(FrameGraph& graph, const MotionBlur& settings, const ViewData& 
 Result<MotionStretch> MotionStretch::create(gpu::Device& device) {
     MotionStretch stretch = {
         ProgramVariants::of_meshes(device, "motion_stretch.frag", "motion_stretch.vert")};
-    LIMN_TRY(stretch.hull.load({}, kVelocity));
+    LIMN_TRY(stretch.hull.load({}, {.bits = kVelocity}));
     stretch.copy = LIMN_TRY(load_fullscreen(device, "accumulate.frag"));
     return stretch;
 }

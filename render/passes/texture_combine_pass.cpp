@@ -29,42 +29,54 @@ bool TextureCombineEffect::is_used(const FrameData& frame) {
 }
 
 void TextureCombineEffect::collect(FrameData& frame) {
+    const ImagePool& images = frame.materials->images();
     auto& drawn = frame.data.publish<DrawnImages>();
-    drawn.textures.clear();
+    drawn.arrays.clear();
     frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
-        if (const gpu::Texture* texture = frame.materials->find_image(combine.target)) {
-            drawn.textures.push_back(texture);
-        }
+        drawn.arrays.push_back(&images.array(images.find(combine.target).array));
     });
 }
 
 void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    const ImagePool& images = frame.materials->images();
     frame.world->query<const TextureCombine>().each([&](const TextureCombine& combine) {
-        const gpu::Texture* water = frame.materials->find_image(combine.water);
-        const gpu::Texture* grating = frame.materials->find_image(combine.grating);
-        const gpu::Texture* texture = frame.materials->find_image(combine.target);
-        if (water == nullptr || grating == nullptr || texture == nullptr || texture == water
-            || texture == grating) {
+        const gpu::Texture* water = images.find_texture(combine.water);
+        const gpu::Texture* grating = images.find_texture(combine.grating);
+        const ImageLayer target = images.find(combine.target);
+        if (water == nullptr || grating == nullptr || target.array == 0
+            || combine.target == combine.water || combine.target == combine.grating) {
             return;
         }
+        const auto array_of = [&](ImageId image) {
+            return graph.import("images", images.array(images.find(image).array));
+        };
         const Vec2 offset(
             wrapped(frame.time * static_cast<double>(combine.speed.x)),
             wrapped(frame.time * static_cast<double>(combine.speed.y)));
-        const TextureId target = graph.import("combined texture", *texture);
+        const gpu::Texture& array = images.array(target.array);
+        const TextureId combined = create_target(
+            graph, "combined texture", array.desc().format, {array.width(), array.height()},
+            array.desc().levels);
         add_fullscreen_pass(
             graph, "combine textures",
-            {sampled(graph.import("combined image", *water), 0, &repeat),
+            {array_of(combine.water), array_of(combine.grating),
+             sampled(graph.import("combined image", *water), 0, &repeat),
              sampled(graph.import("combined image", *grating), 1, &repeat)},
-            {target_level(discarded(target), 0)}, program,
-            [texture, offset, gain = combine.gain](PassContext&, const gpu::Program& its) {
-                its.set("size", Vec2(texture->width(), texture->height()));
+            {target_level(discarded(combined), 0)}, program,
+            [&array, offset, gain = combine.gain](PassContext&, const gpu::Program& its) {
+                its.set("size", Vec2(array.width(), array.height()));
                 its.set("offset", offset);
                 its.set("gain", gain);
-                its.set("encoded", texture->desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
+                its.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
-        graph.add_pass("combined textures, smaller", {}, {image(target)}, [texture](PassContext&) {
-            glGenerateTextureMipmap(texture->id());
-        });
+        // Copied, since materials may read other layers of the array by the same texture.
+        graph.add_pass(
+            "place combined texture", {}, {image(combined), image(array_of(combine.target))},
+            [combined, target, &images](PassContext& context) {
+                const gpu::Texture& texture = context.texture(combined);
+                glGenerateTextureMipmap(texture.id());
+                texture.copy_to(images.array(target.array), static_cast<int>(target.layer));
+            });
     });
 }
 

@@ -57,12 +57,12 @@ std::array<std::uint16_t, kIndices> grid_indices() {
 
 /// Null if no water has one.
 const gpu::Texture* detail_map(const FrameData& frame, const WaterSurfaces& waters) {
-    return frame.materials->find_image(waters.list.details.normal_map);
+    return frame.materials->images().find_texture(waters.list.details.normal_map);
 }
 
 const gpu::Texture* floor_map(const FrameData& frame, const WaterSurfaces& waters) {
     const WaterLook* look = waters.list.floor;
-    return look != nullptr ? frame.materials->find_image(look->floor_map) : nullptr;
+    return look != nullptr ? frame.materials->images().find_texture(look->floor_map) : nullptr;
 }
 
 /// What all waters of the view need.

@@ -4,12 +4,9 @@
 #define UNMASKED  // shadow masks are in screen space
 #include "lib/mesh_vertex.glsl"
 #include "lib/lighting.glsl"
-#include "lib/material_record.glsl"
+#include "lib/material_maps.glsl"
 
-#ifdef METAL_ROUGH_MAP
-layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
-const float kLastLevel = 16.0;                          // or the last one
-#endif
+const float kLastLevel = 16.0;  // or the last one
 
 layout(location = 0) out vec3 diffuse;   // still to be multiplied by the base color map
 layout(location = 1) out vec3 specular;
@@ -34,7 +31,8 @@ SurfaceSample vertex_surface() {
     s.material = instance.x;
     s.model = instance.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    vec2 mean = textureLod(metal_rough_map, vec2(0.5), kLastLevel).gb;
+    float layer = map_layer(instance.x, kMetalRoughSlot);
+    vec2 mean = textureLod(material_maps[METAL_ROUGH_MAP], vec3(0.5, 0.5, layer), kLastLevel).gb;
     s.roughness *= mean.x;
     s.metalness *= mean.y;
 #endif

@@ -9,7 +9,7 @@
 namespace limn::layout {
 #endif
 
-const uint kUvBlock = 0u;       // material_uv_gpu.h
+const uint kUvBlock = 0u;       // material_maps_gpu.h
 const uint kClassicBlock = 1u;  // material_classic_gpu.h
 const uint kSkinBlock = 2u;     // material_skin_gpu.h
 

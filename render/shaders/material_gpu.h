@@ -12,9 +12,10 @@ struct MaterialRecord {
     vec4 emission;    // w: strength of the normal map
     vec4 factors;     // metalness, roughness, strength of the occlusion map, alpha cutoff
     vec4 blocks;      // x: texel at which its blocks begin; yzw: where each kind is from there
+    vec4 maps;        // layers of its maps (material_maps_gpu.h)
 };
 
-const uint kMaterialTexels = 4u;
+const uint kMaterialTexels = 5u;
 
 #ifdef __cplusplus
 static_assert(sizeof(MaterialRecord) == 16 * kMaterialTexels);

@@ -53,13 +53,14 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures
 }
 
 TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the picture is the same") {
-    // shade.batching: one state, then a state an object, each with a texture and a mesh of its own.
+    // shade.batching: one state, then meshes and images of their own, then a state per object,
+    // since images of different sizes are in different texture arrays.
     constexpr int kBalls = 36;
-    const auto white = [&] {
+    const auto white = [&](int size = 1) {
         ImageData image;
-        image.width = 1;
+        image.width = size;
         image.height = 1;
-        image.pixels = {255, 255, 255, 255};
+        image.pixels.assign(4 * static_cast<std::size_t>(size), 255);
         Material material;
         material.base_color_texture.image = add(std::move(image));
         return add(material);
@@ -73,6 +74,11 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the pictu
     const gpu::FloatImage expected = gpu::read_floats(*together.radiance);
     for (const Entity ball : entities) {
         world.get<MeshInstance>(ball) = {add(make_ball(4)), white()};
+    }
+    CHECK(draw(view()).statistics.draws == 1);
+    int size = 0;
+    for (const Entity ball : entities) {
+        world.get<MeshInstance>(ball) = {add(make_ball(4)), white(++size)};
     }
     const FrameOutput apart = draw(view());
     CHECK(apart.statistics.draws == kBalls);         // as many as there are states

@@ -74,7 +74,7 @@ TEST_CASE("material blocks: a material has those that it needs, one after the ot
     Material skin = {.shading = ShadingModel::Skin, .skin_color = {4, 5, 6}, .wide_rim = true};
     skin.normal_texture = {.image = {0}, .offset = {0.25f, 0.5f}};
     const Vec4 all = append_blocks(skin, blocks);
-    REQUIRE(blocks.size() == 8 + 10 + 1 + 1);
+    REQUIRE(blocks.size() == 8 + 2 + 1 + 1);
     CHECK(blocks[place_of(all, layout::kUvBlock) + 1] == Vec4(0.25f, 0.5f, 0, 0));
     CHECK(blocks[place_of(all, layout::kClassicBlock)].w == 50);
     CHECK(blocks[place_of(all, layout::kSkinBlock)] == Vec4(4, 5, 6, 1));

@@ -1,9 +1,9 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
-//   UV_MAP         all textures share a uv set and transform; otherwise they use the first set untransformed
+//   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
 //   UV_MAPS        each has its own
 //   SRGB_BASE_COLOR  the texture is sRGB, filtered encoded and decoded here, because a software
 //                  OpenGL is slow at decoding every texel; its mip levels were made in linear light
@@ -11,13 +11,7 @@
 //   LIT_AT_VERTICES  no normals, only colors
 
 #include "lib/gbuffer.glsl"
-#include "lib/material_record.glsl"
-
-layout(binding = 0) uniform sampler2D base_color_map;
-layout(binding = 1) uniform sampler2D metal_rough_map;  // g, b
-layout(binding = 2) uniform sampler2D normal_map;       // tangent space, green up
-layout(binding = 3) uniform sampler2D occlusion_map;    // r
-layout(binding = 4) uniform sampler2D emission_map;
+#include "lib/material_maps.glsl"
 
 #ifndef LIT_AT_VERTICES
 layout(location = 0) in vec3 normal_ws;
@@ -31,18 +25,19 @@ vec4 material_texel(int i) {
     return material_texel(material_and_flags.x, i);
 }
 
-// Texture coordinates of texture `slot` (base color 0 .. emission 4).
-vec2 slot_uv(int slot) {
+// Where a map is read: texture coordinates and layer.
+vec3 map_place(uint slot) {
+    float layer = map_layer(material_and_flags.x, slot);
 #if defined(UV_MAPS) || defined(UV_MAP)
 #ifdef UV_MAP
-    slot = 0;  // all are the same
+    slot = 0u;  // all are the same
 #endif
-    vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * slot);
-    vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * slot + 1);
+    vec4 rows = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot));
+    vec4 offset = block_texel(material_and_flags.x, kUvBlock, 2 * int(slot) + 1);
     vec2 set = offset.z > 0.5 ? uv.zw : uv.xy;
-    return vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy;
+    return vec3(vec2(dot(rows.xy, set), dot(rows.zw, set)) + offset.xy, layer);
 #else
-    return uv.xy;
+    return vec3(uv.xy, layer);
 #endif
 }
 
@@ -55,7 +50,7 @@ vec3 srgb_decode(vec3 c) {
 vec4 base_color_texel() {
     vec4 texel = vec4(1.0);
 #ifdef BASE_COLOR_MAP
-    texel = texture(base_color_map, slot_uv(0));
+    texel = texture(material_maps[BASE_COLOR_MAP], map_place(kBaseColorSlot));
 #ifdef SRGB_BASE_COLOR
     texel.rgb = srgb_decode(texel.rgb);
 #endif
@@ -74,7 +69,7 @@ vec4 surface_color() {
 vec3 surface_emission() {
     vec3 emission = material_texel(1).rgb;
 #ifdef EMISSION_MAP
-    emission *= texture(emission_map, slot_uv(4)).rgb;
+    emission *= texture(material_maps[EMISSION_MAP], map_place(kEmissionSlot)).rgb;
 #endif
     return emission;
 }
@@ -83,7 +78,7 @@ vec3 surface_emission() {
 vec3 surface_normal(float strength) {
     vec3 n = normal_ws;
 #ifdef NORMAL_MAP
-    vec3 n_ts = texture(normal_map, slot_uv(2)).xyz * 2.0 - 1.0;
+    vec3 n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
     n = n_ts.x * strength * tangent_ws.xyz + n_ts.y * strength * bitangent + n_ts.z * normal_ws;
 #endif
@@ -123,7 +118,7 @@ SurfaceSample surface_sample(vec3 albedo) {
     s.material = material_and_flags.x;
     s.model = material_and_flags.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    vec3 texel = texture(metal_rough_map, slot_uv(1)).rgb;
+    vec3 texel = texture(material_maps[METAL_ROUGH_MAP], map_place(kMetalRoughSlot)).rgb;
     s.roughness *= texel.g;
     s.metalness *= texel.b;
 #ifdef OCCLUSION_SHARED
@@ -131,7 +126,7 @@ SurfaceSample surface_sample(vec3 albedo) {
 #endif
 #endif
 #ifdef OCCLUSION_MAP
-    s.occlusion = 1.0 + factors.z * (texture(occlusion_map, slot_uv(3)).r - 1.0);
+    s.occlusion = 1.0 + factors.z * (texture(material_maps[OCCLUSION_MAP], map_place(kOcclusionSlot)).r - 1.0);
 #endif
     s.roughness = widen_roughness(s.roughness, s.normal_ws);
     split_unlit(s);

@@ -2,6 +2,7 @@
 
 #include "material_blocks_gpu.h"
 #include "material_gpu.h"
+#include "material_maps_gpu.h"
 
 layout(binding = 12) uniform samplerBuffer materials;  // MaterialRecord, then blocks
 
@@ -16,4 +17,10 @@ vec4 block_texel(uint material, uint kind, int i) {
     uint offsets = uint(blocks[1u + kind / kBlocksPerFloat]);
     uint offset = bitfieldExtract(offsets, int(kind % kBlocksPerFloat * kBlockOffsetBits), int(kBlockOffsetBits));
     return texelFetch(materials, int(blocks.x) + int(offset) + i);
+}
+
+// Layer of a map in its texture array.
+float map_layer(uint material, uint slot) {
+    uint layers = uint(material_texel(material, 4)[slot / kLayersPerFloat]);
+    return float(bitfieldExtract(layers, int(slot % kLayersPerFloat * kLayerBits), int(kLayerBits)));
 }

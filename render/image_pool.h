@@ -1,0 +1,72 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "render/gpu/texture.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+namespace gpu {
+class Device;
+}
+
+// The images of a level on the GPU, with full mip chains. Images of one size and format are layers
+// of one texture array, so that materials which differ in their images alone are drawn together.
+// An image that is missing, broken or too large is magenta.
+//
+// Images are only added: those of one update() share arrays, later ones get arrays of their own.
+
+/// Where an image is.
+struct ImageLayer {
+    std::uint32_t array = 0;  ///< 0: the magenta one
+    std::uint32_t layer = 0;
+};
+
+class ImagePool {
+  public:
+    explicit ImagePool(gpu::Device& device);
+
+    void clear();
+    /// Uploads those beyond size().
+    void update(std::span<const ImageData> images);
+    [[nodiscard]] std::size_t size() const { return images_.size(); }
+
+    /// Magenta if there is no such image.
+    [[nodiscard]] ImageLayer find(ImageId id) const {
+        return id.index < images_.size() ? images_[id.index].place : ImageLayer{};
+    }
+    /// The image as a texture of its own; null if there is no such image, or it is broken.
+    [[nodiscard]] const gpu::Texture* find_texture(ImageId id) const {
+        return find(id).array != 0 ? &images_[id.index].texture : nullptr;
+    }
+    [[nodiscard]] const gpu::Texture& array(std::uint32_t array) const {
+        return arrays_[array].texture;
+    }
+    /// The same texels without decoding sRGB; empty but for sRGB arrays in the software profile.
+    [[nodiscard]] const gpu::Texture& encoded(std::uint32_t array) const {
+        return arrays_[array].encoded;
+    }
+
+  private:
+    struct Array {
+        gpu::Texture texture;
+        gpu::Texture encoded;
+    };
+    struct Image {
+        ImageLayer place;
+        gpu::Texture texture;  ///< a view of its layer
+    };
+
+    /// Chooses layers for new images; returns the arrays to create.
+    [[nodiscard]] std::vector<gpu::TextureDesc> place(std::span<const ImageData> images);
+    void create_array(const gpu::TextureDesc& desc);
+
+    gpu::Device& device_;
+    std::vector<Array> arrays_;
+    std::vector<Image> images_;
+};
+
+}  // namespace limn

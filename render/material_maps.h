@@ -1,0 +1,93 @@
+#pragma once
+
+#include "ecs/components/surface.h"
+#include "render/shaders/material_maps_gpu.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// The maps of a material: which it has, at which texture units they are, and where on the surface
+// they lie. A new map is a slot number in shaders/material_maps_gpu.h, a row in material_maps.cpp
+// and a field of Material.
+
+struct MapSlot {
+    std::uint32_t number;
+    const char* definition;  ///< of shaders: its value is the texture unit
+    TextureSlot Material::*texture;
+    bool trilinear;  ///< on a software OpenGL, too
+};
+/// By number.
+[[nodiscard]] std::span<const MapSlot> map_slots();
+
+[[nodiscard]] inline bool is_used(const TextureSlot& slot) {
+    return slot.image.index != kNoAsset;
+}
+
+/// Slots with their texture units. Four bits per slot: unit + 1, or 0 if there is no such map.
+class MapUnits {
+  public:
+    void set(std::uint32_t slot, std::uint32_t unit) {
+        remove(slot);
+        bits_ |= std::uint64_t{unit + 1} << 4 * slot;
+    }
+    void remove(std::uint32_t slot) { bits_ &= ~(std::uint64_t{15} << 4 * slot); }
+    [[nodiscard]] bool has(std::uint32_t slot) const { return (bits_ >> 4 * slot & 15) != 0; }
+    /// The map must exist.
+    [[nodiscard]] std::uint32_t unit(std::uint32_t slot) const {
+        return static_cast<std::uint32_t>(bits_ >> 4 * slot & 15) - 1;
+    }
+    /// Without the other slots.
+    [[nodiscard]] MapUnits only(std::uint32_t slot) const {
+        MapUnits one;
+        one.bits_ = bits_ & std::uint64_t{15} << 4 * slot;
+        return one;
+    }
+    [[nodiscard]] std::uint64_t bits() const { return bits_; }
+    bool operator==(const MapUnits&) const = default;
+
+  private:
+    std::uint64_t bits_ = 0;
+};
+static_assert(4 * layout::kMaxMapSlots <= 64 && layout::kMapUnits < 15);
+
+/// A texture array with the sampler that a map reads it by.
+struct MapBinding {
+    std::uint32_t array = 0;    ///< of ImagePool
+    std::uint32_t sampler = 0;  ///< of MaterialPool
+    bool encoded = false;       ///< read without decoding sRGB
+    bool operator==(const MapBinding&) const = default;
+};
+
+/// What the maps of a material have bound, by texture unit. A map takes the unit of an equal one.
+class MapBindings {
+  public:
+    /// The unit of a map; none if all units are taken by others.
+    [[nodiscard]] std::optional<std::uint32_t> add(const MapBinding& map);
+    [[nodiscard]] std::span<const MapBinding> used() const {
+        return std::span(bindings_).first(count_);
+    }
+    bool operator==(const MapBindings&) const = default;
+
+  private:
+    std::array<MapBinding, layout::kMapUnits> bindings_;
+    std::uint32_t count_ = 0;
+};
+
+/// Sets the layer of a slot in MaterialRecord::maps, which must be 0 there.
+void set_layer(Vec4& maps, std::uint32_t slot, std::uint32_t layer);
+
+/// Same set of texture coordinates and same transform.
+[[nodiscard]] bool same_uv(const TextureSlot& a, const TextureSlot& b);
+
+/// The SurfaceFeature kUvMap, kUvMaps or, if all maps use the first uv set untransformed, 0.
+[[nodiscard]] std::uint32_t uv_feature(const Material& material);
+
+/// Appends the kUvBlock of a material; false if uv_feature() is 0.
+bool append_uv_block(const Material& material, std::vector<Vec4>& blocks);
+
+}  // namespace limn

@@ -1,0 +1,32 @@
+// The maps of a material. Each is a layer of a texture array that holds images of one size and format; maps in one
+// array with one sampler share a texture unit, so that a material with many maps needs few units.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+// Slots, in the order of the rows of render/material_maps.cpp.
+const uint kBaseColorSlot = 0u;
+const uint kMetalRoughSlot = 1u;  // g: roughness, b: metalness, r: occlusion if OCCLUSION_SHARED
+const uint kNormalSlot = 2u;      // tangent space, green up
+const uint kOcclusionSlot = 3u;   // r
+const uint kEmissionSlot = 4u;
+
+const uint kMaxMapSlots = 12u;
+
+// Texture units 0 .. kMapUnits - 1 are those of the maps.
+const uint kMapUnits = 5u;
+
+// MaterialRecord::maps: the layers of all slots, three to a float, as an integer that a float stores exactly.
+const uint kLayerBits = 8u;
+const uint kLayersPerFloat = 3u;
+
+// A material whose maps do not all use the first uv set untransformed has a kUvBlock: of slot s, texel 2 s = rows
+// (u: xy, v: zw) of a 2x3 map, 2 s + 1 = offset xy, uv set z. If all maps share a uv map, it is that of slot 0.
+
+#ifdef __cplusplus
+static_assert(kMaxMapSlots <= 4 * kLayersPerFloat);
+}  // namespace limn::layout
+#endif
