@@ -263,4 +263,23 @@ void destroy_tree(World& world, Entity root) {
     }
 }
 
+void SystemParam<HierarchyRef>::declare(SystemAccess& access) {
+    access.reads.push_back(component_id<Parent>);
+    access.resource_writes.push_back(component_id<Hierarchy>);
+}
+
+void SystemParam<HierarchyRef>::prepare(World& world) {
+    if (world.find_resource<Hierarchy>() == nullptr) {
+        world.insert_resource(Hierarchy{});
+    }
+}
+
+HierarchyRef
+SystemParam<HierarchyRef>::get(World& world, std::uint32_t version, std::uint32_t /*last*/) {
+    Hierarchy& present = world.resource<Hierarchy>();
+    // Not World::version(): a later system's version may have been assigned already.
+    present.refresh(world, version);
+    return HierarchyRef(present);
+}
+
 }  // namespace limn

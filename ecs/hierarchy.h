@@ -143,21 +143,10 @@ class HierarchyRef {
 
 template <>
 struct SystemParam<HierarchyRef> {
-    static void declare(SystemAccess& access) {
-        access.reads.push_back(component_id<Parent>);
-        access.resource_writes.push_back(component_id<Hierarchy>);
-    }
-    void prepare(World& world) {
-        if (world.find_resource<Hierarchy>() == nullptr) {
-            world.insert_resource(Hierarchy{});
-        }
-    }
-    HierarchyRef get(World& world, std::uint32_t version, std::uint32_t) {
-        Hierarchy& present = world.resource<Hierarchy>();
-        // Not World::version(): a later system's version may have been assigned already.
-        present.refresh(world, version);
-        return HierarchyRef(present);
-    }
+    static void declare(SystemAccess& access);
+    static void prepare(World& world);
+    [[nodiscard]] static HierarchyRef
+    get(World& world, std::uint32_t version, std::uint32_t last_version);
 };
 
 }  // namespace limn

@@ -88,13 +88,19 @@ std::string resource_suggestion(std::string_view name) {
 
 namespace detail {
 
-ComponentId add_component_info(ComponentInfo info) {
+ComponentId add_component(
+    const ComponentType& type, std::string_view type_name, void (*describe)(ComponentInfo&)) {
+    auto* const info = new ComponentInfo;
+    static_cast<ComponentType&>(*info) = type;
+    info->name = snake_case(short_name(type_name));
+    describe(*info);
+    info->has_entities = holds_entities(info->fields);
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
     const ComponentId id = all.count.load(std::memory_order_relaxed);
     LIMN_CHECK_NOTE(id < kMaxComponents, "too many component types");
-    info.id = id;
-    all.infos[id] = new ComponentInfo(std::move(info));
+    info->id = id;
+    all.infos[id] = info;
     all.count.store(id + 1, std::memory_order_release);
     return id;
 }
@@ -112,10 +118,6 @@ void name_component(ComponentId id, bool is_resource) {
     }
 }
 
-void finish_fields(ComponentInfo& info) {
-    info.has_entities = holds_entities(info.fields);
-}
-
 std::vector<std::string_view> split_words(const char* words) {
     std::vector<std::string_view> list;
     std::string_view rest = words;
@@ -127,6 +129,27 @@ std::vector<std::string_view> split_words(const char* words) {
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     return list;
+}
+
+void add_field(
+    std::vector<FieldInfo>& fields, const char* name, std::size_t offset, const FieldMeta& meta,
+    const FieldClass& type) {
+    FieldInfo& field = fields.emplace_back();
+    field.name = name;
+    field.meta = meta;
+    field.type = type.type;
+    field.shape = type.shape;
+    field.offset = static_cast<std::uint32_t>(offset);
+    field.size = type.size;
+    field.count = type.count;
+    field.asset = type.asset;
+    field.list = type.list;
+    if (type.type == FieldType::Enum) {
+        field.values = split_words(meta.values);
+    }
+    if (type.describe != nullptr) {
+        type.describe(field.fields);
+    }
 }
 
 }  // namespace detail

@@ -148,10 +148,8 @@ struct ComponentOps {
     void (*destroy)(void* first, std::size_t count) = nullptr;
 };
 
-/// One type of component or resource. Lives at a stable address until the program ends.
-struct ComponentInfo {
-    ComponentId id = 0;
-    std::string name;         ///< "point_light"
+/// What the compiler knows of a component.
+struct ComponentType {
     std::uint32_t size = 0;   ///< [bytes]; 0 for tags
     std::uint32_t align = 1;  ///< [bytes]
     Storage storage = Storage::Table;
@@ -163,11 +161,17 @@ struct ComponentInfo {
     bool hashed = true;
     bool in_prefabs = true;
     bool tracks_rows = false;
+    ComponentOps ops;
+};
+
+/// One type of component or resource. Lives at a stable address until the program ends.
+struct ComponentInfo : ComponentType {
+    ComponentId id = 0;
+    std::string name;            ///< "point_light"
     bool is_registered = false;  ///< can be found by name
     bool is_resource = false;    ///< registered as a resource
     ValueBytes value_bytes = ValueBytes::Opaque;
     bool has_entities = false;  ///< some field, at any depth, is an Entity
-    ComponentOps ops;
     std::vector<FieldInfo> fields;
     const void* defaults =
         nullptr;  ///< a default-constructed instance; null for types without fields
@@ -207,13 +211,31 @@ inline constexpr FieldType field_type_of<Entity> = FieldType::Entity;
 
 namespace detail {
 
-/// Takes the next id. `info.id` is overwritten.
-ComponentId add_component_info(ComponentInfo info);
+// Every file that names a component compiles what is templated below. So that is kept small: tables
+// that the compiler fills in, and calls of functions that are compiled once.
+
+/// Takes the next id. `type_name` with namespaces; `describe` fills in what depends on values of
+/// the type: value_bytes, defaults and fields.
+ComponentId add_component(
+    const ComponentType& type, std::string_view type_name, void (*describe)(ComponentInfo&));
 /// Stops the program if another type has the same name.
 void name_component(ComponentId id, bool is_resource);
-/// Fills in offsets, names of enumerators and `has_entities`.
-void finish_fields(ComponentInfo& info);
+
 [[nodiscard]] std::vector<std::string_view> split_words(const char* words);
+
+/// What a FieldInfo says of the type of a field.
+struct FieldClass {
+    FieldType type = FieldType::Float;
+    FieldShape shape = FieldShape::One;
+    std::uint32_t size = 0;
+    std::uint32_t count = 1;
+    const char* asset = "";
+    ListOps list = {};
+    void (*describe)(std::vector<FieldInfo>& fields) = nullptr;  ///< of a Struct
+};
+void add_field(
+    std::vector<FieldInfo>& fields, const char* name, std::size_t offset, const FieldMeta& meta,
+    const FieldClass& type);
 
 struct AnyVisitor {
     template <typename F>
@@ -241,44 +263,66 @@ template <typename T, std::size_t N>
 inline constexpr bool is_std_array<std::array<T, N>> = true;
 
 template <typename T>
-void describe_fields(T& instance, std::vector<FieldInfo>& fields);
+void describe_struct(std::vector<FieldInfo>& fields);
 
-/// Sets type and size for F, which is not an array or list.
+/// Of F, which is not an array or list.
 template <typename F>
-void describe_type(FieldInfo& field) {
-    field.size = sizeof(F);
+constexpr FieldClass element_class() {
+    FieldClass type = {.size = sizeof(F)};
     if constexpr (std::is_same_v<F, bool>) {
-        field.type = FieldType::Bool;
+        type.type = FieldType::Bool;
     } else if constexpr (std::is_enum_v<F>) {
-        field.type = FieldType::Enum;
-        field.values = split_words(field.meta.values);
+        type.type = FieldType::Enum;
     } else if constexpr (std::is_integral_v<F>) {
-        field.type = std::is_signed_v<F> ? FieldType::Int : FieldType::UInt;
+        type.type = std::is_signed_v<F> ? FieldType::Int : FieldType::UInt;
     } else if constexpr (field_type_of<F> != FieldType::Struct) {
-        field.type = field_type_of<F>;
+        type.type = field_type_of<F>;
     } else if constexpr (asset_kind<F> != nullptr) {
         static_assert(sizeof(F) == sizeof(std::uint32_t));
-        field.type = FieldType::Asset;
-        field.asset = asset_kind<F>;
+        type.type = FieldType::Asset;
+        type.asset = asset_kind<F>;
     } else {
         static_assert(HasFields<F>, "a field of this type needs LIMN_FIELDS");
-        field.type = FieldType::Struct;
-        F instance{};
-        describe_fields(instance, field.fields);
+        type.type = FieldType::Struct;
+        type.describe = describe_struct<F>;
     }
+    return type;
 }
 
 template <typename T>
-void describe_list(FieldInfo& field) {
-    using Element = typename T::value_type;
+constexpr ListOps list_ops() {
     static_assert(
-        !std::is_same_v<Element, bool>, "std::vector<bool> does not store bools; use std::uint8_t");
-    describe_type<Element>(field);
-    field.shape = FieldShape::List;
-    field.list.size = [](const void* list) { return static_cast<const T*>(list)->size(); };
-    field.list.data = [](void* list) { return static_cast<void*>(static_cast<T*>(list)->data()); };
-    field.list.resize = [](void* list, std::size_t size) { static_cast<T*>(list)->resize(size); };
+        !std::is_same_v<typename T::value_type, bool>,
+        "std::vector<bool> does not store bools; use std::uint8_t");
+    return {
+        .size = [](const void* list) { return static_cast<const T*>(list)->size(); },
+        .data = [](void* list) { return static_cast<void*>(static_cast<T*>(list)->data()); },
+        .resize = [](void* list, std::size_t size) { static_cast<T*>(list)->resize(size); }};
 }
+
+template <typename F>
+constexpr FieldClass field_class() {
+    FieldClass type;
+    if constexpr (is_list<F>) {
+        type = element_class<typename F::value_type>();
+        type.shape = FieldShape::List;
+        type.list = list_ops<F>();
+    } else if constexpr (std::is_array_v<F>) {
+        static_assert(std::rank_v<F> == 1);
+        type = element_class<std::remove_extent_t<F>>();
+        type.shape = FieldShape::Array;
+        type.count = std::extent_v<F>;
+    } else if constexpr (is_std_array<F>) {
+        type = element_class<typename F::value_type>();
+        type.shape = FieldShape::Array;
+        type.count = std::tuple_size_v<F>;
+    } else {
+        type = element_class<F>();
+    }
+    return type;
+}
+template <typename F>
+inline constexpr FieldClass kFieldClass = field_class<F>();
 
 struct DescribeVisitor {
     const void* base;
@@ -286,31 +330,14 @@ struct DescribeVisitor {
 
     template <typename F>
     void operator()(const char* name, F& field, const FieldMeta& meta = {}) const {
-        FieldInfo info;
-        info.name = name;
-        info.meta = meta;
-        info.offset = static_cast<std::uint32_t>(
-            reinterpret_cast<const char*>(&field) - static_cast<const char*>(base));
-        if constexpr (is_list<F>) {
-            describe_list<F>(info);
-        } else if constexpr (std::is_array_v<F>) {
-            static_assert(std::rank_v<F> == 1);
-            describe_type<std::remove_extent_t<F>>(info);
-            info.shape = FieldShape::Array;
-            info.count = std::extent_v<F>;
-        } else if constexpr (is_std_array<F>) {
-            describe_type<typename F::value_type>(info);
-            info.shape = FieldShape::Array;
-            info.count = std::tuple_size_v<F>;
-        } else {
-            describe_type<F>(info);
-        }
-        fields.push_back(std::move(info));
+        const auto offset = reinterpret_cast<const char*>(&field) - static_cast<const char*>(base);
+        add_field(fields, name, static_cast<std::size_t>(offset), meta, kFieldClass<F>);
     }
 };
 
 template <typename T>
-void describe_fields(T& instance, std::vector<FieldInfo>& fields) {
+void describe_struct(std::vector<FieldInfo>& fields) {
+    T instance{};
     visit_fields(instance, DescribeVisitor{&instance, fields});
 }
 
@@ -362,30 +389,51 @@ ValueBytes value_bytes_of() {
     }
 }
 
+template <std::size_t size>
+void copy_bytes(void* destination, const void* source, std::size_t count) {
+    if (count > 0) {
+        std::memcpy(destination, source, size * count);
+    }
+}
+template <std::size_t size>
+void move_bytes(void* destination, void* source, std::size_t count) {
+    copy_bytes<size>(destination, source, count);
+}
+
 template <typename T>
-ComponentOps component_ops() {
+constexpr ComponentOps component_ops() {
     ComponentOps ops;
     if constexpr (std::is_default_constructible_v<T>) {
         ops.construct_default = [](void* destination, std::size_t count) {
             std::uninitialized_value_construct_n(static_cast<T*>(destination), count);
         };
     }
-    if constexpr (std::is_copy_constructible_v<T>) {
-        ops.construct_copy = [](void* destination, const void* source, std::size_t count) {
-            std::uninitialized_copy_n(
-                static_cast<const T*>(source), count, static_cast<T*>(destination));
+    if constexpr (std::is_trivially_copyable_v<T>) {
+        constexpr std::size_t kBytes = std::is_empty_v<T> ? 0 : sizeof(T);
+        if constexpr (std::is_copy_constructible_v<T>) {
+            ops.construct_copy = copy_bytes<kBytes>;
+        }
+        ops.construct_move = move_bytes<kBytes>;
+        ops.relocate = move_bytes<kBytes>;
+        ops.destroy = [](void*, std::size_t) {};
+    } else {
+        if constexpr (std::is_copy_constructible_v<T>) {
+            ops.construct_copy = [](void* destination, const void* source, std::size_t count) {
+                std::uninitialized_copy_n(
+                    static_cast<const T*>(source), count, static_cast<T*>(destination));
+            };
+        }
+        ops.construct_move = [](void* destination, void* source, std::size_t count) {
+            std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
+        };
+        ops.relocate = [](void* destination, void* source, std::size_t count) {
+            std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
+            std::destroy_n(static_cast<T*>(source), count);
+        };
+        ops.destroy = [](void* first, std::size_t count) {
+            std::destroy_n(static_cast<T*>(first), count);
         };
     }
-    ops.construct_move = [](void* destination, void* source, std::size_t count) {
-        std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
-    };
-    ops.relocate = [](void* destination, void* source, std::size_t count) {
-        std::uninitialized_move_n(static_cast<T*>(source), count, static_cast<T*>(destination));
-        std::destroy_n(static_cast<T*>(source), count);
-    };
-    ops.destroy = [](void* first, std::size_t count) {
-        std::destroy_n(static_cast<T*>(first), count);
-    };
     return ops;
 }
 
@@ -435,51 +483,55 @@ void check_storage() {
 }
 
 template <typename T>
-ComponentId make_component_id() {
+constexpr ComponentType make_component_type() {
+    using Traits = ComponentTraits<T>;
     static_assert(
         std::is_nothrow_move_constructible_v<T> && std::is_nothrow_destructible_v<T>,
         "a component is moved and destroyed without exceptions: give it a noexcept move "
         "constructor");
-    check_storage<T>();
-    ComponentInfo info;
-    info.name = snake_case(short_name(type_name<T>()));
-    info.is_tag = std::is_empty_v<T>;
-    info.size = info.is_tag ? 0 : sizeof(T);
-    info.align = alignof(T);
-    info.storage = ComponentTraits<T>::storage;
-    info.trivially_copyable = std::is_trivially_copyable_v<T>;
-    info.trivially_relocatable =
-        info.trivially_copyable || ComponentTraits<T>::trivially_relocatable;
-    info.trivially_destructible = std::is_trivially_destructible_v<T>;
-    info.saved = ComponentTraits<T>::saved;
-    info.hashed = ComponentTraits<T>::hashed;
-    info.in_prefabs = ComponentTraits<T>::in_prefabs;
-    info.tracks_rows = ComponentTraits<T>::tracks_rows;
     static_assert(
-        !ComponentTraits<T>::tracks_rows
-            || (!std::is_empty_v<T> && ComponentTraits<T>::storage != Storage::Sparse
-                && ComponentTraits<T>::storage != Storage::Shared),
+        !Traits::tracks_rows
+            || (!std::is_empty_v<T> && Traits::storage != Storage::Sparse
+                && Traits::storage != Storage::Shared),
         "tracks_rows needs a component with a column of its own: not a tag, not Sparse, not "
         "Shared");
+    return {
+        .size = std::is_empty_v<T> ? 0 : sizeof(T),
+        .align = alignof(T),
+        .storage = Traits::storage,
+        .is_tag = std::is_empty_v<T>,
+        .trivially_copyable = std::is_trivially_copyable_v<T>,
+        .trivially_relocatable = std::is_trivially_copyable_v<T> || Traits::trivially_relocatable,
+        .trivially_destructible = std::is_trivially_destructible_v<T>,
+        .saved = Traits::saved,
+        .hashed = Traits::hashed,
+        .in_prefabs = Traits::in_prefabs,
+        .tracks_rows = Traits::tracks_rows,
+        .ops = component_ops<T>()};
+}
+template <typename T>
+inline constexpr ComponentType kComponentType = make_component_type<T>();
+
+template <typename T>
+void describe_component(ComponentInfo& info) {
+    check_storage<T>();
     info.value_bytes = value_bytes_of<T>();
-    info.ops = component_ops<T>();
     if constexpr (HasFields<T>) {
         static_assert(
             std::is_default_constructible_v<T>,
             "a component with LIMN_FIELDS must be default-constructible");
         T* defaults = new T{};  // lives as long as the program
         info.defaults = defaults;
-        describe_fields(*defaults, info.fields);
-        finish_fields(info);
+        visit_fields(*defaults, DescribeVisitor{defaults, info.fields});
     }
-    return add_component_info(std::move(info));
 }
 
 }  // namespace detail
 
 /// The id of T, assigned before main.
 template <typename T>
-inline const ComponentId component_id = detail::make_component_id<T>();
+inline const ComponentId component_id =
+    detail::add_component(detail::kComponentType<T>, type_name<T>(), detail::describe_component<T>);
 
 template <typename T>
 [[nodiscard]] const ComponentInfo& component_info() {

@@ -83,9 +83,10 @@ void cull_boxes_by_distance(
     const Vec3& middle, float radius, const BoxBlock& boxes, int count,
     std::span<std::uint8_t> visible) {
     for (int i = 0; i < count; ++i) {
-        const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
-        const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-        visible[static_cast<std::size_t>(i)] &= sphere_touches(middle, radius, {c - h, c + h});
+        const auto k = static_cast<std::size_t>(i);
+        const Vec3 c = boxes.middle(k);
+        const Vec3 h = boxes.half(k);
+        visible[k] &= sphere_touches(middle, radius, {c - h, c + h});
     }
 }
 

@@ -40,6 +40,19 @@ struct BoxBlock {
     alignas(64) float half_x[kCullBlock];
     alignas(64) float half_y[kCullBlock];
     alignas(64) float half_z[kCullBlock];
+
+    [[nodiscard]] Vec3 middle(std::size_t i) const {
+        return {center_x[i], center_y[i], center_z[i]};
+    }
+    [[nodiscard]] Vec3 half(std::size_t i) const { return {half_x[i], half_y[i], half_z[i]}; }
+    void set(std::size_t i, const Vec3& middle, const Vec3& half) {
+        center_x[i] = middle.x;
+        center_y[i] = middle.y;
+        center_z[i] = middle.z;
+        half_x[i] = half.x;
+        half_y[i] = half.y;
+        half_z[i] = half.z;
+    }
 };
 
 /// Half extent of the box around a box of half extent `h` after `transform` (Arvo 1990).

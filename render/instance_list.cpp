@@ -34,17 +34,6 @@ bool is_part_of(const World& world, Entity entity, Entity whole) {
     return true;
 }
 
-void set_box(BoxBlock& block, std::uint32_t i, const Bounds& box) {
-    const Vec3 c = center(box);
-    const Vec3 h = half_extent(box);
-    block.center_x[i] = c.x;
-    block.center_y[i] = c.y;
-    block.center_z[i] = c.z;
-    block.half_x[i] = h.x;
-    block.half_y[i] = h.y;
-    block.half_z[i] = h.z;
-}
-
 }  // namespace
 
 /// The distinct keys of a chunk: a list with a small hash table.
@@ -170,10 +159,8 @@ void InstanceCollector::count_block(
             continue;
         }
         // Distance to the far side of the box, so that large surroundings (floor, walls) come last.
-        const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
-        const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-        const float far_side = glm::dot(selection.forward, c - selection.eye)
-                               + glm::dot(glm::abs(selection.forward), h);
+        const float far_side = glm::dot(selection.forward, boxes.middle(i) - selection.eye)
+                               + glm::dot(glm::abs(selection.forward), boxes.half(i));
         work.local[i] = table.count(key, far_side);
     }
 }
@@ -202,7 +189,8 @@ void InstanceCollector::write_block(
             place,
             block.inflation(i)};
         if (selection.boxes) {
-            set_box(list.boxes[place / kCullBlock], place % kCullBlock, block.box(i));
+            list.boxes[place / kCullBlock].set(
+                place % kCullBlock, block.boxes.middle(i), block.boxes.half(i));
         }
         if (selection.velocity) {
             previous_transforms[place] = block.world_at(i, selection.previous_alpha);

@@ -45,9 +45,7 @@ bool has_changed(const ChunkView& chunk, std::uint32_t since) {
 }  // namespace
 
 Bounds RenderItemBlock::box(std::size_t i) const {
-    const Vec3 c = {boxes.center_x[i], boxes.center_y[i], boxes.center_z[i]};
-    const Vec3 h = {boxes.half_x[i], boxes.half_y[i], boxes.half_z[i]};
-    return {c - h, c + h};
+    return {boxes.middle(i) - boxes.half(i), boxes.middle(i) + boxes.half(i)};
 }
 
 Bounds RenderItems::local_bounds(const RenderItemBlock& block, std::size_t i) const {
@@ -136,12 +134,7 @@ void RenderItems::refresh(RenderItemBlock& block) const {
                 h = half;
             }
         }
-        boxes.center_x[i] = c.x;
-        boxes.center_y[i] = c.y;
-        boxes.center_z[i] = c.z;
-        boxes.half_x[i] = h.x;
-        boxes.half_y[i] = h.y;
-        boxes.half_z[i] = h.z;
+        boxes.set(i, c, h);
         const std::uint32_t batch =
             materials_->batch_of(materials_->record_of(block.surfaces[i].material));
         block.keys[i] = make_draw_key(

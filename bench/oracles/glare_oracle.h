@@ -29,7 +29,7 @@ struct Star {
 /// shortest and the longest tent it falls with the square of the distance. Both sides sum to 1.
 [[nodiscard]] double line_density(double distance, double length);
 
-/// `picture` with a star about each pixel; red reaches farther than blue, in the ratio of the
+/// `image` with a star about each pixel; red reaches farther than blue, in the ratio of the
 /// wavelengths 610, 550 and 465 nm. A line's cross-section is a Gaussian of standard deviation
 /// `width` [px].
 [[nodiscard]] LightImage add_stars(const LightImage& picture, const Star& star, double width);

@@ -34,10 +34,6 @@ constexpr float kLookAhead = 3.0f;          // [boat lengths]
 constexpr float kCourseStep = 0.5f;         // [m]
 constexpr int kMaxCourseSteps = 64;
 
-bool is_finite(const Vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
-
 float positive(float x) {
     return x > 0 ? x : 0.0f;
 }

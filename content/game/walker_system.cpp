@@ -31,10 +31,6 @@ constexpr float kDucked = 0.55f;        // lowering of the eyes when ducked, rel
 constexpr float kSnap = 0.12f;          // extra drop to the next step without a fall [m]
 constexpr float kClimb = 8.0f;          // rate of stepping up [1/s]
 
-bool is_finite(const Vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
-
 /// The highest top below a cylinder about `feet` that it can step on; -infinity: none.
 float ground_under(std::span<const Ground> grounds, const Vec3& feet, float reach, float step) {
     float highest = -std::numeric_limits<float>::infinity();

@@ -43,6 +43,16 @@ template <typename T>
     return x * x;
 }
 
+/// Whether all components are finite, and their sum is.
+template <glm::length_t n>
+[[nodiscard]] bool is_finite(const glm::vec<n, float>& v) {
+    float sum = v[0];
+    for (glm::length_t i = 1; i < n; ++i) {
+        sum += v[i];
+    }
+    return std::isfinite(sum);
+}
+
 /// x / |x|, or `fallback` if x is zero, tiny or not finite.
 [[nodiscard]] inline Vec3 normalize_or(const Vec3& x, const Vec3& fallback) {
     const float length2 = glm::dot(x, x);

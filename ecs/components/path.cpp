@@ -11,10 +11,6 @@
 namespace limn {
 namespace {
 
-bool is_finite(const Vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
-
 Vec3 second_derivative(const Bezier<Vec3>& p, float u) {
     return 6.0f * ((1.0f - u) * (p[2] - 2.0f * p[1] + p[0]) + u * (p[3] - 2.0f * p[2] + p[1]));
 }

@@ -12,14 +12,12 @@ namespace limn {
 
 namespace {
 
+using limn::is_finite;
 bool is_finite(float x) {
     return std::isfinite(x);
 }
-bool is_finite(const Vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
 bool is_finite(const Quat& q) {
-    return std::isfinite(q.x + q.y + q.z + q.w);
+    return is_finite(Vec4(q.x, q.y, q.z, q.w));
 }
 template <typename T>
 bool are_finite(const std::vector<T>& values) {

@@ -14,10 +14,6 @@ using DVec3 = glm::dvec3;
 
 constexpr std::uint32_t kNowhere = ~0u;
 
-bool is_finite(const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// Maps every position to the index of the first one within the tolerance.
 class Welder {
   public:

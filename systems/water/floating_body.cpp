@@ -49,10 +49,6 @@ float positive(float x) {
     return x > 0 ? x : 0.0f;
 }
 
-bool is_finite(const Vec3& v) {
-    return std::isfinite(v.x + v.y + v.z);
-}
-
 Vec3 limit_length(const Vec3& v, float limit) {
     const float length = glm::length(v);
     return length > limit ? v * (limit / length) : v;

@@ -90,10 +90,6 @@ Vec3 normal_of(const WavePoint& point) {
     return normalize_or(normal.y < 0 ? -normal : normal, Vec3(0, 1, 0));
 }
 
-bool is_finite(const Vec2& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
-}
-
 }  // namespace
 
 std::vector<WaterSurface> collect_water_surfaces(WaterQuery waters) {

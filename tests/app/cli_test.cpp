@@ -129,7 +129,7 @@ TEST_CASE("cli: a level's misspelled name finds the level that was meant") {
     check_fails(folder, {"hash", "galery", "--frames", "1"}, 1, "gallery");
 }
 
-TEST_CASE("cli: pictures that cannot be read or compared end with 1 and one line") {
+TEST_CASE("cli: images that cannot be read or compared end with 1 and one line") {
     const TemporaryFolder folder;
     test::write_text(folder.file("empty.png"), "");
     check_fails(folder, {"compare", "missing.png", "missing.png"}, 1, "missing.png");

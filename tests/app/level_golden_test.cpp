@@ -1,5 +1,5 @@
 // Every level: loads, runs for a second without a logged error, repeats bit for bit, and looks like
-// the picture in tests/golden that we last agreed is right. `limn` draws software and GPU pictures
+// the image in tests/golden that we last agreed is right. `limn` draws software and GPU images
 // with other roundings, so the comparison is FLIP's, not equality. The target `golden` draws them
 // anew.
 
@@ -64,7 +64,7 @@ void write_image_file(const std::string& path, const gpu::ByteImage& image) {
     CHECK_MESSAGE(written.ok(), (written ? std::string() : written.error().message));
 }
 
-/// What is left behind of a mismatch: the picture as it is now, and where it differs.
+/// What is left behind of a mismatch: the image as it is now, and where it differs.
 void leave_mismatch(
     const std::string& name, const gpu::ByteImage& drawn, const std::vector<float>& errors) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limn-golden";

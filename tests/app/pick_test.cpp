@@ -105,7 +105,7 @@ TEST_CASE("pick: nothing behind the eye, nothing without meshes") {
     CHECK_FALSE(pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}}));
 }
 
-TEST_CASE("pick: the ray through the middle of the picture is where the camera looks") {
+TEST_CASE("pick: the ray through the middle of the image is where the camera looks") {
     const Affine pose = look_at({1, 2, 3}, {4, 0, -5});
     const RenderView view = make_render_view(Camera{}, pose, pose, {.width = 640, .height = 360});
     const Ray ray = ray_through(view, {0.5f, 0.5f});

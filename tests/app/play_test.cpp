@@ -134,7 +134,7 @@ TEST_CASE("play: a drag looks around, and the level comes back with R") {
     CHECK(run.err.find("error") == std::string::npos);
 }
 
-TEST_CASE("play: without a display it renders the camera's way and says where the pictures are") {
+TEST_CASE("play: without a display it renders the camera's way and says where the images are") {
     const TemporaryFolder folder;
     test::write_text(folder.file("toy.level.json"), kLevel);
     const char* display = std::getenv("DISPLAY");

@@ -9,7 +9,7 @@
 
 namespace limn::test {
 
-/// A picture as OpenImageIO reads it: not our own code.
+/// An image as OpenImageIO reads it: not our own code.
 struct Picture {
     bool whole = false;
     int width = 0;

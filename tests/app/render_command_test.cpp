@@ -86,7 +86,7 @@ TEST_CASE("render_command: an EXR holds linear radiance and every asked layer by
 }
 
 TEST_CASE("render_command: the EXR of a matte plane under a point light is the closed form") {
-    // A camera 4 m above the plane looks straight down, its picture's top toward -z; the light
+    // A camera 4 m above the plane looks straight down, its image's top toward -z; the light
     // hangs off its axis. Radiance = albedo / pi * intensity * cos / d^2.
     const TemporaryFolder folder;
     test::write_text(folder.file("plane.level.json"), R"json({
@@ -110,7 +110,7 @@ TEST_CASE("render_command: the EXR of a matte plane under a point light is the c
     REQUIRE(picture.width == kWidth);
     REQUIRE(picture.height == kHeight);
 
-    const double half_height = 4.0 * std::tan(0.5);  // of what the picture shows [m]
+    const double half_height = 4.0 * std::tan(0.5);  // of what the image shows [m]
     double worst = 0;
     for (int row = 0; row < kHeight; ++row) {
         for (int column = 0; column < kWidth; ++column) {
@@ -147,7 +147,7 @@ TEST_CASE("render_command: the same command gives the same bytes") {
     CHECK(a == test::read_text(folder.file("b.exr")));
 }
 
-TEST_CASE("render_command: --set and --time change the picture") {
+TEST_CASE("render_command: --set and --time change the image") {
     const TemporaryFolder folder;
     check_ok(run_limn(folder, render_words({"-o", "a.png"})));
     check_ok(run_limn(folder, render_words({"-o", "dark.png", "--set", "exposure.ev=-3"})));
@@ -157,7 +157,7 @@ TEST_CASE("render_command: --set and --time change the picture") {
     CHECK(test::read_text(folder.file("later.png")) != test::read_text(folder.file("a.png")));
 }
 
-TEST_CASE("render_command: a range writes one numbered file a frame, the same as single pictures") {
+TEST_CASE("render_command: a range writes one numbered file a frame, the same as single images") {
     const TemporaryFolder folder;
     check_ok(
         run_limn(folder, render_words({"-o", "f_%03d.png", "--frames", "2:4", "--fps", "30"})));
@@ -234,7 +234,7 @@ TEST_CASE("render_command: bench writes JSON and CSV that hold a line a pass") {
     CHECK(count_lines(test::read_text(folder.file("b.csv"))) > 5);
 }
 
-TEST_CASE("render_command: compare finds a picture equal to itself") {
+TEST_CASE("render_command: compare finds an image equal to itself") {
     const TemporaryFolder folder;
     check_ok(run_limn(folder, render_words({"-o", "a.png"})));
     check_ok(run_limn(folder, render_words({"-o", "b.png", "--set", "exposure.ev=1"})));

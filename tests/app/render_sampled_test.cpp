@@ -21,7 +21,7 @@ namespace {
 constexpr int kWidth = 96;
 constexpr int kHeight = 54;
 
-/// A bright unlit square on black before a camera at z = 2 whose picture is 2 m high at z = 0:
+/// A bright unlit square on black before a camera at z = 2 whose image is 2 m high at z = 0:
 /// 27 px a meter.
 std::string
 level(const std::string& resources, const std::string& square, const std::string& camera) {
@@ -115,7 +115,7 @@ TEST_CASE("exposure samples: each part of the time sees pixel and lens evenly") 
 
 TEST_CASE(
     "render sampled: what moves becomes a ramp as long as its way while the shutter is open") {
-    // At 0 it moves at 2.4 m/s: 64.8 px/s through the picture, 180 degrees at 2 pictures a second
+    // At 0 it moves at 2.4 m/s: 64.8 px/s through the image, 180 degrees at 2 images a second
     // are a quarter of a second or 16.2 px, less than its 13.5 px of width and more.
     const TemporaryFolder folder;
     const std::string text = level(

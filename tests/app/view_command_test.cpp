@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-// `limn view`: pictures of known light, their PNG against the formula, and the window.
+// `limn view`: images of known light, their PNG against the formula, and the window.
 
 namespace limn {
 
@@ -108,12 +108,12 @@ TEST_CASE("view: more exposure clips more, and defog with contrast clips less ag
         clipped(shown(folder, {"--ev", "5", "--defog", "0.01", "--contrast", "1"}));
     CHECK(low < high);
     CHECK(tamed < high);
-    // The same settings give the same picture.
+    // The same settings give the same image.
     CHECK(shown(folder, {"--ev", "5"}) == shown(folder, {"--ev", "5"}));
     CHECK(shown(folder, {"--curve", "local"}) != shown(folder, {"--curve", "reinhard"}));
 }
 
-TEST_CASE("view: says what the picture holds, and what no number is") {
+TEST_CASE("view: says what the image holds, and where NaN is") {
     const TemporaryFolder folder;
     std::vector<glm::vec3> pixels(kWidth * kHeight, glm::vec3(0.5f));
     pixels[0] = glm::vec3(0.01f);
@@ -138,7 +138,7 @@ TEST_CASE("view: says what the picture holds, and what no number is") {
     CHECK(picture.bytes[3 * 7] == picture.bytes[3 * 8]);
 }
 
-TEST_CASE("view: what is no picture of light ends with 1 and one line") {
+TEST_CASE("view: what is no image of light ends with 1 and one line") {
     const TemporaryFolder folder;
     write_picture_exr(folder.file("a.exr"), make_ramp());
     static_cast<void>(shown(folder, {}));
@@ -155,7 +155,7 @@ TEST_CASE("view: what is no picture of light ends with 1 and one line") {
     }
 }
 
-TEST_CASE("view: in the window a key and its opposite lead back to the same picture") {
+TEST_CASE("view: in the window a key and its opposite lead back to the same image") {
     if (!test::can_play()) {
         return;
     }

@@ -54,7 +54,7 @@ inline std::uint32_t big_endian(const std::string& text, std::size_t word) {
     return value;
 }
 
-/// A display without a screen, whose picture is a file in the XWD format.
+/// A display without a screen, whose image is a file in the XWD format.
 class VirtualDisplay {
   public:
     explicit VirtualDisplay(const TemporaryFolder& folder) : screen_(folder.file("Xvfb_screen0")) {
@@ -177,7 +177,7 @@ struct DisplaySession {
             words.end(),
             {"--size", std::to_string(kDisplayWidth) + "x" + std::to_string(kDisplayHeight)});
         program = std::make_unique<Program>(folder, std::move(words));
-        // The first picture replaces the black of an empty display.
+        // The first image replaces the black of an empty display.
         const Pixels empty = display.grab();
         CHECK(wait_for([&] {
             return !program->running()
@@ -192,7 +192,7 @@ struct DisplaySession {
     bool changes_from(const Pixels& before, int pixels) const {
         return wait_for([&] { return count_different(display.grab(), before) > pixels; }, 20.0);
     }
-    /// Waits until six looks in a row are the same: a busy machine may take long for a picture.
+    /// Waits until six looks in a row are the same: a busy machine may take long for an image.
     [[nodiscard]] Pixels wait_until_still() const {
         Pixels last = display.grab();
         int same = 0;

@@ -98,7 +98,7 @@ TEST_CASE("exr: every half goes through a float and back without a change") {
     }
 }
 
-TEST_CASE("exr: a half picture reads back bit for bit with every compression") {
+TEST_CASE("exr: a half image reads back bit for bit with every compression") {
     const ExrImage image = make_all_halves();
     for (const ExrCompression compression :
          {ExrCompression::None, ExrCompression::Rle, ExrCompression::Zips, ExrCompression::Zip,

@@ -280,7 +280,7 @@ TEST_CASE("gltf: an index past the vertices is refused") {
         "meshes[0].primitives[0].indices: found 4 at 4, expected an index below the 4 vertices");
 }
 
-TEST_CASE("gltf: positions that are no numbers, infinite or absurd are refused") {
+TEST_CASE("gltf: positions that are NaN, infinite or absurd are refused") {
     for (const float bad : {std::nanf(""), INFINITY, -INFINITY, 1e30f}) {
         std::vector<std::byte> binary = square_binary();
         std::memcpy(&binary[12], &bad, 4);

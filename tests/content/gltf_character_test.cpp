@@ -151,7 +151,7 @@ TEST_CASE("gltf character: a file with joints spawns one character with its clip
     CHECK(world.get<const MeshInstance>(body).mesh.index == 4);
 }
 
-TEST_CASE("gltf character: what hangs on a joint moves with the clip from the first picture on") {
+TEST_CASE("gltf character: what hangs on a joint moves with the clip from the first frame on") {
     World world;
     Assets& assets = world.insert_resource(Assets{});
     (void)spawn_gltf(world, assets, load_puppet());

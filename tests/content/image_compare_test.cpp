@@ -34,7 +34,7 @@ ColorImage noise(int width, int height, std::uint64_t seed) {
     });
 }
 
-/// Soft blobs with a hard edge: something that looks like a picture.
+/// Soft blobs with a hard edge: something that looks like an image.
 ColorImage scene(int width, int height, float shift) {
     return drawn(width, height, [&](int x, int y) {
         const float u = (static_cast<float>(x) + shift) / static_cast<float>(width);
@@ -200,7 +200,7 @@ Grid slow_flip(const ColorImage& a, const ColorImage& b, double ppd) {
 
 }  // namespace
 
-TEST_CASE("image_compare: a picture is equal to itself by every measure") {
+TEST_CASE("image_compare: an image is equal to itself by every measure") {
     const ColorImage image = scene(40, 30, 0);
     CHECK(psnr(image, image) == std::numeric_limits<double>::infinity());
     CHECK(ssim(image, image) == doctest::Approx(1.0));
@@ -232,7 +232,7 @@ TEST_CASE("psnr: a difference of a tenth everywhere is 20 dB, of one step in 255
         == doctest::Approx(10 * std::log10(3.0)).epsilon(1e-6));
 }
 
-TEST_CASE("ssim: two flat pictures differ by their means alone") {
+TEST_CASE("ssim: two flat images differ by their means alone") {
     const double a = 0.3;
     const double b = 0.7;
     const double expected = (2 * a * b + 1e-4) / (a * a + b * b + 1e-4);
@@ -272,7 +272,7 @@ TEST_CASE("ssim: one window is the formula of the paper") {
     CHECK(ssim(a, b) == doctest::Approx(expected).epsilon(1e-9));
 }
 
-TEST_CASE("ssim: it falls with noise, is negative for a negative, and takes tiny pictures") {
+TEST_CASE("ssim: it falls with noise, is negative for a negative, and takes tiny images") {
     const ColorImage a = scene(48, 48, 0);
     ColorImage some = a;
     ColorImage more = a;
@@ -305,7 +305,7 @@ TEST_CASE("flip: it agrees with the two-dimensional kernels of the paper in doub
             for (std::size_t i = 0; i < fast.size(); ++i) {
                 worst = std::max(worst, std::abs(static_cast<double>(fast[i]) - slow[i]));
             }
-            CHECK(worst < 2e-3);  // where both pictures nearly agree, the root of a rounding error
+            CHECK(worst < 2e-3);  // where both images nearly agree, the root of a rounding error
             CHECK(
                 mean(fast)
                 == doctest::Approx(
@@ -323,7 +323,7 @@ TEST_CASE("flip: flat green against flat blue is the largest error there is") {
     }
 }
 
-TEST_CASE("flip: flat pictures differ by their colors alone, a little or beyond the knee") {
+TEST_CASE("flip: flat images differ by their colors alone, a little or beyond the knee") {
     // Black and white: HyAB 100, of at most 203.3 (green and blue), both to the 0.7th power.
     const double most = std::pow(slow_hyab(slow_hunt({0, 1, 0}), slow_hunt({0, 0, 1})), 0.7);
     CHECK(
@@ -374,7 +374,7 @@ TEST_CASE("image_compare: a summary is the mean and what 99 of 100 do not exceed
     CHECK(summarize_errors({}).mean == 0);
 }
 
-TEST_CASE("relative_mse: it is relative to the first picture") {
+TEST_CASE("relative_mse: it is relative to the first image") {
     CHECK(relative_mse(flat(4, 4, Vec3(10)), flat(4, 4, Vec3(11)), 1e-9) == doctest::Approx(0.01));
     CHECK(
         relative_mse(flat(4, 4, Vec3(1000)), flat(4, 4, Vec3(1100)), 1e-9)

@@ -123,7 +123,7 @@ TEST_CASE("image: an EXR file reads as floats, whatever the file is called") {
     CHECK(values[4] == 1e5f);
 }
 
-TEST_CASE("image: every way to be no picture is one line that names the place") {
+TEST_CASE("image: every way to be no image is one line that names the place") {
     const TemporaryFolder folder;
     std::vector<std::byte> huge = png_bytes(4, 4, 3);
     set_png_size(huge, 100'000, 2);
@@ -158,7 +158,7 @@ TEST_CASE("image: every way to be no picture is one line that names the place") 
     CHECK(contains(load_image(folder.path(), true).error().message, "found a folder"));
 }
 
-TEST_CASE("image: a picture of many pixels is refused before memory is taken for it") {
+TEST_CASE("image: an image of many pixels is refused before memory is taken for it") {
     std::vector<std::byte> png = png_bytes(4, 4, 3);
     set_png_size(png, 16'000, 16'000);
     const Result<ImageData> image = decode_image(png, "bomb", true, {.max_pixels = 1'000'000});

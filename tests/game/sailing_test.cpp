@@ -29,7 +29,7 @@ namespace {
 
 constexpr float kStep = 1.0f / 60;
 
-/// A keelboat of 6 m on still water without end, its bow toward +z.
+/// A keelboat of 6 m on still, unbounded water, its bow toward +z.
 struct Boat {
     WaterSurface surface{};
     WaterTouch touch{.shape = TouchShape::Box, .half = {0.75f, 0.3f, 3.0f}};

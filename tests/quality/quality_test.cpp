@@ -66,7 +66,7 @@ std::size_t count_unbounded(const nlohmann::json& rows) {
 
 }  // namespace
 
-TEST_CASE("quality: a bound holds up to its limit, and never for what is no number") {
+TEST_CASE("quality: a bound holds up to its limit, and never for NaN") {
     CHECK(holds({"", 1, QualityBound::AtMost, 1}));
     CHECK_FALSE(holds({"", 1.001, QualityBound::AtMost, 1}));
     CHECK(holds({"", 1, QualityBound::AtLeast, 1}));
@@ -94,12 +94,12 @@ TEST_CASE("quality: table, JSON and page say of every row whether it holds") {
     CHECK(rows[2]["bound"] == "none");
 }
 
-TEST_CASE("quality: the page has effect, oracle and difference of each picture within itself") {
+TEST_CASE("quality: the page has effect, oracle and difference of each image within itself") {
     const MeasuredQuality one = measured();
     const Result<std::string> page = quality_html({&one, 1}, "GPU <x>");
     REQUIRE(page);
     CHECK(count_of(*page, "<img ") == 3 + 1);
-    // Every picture is a whole PNG: signature and end in base64.
+    // Every image is a whole PNG: signature and end in base64.
     CHECK(count_of(*page, "src=\"data:image/png;base64,iVBORw0KGgo") == 4);
     CHECK(count_of(*page, "\" alt=\"") == 4);
     CHECK(page->find("GPU &lt;x&gt;") != std::string::npos);

@@ -151,7 +151,7 @@ TEST_CASE(
     CHECK(lit_area(0) == doctest::Approx(1).epsilon(1e-4));
 }
 
-TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book reckons it") {
+TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book computes it") {
     const Plane plane = {{0, 0, 1}, 0};
     const Vec3 vertex(1, 0, 1);
     const Vec3 l = glm::normalize(Vec3(1, 0, -1));

@@ -13,7 +13,7 @@ namespace limn::test {
 namespace {
 
 constexpr float kDepth = 10;  ///< of the sea [m]
-constexpr int kSize = 64;     ///< of a picture [pixels]
+constexpr int kSize = 64;     ///< of an image [pixels]
 
 /// Water over an even floor, the sun straight above.
 class Floor : public Scene {

@@ -177,7 +177,7 @@ TEST_CASE_FIXTURE(Grotto, "caustics: all light that waves mirror arrives above, 
     }
 }
 
-TEST_CASE_FIXTURE(Grotto, "caustics: what waves throw onto a ceiling is that of traced photons") {
+TEST_CASE_FIXTURE(Grotto, "caustics: what waves reflect onto a ceiling is that of traced photons") {
     const Entity water = wave(fill(kCaustics));
     const Vec3 to_sun = sun_at(radians(60));
     sun(to_sun);

@@ -460,7 +460,7 @@ TEST_CASE_FIXTURE(Pool, "caustics: nothing is made where none are asked for") {
     CHECK(!frame_graph(shared_renderer()).was_run("caustic rays"));
 }
 
-TEST_CASE_FIXTURE(Pool, "caustics: numbers that mean nothing give a picture") {
+TEST_CASE_FIXTURE(Pool, "caustics: NaN and infinite settings give an image") {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const Entity water = wave(
         fill(

@@ -178,7 +178,7 @@ TEST_CASE_FIXTURE(
     CHECK(endless.total() == endless.capacity);
     CHECK(build(view, list_of({})).total() == 0);
     CHECK(build(view, list_of({{{0, 0, 50}, 3}})).capacity == 0);   // behind the camera
-    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);   // beside the picture
+    CHECK(build(view, list_of({{{80, 0, 0}, 3}})).capacity == 0);   // beside the image
     CHECK(build(view, list_of({{{0, 0, 5.5f}, 1}})).capacity > 0);  // behind, but reaches past
 }
 
@@ -199,7 +199,7 @@ TEST_CASE("clusters: what would overflow the lists is left out, counted, and los
     CHECK(clusters.dropped + static_cast<int>(clusters.lights.size()) == 1001);
 }
 
-TEST_CASE_FIXTURE(Scene, "clusters: the picture equals the sum of all lights at every pixel") {
+TEST_CASE_FIXTURE(Scene, "clusters: the image equals the sum of all lights at every pixel") {
     const Material matte = {
         .shading = ShadingModel::Blinn, .base_color = {0.8f, 0.8f, 0.8f, 1}, .specular = {0, 0, 0}};
     place(add(make_square()), add(matte), affine_from({0, 0, 0}, {1, 0, 0, 0}, {40, 40, 1}));

@@ -163,7 +163,7 @@ TEST_CASE("cube_map: a face's camera is a rotation that sees each texel where it
         CHECK(glm::cross(right, up) == back);  // not a mirror image
         CHECK(transform_point(pose, {0, 0, 0}) == eye);
         CHECK(cube_direction({face, {0.5f, 0.5f}}) == -back);
-        // The picture's columns run right and its rows, in OpenGL, up.
+        // The image's columns run right and its rows, in OpenGL, up.
         CHECK(cube_direction({face, {0.75f, 0.5f}}) == -back + 0.5f * right);
         CHECK(cube_direction({face, {0.5f, 0.75f}}) == -back + 0.5f * up);
     }

@@ -32,12 +32,7 @@ Bounds random_box(std::mt19937& random) {
 void put(BoxBlock& block, int i, const Bounds& box) {
     const Vec3 c = center(box);
     const Vec3 h = half_extent(box);
-    block.center_x[i] = c.x;
-    block.center_y[i] = c.y;
-    block.center_z[i] = c.z;
-    block.half_x[i] = h.x;
-    block.half_y[i] = h.y;
-    block.half_z[i] = h.z;
+    block.set(i, c, h);
 }
 
 bool in_picture(const RenderView& view, const Vec3& p) {
@@ -70,7 +65,7 @@ TEST_CASE("culling: the kernel agrees with the scalar version in 1e5 random boxe
     CHECK(visible < kBoxes / 2);
 }
 
-TEST_CASE("culling: no box with a point in the picture is lost, in 1e5 random boxes") {
+TEST_CASE("culling: no box with a point in the image is lost, in 1e5 random boxes") {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0, 1);
     const auto block = std::make_unique<BoxBlock>();

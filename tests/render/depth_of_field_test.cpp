@@ -89,7 +89,7 @@ float light_at(const gpu::FloatImage& image, int x, int y) {
     return image.at(x, image.height - 1 - y, 0);
 }
 
-/// Sum, middle and second moment of a picture's light.
+/// Sum, middle and second moment of an image's light.
 struct Moments {
     double sum = 0;
     double x = 0;
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(
             const bool lamp = x / 2 == 24 && y / 2 == 25;
             return lamp ? Seen{Vec3(250), distance} : Seen{Vec3(0), kInfinity};
         }));
-        // Half of it gathered from the picture, half from its half: each hides some of the other.
+        // Half of it gathered from the image, half from its half: each hides some of the other.
         const double most = std::abs(diameter) == 4.5f ? 0.05 : 0.02;
         CHECK(m.sum == doctest::Approx(1000).epsilon(most));
         const double own = 0.25;  // of 2 x 2 px
@@ -209,7 +209,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE("depth_of_field: kernels of the half picture are as wide as circles less the tents") {
+TEST_CASE("depth_of_field: kernels of the half image are as wide as circles less the tents") {
     const layout::FocusBlock block = make_focus_block(lens_view(64, 64, 14));
     for (int i = 3 * layout::kKernelStep; i < layout::kKernels; ++i) {
         CAPTURE(i);
@@ -350,7 +350,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an even picture stays even, whatever is where") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: an uniform image stays uniform, whatever is where") {
     for (const IVec2 size : {IVec2(128, 96), IVec2(97, 61), IVec2(7, 5), IVec2(16384, 4)}) {
         CAPTURE(size.x);
         RenderView view = lens_view(size.x, size.y, 14);
@@ -442,7 +442,7 @@ TEST_CASE_FIXTURE(Scene, "depth_of_field: a pinhole adds no pass and changes no 
     CHECK(frame_graph(shared_renderer()).was_run("focus.compose"));
 }
 
-TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the picture through the lens") {
+TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the image through the lens") {
     place(add(make_square()), add(Material{.shading = ShadingModel::Unlit}), at({0, 0, 0}));
     world.insert_resource(Glow{.strength = 0.1f});
     RenderView view = look({0, 0, 3}, {0, 0, 0}, 64, 48);
@@ -461,7 +461,7 @@ TEST_CASE_FIXTURE(Scene, "depth_of_field: glow is of the picture through the len
 
 // ---- the cheapest kind (post.dof-mip)
 
-TEST_CASE_FIXTURE(Darkroom, "depth_of_field: by mip levels, an even picture stays even") {
+TEST_CASE_FIXTURE(Darkroom, "depth_of_field: by mip levels, an uniform image stays uniform") {
     RenderView view = lens_view(64, 64, 14);
     view.lens.method = FocusMethod::Mip;
     const gpu::FloatImage image = photograph(view, [](int x, int y) {

@@ -45,7 +45,7 @@ Picture make_room() {
     });
 }
 
-/// At the middle of a pixel, of a picture of `step` pixels a texel, as a linear filter reads it.
+/// At the middle of a pixel, of an image of `step` pixels a texel, as a linear filter reads it.
 double read_between(const gpu::FloatImage& image, int channel, int x, int y, int step) {
     const double at_x = std::clamp((x + 0.5) / step - 0.5, 0.0, image.width - 1.0);
     const double at_y = std::clamp((y + 0.5) / step - 0.5, 0.0, image.height - 1.0);
@@ -105,7 +105,7 @@ struct DodgeBurn : RenderTest {
 
 }  // namespace
 
-TEST_CASE("hdr: an even picture is burned as a whole, by the global curve") {
+TEST_CASE("hdr: a uniform image is burned as a whole, by the global curve") {
     for (const double l : {0.02, 0.18, 3.0}) {
         const oracle::DodgeBurn local =
             oracle::dodge_burn(Picture(kWidth * kHeight, l), kWidth, kHeight);
@@ -201,7 +201,7 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: the GPU dodges and burns like the oracle") {
     }
 }
 
-TEST_CASE_FIXTURE(DodgeBurn, "hdr: an even picture gets the global curve on the GPU too") {
+TEST_CASE_FIXTURE(DodgeBurn, "hdr: a uniform image gets the global curve on the GPU too") {
     for (const double l : {0.02, 0.18, 3.0}) {
         const Picture got = show(Picture(kWidth * kHeight, l));
         CHECK(std::abs(got[index(3, 3)] - oracle::compress(l)) <= 0.51 / 255);
@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: an even picture gets the global curve on the 
     }
 }
 
-TEST_CASE_FIXTURE(DodgeBurn, "hdr: a pixel that is no number darkens nothing but itself") {
+TEST_CASE_FIXTURE(DodgeBurn, "hdr: a NaN pixel darkens nothing but itself") {
     Picture picture(kWidth * kHeight, 0.4);
     picture[index(80, 48)] = std::nan("");
     picture[index(20, 20)] = INFINITY;

@@ -125,7 +125,7 @@ TEST_CASE_FIXTURE(
     CHECK(worst_reflection(*this, {1.3f, 1.1f, -1.4f}, normal) < 0.05);
 }
 
-TEST_CASE_FIXTURE(MirrorScene, "env_reflect: the picture does not turn with the mirror") {
+TEST_CASE_FIXTURE(MirrorScene, "env_reflect: the image does not turn with the mirror") {
     const Entity entity = ball(at({0, 0, 0}));
     const RenderView view = look({0.3f, 0.8f, 2}, {0, 0, 0}, 96, 96);
     const gpu::FloatImage still = radiance(view);

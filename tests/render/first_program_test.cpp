@@ -74,7 +74,7 @@ class PairTest : public RenderTest {
     gpu::Framebuffer framebuffer;
 };
 
-/// The whole picture, left and right at their own w.
+/// The whole image, left and right at their own w.
 std::vector<Vertex>
 full_quad(float w_left, float w_right, const Vec3& left, const Vec3& right, float z = 0.5f) {
     const auto at = [&](float x, float y) {
@@ -117,7 +117,7 @@ std::optional<DVec3> meet_cube(const DVec3& origin, const DVec3& direction) {
     return enter < leave ? std::optional(origin + enter * direction) : std::nullopt;
 }
 
-/// Largest difference, in codes of 8 bits, of the picture from the position that each pixel shows.
+/// Largest difference, in codes of 8 bits, of the image from the position that each pixel shows.
 template <typename Code>
 double worst_code(const RenderView& view, Code&& code) {
     const glm::dmat4 world_from_clip = glm::inverse(glm::dmat4(view.clip_from_world));

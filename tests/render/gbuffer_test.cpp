@@ -404,11 +404,11 @@ TEST_CASE_FIXTURE(Scene, "velocity: it is zero in the step of the spawn and for 
     place(square, gray, at({0, 0, 0}));
     CHECK(velocity_at(aov(view, "velocity"), 4, 4) == Vec2(0));
     world.clear();
-    world.create(MeshInstance{square, gray}, WorldTransform{at({0, 0, 0})});  // no moment before
+    world.create(MeshInstance{square, gray}, WorldTransform{at({0, 0, 0})});  // no previous frame
     CHECK(velocity_at(aov(view, "velocity"), 4, 4) == Vec2(0));
 }
 
-TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from picture to picture") {
+TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from frame to frame") {
     const MeshId square = add(make_square());
     world.create(
         MeshInstance{square, add(Material{})}, WorldTransform{at({0.4f, 0, 0})},

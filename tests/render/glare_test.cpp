@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(
     CHECK(sums[2] / sums[1] == doctest::Approx(465.0 / 550).epsilon(0.01));
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glare: what is no number never spreads") {
+TEST_CASE_FIXTURE(RenderTest, "glare: NaN never spreads") {
     const float kNan = std::numeric_limits<float>::quiet_NaN();
     for (const float broken : {kNan, std::numeric_limits<float>::infinity()}) {
         const gpu::FloatImage made = glare_of(10, {.strength = 1}, broken);

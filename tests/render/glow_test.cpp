@@ -61,7 +61,7 @@ double green_sum(const LightImage& picture) {
 }
 
 /// A lamp before the dark.
-Entity furnish(Scene& scene, const Vec3& emission = {9, 4, 2}, float z = 0) {
+Entity place_objects(Scene& scene, const Vec3& emission = {9, 4, 2}, float z = 0) {
     const MaterialId bright = scene.add(
         Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}, .emission = emission});
     return scene.place(
@@ -79,7 +79,7 @@ std::string pass_names() {
 }  // namespace
 
 TEST_CASE_FIXTURE(Scene, "glow: switched off, it adds no pass and changes no bit") {
-    furnish(*this);
+    place_objects(*this);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 61, 48);
     static_cast<void>(draw(view));  // what surrounds the scene is mirrored once
     const gpu::FloatImage without = radiance(view);
@@ -94,8 +94,8 @@ TEST_CASE_FIXTURE(Scene, "glow: switched off, it adds no pass and changes no bit
     }
 }
 
-TEST_CASE_FIXTURE(Scene, "glow: a picture of many samples glows once, with the sum of its light") {
-    furnish(*this);
+TEST_CASE_FIXTURE(Scene, "glow: an image of many samples glows once, with the sum of its light") {
+    place_objects(*this);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 61, 48);
     const auto accumulated = [&] {
         return picture_of(
@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: no light is made or lost, at any size, in c
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: an even picture stays as it is") {
+TEST_CASE_FIXTURE(RenderTest, "glow: a uniform image stays as it is") {
     for (const IVec2& size : {IVec2(40, 24), IVec2(37, 23)}) {
         LightImage even = oracle::make_black_image(size.x, size.y);
         for (glm::dvec3& pixel : even.pixels) {
@@ -220,7 +220,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a firefly's light stays in its pixel instea
         > 0.85 * glowing(sun, {.strength = 0.5f, .firefly = 0}).at(40, 60).y);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "glow: what is no number, or infinite, never spreads") {
+TEST_CASE_FIXTURE(RenderTest, "glow: NaN and infinity never spread") {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const IVec2& size : {IVec2(64, 48), IVec2(63, 47)}) {
@@ -261,7 +261,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: it is the oracle's convolution, within 2 % 
 
 // ---- the emissive mask
 
-TEST_CASE_FIXTURE(Scene, "glow: a mask without lamps is black, and changes no bit of the picture") {
+TEST_CASE_FIXTURE(Scene, "glow: a mask without lamps is black, and changes no bit of the image") {
     place(add(make_square()), add(Material{}), at({0, 0, 0}));
     shine(PointLight{.intensity = 5}, at({0, 0, 1}));
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 40, 32);
@@ -272,7 +272,7 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask without lamps is black, and changes no bi
 }
 
 TEST_CASE_FIXTURE(Scene, "glow: a lamp behind a black wall adds nothing, by any light method") {
-    furnish(*this, {9, 4, 2}, -1);
+    place_objects(*this, {9, 4, 2}, -1);
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 40, 32);
     const gpu::FloatImage bare = radiance(view);
     for (const LightMethod method : {LightMethod::Clustered, LightMethod::ObjectMajor}) {
@@ -292,7 +292,7 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask adds the lamp's light once more, twice as
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 80, 64);
     const auto added = [&](const Vec3& emission, float strength) {
         Scene scene;
-        furnish(scene, emission);
+        place_objects(scene, emission);
         const LightImage bare = picture_of(scene.radiance(view));
         scene.world.insert_resource(
             Glow{.kind = GlowKind::Mask, .strength = strength, .passes = 3});

@@ -122,7 +122,7 @@ TEST_CASE("noise: a flame flickers within its amplitude, smoothly, and no two al
     for (int i = 1; i <= 3600; ++i) {
         const double time = i / 60.0;
         const float factor = pulse_factor(one, time);
-        CHECK(std::abs(factor - last) < 0.2f);  // of two pictures
+        CHECK(std::abs(factor - last) < 0.2f);  // of two images
         least = std::min(least, factor);
         most = std::max(most, factor);
         apart += std::abs(factor - pulse_factor(other, time));

@@ -157,8 +157,7 @@ TEST_CASE_FIXTURE(InflateScene, "inflate: gaps are seen through") {
     CHECK_FALSE(holes(true));
 }
 
-TEST_CASE_FIXTURE(
-    InflateScene, "inflate: what grows into the picture is drawn, what is NaN is not") {
+TEST_CASE_FIXTURE(InflateScene, "inflate: what grows into the image is drawn, what is NaN is not") {
     const Entity entity = ball(1, nullptr);
     world.get<WorldTransform>(entity).world = at({4.2f, 0, 0});
     world.get<PreviousWorldTransform>(entity).world = at({4.2f, 0, 0});

@@ -52,7 +52,7 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: meshes and materials without textures
     CHECK(draw(view()).statistics.draws == 4);
 }
 
-TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the picture is the same") {
+TEST_CASE_FIXTURE(CrowdScene, "instancing: together or each by itself, the image is the same") {
     // shade.batching: one state, then meshes and images of their own, then a state per object,
     // since images of different sizes are in different texture arrays.
     constexpr int kBalls = 36;
@@ -120,8 +120,7 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and 
     }
 }
 
-TEST_CASE_FIXTURE(
-    CrowdScene, "instancing: the picture has the same bits for any number of threads") {
+TEST_CASE_FIXTURE(CrowdScene, "instancing: the image has the same bits for any number of threads") {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(-1, 1);
     const MeshId meshes[] = {add(make_ball(4)), add(make_square())};

@@ -193,7 +193,7 @@ void try_numbers(const std::string& name, const Setting& setting, const Use& use
 
 }  // namespace
 
-TEST_CASE("lens: whatever number any setting has, the picture is one of numbers") {
+TEST_CASE("lens: whatever number any setting has, the image is finite") {
     const auto resource = [](Moving& scene, RenderView&, const auto& setting) {
         scene.world.insert_resource(setting);
         return Entity{};
@@ -251,14 +251,14 @@ TEST_CASE("lens: each effect that is turned off adds no pass and changes no bit 
     }
 }
 
-TEST_CASE("lens: what is less than nothing, or no number, is nothing") {
+TEST_CASE("lens: what is negative or NaN is 0") {
     Moving plain;
     const gpu::FloatImage without = plain.radiance(plain.seen());
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const LensEffect& effect : lens_effects()) {
         for (const float bad : {-1.0f, nan}) {
             if (effect.name == "speed lines" || effect.name == "anti-aliasing") {
-                continue;  // counted and chosen, no numbers
+                continue;  // integers and enumerations
             }
             if (bad < 0 && (effect.name == "shock ring" || effect.name == "screen ripple")) {
                 continue;  // of opposite phase
@@ -273,7 +273,7 @@ TEST_CASE("lens: what is less than nothing, or no number, is nothing") {
     }
 }
 
-TEST_CASE("lens: each effect is sound in a picture 16384 pixels wide") {
+TEST_CASE("lens: each effect is sound in an image 16384 pixels wide") {
     for (const LensEffect& effect : lens_effects()) {
         CAPTURE(effect.name);
         Moving scene;
@@ -286,7 +286,7 @@ TEST_CASE("lens: each effect is sound in a picture 16384 pixels wide") {
     }
 }
 
-TEST_CASE("lens: whatever moves by no number or a billion meters, the picture is one of numbers") {
+TEST_CASE("lens: whatever moves by NaN or a billion meters, the image is finite") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const LensEffect& effect : lens_effects()) {
         for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e9f, 1e30f}) {

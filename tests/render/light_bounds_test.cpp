@@ -94,7 +94,7 @@ TEST_CASE(
     CHECK(seen > 10000);
 }
 
-TEST_CASE("light_bounds: from inside a light the rectangle is the whole picture") {
+TEST_CASE("light_bounds: from inside a light the rectangle is the whole image") {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     const LightBounds bounds = light_bounds(view, {0.5f, 0.2f, 0.4f}, 1);
     CHECK(bounds.x == 0);
@@ -105,7 +105,7 @@ TEST_CASE("light_bounds: from inside a light the rectangle is the whole picture"
     CHECK(light_bounds(view, {5, 5, 5}, INFINITY) == LightBounds{0, 0, 320, 180, 0, 1});
 }
 
-TEST_CASE("light_bounds: a light behind the camera or beside the picture reaches nothing") {
+TEST_CASE("light_bounds: a light behind the camera or beside the image reaches nothing") {
     const RenderView view = looking({0, 0, 0}, {0, 0, -1});
     CHECK(is_empty(light_bounds(view, {0, 0, 3}, 1)));
     CHECK(is_empty(light_bounds(view, {0, 0, 0.95f}, 1)));  // ends before the near plane

@@ -27,7 +27,7 @@ float srgb(float linear) {
 
 class Methods : public Scene {
   public:
-    Entity ground;  ///< the floor of furnish()
+    Entity ground;  ///< the floor of place_objects()
 
     void use(LightMethod method) { world.insert_resource(Rendering{method}); }
 
@@ -55,7 +55,7 @@ class Methods : public Scene {
     }
 
     /// A room of unlike things: a floor, balls of all shading models, a leaf with holes.
-    void furnish() {
+    void place_objects() {
         const MeshId square = add(make_square());
         const MeshId ball = add(make_ball(12));
         const MaterialId stone =
@@ -115,8 +115,8 @@ class Methods : public Scene {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Methods, "light methods: all five make the same picture") {
-    furnish();
+TEST_CASE_FIXTURE(Methods, "light methods: all five make the same image") {
+    place_objects();
     light(40);
     // From aside, from within the lights, with a light before the near plane.
     for (const RenderView& view : {from_aside(), look({0.2f, -1, 1}, {0, 3, 1}, kWidth, kHeight)}) {
@@ -143,8 +143,8 @@ TEST_CASE_FIXTURE(Methods, "light methods: all five make the same picture") {
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: pictures of single lights add up to that of all") {
-    furnish();
+TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to that of all") {
+    place_objects();
     const RenderView view = from_aside();
     world.resource<Environment>().intensity = 0;
     const Entity lamps[] = {
@@ -174,7 +174,7 @@ TEST_CASE_FIXTURE(Methods, "light methods: pictures of single lights add up to t
         float worst = 0;
         for (std::size_t i = 0; i < sum.size(); i += static_cast<std::size_t>(all.channels)) {
             for (std::size_t c = 0; c < 3; ++c) {
-                // One of the balls shines by itself: it is in every picture.
+                // One of the balls shines by itself: it is in every image.
                 const float emission = 0.1f * 2;
                 const float apart = std::abs(sum[i + c] - all.pixels[i + c]);
                 worst = std::max(worst, std::min(apart, std::abs(apart - emission)));
@@ -184,8 +184,8 @@ TEST_CASE_FIXTURE(Methods, "light methods: pictures of single lights add up to t
     }
 }
 
-TEST_CASE_FIXTURE(Methods, "light methods: shadows and thrown images are the same in all five") {
-    furnish();
+TEST_CASE_FIXTURE(Methods, "light methods: shadows and projected images are the same in all five") {
+    place_objects();
     ImageData stripes;
     stripes.width = 8;
     stripes.height = 8;
@@ -240,7 +240,7 @@ TEST_CASE_FIXTURE(Methods, "light methods: surfaces in one place are lit once") 
 
 TEST_CASE_FIXTURE(
     Methods, "light methods: broken lights are left out, odd ones draw the same in all") {
-    furnish();
+    place_objects();
     light(6);
     const RenderView view = from_aside();
     const gpu::FloatImage good = picture(LightMethod::Clustered, view);
@@ -298,7 +298,7 @@ TEST_CASE_FIXTURE(Methods, "light methods: where a light is shadowed the others 
 
 TEST_CASE_FIXTURE(
     Methods, "light methods: object-major draws each object once, whatever the lights") {
-    furnish();
+    place_objects();
     const RenderView view = from_aside();
     light(3);
     const int few = draws(LightMethod::ObjectMajor, view);
@@ -398,7 +398,7 @@ TEST_CASE_FIXTURE(Methods, "depth first: overlapping squares are lit once a pixe
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
     shine(PointLight{}, at({0, 0, 0.5f}));
     const std::uint64_t background = samples(LightMethod::LightMajor, view);
-    // Each covers the whole picture; depth takes them from near to far, or from far to near.
+    // Each covers the whole image; depth takes them from near to far, or from far to near.
     for (int i = 0; i < 4; ++i) {
         const float z = -0.1f * static_cast<float>(i);
         place(square, plain, affine_from({0, 0, z}, {1, 0, 0, 0}, {2, 2, 1}));
@@ -417,7 +417,7 @@ TEST_CASE_FIXTURE(Methods, "depth first: overlapping squares are lit once a pixe
 }
 
 TEST_CASE_FIXTURE(Methods, "depth first: lighting leaves the depth as it was") {
-    furnish();
+    place_objects();
     light(12);
     const RenderView view = from_aside();
     use(LightMethod::Clustered);
@@ -443,7 +443,7 @@ TEST_CASE_FIXTURE(
     leaf.alpha_mode = AlphaMode::Mask;
     leaf.double_sided = true;
     place(add(make_square()), add(leaf), affine_from({0, 0, 0.5f}, {1, 0, 0, 0}, {-1, 1, 1}));
-    furnish();
+    place_objects();
     light(12);
     const RenderView view = from_aside();
     const gpu::FloatImage clustered = picture(LightMethod::Clustered, view);
@@ -463,12 +463,7 @@ TEST_CASE("visibility sets: a light's objects are those whose boxes meet its sph
         const Vec3 h = Vec3(1.1f) + Vec3(unit(random), unit(random), unit(random));
         BoxBlock& block = blocks[i / kCullBlock];
         const int k = i % kCullBlock;
-        block.center_x[k] = c.x;
-        block.center_y[k] = c.y;
-        block.center_z[k] = c.z;
-        block.half_x[k] = h.x;
-        block.half_y[k] = h.y;
-        block.half_z[k] = h.z;
+        block.set(k, c, h);
         boxes.push_back({c - h, c + h});
     }
     for (int n = 0; n < 50; ++n) {
@@ -531,7 +526,7 @@ TEST_CASE_FIXTURE(Methods, "visibility sets: what is not seen itself still casts
     world.add(lamp, Shadow{});
     use(LightMethod::LightMajor);
     const gpu::FloatImage lit = radiance(view);
-    // Between light and picture, beside what the camera sees.
+    // Between light and image, beside what the camera sees.
     place(add(make_ball(12)), add(Material{}), at({6, 0, 2}));
     CHECK(draw(view).statistics.visible_instances == 1);
     CHECK(rgb_at(radiance(view), 16, 16).x < 0.1f * rgb_at(lit, 16, 16).x);

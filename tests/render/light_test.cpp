@@ -41,7 +41,7 @@ oracle::ClassicMaterial as_oracle(const Material& m) {
         .shininess = m.shininess};
 }
 
-/// A plane of side 2 in z = 0, seen from (0, 0, 1): pixel (x, y) of an n x n picture shows this
+/// A plane of side 2 in z = 0, seen from (0, 0, 1): pixel (x, y) of an n x n image shows this
 /// point.
 Vec3 plane_point(int x, int y, int n) {
     const auto to_plane = [n](int i) {
@@ -52,7 +52,7 @@ Vec3 plane_point(int x, int y, int n) {
 
 constexpr int kSide = 32;
 
-/// Largest difference of picture and oracle, relative to the brightest of the oracle's values.
+/// Largest difference of image and oracle, relative to the brightest of the oracle's values.
 template <typename Reference>
 double deviation(const gpu::FloatImage& image, Reference&& reference) {
     double worst = 0;
@@ -477,7 +477,7 @@ TEST_CASE("light: lights of all types add up, in any order") {
     }
 }
 
-TEST_CASE("light: off and on again restores every bit; off leaves the other light's picture") {
+TEST_CASE("light: off and on again restores every bit; off leaves the other light's image") {
     PlaneScene scene;
     const Entity one = scene.shine(PointLight{}, at({0.3f, 0.1f, 0.6f}));
     const gpu::FloatImage alone = scene.picture();

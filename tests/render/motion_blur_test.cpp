@@ -66,7 +66,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: where nothing moves, no bit changes") {
     }
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: a picture of one color keeps it, whatever moves") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: an image of one color keeps it, whatever moves") {
     const Vec3 color = {0.3f, 0.6f, 0.9f};
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = color});
     const MaterialId same = unlit(color);
@@ -153,7 +153,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Shutter, "motion blur: things of different depth that move alike stay one picture") {
+    Shutter, "motion blur: things of different depth that move alike stay one image") {
     bar(unlit({0, 0, 1}), -60, 120, 10, -1);
     bar(unlit({1, 0, 0}), 24, 40, 10);
     open(360);
@@ -198,7 +198,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: the sky smears as the camera turns") {
         .zenith = {0, 0, 4},
         .horizon = {1, 1, 0},
         .ground = {0.5f, 0, 0}});
-    // About x: the horizon runs through the picture.
+    // About x: the horizon runs through the image.
     const auto pose = [](double moment) {
         return affine_from(
             {0, 0, 0}, glm::angleAxis(0.2f * static_cast<float>(moment), Vec3(1, 0, 0)), Vec3(1));
@@ -241,7 +241,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: no smear is longer than the longest") {
     CHECK(sum_of(blurred, 0) == doctest::Approx(sum_of(sharp(), 0)).epsilon(0.05));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: motion that is no number is none") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: NaN motion is no motion") {
     const Entity broken = bar(unlit({1, 0.5f, 0.25f}), 20, 44, 0);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float bad : {nan, std::numeric_limits<float>::infinity(), 1e30f}) {
@@ -261,7 +261,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: what was behind the camera smears withi
     CHECK(all_finite(picture()));
 }
 
-TEST_CASE_FIXTURE(Shutter, "motion blur: it works in a picture 16384 pixels wide") {
+TEST_CASE_FIXTURE(Shutter, "motion blur: it works in an image 16384 pixels wide") {
     bar(unlit({1, 1, 1}), -60, 120, 30);
     open(360, 16);
     const gpu::FloatImage wide = radiance(front(16384, 4));

@@ -58,10 +58,10 @@ class OldShutter : public Shutter {
 
 }  // namespace
 
-// ---- the mean of the last pictures
+// ---- the mean of the last images
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: the mean of equal pictures is that picture, to the bit") {
+    OldShutter, "motion accumulation: the mean of equal images is that image, to the bit") {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
     set_mode(MotionBlurMode::Accumulate);
@@ -72,7 +72,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: a flash of one picture is a fifth of it in five pictures") {
+    OldShutter, "motion accumulation: a flash of one frame is a fifth of it in five frames") {
     flash(true);
     const float full = middle();
     CHECK(full == doctest::Approx(1));
@@ -91,7 +91,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion accumulation: at first it is the mean of the pictures that there are") {
+    OldShutter, "motion accumulation: at first it is the mean of the frames that there are") {
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
     CHECK(middle() == doctest::Approx(1));
@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     OldShutter, "motion accumulation: nothing is left of what was bright a thousand times over") {
-    // A sum that pictures are added to and taken from again would keep what it rounds off.
+    // A sum that images are added to and taken from again would keep what it rounds off.
     set_mode(MotionBlurMode::Accumulate);
     const MaterialId dim = unlit({0.3f, 0.7f, 0.1f});
     const Entity bright = bar(dim, 10, 40, 0);
@@ -212,7 +212,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion camera: a picture of one color keeps it") {
+TEST_CASE_FIXTURE(OldShutter, "motion camera: an image of one color keeps it") {
     bar(unlit({0.4f, 0.5f, 0.6f}), -500, 600, 0);
     set_mode(MotionBlurMode::Camera);
     CHECK(largest_difference(radiance(stepped(23)), sharp()) < 1e-6f);
@@ -249,7 +249,7 @@ TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of
     CHECK(Vec3(found[1]) == Vec3(0));                            // along: nothing
     CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                      // behind: backward
     CHECK(glm::length(Vec3(found[3])) == doctest::Approx(1.6));  // never more than the motion
-    CHECK(Vec3(found[4]) == Vec3(0));  // no motion, no number that is none
+    CHECK(Vec3(found[4]) == Vec3(0));                            // no motion, no NaN
 
     Random random(4, 0, 0, 0);
     std::vector<Vec4> any;
@@ -326,7 +326,7 @@ TEST_CASE("motion stretch: a bar covers its way in proportion, with the signs pu
     }
 }
 
-TEST_CASE_FIXTURE(OldShutter, "motion stretch: two pictures of a box make the ramp of the bar") {
+TEST_CASE_FIXTURE(OldShutter, "motion stretch: two frames of a box make the ramp of the bar") {
     const MeshId box = add(make_block());
     const float way = 16;
     const auto pose = [](float x) {
@@ -349,7 +349,7 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: two pictures of a box make the ra
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: what stands keeps its bits, first pictures are sharp") {
+    OldShutter, "motion stretch: what stands keeps its bits, first frames are sharp") {
     world.insert_resource(Environment{});
     bar(unlit({0.3f, 0.7f, 0.1f}), 10, 40, 0);
     set_mode(MotionBlurMode::Stretch);
@@ -358,7 +358,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both pictures") {
+    OldShutter, "motion stretch: where the way is none, a pixel is the mean of both frames") {
     const auto pose = [](float z) { return affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(0.5f)); };
     const Entity entity = place(add(make_ball(16)), unlit({1, 0.5f, 0}), pose(-1));
     set_mode(MotionBlurMode::Stretch);

@@ -14,7 +14,7 @@ using glm::dvec2;
 using glm::dvec4;
 using oracle::DVec3;
 
-/// Of a place: x and y of the picture and depth; w is q.
+/// Of a place: x and y of the image and depth; w is q.
 dvec4 project(const dmat4& clip_from_world, const DVec3& p) {
     const dvec4 clip = clip_from_world * dvec4(p, 1);
     return {DVec3(clip) / clip.w, clip.w};
@@ -33,7 +33,7 @@ DVec3 random_in(std::mt19937& random, double low, double high) {
     return {x, y, along(random)};
 }
 
-/// Lights of all kinds about a camera that looks along -z: homogeneous, none in the picture.
+/// Lights of all kinds about a camera that looks along -z: homogeneous, none in the image.
 const std::vector<Vec4>& lights_about() {
     static const std::vector<Vec4> lights = {
         {0, 1, 0, 0},                                    // above
@@ -262,7 +262,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PostScene, "perspective map: a lamp beside the picture has one map, in it the usual six") {
+    PostScene, "perspective map: a lamp beside the image has one map, in it the usual six") {
     const oracle::ShadowScene rays(world);
     const Entity lamp = shine(PointLight{.radius = 0}, at({0, 0, 0}));
     world.add(lamp, kPerspective);

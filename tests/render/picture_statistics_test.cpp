@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-// The statistics of pictures on the GPU against the double-precision oracle.
+// The statistics of images on the GPU against the double-precision oracle.
 
 namespace limn::test {
 namespace {
@@ -43,7 +43,7 @@ struct Statistics : RenderTest {
     StatisticsPass pass;
 };
 
-/// A picture of 14 stops in no pattern.
+/// An image of 14 stops in no pattern.
 std::vector<Vec3> make_noise(int count, float scale = 1.0f) {
     Random rng(7, 0, 0, 0);
     std::vector<Vec3> pixels;
@@ -155,7 +155,7 @@ TEST_CASE_FIXTURE(Statistics, "hdr: light below 0 counts as none, above the larg
     CHECK(even({-5, 0.5f, -2}).mean_scale.x == 0);
 }
 
-TEST_CASE_FIXTURE(Statistics, "hdr: equal pictures have equal statistics, to the last bit") {
+TEST_CASE_FIXTURE(Statistics, "hdr: equal images have equal statistics, to the last bit") {
     const std::vector<Vec3> pixels = make_noise(640 * 90);
     const layout::ImageStatistics first = measure(pixels, 640);
     for (int i = 0; i < 3; ++i) {
@@ -187,7 +187,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Statistics, "hdr: the eye is at home in its first picture, then goes the share it is given") {
+    Statistics, "hdr: the eye is at home in its first frame, then goes the share it is given") {
     CHECK(even(Vec3(2), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(2.0001));
     CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(4.0001));
     const layout::ImageStatistics again = even(Vec3(10), {.key = 0.18f, .blend = 0.25f});
@@ -198,7 +198,7 @@ TEST_CASE_FIXTURE(
     CHECK(home.luminance.y == home.luminance.x);
 }
 
-TEST_CASE("hdr: only cuts make the clock of pictures start anew") {
+TEST_CASE("hdr: only cuts restart the frame clock") {
     FrameClock clock;
     const Affine here;
     Affine near_by = here;

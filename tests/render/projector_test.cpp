@@ -161,7 +161,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    WallScene, "projector: its picture is the same in whatever order surfaces and lights meet") {
+    WallScene, "projector: its image is the same in whatever order surfaces and lights meet") {
     world.add(lamp, Projector{.image = add(four_colors()), .width = radians(40.0f)});
     const gpu::FloatImage clustered = wall();
     CHECK(at_wall(clustered, {-0.3f, 0.3f}).x > 0.5f);

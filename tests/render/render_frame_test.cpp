@@ -10,7 +10,7 @@
 
 namespace limn::test {
 
-TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black picture of the asked size") {
+TEST_CASE_FIXTURE(Scene, "render frame: an empty world is a black image of the asked size") {
     for (const IVec2& size : {IVec2(1, 1), IVec2(3, 200), IVec2(257, 65)}) {
         const FrameOutput out = draw(look({0, 0, 1}, {0, 0, 0}, size.x, size.y));
         const gpu::FloatImage image = gpu::read_floats(*out.radiance);
@@ -123,7 +123,7 @@ TEST_CASE_FIXTURE(
     CHECK(gpu::read_bytes(*out.display).width == 32);
 }
 
-TEST_CASE_FIXTURE(Scene, "render frame: the same world twice is the same picture, bit for bit") {
+TEST_CASE_FIXTURE(Scene, "render frame: the same world twice is the same image, bit for bit") {
     world.insert_resource(Environment{.sky = SkyKind::Studio});
     place(add(make_ball()), add(Material{.metalness = 1, .roughness = 0.2f}), at({0, 0, 0}));
     shine(PointLight{}, at({1, 1, 2}));
@@ -184,7 +184,7 @@ TEST_CASE("render view: a scaled or sheared camera sees what a rigid one does") 
 }
 
 TEST_CASE_FIXTURE(
-    Scene, "render frame: through a pinhole, in no time, any number of samples is the picture") {
+    Scene, "render frame: through a pinhole, in no time, any number of samples is the image") {
     place(add(make_ball(12)), add(Material{}), affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(0.7f)));
     shine(PointLight{.intensity = 7}, at({1, 1, 1}));
     world.insert_resource(Environment{});

@@ -24,7 +24,7 @@ class Rippled : public Scene {
     Rippled() { world.insert_resource(FrameTime{.time = 1.25}); }
 
     /// A wall of many colors 8 m away, and beside the middle a post 2 m away.
-    void furnish(const Vec3& post_color) {
+    void place_objects(const Vec3& post_color) {
         ImageData image = {.name = "wall", .width = 16, .height = 16, .srgb = false, .pixels = {}};
         for (int i = 0; i < 256; ++i) {
             for (const int c : {i * 37 % 256, i * 91 % 256, i * 53 % 256, 255}) {
@@ -130,7 +130,7 @@ TEST_CASE("ripple: the screen folds over itself exactly when amplitude / radius 
 
 TEST_CASE_FIXTURE(
     Rippled, "ripple: the screen's field is the formula, with the center to the left below") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     const ScreenRipple ripple = {
         .center = {0.3f, 0.4f}, .age = 0.2f, .duration = 0.5f, .amplitude = 0.05f, .radius = 0.1f};
     world.create(ripple);
@@ -148,7 +148,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Rippled, "ripple: a round one is round in pixels, several add up") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     const ScreenRipple one = {
         .center = {0.5f, 0.5f}, .age = 0.25f, .radius = 0.3f, .radius_speed = 0, .round = true};
     const ScreenRipple two = {.center = {0.2f, 0.7f}, .age = 0.25f, .radius_speed = 1};
@@ -189,7 +189,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Rippled, "ripple: a ring turns rays as the oracle does, to a quarter of a pixel") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     const Vec3 center = {-0.3f, 0.2f, -4};
     world.create(ring_at(0.5f), WorldTransform{at(center)});
     const oracle::RingWave wave = {
@@ -207,7 +207,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Rippled, "ripple: hot air shifts as the oracle says, never by more than its strength") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     for (const HazeShape shape : {HazeShape::Box, HazeShape::Ball}) {
         const Affine pose =
             affine_from({0.2f, 0, -4}, glm::normalize(Quat(1, 0.1f, 0.3f, 0)), {1.5f, 2, 1});
@@ -234,10 +234,10 @@ TEST_CASE_FIXTURE(
     }
 }
 
-// ---- the picture
+// ---- the image
 
 TEST_CASE_FIXTURE(Rippled, "ripple: of no strength or outside of its time, there is no pass") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     static_cast<void>(draw(seen()));
     const gpu::FloatImage still = radiance(seen());
     const Affine there = at({0, 0, -4});
@@ -263,7 +263,7 @@ TEST_CASE("ripple: what stands in front neither ripples nor leaks, to the bit") 
         std::vector<gpu::FloatImage> made;
         for (int kind = 0; kind < 3; ++kind) {
             Rippled scene;
-            scene.furnish(post);
+            scene.place_objects(post);
             if (kind == 1) {
                 scene.world.create(
                     RippleRing{
@@ -309,7 +309,7 @@ TEST_CASE("ripple: what stands in front neither ripples nor leaks, to the bit") 
     }
 }
 
-TEST_CASE_FIXTURE(Rippled, "ripple: places outside of the picture show its edge") {
+TEST_CASE_FIXTURE(Rippled, "ripple: places outside of the image show its edge") {
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0.25f, 0.5f, 1, 1}}),
@@ -325,7 +325,7 @@ TEST_CASE_FIXTURE(Rippled, "ripple: places outside of the picture show its edge"
 }
 
 TEST_CASE_FIXTURE(Rippled, "ripple: rain is a function of time and seed") {
-    furnish({1, 0, 0});
+    place_objects({1, 0, 0});
     const auto rained = [&](double time, std::uint32_t seed) {
         world.insert_resource(FrameTime{.time = time});
         world.insert_resource(LensRain{.amount = 0.8f, .size = 0.2f, .seed = seed});

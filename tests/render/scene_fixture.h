@@ -18,7 +18,7 @@
 
 namespace limn::test {
 
-// A world small enough to be reckoned through by hand, and the renderer that draws it.
+// A world small enough to be computed by hand, and the renderer that draws it.
 
 /// One renderer for all tests of the program, beside the shared device.
 inline Renderer& shared_renderer() {
@@ -114,7 +114,7 @@ class Scene : public RenderTest {
         return world.create(light, WorldTransform{now});
     }
 
-    /// Seen from `eye`; the square of side 2 in z = 0 fills the picture from (0, 0, 1).
+    /// Seen from `eye`; the square of side 2 in z = 0 fills the image from (0, 0, 1).
     [[nodiscard]] RenderView
     look(const Vec3& eye, const Vec3& target, int width = 64, int height = 64) const {
         const Affine pose = look_at(eye, target);
@@ -142,7 +142,7 @@ inline Vec3 rgb_at(const gpu::FloatImage& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-/// Largest difference of the two pictures in any channel.
+/// Largest difference of the two images in any channel.
 inline float largest_difference(const gpu::FloatImage& a, const gpu::FloatImage& b) {
     float largest = 0;
     REQUIRE(a.pixels.size() == b.pixels.size());

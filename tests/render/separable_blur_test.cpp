@@ -91,7 +91,7 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product
 TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weights at once") {
     const LightImage picture = noise();
     for (const BlurKernel& kernel : {kBinomialKernel, kBox, kAskew}) {
-        // A GPU has its rows from the bottom up: there a picture's weights are turned over.
+        // A GPU has its rows from the bottom up: there an image's weights are turned over.
         const LightImage made = blurred(picture, kernel);
         LightImage direct = oracle::make_black_image(kSide, kSide);
         const std::array<double, 7> weights = exact(kernel);
@@ -123,7 +123,7 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: the order of the axes makes no di
         < 1e-6);
 }
 
-TEST_CASE_FIXTURE(RenderTest, "separable blur: an even picture stays so, at its edges too") {
+TEST_CASE_FIXTURE(RenderTest, "separable blur: a uniform image stays so, at its edges too") {
     LightImage even = oracle::make_black_image(5, 3);
     for (glm::dvec3& pixel : even.pixels) {
         pixel = glm::dvec3(0.7);

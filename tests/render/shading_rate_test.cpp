@@ -58,7 +58,7 @@ class ShadingRates : public Scene {
         world.insert_resource(Rendering{.shading = rate, .infinite_viewer = infinite});
         return radiance(view);
     }
-    /// The square alone fills the picture of 45 degrees to either side.
+    /// The square alone fills the image of 45 degrees to either side.
     [[nodiscard]] RenderView above() const { return look({0, 0, 0.5f}, {0, 0, 0}, kSide, kSide); }
 };
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-// What levels and programs get wrong about shadows, by every method: pictures stay finite, and what
+// What levels and programs get wrong about shadows, by every method: images stay finite, and what
 // is not wrong is drawn as if the rest were not there.
 
 namespace limn::test {
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     BoxScene,
-    "shadow input: a radius of 0, below it or endless has its shadow, one of no number no light") {
+    "shadow input: a radius of 0, negative or infinite has its shadow, a NaN one no light") {
     const gpu::FloatImage dark = radiance(view());
     for (const ShadowMethod method : kMethods) {
         for (const float radius : {0.0f, -3.0f, kInfinity}) {
@@ -129,7 +129,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BoxScene, "shadow input: lights that are nowhere, or turned nowhere, break no picture") {
+    BoxScene, "shadow input: lights that are nowhere, or turned nowhere, break no image") {
     for (const ShadowMethod method : kMethods) {
         for (const Affine& pose :
              {at({kNan, 1, 0}), at({0, -kInfinity, 0}),

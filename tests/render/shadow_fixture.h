@@ -11,9 +11,9 @@
 
 namespace limn::test {
 
-// What a light's shadows make of a picture, pixel by pixel, beside what rays say.
+// What a light's shadows make of an image, pixel by pixel, beside what rays say.
 
-/// A pixel of a picture with one light.
+/// A pixel of an image with one light.
 struct Receiver {
     bool there = false;  ///< a surface that faces the light, and in its cone
     oracle::DVec3 position;
@@ -34,7 +34,7 @@ class ShadowTest : public Scene {
         return place(add(std::move(mesh)), white, at(position));
     }
 
-    /// What the shadow of `light` does to every pixel, row by row from the top: the picture with it
+    /// What the shadow of `light` does to every pixel, row by row from the top: the image with it
     /// over the one without.
     std::vector<Receiver> receivers(Entity light, const RenderView& view) {
         const Shadow shadow = world.get<Shadow>(light);
@@ -76,7 +76,7 @@ class ShadowTest : public Scene {
     }
 };
 
-/// Share of the receivers on which picture and rays agree whether they are lit.
+/// Share of the receivers on which image and rays agree whether they are lit.
 template <typename Blocked>
 double agreement(const std::vector<Receiver>& receivers, Blocked&& blocked) {
     int same = 0;

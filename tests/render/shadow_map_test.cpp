@@ -316,7 +316,7 @@ TEST_CASE_FIXTURE(ShadowTest, "shadow map: six faces agree with rays on 98 % of 
     CHECK(agreement(all, [&](const DVec3& p) { return rays.blocked(p, {0, 1, 0}); }) >= 0.98);
 }
 
-TEST_CASE_FIXTURE(ShadowTest, "shadow map: turned by 90 degrees six faces give the same picture") {
+TEST_CASE_FIXTURE(ShadowTest, "shadow map: turned by 90 degrees six faces give the same image") {
     const MeshId floor = add(make_box({.size = {6, 0.2f, 6}}));
     const MeshId post = add(make_box({.size = {0.3f, 0.8f, 0.5f}}));
     const auto picture = [&](const Quat& turn) {
@@ -637,7 +637,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     ShadowTest,
-    "shadow map: with casters culled by the light's range the picture is that of all of them") {
+    "shadow map: with casters culled by the light's range the image is that of all of them") {
     put(make_plane({.size = {8, 8}}), {0, 0, 0});
     std::mt19937 random(7);
     std::uniform_real_distribution<float> along(-3, 3);
@@ -658,17 +658,17 @@ TEST_CASE_FIXTURE(
 // ------------------------------------------------------------------------------------
 
 TEST_CASE("shadow map: numbers that make no sense are replaced by some that do") {
-    const Shadow sane = sanitize(
+    const Shadow cleaned = sanitize(
         {.resolution = -5,
          .source_size = std::nanf(""),
          .cascades = 99,
          .distance = -1,
          .bias = INFINITY});
-    CHECK(sane.resolution == 16);
-    CHECK(sane.source_size == 0);
-    CHECK(sane.cascades == kMaxCascades);
-    CHECK(sane.distance == 40);
-    CHECK(sane.bias == 1);
+    CHECK(cleaned.resolution == 16);
+    CHECK(cleaned.source_size == 0);
+    CHECK(cleaned.cascades == kMaxCascades);
+    CHECK(cleaned.distance == 40);
+    CHECK(cleaned.bias == 1);
     CHECK(sanitize({.resolution = 300}).resolution == 512);
     CHECK(sanitize({.resolution = 0}).resolution == 16);
     CHECK(sanitize({.resolution = 1'000'000'000}).resolution == 4096);
@@ -677,7 +677,7 @@ TEST_CASE("shadow map: numbers that make no sense are replaced by some that do")
 }
 
 TEST_CASE_FIXTURE(
-    BallScene, "shadow map: broken lights and a light inside a caster draw finite pictures") {
+    BallScene, "shadow map: broken lights and a light inside a caster draw finite images") {
     const auto finite = [&] {
         const gpu::FloatImage image = radiance(view());
         for (const float value : image.pixels) {

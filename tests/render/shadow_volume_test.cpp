@@ -251,7 +251,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     VolumeScene,
-    "shadow_volume: from outside of all volumes z-pass, z-fail and prisms are one picture") {
+    "shadow_volume: from outside of all volumes z-pass, z-fail and prisms are one image") {
     add_floor();
     add_casters();
     const Entity light = shine(PointLight{.intensity = 50, .radius = 15}, at({1.5f, 4, 2}));
@@ -283,7 +283,7 @@ TEST_CASE_FIXTURE(
         <= kWidth * kHeight / 1000);
 }
 TEST_CASE_FIXTURE(
-    VolumeScene, "shadow_volume: where the near plane cuts a volume the picture stays right") {
+    VolumeScene, "shadow_volume: where the near plane cuts a volume the image stays right") {
     add_floor();
     add_caster(cube, affine_from({0, 3, 0}, {1, 0, 0, 0}, {3, 0.2f, 3}));
     const Vec3 place = {0, 6, 0};
@@ -542,7 +542,7 @@ TEST_CASE_FIXTURE(VolumeScene, "shadow_volume: moved casters and swapped assets 
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: the picture is that of volumes, which count at a few pixels alone") {
+    VolumeScene, "hybrid: the image is that of volumes, which count at a few pixels alone") {
     add_floor();
     add_boxes();
     const RenderView view = from({0.3f, 3.2f, 4.1f});
@@ -572,7 +572,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    VolumeScene, "hybrid: where light grazes round casters the picture is that of volumes") {
+    VolumeScene, "hybrid: where light grazes round casters the image is that of volumes") {
     add_floor();
     add_caster(
         add(make_torus({.radius = 0.7f, .tube = 0.3f, .segments = 32, .sides = 16})),
@@ -687,7 +687,7 @@ TEST_CASE("volume_list: a caster's shade is kept wherever it holds the eye or is
         make_render_view({.fov_y = radians(60.0f), .near = 0.1f}, pose, pose, {});
     const Frustum frustum = make_frustum(view.clip_from_world);
     const Bounds above = {{-1, 20, -11}, {1, 21, -9}};
-    CHECK_FALSE(shadow_is_outside(above, {0, 30, -10, 1}, frustum));  // falls into the picture
+    CHECK_FALSE(shadow_is_outside(above, {0, 30, -10, 1}, frustum));  // falls into the image
     CHECK(shadow_is_outside(above, {0, 10, -10, 1}, frustum));        // rises out of it
     const Bounds behind = {{-1, -1, 4}, {1, 1, 5}};
     CHECK_FALSE(shadow_is_outside(behind, {0, 0, 9, 1}, frustum));

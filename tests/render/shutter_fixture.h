@@ -7,7 +7,7 @@
 
 namespace limn::test {
 
-/// Flat colors in the plane of the picture, so that all of it can be reckoned.
+/// Flat colors in the plane of the image, so that all of it can be computed.
 class Shutter : public Scene {
   public:
     static constexpr int kSize = 64;
@@ -16,7 +16,7 @@ class Shutter : public Scene {
     MaterialId unlit(const Vec3& color) {
         return add(Material{.shading = ShadingModel::Unlit, .base_color = {color, 1}});
     }
-    /// From `begin` to `end` [px] across the picture, and moving by `way` [px] in a picture's time.
+    /// From `begin` to `end` [px] across the image, and moving by `way` [px] in an image's time.
     Entity bar(MaterialId material, float begin, float end, float way, float z = 0) {
         const float center = (0.5f * (begin + end) - 0.5f * kSize) / kPerMeter;
         const float half = 0.5f * (end - begin) / kPerMeter;

@@ -62,7 +62,7 @@ struct SkinPicture : SkinScene {
         const MaterialId material = world.get<MeshInstance>(entity).material;
         return place(add(std::move(copy)), material, world.get<WorldTransform>(entity).world);
     }
-    /// Pixels in which the pictures differ by more than rounding explains.
+    /// Pixels in which the images differ by more than rounding explains.
     static int different(const gpu::FloatImage& a, const gpu::FloatImage& b, float most = 0.02f) {
         int count = 0;
         for (int y = 0; y < a.height; ++y) {
@@ -150,7 +150,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: the shadow follows the pose, and wait
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a shadow falls into the picture from where nothing is seen") {
+    SkinPicture, "skin_draw: a shadow falls into the image from where nothing is seen") {
     const RenderView close = look({0, 0.5f, -0.2f}, {0, 0.5f, -1}, 48, 48);
     world.get<WorldTransform>(light).world = at({0, 0.5f, 3});
     const gpu::FloatImage lit = radiance(close);
@@ -161,7 +161,7 @@ TEST_CASE_FIXTURE(
     CHECK(different(lit, gpu::read_floats(*shaded.radiance), 0.1f) > 50);
 }
 
-TEST_CASE_FIXTURE(SkinPicture, "skin_draw: what a pose takes out of the picture is not reckoned") {
+TEST_CASE_FIXTURE(SkinPicture, "skin_draw: what a pose takes out of the image is not computed") {
     world.remove<Shadow>(light);
     const Entity entity = snake(0.4f, white);
     CHECK(draw(view).statistics.visible_instances == 2);
@@ -200,7 +200,7 @@ TEST_CASE_FIXTURE(SkinPicture, "skin_draw: without a character it is the mesh at
     world.remove<Deformed>(entity);
     CHECK(got.pixels == radiance(view).pixels);
     CHECK(different(got, bent_picture) > 200);
-    // NaN joints never reach the picture.
+    // NaN joints never reach the image.
     world.get<Pose>(entity).joints[4].row[0] = Vec4(NAN);
     world.add(entity, Deformed{entity, skin, 0, Skinning::Linear});
     CHECK(radiance(view).pixels == got.pixels);
@@ -225,7 +225,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinPicture, "skin_draw: a probe sees the shape, and the picture need not reckon it again") {
+    SkinPicture, "skin_draw: a probe sees the shape, and the image need not compute it again") {
     const Entity entity = snake(0.4f, white);
     const Entity probe =
         world.create(EnvProbe{.resolution = 16}, WorldTransform{at({0, 0.5f, 1.0f})});

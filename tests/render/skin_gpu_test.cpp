@@ -386,27 +386,27 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    SkinTest, "skin_gpu: only what is drawn and changed is reckoned, once for all views") {
+    SkinTest, "skin_gpu: only what is drawn and changed is computed, once for all views") {
     const Entity first = snake(Skinning::Linear, 5, 4, 12);
     const Entity second = snake(Skinning::DualQuaternion, 5, 4, 13);
     world.get<Pose>(first).previous = world.get<Pose>(first).joints;
     world.get<Pose>(second).previous = world.get<Pose>(second).joints;
     const std::vector<Entity> both = {first, second};
-    const auto reckoned = [&](const std::vector<Entity>& drawn, float alpha) {
+    const auto computed = [&](const std::vector<Entity>& drawn, float alpha) {
         gpu.run(world, drawn, alpha, 0, true, 3);
         return gpu.shapes().work().instances;
     };
-    CHECK(reckoned({first}, 1) == 1);
-    CHECK(reckoned(both, 1) == 1);
-    CHECK(reckoned(both, 1) == 0);  // a still herd costs nothing
-    CHECK(reckoned(both, 0.5f) == 0);
+    CHECK(computed({first}, 1) == 1);
+    CHECK(computed(both, 1) == 1);
+    CHECK(computed(both, 1) == 0);  // a still herd costs nothing
+    CHECK(computed(both, 0.5f) == 0);
     world.get<Pose>(first).joints[2].row[0].w += 0.1f;
-    CHECK(reckoned({second}, 1) == 0);  // not seen
-    CHECK(reckoned(both, 1) == 1);
-    CHECK(reckoned(both, 1) == 0);
-    CHECK(reckoned(both, 0.5f) == 1);
+    CHECK(computed({second}, 1) == 0);  // not seen
+    CHECK(computed(both, 1) == 1);
+    CHECK(computed(both, 1) == 0);
+    CHECK(computed(both, 0.5f) == 1);
     world.get<Deformed>(second).skinning = Skinning::Linear;
-    CHECK(reckoned(both, 0.5f) == 1);
+    CHECK(computed(both, 0.5f) == 1);
 }
 
 TEST_CASE_FIXTURE(SkinTest, "skin_gpu: a thousand instances are one dispatch, and each is itself") {

@@ -81,7 +81,7 @@ struct PanoramaScene : Scene {
         environment.panorama = add(std::move(image));
         world.insert_resource(environment);
     }
-    /// The background along `direction`, in a picture of a pixel.
+    /// The background along `direction`, in an image of a pixel.
     Vec3 seen(const Vec3& direction) {
         return rgb_at(radiance(look({0, 0, 0}, direction, 1, 1)), 0, 0);
     }
@@ -296,8 +296,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    PanoramaScene,
-    "sky_panorama: texels that are no numbers leave pictures finite, the sky elsewhere as it is") {
+    PanoramaScene, "sky_panorama: NaN texels leave images finite, the sky elsewhere as it is") {
     ImageData image = picture_of(
         [](const glm::dvec3& d) { return glm::dvec3(0.5, 0.6, 0.7) + 0.2 * d; },
         PanoramaMapping::Equirectangular, 64, 32);

@@ -70,7 +70,7 @@ TEST_CASE("speed lines: there are no more than asked for, nor than the mesh has 
     CHECK(lines_of({0.5f, 0, 0}, 0.1f, few).size() <= make_ball(24).positions.size());
 }
 
-TEST_CASE_FIXTURE(Scene, "speed lines: they trail in the picture, behind what stands before them") {
+TEST_CASE_FIXTURE(Scene, "speed lines: they trail in the image, behind what stands before them") {
     world.insert_resource(FrameTime{.step = 0.1f});
     const MaterialId black =
         add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}});

@@ -17,7 +17,7 @@ class Temporal : public Shutter {
             Rendering{.antialiasing = on ? Antialiasing::Temporal : Antialiasing::None});
     }
     /// Thin and slanted things of high contrast.
-    void furnish() {
+    void place_objects() {
         world.insert_resource(Environment{});
         for (int i = 0; i < 9; ++i) {
             const float x = -0.9f + 0.22f * static_cast<float>(i);
@@ -35,7 +35,7 @@ class Temporal : public Shutter {
         }
         return image;
     }
-    /// What the mean of as many pictures as the jitter has places shows.
+    /// What the mean of as many images as the jitter has places shows.
     gpu::FloatImage mean() {
         return gpu::read_floats(
             *render_accumulated(shared_renderer(), world, front(), kTemporalSamples).radiance);
@@ -57,7 +57,7 @@ double psnr_of(const gpu::FloatImage& a, const gpu::FloatImage& b) {
 }  // namespace
 
 TEST_CASE_FIXTURE(Temporal, "temporal: off, it adds no pass and changes no bit") {
-    furnish();
+    place_objects();
     const gpu::FloatImage plain = picture();
     smooth(false);
     CHECK(picture().pixels == plain.pixels);
@@ -67,8 +67,8 @@ TEST_CASE_FIXTURE(Temporal, "temporal: off, it adds no pass and changes no bit")
     CHECK(frame_graph(shared_renderer()).was_run("temporal"));
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: what stands becomes the mean of its jittered pictures") {
-    furnish();
+TEST_CASE_FIXTURE(Temporal, "temporal: what stands becomes the mean of its jittered images") {
+    place_objects();
     const gpu::FloatImage want = mean();
     const gpu::FloatImage plain = picture();
     smooth(true);
@@ -78,7 +78,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what stands becomes the mean of its jitte
 }
 
 TEST_CASE_FIXTURE(Temporal, "temporal: what stands does not shimmer") {
-    furnish();
+    place_objects();
     smooth(true);
     gpu::FloatImage before = after(48);
     for (int i = 0; i < kTemporalSamples; ++i) {
@@ -139,7 +139,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what goes by and darkens leaves no light 
     }
 }
 
-TEST_CASE_FIXTURE(Temporal, "temporal: a picture that goes by stays where it is and smooth") {
+TEST_CASE_FIXTURE(Temporal, "temporal: an image that goes by stays where it is and smooth") {
     std::vector<Entity> bars;
     for (int i = 0; i < 12; ++i) {
         const auto begin = static_cast<float>(-30 + 11 * i);
@@ -190,7 +190,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: a cut, another size and another setting b
 }
 
 TEST_CASE_FIXTURE(
-    Temporal, "temporal: a picture of one color keeps it, light that is none is black") {
+    Temporal, "temporal: an image of one color keeps it, light that is none is black") {
     bar(unlit({0.25f, 0.5f, 0.75f}), -100, 200, 7);
     smooth(true);
     const gpu::FloatImage found = after(5);
@@ -205,7 +205,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Temporal, "temporal: motion vectors know nothing of the jitter") {
-    furnish();
+    place_objects();
     smooth(true);
     for (int i = 0; i < 5; ++i) {
         const gpu::FloatImage velocity = aov(front(), "velocity");

@@ -42,7 +42,7 @@ Vec3 texel_at(const gpu::FloatImage& picture, int x, int y) {
     return rgb_at(picture, kZoom * x + kZoom / 2, kZoom * y + kZoom / 2);
 }
 
-/// A square that fills the picture.
+/// A square that fills the image.
 class Grating : public Scene {
   public:
     Grating() {
@@ -109,7 +109,7 @@ TEST_CASE_FIXTURE(Grating, "texture combine: whole copies later it is the same, 
 }
 
 TEST_CASE_FIXTURE(
-    Grating, "texture combine: a moment looks the same however many pictures come before") {
+    Grating, "texture combine: a time looks the same however many images come before") {
     combine.speed = {0.37f, 0.21f};
     world.create(combine);
     for (int i = 0; i < 8; ++i) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// d(z) of the lens that post.circle-of-confusion reckons with: F = 50 mm, f/2, focused at 2 m.
+/// d(z) of the lens that post.circle-of-confusion uses: F = 50 mm, f/2, focused at 2 m.
 double circle_at(double distance) {
     return circle_of_confusion(0.05, 2, 2, distance);
 }
@@ -231,7 +231,7 @@ TEST_CASE("thin_lens: a pinhole has one sample, the view itself") {
     }
 }
 
-TEST_CASE("thin_lens: the tangents of a view that a lens sample moved hold all of its picture") {
+TEST_CASE("thin_lens: the tangents of a view that a lens sample moved hold all of its image") {
     const RenderView view = lens_camera({.aperture_radius = 0.05f, .focus_distance = 1});
     const RenderView sample = with_lens_sample(view, {0.8f, -0.5f});
     const Vec2 widest = widest_tangent(sample);

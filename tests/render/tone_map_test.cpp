@@ -11,7 +11,7 @@ namespace {
 using oracle::srgb_encode;
 
 struct ToneScene : Scene {
-    /// Mean code, 0 .. 255, of a picture that is all of this radiance.
+    /// Mean code, 0 .. 255, of an image that is all of this radiance.
     Vec3 shown(const Vec3& radiance, const Exposure& exposure) {
         world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = radiance});
         world.insert_resource(exposure);
@@ -25,7 +25,7 @@ struct ToneScene : Scene {
         }
         return Vec3(sum / 4096.0);
     }
-    /// Lets simulated time pass before the next picture.
+    /// Lets simulated time pass before the next image.
     void wait(double seconds) {
         FrameTime time;
         if (const FrameTime* found = world.find_resource<FrameTime>()) {
@@ -34,7 +34,7 @@ struct ToneScene : Scene {
         time.time += seconds;
         world.insert_resource(time);
     }
-    /// Radiance whose code this is, in a linear picture without dither.
+    /// Radiance whose code this is, in a linear image without dither.
     float shown_light(const Vec3& radiance, Exposure exposure) {
         exposure.curve = ToneCurve::Linear;
         exposure.encoding = DisplayEncoding::Power;
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: every curve shows black as black and more lig
 }
 
 TEST_CASE_FIXTURE(
-    ToneScene, "hdr: light above 1 survives in the picture, and is added before it is mapped") {
+    ToneScene, "hdr: light above 1 survives in the image, and is added before it is mapped") {
     static_cast<void>(shown(Vec3(5), {}));
     CHECK(radiance(look({0, 0, 1}, {0, 0, 0})).at(9, 9, 0) == 5.0f);
 
@@ -251,7 +251,7 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: metering shows a scene alike in any unit of l
 
 TEST_CASE_FIXTURE(
     ToneScene,
-    "hdr: the eye adapts with simulated time, at home in its first picture and after a cut") {
+    "hdr: the eye adapts with simulated time, at home in its first frame and after a cut") {
     const Exposure eye = {.metering = Metering::Auto, .adaptation = 0.5f};
     CHECK(std::abs(shown_light(Vec3(4), eye) - 0.18f) <= 0.51f / 255);
     // The light falls to an eighth; the eye, used to 4, sees it dark, then gets used to it.
@@ -262,7 +262,7 @@ TEST_CASE_FIXTURE(
         const float got = shown_light(Vec3(0.5f), eye);
         CHECK(std::abs(got - 0.18 * 0.5 / adapted) <= 0.6 / 255);
     }
-    // More pictures of the same moment change nothing.
+    // More images of the same moment change nothing.
     const float before = shown_light(Vec3(0.5f), eye);
     CHECK(shown_light(Vec3(0.5f), eye) == before);
 
@@ -273,7 +273,7 @@ TEST_CASE_FIXTURE(
     CHECK(std::abs(shown_light(Vec3(0.1f), eye) - 0.18f) <= 0.51f / 255);
 }
 
-TEST_CASE_FIXTURE(ToneScene, "hdr: an accumulated picture is metered once, as what is shown") {
+TEST_CASE_FIXTURE(ToneScene, "hdr: an accumulated image is metered once, as what is shown") {
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = Vec3(2)});
     world.insert_resource(Exposure{
         .curve = ToneCurve::Linear,

@@ -14,7 +14,7 @@ namespace limn::test {
 namespace {
 
 constexpr float kDepth = 4;  ///< [m]
-constexpr int kSize = 48;    ///< of a picture [pixels]
+constexpr int kSize = 48;    ///< of an image [pixels]
 
 /// A wide pool, its floor far away from what is looked at.
 class Pool : public Scene {
@@ -108,7 +108,7 @@ TEST_CASE_FIXTURE(
     double with = 0;
     double without = 0;
     double contrast = 0;
-    // Level rays end at the wall of the picture, eight meters away: nothing but the veil changes.
+    // Level rays end at the wall of the image, eight meters away: nothing but the veil changes.
     lay({0, -2, -8}, 6, 0);
     for (const float x : {-4.0f, -1.5f, 0.0f, 2.0f, 4.5f}) {
         const RenderView view = level({x, -2, 4});

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSize = 96;
 
-/// How far the pictures' velocities are from what rays say.
+/// How far the images' velocities are from what rays say.
 struct Agreement {
     double worst = 0;    ///< [px]
     double fastest = 0;  ///< [px]
@@ -43,7 +43,7 @@ struct VelocityScene : SkinScene {
              .alpha = static_cast<float>(motion.alpha),
              .previous_alpha = static_cast<float>(motion.previous_alpha)});
     }
-    /// Every third pixel of the picture against rays, at the moments and with the jitter given.
+    /// Every third pixel of the image against rays, at the moments and with the jitter given.
     Agreement agreement(const oracle::CameraMotion& motion, const Vec2& jitter = {0, 0}) {
         oracle::VelocityOracle rays(motion);
         rays.add(world);
@@ -53,7 +53,7 @@ struct VelocityScene : SkinScene {
         Agreement found;
         for (int y = 0; y < motion.height; y += 3) {
             for (int x = 0; x < motion.width; x += 3) {
-                // The picture is moved by the jitter, right and up.
+                // The image is moved by the jitter, right and up.
                 const glm::dvec2 point(x + 0.5 - jitter.x, y + 0.5 + jitter.y);
                 const auto want = rays.at(point.x, point.y);
                 const float distance = depth.at(x, y, 0);
@@ -98,7 +98,7 @@ struct VelocityScene : SkinScene {
         const SkinId skin = add_skin(make_chain(5, 0.25f));
         return SkinScene::pose(add(std::move(tube)), gray, skin, std::move(pose), skinning);
     }
-    /// The largest speed in the picture [px]; not a number if one is not.
+    /// The largest speed in the image [px]; not a number if one is not.
     float fastest(const RenderView& view) {
         float most = 0;
         const gpu::FloatImage velocity = aov(view, "velocity");
@@ -188,7 +188,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: jitter is no motion") {
     CHECK(fastest(view_of(still, {0.45f, -0.4f})) == 0);
 }
 
-TEST_CASE_FIXTURE(VelocityScene, "velocity: all light methods and the half picture agree") {
+TEST_CASE_FIXTURE(VelocityScene, "velocity: all light methods and the half image agree") {
     snake(Skinning::Linear, 6);
     const RenderView view = view_of(moving_camera());
     const gpu::FloatImage want = aov(view, "velocity");
@@ -199,7 +199,7 @@ TEST_CASE_FIXTURE(VelocityScene, "velocity: all light methods and the half pictu
 }
 
 TEST_CASE_FIXTURE(
-    VelocityScene, "velocity: what spawns, and what teleports, has none in its first picture") {
+    VelocityScene, "velocity: what spawns, and what teleports, has none in its first frame") {
     Schedule schedule = make_world_schedule();
     const MeshId ball = add(make_ball(8));
     const Entity entity = world.create(

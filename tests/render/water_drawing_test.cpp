@@ -176,7 +176,7 @@ TEST_CASE_FIXTURE(Lake, "water: between steps its waves are where they were then
     }
 }
 
-TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the moment before") {
+TEST_CASE_FIXTURE(Lake, "water: rings and ripples move as they did since the previous frame") {
     const Water water = {.size = {40, 40}};
     const float step = 0.2f;  // so long that much moves
     world.resource<FrameTime>().step = step;

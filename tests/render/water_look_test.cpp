@@ -64,7 +64,7 @@ Vec3 ray_through(const RenderView& view, int x, int y) {
         glm::dot(Vec3(pose[2]), in_camera)));
 }
 
-/// What the picture shows there, in the world.
+/// What the image shows there, in the world.
 Vec3 point_at(const RenderView& view, const gpu::FloatImage& depth, int x, int y) {
     const auto& pose = view.world_from_camera.row;
     const Vec3 axis = -Vec3(pose[0].z, pose[1].z, pose[2].z);
@@ -124,7 +124,7 @@ TEST_CASE_FIXTURE(
     CHECK(blue_share() == doctest::Approx(1).epsilon(0.01));
 }
 
-TEST_CASE("water reflection: its camera is the picture's, mirrored, and mirrored again the same") {
+TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored again the same") {
     const RenderView view = with_jitter(
         make_render_view(
             {.fov_y = 1.0f, .near = 0.1f}, look_at({1, 2, 3}, {-2, 0.5f, -4}),
@@ -246,7 +246,7 @@ TEST_CASE_FIXTURE(Look, "water reflection: waves shift it to what they mirror, o
 }
 
 TEST_CASE_FIXTURE(
-    Look, "water reflection: the nearest that asks and is seen has it, once a picture") {
+    Look, "water reflection: the nearest that asks and is seen has it, once per frame") {
     things_above();
     const RenderView view = look({0, 1.6f, 2}, {0, 0.3f, -2});
     Water pool = kMirror;
@@ -375,7 +375,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: a map of the floor is where bent rays
     }
 }
 
-TEST_CASE_FIXTURE(Look, "water refraction: shifted, flat water shows the picture as it is") {
+TEST_CASE_FIXTURE(Look, "water refraction: shifted, flat water shows the image as it is") {
     things_above();
     ball({0, -1, -2}, 0.6f, {0.9f, 0.5f, 0.1f});
     const RenderView view = look({0, 2, 1}, {0, 0, -2});
@@ -403,7 +403,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, flat water shows the picture
     }
 }
 
-TEST_CASE_FIXTURE(Look, "water refraction: shifted, the picture moves as far as normals lean") {
+TEST_CASE_FIXTURE(Look, "water refraction: shifted, the image moves as far as normals lean") {
     for (int i = 0; i < 24; ++i) {
         const float share = static_cast<float>(i) / 24;
         const Vec3 middle(static_cast<float>(i % 6) - 2.5f, -0.7f, -static_cast<float>(i / 6));
@@ -436,7 +436,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: shifted, the picture moves as far as 
             for (int x = 8; x < 56; ++x) {
                 const Vec3 normal = rgb_at(normals, x, y);
                 const float share = fresnel(-glm::dot(ray_through(view, x, y), normal), 1.333f);
-                // A fiftieth of the picture where a normal lies flat.
+                // A fiftieth of the image where a normal lies flat.
                 const Vec2 lean = {
                     normal.x * right.x + normal.z * right.z,
                     normal.x * ahead.x + normal.z * ahead.z};

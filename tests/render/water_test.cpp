@@ -48,7 +48,7 @@ class Pond : public Scene {
             affine_from(
                 {0, y, 0}, glm::angleAxis(radians(-90), Vec3(1, 0, 0)), {half, half, half}));
     }
-    /// Points of the surface as the picture shows them, in the world.
+    /// Points of the surface as the image shows them, in the world.
     std::vector<Vec3> surface_points(const RenderView& view) {
         const gpu::FloatImage depth = aov(view, "depth");
         std::vector<Vec3> points;
@@ -173,7 +173,7 @@ TEST_CASE("ripple atlas: rectangles lie beside each other, none on another") {
     }
 }
 
-TEST_CASE_FIXTURE(Pond, "water: no water, no pass; the picture is the same to the bit") {
+TEST_CASE_FIXTURE(Pond, "water: no water, no pass; the image is the same to the bit") {
     surround({1, 1, 1});
     floor(-1, 3, {0.2f, 0.5f, 0.7f});
     const RenderView view = look({0, 2, 3}, {0, 0, 0});
@@ -448,7 +448,7 @@ TEST_CASE_FIXTURE(Pond, "water veil: endless water has one color, the darker the
 }
 
 TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water meets the lens") {
-    // A camera in still water's plane: the lower half of the picture is under it.
+    // A camera in still water's plane: the lower half of the image is under it.
     place(
         add(make_square()),
         add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),

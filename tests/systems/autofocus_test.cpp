@@ -40,7 +40,7 @@ struct Scene {
 
 }  // namespace
 
-TEST_CASE("autofocus: the first picture is in focus") {
+TEST_CASE("autofocus: the first frame is in focus") {
     CHECK(Scene({.response = 0.5f}).focus() == doctest::Approx(4));
 }
 

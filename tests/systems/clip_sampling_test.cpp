@@ -240,7 +240,7 @@ TEST_CASE("clip: steps hold, lines are straight, cubics keep their slopes") {
     CHECK(at(sheet, 4) == Vec3(-6));
 
     // x^3 until 2, a line from there on: each key with its slopes before and after. The first's
-    // before and the last's after mean nothing.
+    // before and the last's after have no meaning.
     sheet.interpolation = Interpolation::Cubic;
     sheet.translations.clear();
     sheet.scales.clear();

@@ -58,7 +58,7 @@ TEST_CASE("even turns: between any keys the angular speed is the same") {
     }
 }
 
-TEST_CASE("even turns: whole pictures sum to what there is, shared as fairly as can be") {
+TEST_CASE("even turns: whole images sum to what there is, shared as fairly as can be") {
     const std::vector<Quat> keys = {about_z(0), about_z(10), about_z(40), about_z(90)};
     CHECK(distribute_frames(keys, 9) == std::vector<int>{1, 3, 5});
     CHECK(distribute_frames(keys, 10) == std::vector<int>{1, 3, 6});  // of 1.1, 3.3 and 5.6

@@ -68,8 +68,7 @@ TEST_CASE("env_probe: face by face a round takes six frames, the first time one"
     }
 }
 
-TEST_CASE(
-    "env_probe: in a world it gets its state before the first picture and follows its entity") {
+TEST_CASE("env_probe: in a world it gets its state before the first frame and follows its entity") {
     World world;
     const Entity probe = world.create(
         EnvProbe{.update = ProbeUpdate::Movement, .threshold = 0.5f},

@@ -129,7 +129,7 @@ TEST_CASE("look_at: a direction along up, or none at all, still has a frame") {
     CHECK(glm::determinant(look_at_frame({1, 2, 3}, {0, 0, 0})) == doctest::Approx(1.0f));
 }
 
-TEST_CASE("orbit_camera: the target is in the middle of the picture, where the lens points") {
+TEST_CASE("orbit_camera: the target is in the middle of the image, where the lens points") {
     Scene scene(
         {.target = {},
          .offset = {0, 1, 0},

@@ -45,7 +45,7 @@ TEST_CASE("water ripples: the grid covers the water, and stays within its limit"
     CHECK(vast.cells.x * vast.cells.y <= kMaxRippleCells);
     CHECK(vast.size().x >= 5000);
     CHECK(vast.size().y >= 4000);
-    // Water without end ripples in its window; without one, or without size, nowhere.
+    // Unbounded water ripples in its window; without one, or without size, nowhere.
     CHECK(make_ripples(pool(0, 0), {.window = {2, 2}}, kStep).cells == IVec2(40, 40));
     for (const float none : {0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
         RippleState empty = make_ripples(pool(none, 3), {}, kStep);
