@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 namespace limn {
 
@@ -57,8 +59,10 @@ Status load_buffers(GltfDocument& document, const GltfChunks& chunks) {
         } else if (i == 0 && chunks.has_binary) {
             bytes.assign(chunks.binary.begin(), chunks.binary.end());
         } else {
-            return fail(
-                "{}.uri: found nothing, expected a URI or the binary chunk of a GLB", place);
+            // An extension that Limn does not have may tell where the data are.
+            document.warnings.push_back(place + ": it has no data");
+            document.buffers.emplace_back();
+            continue;
         }
         if (length > bytes.size()) {
             return fail(
@@ -89,6 +93,10 @@ Status find_views(GltfDocument& document) {
             return fail(
                 "{}: bufferViews[{}].byteStride: found {}, expected a multiple of 4", document.file,
                 number, stride);
+        }
+        if (all.empty()) {
+            document.views.push_back({all, stride});  // what reads it fails
+            continue;
         }
         if (offset > all.size() || length > all.size() - offset) {
             return fail(
@@ -188,6 +196,9 @@ Result<Strip> find_strip(
             "element",
             place, stride, index, element_size);
     }
+    if (view.bytes.empty()) {
+        return fail("{}: found bufferViews[{}] in a buffer without data", place, index);
+    }
     // count < 2^32, stride <= 252 and offset < 2^53: no overflow.
     const std::uint64_t end = offset + (count - 1) * stride + element_size;
     if (end > view.bytes.size()) {
@@ -275,6 +286,37 @@ void visit_elements(const Elements& elements, std::uint64_t count, Store&& store
     }
 }
 
+/// Components of an element: 3 for "VEC3"; 0 for a type that glTF does not have.
+int component_count_of(std::string_view type) {
+    constexpr std::pair<std::string_view, int> kTypes[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3},
+                                                           {"VEC4", 4},   {"MAT2", 4}, {"MAT3", 9},
+                                                           {"MAT4", 16}};
+    for (const auto& [name, components] : kTypes) {
+        if (name == type) {
+            return components;
+        }
+    }
+    return 0;
+}
+
+/// Names what glTF does not have, in parts that may go unused: what reads it fails.
+void warn_of_unknown_types(GltfDocument& document) {
+    const std::vector<JsonValue>& accessors = document.json["accessors"].items;
+    for (std::size_t i = 0; i < accessors.size(); ++i) {
+        const std::string place = fmt::format("{}: accessors[{}]", document.file, i);
+        const std::string& type = accessors[i]["type"].text;
+        const int component = index_of(accessors[i]["componentType"]);
+        if (component_count_of(type) == 0) {
+            document.warnings.push_back(
+                fmt::format("{}.type: found {}, expected a type of glTF", place, in_quotes(type)));
+        } else if (component_size(component) == 0) {
+            document.warnings.push_back(fmt::format(
+                "{}.componentType: found {}, expected 5120 to 5123, 5125 or 5126", place,
+                component));
+        }
+    }
+}
+
 /// Takes `values` from the remaining limit of the file.
 Status take_values(GltfDocument& document, std::uint64_t values, const std::string& place) {
     if (values > document.values_left) {
@@ -306,6 +348,11 @@ Result<GltfDocument> open_gltf(
         {.max_bytes = limits.max_bytes, .max_values = limits.max_json_values, .max_depth = 64}));
     LIMN_TRY(check_gltf_schema(document.json, file));
     LIMN_TRY(check_version(document.json, file));
+    if (chunks.trailing > 0) {
+        document.warnings.push_back(
+            fmt::format("{}: {} bytes after the GLB are ignored", file, chunks.trailing));
+    }
+    warn_of_unknown_types(document);
     LIMN_TRY(load_buffers(document, chunks));
     LIMN_TRY(find_views(document));
     return document;
@@ -313,14 +360,12 @@ Result<GltfDocument> open_gltf(
 
 GltfAccessor accessor_at(const GltfDocument& document, std::int32_t index) {
     const JsonValue& json = json_item(document, "accessors", index);
-    const std::string& type = json["type"].text;  // "SCALAR", "VEC3", "MAT4" ...
-    const int lanes = type.back() - '0';
     GltfAccessor accessor;
     accessor.view = index_of(json["bufferView"]);
     accessor.offset = size_of(json["byteOffset"]);
     accessor.count = size_of(json["count"]);
     accessor.type = index_of(json["componentType"]);
-    accessor.components = type == "SCALAR" ? 1 : type.starts_with("VEC") ? lanes : lanes * lanes;
+    accessor.components = component_count_of(json["type"].text);
     accessor.normalized = json["normalized"].truth;
     return accessor;
 }
@@ -330,6 +375,11 @@ read_floats(GltfDocument& document, std::int32_t index, int components, const st
     const GltfAccessor accessor = accessor_at(document, index);
     const std::string here = fmt::format("{}: accessors[{}]", place, index);
     const std::uint64_t size = component_size(accessor.type);
+    if (accessor.components == 0) {
+        return fail(
+            "{}.type: found {}, expected a type of glTF", here,
+            in_quotes(json_item(document, "accessors", index)["type"].text));
+    }
     if (accessor.components != components) {
         return fail(
             "{}.type: found {} components per element, expected {}", here, accessor.components,

@@ -35,7 +35,7 @@ struct GltfAccessor {
     std::uint64_t offset = 0;
     std::uint64_t count = 0;  ///< of elements
     int type = 0;             ///< of a component
-    int components = 1;       ///< per element
+    int components = 1;       ///< per element; 0 if glTF has no such type
     bool normalized = false;
 };
 

@@ -41,17 +41,18 @@ Result<GltfChunks> split_glb(std::span<const std::byte> bytes, const std::string
         return fail("{}: found GLB version {}, expected 2", file, version);
     }
     const std::uint32_t length = little_endian(bytes, 8);
-    if (length != bytes.size()) {
+    if (length > bytes.size()) {
         return fail(
             "{}: found {} bytes, expected {} as in the GLB header", file, bytes.size(), length);
     }
     GltfChunks chunks;
+    chunks.trailing = bytes.size() - length;
+    bytes = bytes.first(length);
     bool has_json = false;
     for (std::size_t at = 12; at < bytes.size();) {
         if (bytes.size() - at < 8) {
-            return fail(
-                "{}: found {} bytes after the last GLB chunk, expected none", file,
-                bytes.size() - at);
+            chunks.trailing += bytes.size() - at;
+            break;
         }
         const std::uint32_t size = little_endian(bytes, at);
         const std::uint32_t type = little_endian(bytes, at + 4);
@@ -92,7 +93,7 @@ int hex_digit(char c) {
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// "%20" to " "; nullopt when a % is not followed by two hexadecimal digits or gives a zero byte.
+/// "%20" to " "; nullopt when a % is not followed by two hexadecimal digits.
 std::optional<std::string> decode_percent(std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -106,7 +107,7 @@ std::optional<std::string> decode_percent(std::string_view text) {
         result += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
         i += 2;
     }
-    return result.find('\0') == std::string::npos ? std::optional(result) : std::nullopt;
+    return result;
 }
 
 constexpr std::array<std::int8_t, 256> make_base64_table() {
@@ -145,14 +146,22 @@ std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
     return bytes;
 }
 
+/// data:[type][;base64],content (RFC 2397).
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& place) {
-    constexpr std::string_view kBase64Mark = ";base64,";
-    const std::size_t mark = uri.substr(0, 256).find(kBase64Mark);
-    if (mark == std::string_view::npos) {
-        return fail("{}: found {}, expected a data: URI in base64", place, in_quotes(uri));
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) {
+        return fail("{}: found {}, expected a comma before the data", place, in_quotes(uri));
     }
-    std::optional<std::vector<std::byte>> bytes =
-        decode_base64(uri.substr(mark + kBase64Mark.size()));
+    const std::string_view content = uri.substr(comma + 1);
+    if (!uri.substr(0, comma).ends_with(";base64")) {
+        const std::optional<std::string> text = decode_percent(content);
+        if (!text) {
+            return fail("{}: found a data: URI with a % without two hexadecimal digits", place);
+        }
+        const auto bytes = std::as_bytes(std::span(*text));
+        return std::vector<std::byte>(bytes.begin(), bytes.end());
+    }
+    std::optional<std::vector<std::byte>> bytes = decode_base64(content);
     if (!bytes) {
         return fail("{}: found a data: URI with a character that is not base64", place);
     }
@@ -163,6 +172,9 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::
 std::string_view refusal(const std::string& path) {
     if (path.empty()) {
         return "an empty URI";
+    }
+    if (path.find('\0') != std::string::npos) {
+        return "a zero byte";
     }
     if (path.front() == '/' || path.front() == '\\') {
         return "an absolute path";
@@ -196,7 +208,9 @@ Result<GltfChunks> split_gltf(std::span<const std::byte> bytes, const std::strin
     if (bytes.size() >= 4 && little_endian(bytes, 0) == kGlbMagic) {
         return split_glb(bytes, file);
     }
-    return GltfChunks{.json = as_text(bytes), .binary = {}, .has_binary = false};
+    GltfChunks chunks;
+    chunks.json = as_text(bytes);
+    return chunks;
 }
 
 Result<std::vector<std::byte>> fetch_uri(

@@ -11,17 +11,18 @@
 
 namespace limn {
 
-// The container of a glTF file: GLB chunks, and URIs, which may be base64 data or files under one
-// folder and nothing else.
+// The container of a glTF file: GLB chunks, and URIs, which may be data or files under one folder
+// and nothing else.
 
 /// The chunks of a GLB, or a .gltf as JSON only; views into the file's bytes.
 struct GltfChunks {
     std::string_view json;
     std::span<const std::byte> binary;
     bool has_binary = false;
+    std::size_t trailing = 0;  ///< bytes after the GLB, ignored
 };
 
-/// Fails when a GLB is truncated, has inconsistent lengths or is not version 2.
+/// Fails when a GLB is truncated, has chunks longer than itself or is not version 2.
 [[nodiscard]] Result<GltfChunks>
 split_gltf(std::span<const std::byte> bytes, const std::string& file);
 

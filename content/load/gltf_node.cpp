@@ -22,6 +22,9 @@ constexpr std::size_t kMaxMorphs = std::numeric_limits<std::uint16_t>::max();
 /// Replaces a scale of 0, which has no inverse; some files hide nodes with it.
 constexpr float kSmallestScale = 1e-6f;
 
+constexpr float kSmallestFov = 0.01f;  // [rad]
+constexpr float kLargestFov = 3.1f;    // [rad]
+
 /// Position, rotation and scale of an affine matrix; `sheared` is set if it has shear.
 Transform decompose(const Mat4& matrix, bool& sheared) {
     Transform result;
@@ -235,15 +238,23 @@ class NodeBuilder {
                 "{}: cameras[{}] is ignored: it is orthographic", document_.file, index));
             return;
         }
+        // Wider or narrower than a level may have it: nothing else would be seen.
+        const float fov_y = number_of(camera["perspective"]["yfov"], 0);
         node.has_camera = true;
-        node.camera.fov_y = number_of(camera["perspective"]["yfov"], 0);
+        node.camera.fov_y = std::clamp(fov_y, kSmallestFov, kLargestFov);
+        if (node.camera.fov_y != fov_y) {
+            document_.warnings.push_back(fmt::format(
+                "{}: cameras[{}].perspective.yfov: found {}, shown as {}", document_.file, index,
+                fov_y, node.camera.fov_y));
+        }
         node.camera.near = number_of(camera["perspective"]["znear"], 0);
         if (node.name.empty()) {
             node.name = camera["name"].text;
         }
     }
 
-    [[nodiscard]] GltfLight make_light(std::int32_t index) const {
+    /// No light, and a warning, if its type is unknown.
+    [[nodiscard]] GltfLight make_light(std::int32_t index) {
         const JsonValue& lights = document_.json["extensions"][kLightExtension]["lights"];
         const JsonValue& source = lights.items[static_cast<std::size_t>(index)];
         const Vec3 color = vector_of(source["color"], Vec3(1));
@@ -261,6 +272,13 @@ class NodeBuilder {
             light.intensity = intensity;
             light.radius = radius;
             return light;
+        }
+        if (source["type"].text != "spot") {
+            document_.warnings.push_back(fmt::format(
+                "{}: extensions.{}.lights[{}] is ignored: its type is {}, expected directional, "
+                "point or spot",
+                document_.file, kLightExtension, index, in_quotes(source["type"].text)));
+            return {};
         }
         const JsonValue& spot = source["spot"];
         SpotLight light;

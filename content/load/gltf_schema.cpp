@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -15,7 +16,7 @@ enum class Shape : std::uint8_t {
     Object,
     Array,    ///< min .. max items
     Index,    ///< of an item of the array at the path `text`
-    Integer,  ///< min .. max, spelled without a fraction
+    Integer,  ///< min .. max, a whole number
     Number,   ///< min .. max
     Numbers,  ///< `length` of them, each min .. max
     String,   ///< one of `text`, separated by spaces, unless that is empty
@@ -39,7 +40,9 @@ struct Rule {
 };
 
 constexpr const char* kLights = "extensions.KHR_lights_punctual.lights";
-constexpr double kHalfPi = 1.5707964;  // pi/2 rounded up: files hold it as a float
+// Rounded up: files hold them as floats.
+constexpr double kHalfPi = 1.5707964;
+constexpr double kPi = 3.1415928;
 
 constexpr Rule index_of(const char* path, const char* target, bool required = false) {
     return {path, Shape::Index, required, 0, 0, 0, target};
@@ -97,9 +100,9 @@ constexpr Rule kRules[] = {
     object("accessors[]"),
     index_of("accessors[].bufferView", "bufferViews"),
     size("accessors[].byteOffset", 0),
-    size("accessors[].componentType", 5120, kRequired, 5126),
+    size("accessors[].componentType", 0, kRequired, 65535),
     size("accessors[].count", 1, kRequired, 4294967295.0),
-    text("accessors[].type", "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4", kRequired),
+    text("accessors[].type", "", kRequired),
     {"accessors[].normalized", Shape::Bool},
     object("accessors[].sparse"),
     size("accessors[].sparse.count", 1, kRequired, 2147483647.0),
@@ -153,13 +156,13 @@ constexpr Rule kRules[] = {
     text("cameras[].type", "perspective orthographic", kRequired),
     object("cameras[].orthographic"),
     object("cameras[].perspective"),
-    {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-3, 3.1},
+    {"cameras[].perspective.yfov", Shape::Number, kRequired, 1e-6, kPi},
     {"cameras[].perspective.znear", Shape::Number, kRequired, 1e-9, kLargestNumber},
 
     array(kLights),
     object("extensions.KHR_lights_punctual.lights[]"),
     text("extensions.KHR_lights_punctual.lights[].name"),
-    text("extensions.KHR_lights_punctual.lights[].type", "point spot directional", kRequired),
+    text("extensions.KHR_lights_punctual.lights[].type", "", kRequired),
     factors("extensions.KHR_lights_punctual.lights[].color", 3, kLargestNumber),
     factor("extensions.KHR_lights_punctual.lights[].intensity", kLargestNumber),
     {"extensions.KHR_lights_punctual.lights[].range", Shape::Number, false, 1e-6, kLargestNumber},
@@ -336,8 +339,8 @@ class Checker {
             return v.kind == JsonKind::Number && v.number >= rule_->min && v.number <= rule_->max;
         };
         const auto is_integer = [](const JsonValue& v) {
-            return v.kind == JsonKind::Number
-                   && v.text.find_first_not_of("0123456789") == std::string::npos;
+            return v.kind == JsonKind::Number && v.number >= 0 && v.number <= kLargestSize
+                   && v.number == std::floor(v.number);
         };
         switch (rule_->shape) {
         case Shape::Object:

@@ -102,16 +102,13 @@ TEST_CASE("gltf: a GLB whose lengths disagree is refused") {
         return bad;
     };
     const auto size = static_cast<std::uint32_t>(good.size());
-    check_refused(parse_gltf(with(8, size - 4), "square.glb", ""), "as in the GLB header");
+    check_refused(parse_gltf(with(8, size - 4), "square.glb", ""), "left in the file");
     check_refused(parse_gltf(with(8, size + 4), "square.glb", ""), "as in the GLB header");
     check_refused(parse_gltf(with(4, 1), "square.glb", ""), "version 1");
     check_refused(parse_gltf(with(12, 0xffffffffu), "square.glb", ""), "a GLB chunk of 4294967295");
     check_refused(parse_gltf(with(12, 12), "square.glb", ""), "square.glb");
     check_refused(
         parse_gltf(with(16, 0x12345678), "square.glb", ""), "expected JSON as the first chunk");
-    std::vector<std::byte> longer = good;
-    longer.resize(good.size() + 5);
-    check_refused(parse_gltf(longer, "square.glb", ""), "as in the GLB header");
 }
 
 TEST_CASE("gltf: every change of one byte loads or is refused, and no more") {
@@ -208,7 +205,7 @@ TEST_CASE("gltf: an accessor out of bounds is refused") {
         {accessor, R"({"bufferView": 0, "componentType": 5124, "count": 4, "type": "VEC3"})",
          "componentType: found 5124"},
         {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC7"})",
-         "accessors[0].type"},
+         "accessors[0].type: found \"VEC7\""},
         {accessor, R"({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC2"})",
          "found 2 components per element, expected 3"},
         {accessor, R"({"componentType": 5126, "count": 80000000, "type": "VEC3"})",
@@ -353,7 +350,9 @@ TEST_CASE("gltf: a file may name only files under its own folder") {
         {"%zz", "two hexadecimal digits"},
         {"a%00b", "square.gltf"},
         {"data:application/octet-stream;base64,????", "not base64"},
-        {"data:application/octet-stream,abc", "in base64"},
+        {"data:application/octet-stream", "expected a comma"},
+        {"data:application/octet-stream,abc", "expected at most the 3 bytes"},
+        {"data:application/octet-stream,a%4", "two hexadecimal digits"},
         {"data:application/octet-stream;base64,AAAA", "expected at most the 3 bytes"},
     };
     for (const auto& tried : cases) {  // clang 14 captures no structured bindings
@@ -372,9 +371,10 @@ TEST_CASE("gltf: a buffer without bytes is refused") {
     const std::string json = kSquareJson;
     check_refused(
         parse_gltf(std::as_bytes(std::span(json)), "square.gltf", ""),
-        "buffers[0].uri: found nothing");
+        "accessors[0]: found bufferViews[0] in a buffer without data");
     check_refused(
-        parse_gltf(make_glb(json, {}), "square.glb", ""), "buffers[0].uri: found nothing");
+        parse_gltf(make_glb(json, {}), "square.glb", ""),
+        "accessors[0]: found bufferViews[0] in a buffer without data");
 }
 
 TEST_CASE("gltf: a texture that is missing, corrupt or 100,000 pixels wide is refused") {
