@@ -17,7 +17,7 @@ constexpr unsigned kTilesUnit = 7;
 constexpr unsigned kSlightTilesUnit = 8;
 constexpr int kLuminanceLevels = 6;
 
-/// Kinds of tiles, bits of focus_tile.vert.
+/// Kinds of tiles, bits of depth_of_field_tile.vert.
 enum TileKind : int {
     kSharpTiles = 1,
     kSlightTiles = 2,
@@ -520,22 +520,25 @@ Result<DepthOfFieldPass> create_depth_of_field_pass(gpu::Device& device) {
     const gpu::ShaderDefine slight = {"SLIGHT", "1"};
     const gpu::ShaderDefine blurred = {"BLURRED", "1"};
     const ProgramSlot all[] = {
-        {pass.blocks, "fullscreen.vert", "focus_blocks.frag", {}},
-        {pass.spread, "fullscreen.vert", "focus_spread.frag", {}},
-        {pass.tiles, "fullscreen.vert", "focus_tiles.frag", {}},
-        {pass.reach, "fullscreen.vert", "focus_reach.frag", {}},
-        {pass.pack, "fullscreen.vert", "focus_pack.frag", {}},
-        {pass.split, "focus_tile.vert", "focus_split.frag", {}},
-        {pass.light, "fullscreen.vert", "focus_light.frag", {}},
-        {pass.rest, "fullscreen.vert", "focus_rest.frag", {}},
-        {pass.coarse, "fullscreen.vert", "focus_coarse.frag", {}},
-        {pass.gather, "focus_tile.vert", "focus_gather.frag", {}},
-        {pass.compose[0], "focus_tile.vert", "focus_compose.frag", {}},
-        {pass.compose[1], "focus_tile.vert", "focus_compose.frag", {slight}},
-        {pass.compose[2], "focus_tile.vert", "focus_compose.frag", {blurred}},
-        {pass.compose[3], "focus_tile.vert", "focus_compose.frag", {slight, blurred}},
-        {pass.disc, "focus_disc.vert", "focus_disc.frag", {}},
-        {pass.mip, "fullscreen.vert", "focus_mip.frag", {}}};
+        {pass.blocks, "fullscreen.vert", "depth_of_field_blocks.frag", {}},
+        {pass.spread, "fullscreen.vert", "depth_of_field_spread.frag", {}},
+        {pass.tiles, "fullscreen.vert", "depth_of_field_tiles.frag", {}},
+        {pass.reach, "fullscreen.vert", "depth_of_field_reach.frag", {}},
+        {pass.pack, "fullscreen.vert", "depth_of_field_pack.frag", {}},
+        {pass.split, "depth_of_field_tile.vert", "depth_of_field_split.frag", {}},
+        {pass.light, "fullscreen.vert", "depth_of_field_light.frag", {}},
+        {pass.rest, "fullscreen.vert", "depth_of_field_rest.frag", {}},
+        {pass.coarse, "fullscreen.vert", "depth_of_field_coarse.frag", {}},
+        {pass.gather, "depth_of_field_tile.vert", "depth_of_field_gather.frag", {}},
+        {pass.compose[0], "depth_of_field_tile.vert", "depth_of_field_compose.frag", {}},
+        {pass.compose[1], "depth_of_field_tile.vert", "depth_of_field_compose.frag", {slight}},
+        {pass.compose[2], "depth_of_field_tile.vert", "depth_of_field_compose.frag", {blurred}},
+        {pass.compose[3],
+         "depth_of_field_tile.vert",
+         "depth_of_field_compose.frag",
+         {slight, blurred}},
+        {pass.disc, "depth_of_field_disc.vert", "depth_of_field_disc.frag", {}},
+        {pass.mip, "fullscreen.vert", "depth_of_field_mip.frag", {}}};
     for (const ProgramSlot& slot : all) {
         slot.program = LIMN_TRY(device.shaders().load(
             {.vertex = slot.vertex, .fragment = slot.fragment, .defines = slot.defines}));

@@ -2,7 +2,7 @@
 
 #include "render/effect.h"
 #include "render/gpu/buffer.h"
-#include "render/shaders/focus_gpu.h"
+#include "render/shaders/depth_of_field_gpu.h"
 
 namespace limn {
 
@@ -11,7 +11,7 @@ namespace limn {
 // Reads    radiance, depth
 // Writes   radiance as seen through the lens
 // Order    after everything drawn into the scene and after motion blur, before glow
-// Shaders  focus_*; lib/focus.glsl, layout in focus_gpu.h
+// Shaders  focus_*; lib/depth_of_field.glsl, layout in depth_of_field_gpu.h
 //
 // Circles of up to 5 px are gathered at full resolution. Wider ones are gathered at half
 // resolution, far and near field separately: up to a radius of 8 px, every texel around is tested

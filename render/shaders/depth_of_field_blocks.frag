@@ -1,7 +1,7 @@
 // Widest out-of-focus radii [px] in a block: of near circles that are gathered finely, and coarsely; of far circles,
 // and of those among them that are gathered finely. Separately, of small circles in front of and behind the focus.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 1) uniform sampler2D scene_depth;
 

@@ -1,7 +1,7 @@
 // Gathers coarse circles at quarter resolution: for taps over the aperture, tests whether the circle there reaches this
 // texel. The wider the circles, the coarser the mip level that is read, so that taps leave no gaps.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D far_rest;  // with mip levels
 layout(binding = 1) uniform sampler2D near_rest;

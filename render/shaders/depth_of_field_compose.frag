@@ -1,7 +1,7 @@
 // Composes the final image: sharp and slightly blurred pixels at full resolution, the far layer from half resolution,
 // and the near layer over both.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D packed_pixels;
@@ -22,7 +22,7 @@ float slight_share(float diameter) {
 
 #ifdef SLIGHT
 
-// Gathers small circles pixel by pixel, as focus_gather.frag does large ones; alpha: coverage. None is wider here than
+// Gathers small circles pixel by pixel, as depth_of_field_gather.frag does large ones; alpha: coverage. None is wider here than
 // `reach`.
 vec4 slightly_blurred(ivec2 here, float own, float reach) {
     ivec2 last = ivec2(focus.size.xy) - 1;

@@ -1,6 +1,6 @@
 // The disc of a highlight at full resolution, occluded by nearer surfaces.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 5) uniform sampler2D near_blurred;
 layout(binding = 6) uniform sampler2D scene_depth;

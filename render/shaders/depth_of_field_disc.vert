@@ -1,6 +1,6 @@
-// A point sprite for the disc of each highlight removed by focus_rest.frag, first far and then near ones.
+// A point sprite for the disc of each highlight removed by depth_of_field_rest.frag, first far and then near ones.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D far_wide;
 layout(binding = 1) uniform sampler2D near_wide;
@@ -15,7 +15,7 @@ flat out vec3 light;    // of the disc
 flat out float radius;  // [px], negative in front of the focus
 flat out vec2 middle;   // [px]
 
-// Weight of a pixel in this column or row of a texel, by the tent of focus_split.frag.
+// Weight of a pixel in this column or row of a texel, by the tent of depth_of_field_split.frag.
 float tent(int i) {
     return i == 0 || i == 5 ? 1.0 : i == 1 || i == 4 ? 3.0 : 4.0;
 }

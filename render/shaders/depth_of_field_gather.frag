@@ -1,7 +1,7 @@
 // Gathers the far and near layers at half resolution. For fine circles, tests for every neighboring texel whether its
 // circle reaches here; its light is weighted by 1 / the area of the circle.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D far_light;
 layout(binding = 1) uniform sampler2D near_light;

@@ -1,6 +1,6 @@
 // Luminance at quarter resolution, with its weight: highlights are detected against it.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D near_light;
 layout(binding = 1) uniform sampler2D near_wide;

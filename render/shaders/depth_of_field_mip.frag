@@ -1,6 +1,6 @@
 // Depth of field from mip levels: each pixel the mean of a square as wide as its own circle (post.dof-mip).
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;  // with mip levels
 layout(binding = 1) uniform sampler2D scene_depth;

@@ -1,6 +1,6 @@
 // Packs the radius of the circle of each pixel with its radiance, so that later passes need one fetch.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D scene_radiance;
 layout(binding = 1) uniform sampler2D scene_depth;

@@ -1,6 +1,6 @@
 // Classifies a tile by its own content and that of its neighbors.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D own_tiles;
 layout(binding = 1) uniform sampler2D own_small;

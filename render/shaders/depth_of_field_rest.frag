@@ -1,7 +1,7 @@
 // Coarse circles at quarter resolution, without highlights: texels so much brighter than their surroundings that a few
-// taps could not render their discs. focus_disc.vert draws what is removed here.
+// taps could not render their discs. depth_of_field_disc.vert draws what is removed here.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D far_wide;
 layout(binding = 1) uniform sampler2D near_wide;

@@ -1,7 +1,7 @@
 // Downsamples to half resolution and sorts pixels into layers: far, near, and all but the latter; the first two split
 // into fine and wide circles. Alpha: share of the texel.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D packed_pixels;
 

@@ -1,6 +1,6 @@
 // Widest radius [px] of the small near circles that reach a block.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D small_of_blocks;
 

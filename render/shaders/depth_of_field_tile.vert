@@ -1,6 +1,6 @@
 // A quad for every tile of the given kinds.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 7) uniform sampler2D focus_tiles;
 layout(binding = 8) uniform sampler2D slight_tiles;

@@ -1,7 +1,7 @@
-// The result of focus_blocks.frag per tile. Includes small near circles that reach into the tile and, as a small value,
+// The result of depth_of_field_blocks.frag per tile. Includes small near circles that reach into the tile and, as a small value,
 // far circles next to it: they may be visible past the rim of something in it.
 #version 450
-#include "lib/focus.glsl"
+#include "lib/depth_of_field.glsl"
 
 layout(binding = 0) uniform sampler2D blocks;
 layout(binding = 1) uniform sampler2D small_of_blocks;

@@ -2,7 +2,7 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/glow.h"
 #include "render/passes/depth_of_field_pass.h"
-#include "render/shaders/focus_gpu.h"
+#include "render/shaders/depth_of_field_gpu.h"
 #include "render/window_depth.h"
 #include "tests/render/scene_fixture.h"
 

@@ -1,6 +1,6 @@
 // Circles of confusion and the layers that they are sorted into.
 
-#include "focus_gpu.h"
+#include "depth_of_field_gpu.h"
 #include "lib/numbers.glsl"
 
 layout(std140, binding = 2) uniform Focus {
