@@ -1,10 +1,14 @@
 #include "ecs/column.h"
 
 #include "ecs/base/check.h"
+#include "ecs/base/log.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <limits>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <utility>
 
 namespace limn {
@@ -30,10 +34,34 @@ std::byte* round_up(std::byte* address, std::size_t step) {
     return round_down(address + step - 1, step);
 }
 
+/// Where address space is limited (ulimit -v), a range takes a small part of it. [bytes]
+std::size_t largest_reservation() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+        return std::numeric_limits<std::size_t>::max();
+    }
+    return std::max<std::size_t>(limit.rlim_cur / 128, 2 * kHugePage);
+}
+
+/// Once per process.
+void warn_of_short_space(std::size_t most) {
+    static std::atomic<bool> warned = false;
+    if (!warned.exchange(true)) {
+        log_warn(
+            "address space is limited (ulimit -v), so a component may take at most {} MiB per "
+            "archetype",
+            most >> 20);
+    }
+}
+
 }  // namespace
 
 VirtualRange::VirtualRange(std::size_t bytes, std::size_t skew, std::size_t expected) {
     LIMN_CHECK(skew < kSkewRange);
+    if (const std::size_t most = largest_reservation(); bytes > most) {
+        bytes = std::max(most, expected);
+        warn_of_short_space(most);
+    }
     const bool starts_large = expected >= kHugePage;
     const std::size_t offset = skew + (starts_large ? 0 : kHugePage - kSmallPart);
     const std::size_t size = round_up(offset + std::max(bytes, kPage), kPage);
@@ -41,7 +69,7 @@ VirtualRange::VirtualRange(std::size_t bytes, std::size_t skew, std::size_t expe
     const std::size_t enough = size + kHugePage;
     void* address =
         mmap(nullptr, enough, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    LIMN_CHECK_NOTE(address != MAP_FAILED, "no address space left to reserve");
+    LIMN_CHECK_NOTE(address != MAP_FAILED, "no address space left; is it limited (ulimit -v)?");
     std::byte* first = static_cast<std::byte*>(address);
     std::byte* base = round_up(first, kHugePage);
     if (base > first) {
@@ -80,7 +108,9 @@ void VirtualRange::release() {
 }
 
 void VirtualRange::commit_more(std::size_t bytes) {
-    LIMN_CHECK_NOTE(bytes <= reserved_, "more rows than an archetype can hold");
+    LIMN_CHECK_NOTE(
+        bytes <= reserved_,
+        "more rows than an archetype can hold; fewer where address space is limited (ulimit -v)");
     const std::size_t step = std::max(std::bit_ceil(usable_ + 1) / 2, kSmallStep);
     std::byte* begin = usable_ == 0 ? data_ - lead_ : data_ + usable_;
     std::byte* end = round_up(data_ + round_up(bytes, step), kPage);

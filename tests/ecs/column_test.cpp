@@ -7,6 +7,9 @@
 #include <array>
 #include <cstring>
 #include <set>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -68,6 +71,22 @@ bool has_sound_columns(World& world, Archetype& rows) {
     }
     return sound;
 }
+
+#ifndef LIMN_SANITIZED  // sanitizers themselves reserve terabytes
+/// Entities of several archetypes, beyond what fits a shared block, are there with their values.
+bool holds_a_hundred_thousand() {
+    World world;
+    for (std::uint32_t i = 0; i < 25000; ++i) {
+        world.create(Mass{static_cast<double>(i)});
+        world.create(Mass{static_cast<double>(i)}, Cell<1>{});
+        world.create(Mass{static_cast<double>(i)}, Cell<2>{});
+        world.create(Mass{static_cast<double>(i)}, Cell<1>{}, Cell<2>{}, Cell<3>{});
+    }
+    double sum = 0;
+    world.query<const Mass>().each([&](const Mass& mass) { sum += mass.value; });
+    return sum == 4 * 24999.0 * 25000 / 2;
+}
+#endif
 
 }  // namespace
 
@@ -263,3 +282,19 @@ TEST_CASE("column: the pool gives back what lies beyond the last block in use") 
     CHECK(pool.allocate(65536) == blocks[5]);
     blocks[5][65535] = std::byte{1};
 }
+
+#ifndef LIMN_SANITIZED
+TEST_CASE("column: where address space is limited, ranges are smaller") {
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        const rlimit limit = {rlim_t{1} << 30, rlim_t{1} << 30};
+        const bool held = setrlimit(RLIMIT_AS, &limit) == 0 && holds_a_hundred_thousand();
+        _exit(held ? 0 : 1);
+    }
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+}
+#endif
