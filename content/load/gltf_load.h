@@ -20,8 +20,8 @@ namespace limn {
 // cameras, KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit,
 // KHR_mesh_quantization, KHR_texture_transform, skeletons, skins with any number of joints per
 // vertex, morph targets, animation clips, and our components in extras.limn of a node. Ignored with
-// a warning: points and lines, orthographic cameras, textures in unsupported image formats, morph
-// targets of texture coordinates and colors.
+// a warning: points and lines, orthographic cameras, lights of unknown type, bytes after a GLB,
+// textures in unsupported image formats, morph targets of texture coordinates and colors.
 //
 // Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
 // demands: models without normals are mostly organic scans and low-poly animals, which look better
