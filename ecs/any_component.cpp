@@ -36,6 +36,16 @@ AnyComponent::AnyComponent(const ComponentInfo& info, const void* value)
     }
 }
 
+AnyComponent AnyComponent::take(const ComponentInfo& info, void* value) {
+    AnyComponent taken;
+    taken.info_ = &info;
+    taken.data_ = allocate(info);
+    if (!info.is_tag) {
+        info.ops.construct_move(taken.data_, value, 1);
+    }
+    return taken;
+}
+
 AnyComponent AnyComponent::read(const World& world, Entity entity, const ComponentInfo& info) {
     AnyComponent copy;
     void* const raw = allocate(info);

@@ -15,6 +15,8 @@ class AnyComponent {
     explicit AnyComponent(const ComponentInfo& info);
     /// A copy of `value`, whose type is `info`.
     AnyComponent(const ComponentInfo& info, const void* value);
+    /// Moved from `value`; the type need not be copyable.
+    [[nodiscard]] static AnyComponent take(const ComponentInfo& info, void* value);
     /// A copy of an entity's component, empty if it has none.
     [[nodiscard]] static AnyComponent
     read(const World& world, Entity entity, const ComponentInfo& info);

@@ -32,7 +32,8 @@ class VirtualRange {
   public:
     VirtualRange() = default;
     /// Reserves at least `bytes`, starting `skew` past a page boundary; `expected` is how much will
-    /// be committed first. Stops the program if no address space is left.
+    /// be committed first. Reserves less, with one warning, where address space is limited
+    /// (`ulimit -v`); stops the program if none is left.
     explicit VirtualRange(std::size_t bytes, std::size_t skew = 0, std::size_t expected = 0);
     VirtualRange(VirtualRange&& other) noexcept;
     VirtualRange& operator=(VirtualRange&& other) noexcept;

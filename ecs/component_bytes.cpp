@@ -257,7 +257,9 @@ bool read_values(const ComponentInfo& info, void* first, std::size_t count, Byte
             }
         }
     }
-    std::memcpy(value, bytes.data(), bytes.size());
+    if (!bytes.empty()) {
+        std::memcpy(value, bytes.data(), bytes.size());
+    }
     return true;
 }
 

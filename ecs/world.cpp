@@ -376,8 +376,10 @@ bool World::write(Entity entity, ComponentId id, void* value) {
         put_bytes(entity, id, value);
     } else if (!info.is_tag) {
         void* const present = find(entity, id);
-        info.ops.destroy(present, 1);
-        info.ops.construct_move(present, value, 1);
+        if (present != value) {
+            info.ops.destroy(present, 1);
+            info.ops.construct_move(present, value, 1);
+        }
     }
     return true;
 }
@@ -432,52 +434,38 @@ void* World::add(Entity entity, ComponentId id) {
 }
 
 void* World::add_copy(Entity entity, ComponentId id, const void* value) {
-    core_.check_unlocked();
     const ComponentInfo& info = component_info(id);
     LIMN_CHECK_NOTE(info.is_tag || info.ops.construct_copy != nullptr, info.name.c_str());
-    if (!has_address(info)) {
-        put_bytes(entity, id, value);
-        return nullptr;
-    }
-    void* present = find(entity, id);
-    const bool is_new = present == nullptr;
-    void* room = is_new ? make_room(entity, require(entity), id) : present;
-    if (!info.is_tag && room != value) {
-        if (!is_new) {
-            info.ops.destroy(room, 1);
-        }
-        info.ops.construct_copy(room, value, 1);
-    }
-    if (is_new) {
-        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
-    } else {
-        enable_present(entity, id);
-    }
-    return find(entity, id);
+    return put_value(entity, AnyComponent(info, value));
 }
 
 void* World::add_move(Entity entity, ComponentId id, void* value) {
+    return put_value(entity, AnyComponent::take(component_info(id), value));
+}
+
+/// Not from where the value came from: making room moves rows, perhaps that of the value.
+void* World::put_value(Entity entity, AnyComponent value) {
     core_.check_unlocked();
-    const ComponentInfo& info = component_info(id);
+    const ComponentInfo& info = value.info();
     if (!has_address(info)) {
-        put_bytes(entity, id, value);
+        put_bytes(entity, info.id, value.data());
         return nullptr;
     }
-    void* present = find(entity, id);
+    void* const present = find(entity, info.id);
     const bool is_new = present == nullptr;
-    void* room = is_new ? make_room(entity, require(entity), id) : present;
-    if (!info.is_tag && room != value) {
+    void* const room = is_new ? make_room(entity, require(entity), info.id) : present;
+    if (!info.is_tag) {
         if (!is_new) {
             info.ops.destroy(room, 1);
         }
-        info.ops.construct_move(room, value, 1);
+        info.ops.construct_move(room, value.data(), 1);
     }
     if (is_new) {
-        notify(ObserverEvent::Add, {&id, 1}, {&entity, 1});
+        notify(ObserverEvent::Add, {&info.id, 1}, {&entity, 1});
     } else {
-        enable_present(entity, id);
+        enable_present(entity, info.id);
     }
-    return find(entity, id);
+    return find(entity, info.id);
 }
 
 bool World::remove(Entity entity, ComponentId id) {

@@ -20,6 +20,7 @@ namespace limn {
 
 struct FlushStats;
 struct WorldMemory;
+class AnyComponent;
 class ChangeApplier;
 class ChangePlans;
 class CommandBuffer;
@@ -50,15 +51,16 @@ class World {
     // ---- entities
     // ---------------------------------------------------------------------------------
 
-    /// A new entity with these components.
+    /// A new entity with these components. By value, for they may be those of another entity, whose
+    /// rows move.
     template <typename... Ts>
-    Entity create(Ts&&... components);
+    Entity create(Ts... components);
     /// `count` entities with copies of these components, in consecutive rows.
     template <typename... Ts>
     std::vector<Entity> create_many(std::size_t count, const Ts&... components);
     /// The same, filling `entities`.
     template <typename... Ts>
-    void create_many(std::span<Entity> entities, const Ts&... components);
+    void create_many(std::span<Entity> entities, Ts... components);
     void destroy(Entity entity);
     [[nodiscard]] bool alive(Entity entity) const {
         return static_cast<bool>(core_.entities.find(entity));
@@ -215,7 +217,8 @@ class World {
     /// Adds the component with its default value or keeps the existing one. Returns the value;
     /// nullptr for split and shared components, here and below.
     void* add(Entity entity, ComponentId id);
-    /// Adds a copy of `value` or replaces the existing value.
+    /// Adds a copy of `value` or replaces the existing value. `value` may be a component of this
+    /// world.
     void* add_copy(Entity entity, ComponentId id, const void* value);
     /// The same, moving from `value`.
     void* add_move(Entity entity, ComponentId id, void* value);
@@ -346,6 +349,7 @@ class World {
     template <typename T>
     [[nodiscard]] T* find_at(Entity entity, EntityPlace place);
     /// Adds or replaces a split or shared component.
+    void* put_value(Entity entity, AnyComponent value);
     void put_bytes(Entity entity, ComponentId id, const void* value);
     [[nodiscard]] SparseSet& use_sparse_set(ComponentId id);
     /// Applies one command to many rows, which share the values in `record`.

@@ -46,22 +46,21 @@ const World::Bundle& World::bundle_with(const Ts&... components) {
 }
 
 template <typename... Ts>
-Entity World::create(Ts&&... components) {
+Entity World::create(Ts... components) {
     core_.check_unlocked();
-    const Bundle& bundle = bundle_with<std::remove_cvref_t<Ts>...>(components...);
+    const Bundle& bundle = bundle_with<Ts...>(components...);
     const std::uint32_t now = core_.now();
     const Entity entity = core_.entities.allocate();
     const std::uint32_t row = bundle.archetype->append(entity, now);
     core_.entities.place(entity, bundle.archetype->index(), row);
 
     [[maybe_unused]] std::size_t position = 0;
-    [[maybe_unused]] const auto put = [&]<typename T>(T&& component) {
-        using Value = std::remove_cvref_t<T>;
+    [[maybe_unused]] const auto put = [&]<typename Value>(Value& component) {
         if constexpr (detail::is_sparse<Value>) {
             SparseSet& set = use_sparse_set(component_id<Value>);
             [[maybe_unused]] const std::uint32_t place = set.append(entity, now);
             if constexpr (!std::is_empty_v<Value>) {
-                ::new (static_cast<void*>(set.value(place))) Value(std::forward<T>(component));
+                ::new (static_cast<void*>(set.value(place))) Value(std::move(component));
             }
         } else if constexpr (detail::is_shared<Value>) {
             // Stored in the archetype.
@@ -71,11 +70,11 @@ Entity World::create(Ts&&... components) {
         } else if constexpr (!std::is_empty_v<Value>) {
             Column& column = bundle.archetype->column(bundle.columns[position]);
             ::new (static_cast<void*>(reinterpret_cast<Value*>(column.data) + row))
-                Value(std::forward<T>(component));
+                Value(std::move(component));
         }
         ++position;
     };
-    (put(std::forward<Ts>(components)), ...);
+    (put(components), ...);
 
     if (bundle.archetype->observes_add || bundle.has_sparse) {
         notify(ObserverEvent::Add, bundle.components, {&entity, 1});
@@ -84,7 +83,7 @@ Entity World::create(Ts&&... components) {
 }
 
 template <typename... Ts>
-void World::create_many(std::span<Entity> entities, const Ts&... components) {
+void World::create_many(std::span<Entity> entities, Ts... components) {
     core_.check_unlocked();
     const Bundle& bundle = bundle_with<Ts...>(components...);
     const std::uint32_t now = core_.now();

@@ -6,10 +6,12 @@
 #include "ecs/components/weather.h"
 #include "systems/animation/clip_player_system.h"
 #include "systems/animation/pose_system.h"
+#include "systems/animation/rotation_track_system.h"
 #include "systems/autofocus_system.h"
 #include "systems/env_probe_system.h"
 #include "systems/fly_camera_system.h"
 #include "systems/lens_control_system.h"
+#include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/path_system.h"
 #include "systems/ripple_system.h"
@@ -51,6 +53,9 @@ void add_object_systems(SystemList& systems) {
 
 void add_animation_systems(SystemList& systems) {
     systems.add<add_poses>(Create, Both);
+    systems.add<add_rotation_track_states>(Create, Both);
+    systems.add<prepare_rotation_tracks>(Move);
+    systems.add<update_rotation_tracks>(Move, Both);
     systems.add<advance_clips>(Animate);
     systems.add<update_poses>(Animate, Both);  // after clips: samples them at their new time
     systems.add<update_attachments>(Animate, Both);
@@ -83,6 +88,7 @@ void add_camera_systems(SystemList& systems) {
     systems.add<update_orbit_cameras>(View, Both);
     systems.add<update_autofocus>(View, Both);  // after everything that moves cameras
     systems.add<adjust_lenses>(View);
+    systems.add<choose_mesh_levels>(View, Both);  // after everything that moves cameras
 }
 
 namespace {

@@ -128,7 +128,7 @@ Status run_bench(const BenchOptions& options) {
         return run_lens_bench(options);
     }
     Result<std::unique_ptr<Stage>> opened =
-        open_stage(options.scene, std::nullopt, options.assignments);
+        open_stage(options.scene, {.assignments = options.assignments});
     if (!opened) {
         return opened.error();
     }

@@ -74,7 +74,7 @@ Status measure_point(
     const BenchOptions& options, HeadlessRenderer& headless, LensBenchPoint& point,
     Progress& progress, int& done) {
     Result<std::unique_ptr<Stage>> stage =
-        open_stage(kLensScene, std::nullopt, options.assignments);
+        open_stage(kLensScene, {.assignments = options.assignments});
     if (!stage) {
         return stage.error();
     }
@@ -131,7 +131,7 @@ void set_lens_effects(Stage& stage, unsigned effects) {
 Result<LensBench> measure_lens(const BenchOptions& options, HeadlessRenderer& headless) {
     LensBench bench{.points = lens_points()};
     Result<std::unique_ptr<Stage>> stage =
-        open_stage(kLensScene, std::nullopt, options.assignments);
+        open_stage(kLensScene, {.assignments = options.assignments});
     if (!stage) {
         return stage.error();
     }

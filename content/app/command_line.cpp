@@ -122,6 +122,14 @@ void add_profile(CLI::App& app, std::optional<gpu::Profile>& profile) {
         ->type_name("gpu|software");
 }
 
+CLI::Option* add_show(CLI::App& app, std::string& technique) {
+    return app
+        .add_option(
+            "--show", technique,
+            "show a technique of TECHNIQUES.md (`limn shows`); SCENE may be left out")
+        ->type_name("ID");
+}
+
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
     app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: the tour")
@@ -144,6 +152,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
            "rendered pixels per window pixel, 0.1 to 2; auto adapts it to hold 60 frames per "
            "second")
         ->type_name("auto|X");
+    add_show(*app, options.show);
     add_profile(*app, options.profile);
     add_integer(
         *app, "--headless-frames", "render N frames along the camera path, without a window",
@@ -157,19 +166,21 @@ Command add_play(CLI::App& program, PlayOptions& options) {
         "  limn play\n"
         "  limn play gallery --size 1920x1080 --scale auto\n"
         "  limn play model.glb --fullscreen\n"
+        "  limn play --show water.fresnel\n"
         "  limn play gallery --headless-frames 12 -o frames");
     return {app, [&options] { return run_play(options); }};
 }
 
 Command add_render(CLI::App& program, RenderOptions& options) {
     CLI::App* app = program.add_subcommand("render", "Render an image or a range of frames");
-    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE")->required();
+    app->add_option("scene", options.scene, kSceneDoc)->type_name("SCENE");
     app->add_option("-o,--out", options.out, "OUT.png, OUT.exr, or frame_%04d.png for --frames")
         ->type_name("FILE")
         ->required();
     add_size(*app, options.size);
     CLI::Option* time = add_number(
-        *app, "--time", "simulation time of the image [s]; the simulation starts at 0",
+        *app, "--time",
+        "simulation time of the image [s]; the simulation starts at 0; default: the show's, or 0",
         options.time, 0, 86400);
     add_parsed(
         *app, "--frames", "first and last frame, inclusive", options.frames, parse_frame_range)
@@ -184,6 +195,8 @@ Command add_render(CLI::App& program, RenderOptions& options) {
         options.samples, 1, 65536);
     add_parsed(*app, "--aov", "layers to add to an EXR", options.aovs, parse_list)
         ->type_name("A,B");
+    add_show(*app, options.show.technique);
+    app->add_flag("--off", options.show.off, "with --show: without the technique");
     add_assignments(*app, options.assignments);
     add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
@@ -198,6 +211,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
                 "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
                 "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
                 "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
+                "  limn render --show water.fresnel --off -o without.png\n"
                 "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
                 "materials.gold.roughness=0.4");
     app->callback([&options] {
@@ -373,6 +387,17 @@ Command add_levels(CLI::App& program) {
     return {app, [] { return run_levels(); }};
 }
 
+Command add_shows(CLI::App& program, std::string& id) {
+    CLI::App* app =
+        program.add_subcommand("shows", "List the techniques that levels show, on and off");
+    app->add_option("id", id, "of a technique: print how to see it; default: list all")
+        ->type_name("ID");
+    app->footer("Examples:\n"
+                "  limn shows\n"
+                "  limn shows water.fresnel");
+    return {app, [&id] { return run_shows(id); }};
+}
+
 Command add_components(CLI::App& program, bool& schema) {
     CLI::App* app = program.add_subcommand(
         "components", "List the components with fields, units, ranges and defaults");
@@ -392,6 +417,7 @@ struct AllOptions {
     HashOptions hash;
     CompareOptions compare;
     std::string info_file;
+    std::string show;
     bool schema = false;
 };
 
@@ -406,6 +432,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_compare(program, options.compare),
         add_info(program, options.info_file),
         add_levels(program),
+        add_shows(program, options.show),
         add_components(program, options.schema)};
 }
 

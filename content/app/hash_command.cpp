@@ -13,7 +13,7 @@ Status run_hash(const HashOptions& options) {
     if (options.threads > 0) {
         set_thread_count(options.threads);
     }
-    Result<std::unique_ptr<Stage>> stage = open_stage(options.scene, options.seed);
+    Result<std::unique_ptr<Stage>> stage = open_stage(options.scene, {.seed = options.seed});
     if (!stage) {
         return stage.error();
     }

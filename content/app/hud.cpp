@@ -41,6 +41,7 @@ const std::vector<KeyHelp>& program_keys() {
         {"F3", "profiler of systems and passes"},
         {"F4", "intermediate textures of the frame"},
         {"F5", "reload the shaders"},
+        {"F6  F7", "what the level shows; on, off, side by side"},
         {"F9  F10", "screenshot as PNG; HDR image as EXR"},
         {"Ctrl Z  Y", "undo, redo"},
         {"F8  F11", "hide the status, full screen"},

@@ -8,6 +8,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/path.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 
@@ -54,6 +55,20 @@ void print_components(const World& world) {
     }
 }
 
+/// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or not.
+void print_path(const PathData& path) {
+    std::array<int, 4> joins = {};
+    for (const BezierJoin join : path_joins(path)) {
+        ++joins[static_cast<std::size_t>(join)];
+    }
+    fmt::print(
+        "path of {:.1f} m, {} curves; joins: {} of one speed, {} of one direction, {} corners  "
+        "{}\n",
+        path.length(), path.segments.size(), joins[static_cast<std::size_t>(BezierJoin::Speed)],
+        joins[static_cast<std::size_t>(BezierJoin::Direction)],
+        joins[static_cast<std::size_t>(BezierJoin::Position)], path.name);
+}
+
 void print_assets(const Assets& assets) {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
@@ -89,6 +104,9 @@ void print_assets(const Assets& assets) {
     }
     print_rest(assets.images.size());
 
+    for (const PathData& path : assets.paths) {
+        print_path(path);
+    }
     for (const SkeletonData& skeleton : assets.skeletons) {
         fmt::print("skeleton of {} joints  {}\n", skeleton.joints.size(), skeleton.name);
     }

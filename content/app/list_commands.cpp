@@ -3,6 +3,7 @@
 #include "content/game/game.h"
 #include "content/load/level_list.h"
 #include "content/load/level_schema.h"
+#include "content/load/level_show.h"
 #include "ecs/field_access.h"
 #include "ecs/reflect.h"
 
@@ -73,6 +74,22 @@ void print_component(const ComponentInfo& info) {
     fmt::print("\n");
 }
 
+/// What a show changes, and the commands that render it on and off.
+void print_show(const FoundShow& found) {
+    const LevelShow& show = found.show;
+    fmt::print("{}  {}, at {} s\n{}\n", show.technique, found.level.name, show.time, show.text);
+    if (show.set.kind == JsonKind::Object) {
+        fmt::print("\nset {}\n", write_json(show.set));
+    }
+    fmt::print(
+        "\noff {}\n", show.off.kind == JsonKind::Object ? write_json(show.off)
+                                                       : std::string("without what is set"));
+    fmt::print(
+        "\nlimn play --show {0}\nlimn render --show {0} -o on.png\n"
+        "limn render --show {0} --off -o off.png\n",
+        show.technique);
+}
+
 }  // namespace
 
 Status run_levels() {
@@ -83,6 +100,26 @@ Status run_levels() {
     }
     for (const LevelEntry& level : levels) {
         fmt::print("{:<{}}  {}\n", level.name, width, level.title);
+    }
+    return Done{};
+}
+
+Status run_shows(const std::string& id) {
+    if (!id.empty()) {
+        print_show(LIMN_TRY(find_show(id)));
+        return Done{};
+    }
+    const std::vector<FoundShow> shows = LIMN_TRY(list_shows());
+    std::size_t technique = 0;
+    std::size_t level = 0;
+    for (const FoundShow& found : shows) {
+        technique = std::max(technique, found.show.technique.size());
+        level = std::max(level, found.level.name.size());
+    }
+    for (const FoundShow& found : shows) {
+        fmt::print(
+            "{:<{}}  {:<{}}  {}\n", found.show.technique, technique, found.level.name, level,
+            found.show.text);
     }
     return Done{};
 }

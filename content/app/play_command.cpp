@@ -28,7 +28,8 @@ std::string default_scene() {
 }
 
 Status play_headless(const PlayOptions& options, bool no_display) {
-    Result<std::unique_ptr<Stage>> opened = open_stage(options.scene);
+    Result<std::unique_ptr<Stage>> opened =
+        open_stage(options.scene, {.show = {.technique = options.show}});
     if (!opened) {
         return opened.error();
     }
@@ -82,7 +83,8 @@ Status play_headless(const PlayOptions& options, bool no_display) {
 Status run_play(const PlayOptions& given) {
     PlayOptions options = given;
     if (options.scene.empty()) {
-        options.scene = default_scene();
+        options.scene = options.show.empty() ? default_scene()
+                                             : LIMN_TRY(find_show(options.show)).level.path;
     }
     const bool no_display = options.headless_frames == 0 && !Window::has_display();
     if (no_display) {

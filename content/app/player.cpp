@@ -167,7 +167,7 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
         return buffers.error();
     }
     player->buffers_ = *std::move(buffers);
-    const Status loaded = player->load(options.scene);
+    const Status loaded = player->load(options.scene, options.show);
     if (!loaded) {
         return loaded.error();
     }
@@ -183,15 +183,22 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
 
 // ---- levels -------------------------------------------------------------------------------------
 
-Status Player::load(const std::string& scene) {
+Status Player::load(const std::string& scene, const std::string& show) {
     draw_loading(scene);
-    Result<std::unique_ptr<Stage>> stage = open_stage(scene);
-    if (!stage) {
-        return stage.error();
+    std::unique_ptr<Stage> stage =
+        LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = false}, .made = &made_}));
+    std::unique_ptr<Stage> off;
+    if (!show.empty()) {
+        off = LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = true}, .made = &made_}));
+        advance_stage(*stage, stage->scene.show->time);
+        advance_stage(*off, stage->scene.show->time);
     }
-    stage_ = *std::move(stage);
+    stage_ = std::move(stage);
+    off_stage_ = std::move(off);
+    off_renderer_ = nullptr;
     first_camera_ = stage_->scene.camera;
     options_.scene = scene;
+    options_.show = show;
     inspector_.reset();
     camera_ = {};
     const Bounds& bounds = stage_->scene.bounds;
@@ -229,8 +236,8 @@ void Player::draw_loading(const std::string& scene, const std::string& step) {
     window_->swap();
 }
 
-void Player::load_or_report(const std::string& scene) {
-    const Status status = load(scene);
+void Player::load_or_report(const std::string& scene, const std::string& show) {
+    const Status status = load(scene, show);
     if (!status) {
         log_error("{}", status.error().message);
         hud_->toast(status.error().message, ToastKind::Bad);
@@ -288,7 +295,7 @@ void Player::handle_key(const KeyPress& press) {
         cycle_camera();
         break;
     case GLFW_KEY_R:
-        load_or_report(options_.scene);
+        load_or_report(options_.scene, options_.show);
         break;
     case GLFW_KEY_TAB:
     case GLFW_KEY_PAGE_DOWN:
@@ -318,6 +325,13 @@ void Player::handle_function_key(int key) {
         break;
     case GLFW_KEY_F5:
         reload_shaders(true);
+        break;
+    case GLFW_KEY_F6:
+        shows_.open = !shows_.open;
+        break;
+    case GLFW_KEY_F7:
+        shows_.cycle_side();
+        hud_->toast(off_stage_ != nullptr ? show_side_name(shows_.side) : "no show; F6 lists them");
         break;
     case GLFW_KEY_F8:
         hud_->status_shown = !hud_->status_shown;
@@ -465,17 +479,9 @@ void Player::select_under_pointer() {
 
 void Player::simulate(float dt, const Input& input) {
     const Clock::time_point begin = Clock::now();
-    if (Input* resource = stage_->world.find_resource<Input>()) {
-        const bool waiting = resource->click;  // until a step has seen it: a frame may run none
-        *resource = input;
-        resource->click = input.click || waiting;
-        const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
-        if (camera_.mode != CameraMode::Level && driver != nullptr) {
-            for (const ActionInfo& action : driver->actions) {
-                set_action(*resource, action.name, 0);  // these inputs move the camera
-            }
-            resource->look = Vec2(0);
-        }
+    set_input(stage_->world, input);
+    if (off_stage_ != nullptr) {
+        set_input(off_stage_->world, input);
     }
     const double step = stage_step(*stage_);
     int steps = 0;
@@ -491,8 +497,28 @@ void Player::simulate(float dt, const Input& input) {
     step_once_ = false;
     for (int i = 0; i < steps; ++i) {
         step_stage(*stage_);
+        if (off_stage_ != nullptr) {
+            step_stage(*off_stage_);
+        }
     }
     cost_.simulate_ms = seconds_between(begin, Clock::now()) * 1e3;
+}
+
+void Player::set_input(World& world, const Input& input) const {
+    Input* const resource = world.find_resource<Input>();
+    if (resource == nullptr) {
+        return;
+    }
+    const bool waiting = resource->click;  // until a step has seen it: a frame may run none
+    *resource = input;
+    resource->click = input.click || waiting;
+    const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
+    if (camera_.mode != CameraMode::Level && driver != nullptr) {
+        for (const ActionInfo& action : driver->actions) {
+            set_action(*resource, action.name, 0);  // these inputs move the camera
+        }
+        resource->look = Vec2(0);
+    }
 }
 
 RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) {
@@ -508,6 +534,7 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
         .alpha = alpha,
         .previous_alpha =
             alpha - static_cast<float>(std::clamp((shown - shown_time_) / step, 0.0, 8.0))};
+    view_request_ = request;
     shown_time_ = shown;
 
     const Entity level_camera = stage_->scene.camera;
@@ -548,14 +575,51 @@ void Player::draw_frame(float dt, const Input& input) {
         exr_wanted_ = false;
         save_exr(view_);
     }
-    FrameGraph& graph = frame_graph(*renderer_);
-    buffers_->before_frame(graph, request_);
-    const FrameOutput frame = render_frame(*renderer_, stage_->world, view_, request_);
-    buffers_->after_frame(*device_, graph, frame);
-    gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y);
-    cost_.statistics = frame.statistics;
+    draw_stages(window_size);
     cost_.render_ms = seconds_between(begin, Clock::now()) * 1e3;
     draw_hud(view_, window_size, dt);
+}
+
+/// The level, or of a show what is chosen of it.
+void Player::draw_stages(const IVec2& window_size) {
+    const ShowSide side = off_stage_ != nullptr ? shows_.side : ShowSide::On;
+    if (side != ShowSide::Off) {
+        FrameGraph& graph = frame_graph(*renderer_);
+        buffers_->before_frame(graph, request_);
+        const FrameOutput frame = render_frame(*renderer_, stage_->world, view_, request_);
+        buffers_->after_frame(*device_, graph, frame);
+        gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y);
+        cost_.statistics = frame.statistics;
+    }
+    if (side != ShowSide::On) {
+        const float share = side == ShowSide::Both ? shows_.divider : 1.0f;
+        draw_off_stage(
+            window_size, static_cast<int>(std::lround(share * static_cast<float>(window_size.x))));
+    }
+}
+
+/// Draws the first `columns` of the window from the level without the technique.
+void Player::draw_off_stage(const IVec2& window_size, int columns) {
+    if (off_renderer_ == nullptr) {
+        Result<RendererPtr> renderer = create_renderer(*device_);
+        if (!renderer) {
+            log_error("{}", renderer.error().message);
+            off_stage_ = nullptr;
+            return;
+        }
+        off_renderer_ = *std::move(renderer);
+    }
+    const World& world = off_stage_->world;
+    const Entity camera = off_stage_->scene.camera;
+    RenderView view = view_;
+    if (camera_.mode == CameraMode::Level) {
+        view = make_render_view(world, camera, view_request_);
+    } else {
+        view.lens = lens_view(world, camera);
+    }
+    const FrameOutput frame = render_frame(*off_renderer_, world, view);
+    gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y, columns);
+    cost_.statistics = frame.statistics;
 }
 
 void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt) {
@@ -587,6 +651,10 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
             }
         }
     }
+    if (off_stage_ != nullptr && shows_.side == ShowSide::Both) {
+        shows_.draw_divider(hud_->style());
+    }
+    shows_.draw(hud_->style(), options_.show);
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
@@ -628,6 +696,9 @@ Status Player::run() {
 
         if (events.left_clicked && !hud_->wants_mouse()) {
             select_under_pointer();
+        }
+        if (const std::optional<FoundShow> selected = shows_.take_selected()) {
+            load_or_report(selected->level.path, selected->show.technique);
         }
         const Input input = read_input(events);
         until_shader_check_ -= dt;

@@ -8,8 +8,10 @@
 #include "content/app/player_camera.h"
 #include "content/app/profiler_panel.h"
 #include "content/app/render_scale.h"
+#include "content/app/shows_panel.h"
 #include "content/app/stage.h"
 #include "content/app/window.h"
+#include "content/load/made_assets.h"
 #include "ecs/components/input.h"
 #include "render/gpu/device.h"
 #include "render/render_frame.h"
@@ -44,11 +46,12 @@ class Player {
         std::unique_ptr<Window> window, std::unique_ptr<gpu::Device> device,
         const PlayOptions& options);
 
-    /// Replaces the level; keeps the old one if the new one cannot be loaded.
-    [[nodiscard]] Status load(const std::string& scene);
+    /// Replaces the level; keeps the old one if the new one cannot be loaded. Starts at the time of
+    /// the show.
+    [[nodiscard]] Status load(const std::string& scene, const std::string& show = {});
     void draw_loading(const std::string& scene, const std::string& step = {});
     void warm_up_level();
-    void load_or_report(const std::string& scene);
+    void load_or_report(const std::string& scene, const std::string& show = {});
     void load_neighbor(int offset);
 
     void handle_key(const KeyPress& press);
@@ -65,8 +68,11 @@ class Player {
     void select_under_pointer();
 
     void simulate(float dt, const Input& input);
+    void set_input(World& world, const Input& input) const;
     [[nodiscard]] RenderView move_camera(float dt, const Input& input, const IVec2& size);
     void draw_frame(float dt, const Input& input);
+    void draw_stages(const IVec2& window_size);
+    void draw_off_stage(const IVec2& window_size, int columns);
     void draw_hud(const RenderView& view, const IVec2& window_size, float dt);
     void draw_outline(const RenderView& view) const;
 
@@ -84,6 +90,13 @@ class Player {
     std::unique_ptr<Hud> hud_;
     std::optional<BufferViewer> buffers_;
     std::unique_ptr<Stage> stage_;
+    MadeAssets made_;
+
+    // The level without the technique of options_.show, beside the one with it.
+    std::unique_ptr<Stage> off_stage_;
+    RendererPtr off_renderer_;
+    ShowsPanel shows_;
+    ViewRequest view_request_;  ///< of the last frame
 
     Entity first_camera_{};
 

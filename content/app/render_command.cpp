@@ -7,8 +7,10 @@
 #include "content/app/stage.h"
 #include "ecs/base/text.h"
 #include "ecs/base/type_name.h"
+#include "ecs/components/env_probe.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
+#include "ecs/components/rendering.h"
 #include "render/render_view.h"
 
 #include <fmt/format.h>
@@ -20,12 +22,12 @@
 namespace limn {
 namespace {
 
-constexpr int kEdgeSamples = 16;  ///< antialiasing samples per pixel
+constexpr int kTemporalFrames = 16;  ///< after which temporal antialiasing has settled
 
 /// Motion blur modes that keep previous frames must keep whole frames, not antialiasing samples.
-int played_samples(const World& world) {
+int played_samples(const World& world, const RenderOptions& options) {
     const auto* blur = world.find_resource<MotionBlur>();
-    return blur != nullptr && needs_previous_frames(blur->mode) ? 1 : kEdgeSamples;
+    return blur != nullptr && needs_previous_frames(blur->mode) ? 1 : options.edge_samples;
 }
 
 /// The names of all cameras, for the error about an unknown one.
@@ -90,7 +92,7 @@ FrameOutput draw_played(
     const FrameTimes& time) {
     const RenderView view = advance_to_view(stage, camera, options, time);
     return render_accumulated(
-        renderer, stage.world, view, played_samples(stage.world), {.aovs = options.aovs});
+        renderer, stage.world, view, played_samples(stage.world, options), {.aovs = options.aovs});
 }
 
 /// Averages samples over shutter, lens and pixel while the simulation advances: the ground truth
@@ -121,20 +123,50 @@ FrameOutput draw_sampled(
     return finish_accumulation(renderer, stage.world, shown);
 }
 
-Status render_image(
-    HeadlessRenderer& headless, Stage& stage, Entity camera, const RenderOptions& options,
-    const FrameTimes& time, const std::string& path) {
-    const FrameOutput frame = options.samples > 0
-                                  ? draw_sampled(*headless.renderer, stage, camera, options, time)
-                                  : draw_played(*headless.renderer, stage, camera, options, time);
+/// How many frames the image of a later one depends on.
+int previous_frames(const World& world) {
+    const auto* const blur = world.find_resource<MotionBlur>();
+    const auto* const rendering = world.find_resource<Rendering>();
+    const bool averages = blur != nullptr && needs_previous_frames(blur->mode);
+    const bool accumulates =
+        rendering != nullptr && rendering->antialiasing == Antialiasing::Temporal;
+    return std::max(averages ? blur->window : 0, accumulates ? kTemporalFrames : 0);
+}
+
+Status write_frame(
+    const FrameOutput& frame, const Stage& stage, double time, const std::string& path) {
     return write_image_file(
         path, frame,
-        {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time.shown)}});
+        {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time)}});
 }
 
 }  // namespace
 
+FrameOutput draw_still(
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options, double time) {
+    const double step = stage_step(stage);
+    const auto draw_at = [&](double when) {
+        const RenderView view = advance_to_view(stage, camera, options, {when, when - step});
+        (void)render_frame(renderer, stage.world, view);
+    };
+    if (time > 0 && !stage.world.query<const EnvProbe>().empty()) {
+        draw_at(0);
+    }
+    for (int i = previous_frames(stage.world); i > 0; --i) {
+        if (time - i * step >= stage_time(stage)) {
+            draw_at(time - i * step);
+        }
+    }
+    return draw_played(renderer, stage, camera, options, {time, time - step});
+}
+
 Status check_render_options(const RenderOptions& options) {
+    if (options.scene.empty() && options.show.technique.empty()) {
+        return fail("found no scene, expected SCENE or --show ID");
+    }
+    if (options.show.off && options.show.technique.empty()) {
+        return fail("found --off alone, expected --show ID with it");
+    }
     const Result<ImageFileKind> kind = image_file_kind(options.out);
     if (!kind) {
         return fail("--out: {}", kind.error().message);
@@ -162,12 +194,13 @@ Status check_render_options(const RenderOptions& options) {
 }
 
 Status run_render(const RenderOptions& options) {
-    Result<std::unique_ptr<Stage>> opened =
-        open_stage(options.scene, options.seed, options.assignments);
-    if (!opened) {
-        return opened.error();
-    }
-    Stage& stage = **opened;
+    const std::string scene =
+        !options.scene.empty() ? options.scene
+                               : LIMN_TRY(find_show(options.show.technique)).level.path;
+    const std::unique_ptr<Stage> opened = LIMN_TRY(open_stage(
+        scene,
+        {.seed = options.seed, .assignments = options.assignments, .show = options.show}));
+    Stage& stage = *opened;
     const Result<Entity> camera = choose_camera(stage, options.camera);
     if (!camera) {
         return camera.error();
@@ -184,17 +217,25 @@ Status run_render(const RenderOptions& options) {
         return fits.error();
     }
     if (!options.frames) {
-        const double step = stage_step(stage);
-        return render_image(
-            *headless, stage, *camera, options, {options.time, options.time - step}, options.out);
+        const double time = options.time.value_or(stage.scene.show ? stage.scene.show->time : 0.0);
+        const FrameOutput frame =
+            options.samples > 0
+                ? draw_sampled(
+                    *headless->renderer, stage, *camera, options, {time, time - stage_step(stage)})
+                : draw_still(*headless->renderer, stage, *camera, options, time);
+        return write_frame(frame, stage, time, options.out);
     }
     const int count = options.frames->last - options.frames->first + 1;
     Progress progress("frame", count);
     for (int i = 0; i < count; ++i) {
         const int frame = options.frames->first + i;
-        const Status status = render_image(
-            *headless, stage, *camera, options, {frame / options.fps, (frame - 1) / options.fps},
-            numbered_path(options.out, frame));
+        const FrameTimes time = {frame / options.fps, (frame - 1) / options.fps};
+        const FrameOutput output =
+            options.samples > 0
+                ? draw_sampled(*headless->renderer, stage, *camera, options, time)
+                : draw_played(*headless->renderer, stage, *camera, options, time);
+        const Status status =
+            write_frame(output, stage, time.shown, numbered_path(options.out, frame));
         if (!status) {
             return status.error();
         }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "content/app/command_values.h"
+#include "content/app/stage.h"
+#include "content/load/level_show.h"
 #include "render/gpu/device_caps.h"
+#include "render/render_frame.h"
 
 #include <optional>
 #include <string>
@@ -11,19 +14,27 @@ namespace limn {
 
 /// `limn render`: renders images without a window.
 struct RenderOptions {
-    std::string scene;  ///< level name, level file or glTF
+    std::string scene;  ///< level name, level file or glTF; empty: the first level with the show
     std::string out;    ///< .png, .exr; with %04d in the name for a range
     IVec2 size = {1280, 720};
-    double time = 0.0;                 ///< of a single image [s]
+    std::optional<double> time;        ///< of a single image [s]; default: the show's, or 0
     std::optional<FrameRange> frames;  ///< frame n shows time n / fps
     double fps = 60.0;
     std::optional<std::uint64_t> seed;    ///< overrides the level's
     int samples = 0;                      ///< per pixel; 0: effects as played, antialiased
+    int edge_samples = 16;                ///< antialiasing samples of effects as played
     std::vector<std::string> aovs;        ///< additional EXR layers
     std::vector<Assignment> assignments;  ///< applied after loading, in order
     std::string camera;                   ///< by name; empty = the level's
+    ShowChoice show;                      ///< what to show of the level
     std::optional<gpu::Profile> profile;  ///< empty = by the device
 };
+
+/// One frame at `time` as `limn play` shows it, antialiased. Draws first what it depends on: the
+/// first frame where probes remember what they saw, and the frames before it that motion blur
+/// averages or temporal antialiasing accumulates.
+[[nodiscard]] FrameOutput draw_still(
+    Renderer& renderer, Stage& stage, Entity camera, const RenderOptions& options, double time);
 
 /// Rejects options that exclude each other and invalid output names; errors are wrong usage.
 [[nodiscard]] Status check_render_options(const RenderOptions& options);

@@ -16,19 +16,18 @@ constexpr double kRounding = 1e-3;
 
 }  // namespace
 
-Result<std::unique_ptr<Stage>> open_stage(
-    const std::string& scene, std::optional<std::uint64_t> seed,
-    std::span<const Assignment> assignments) {
+Result<std::unique_ptr<Stage>>
+open_stage(const std::string& scene, const StageOptions& options) {
     register_game_components();
     auto stage = std::make_unique<Stage>();
-    Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = seed});
+    Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = options.seed, .show = options.show, .made = options.made});
     if (!loaded) {
         return loaded.error();
     }
     stage->scene = *std::move(loaded);
     stage->schedule = make_world_schedule(add_game_systems);
     start_world(stage->world, add_game_systems);
-    for (const Assignment& assignment : assignments) {
+    for (const Assignment& assignment : options.assignments) {
         const Status status = set_value(stage->world, assignment.path, assignment.value);
         if (!status) {
             return status.error();

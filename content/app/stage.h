@@ -23,10 +23,16 @@ struct Stage {
     LoadedScene scene;
 };
 
+struct StageOptions {
+    std::optional<std::uint64_t> seed = {};        ///< overrides the level's
+    std::span<const Assignment> assignments = {};  ///< applied after loading, in order
+    ShowChoice show = {};
+    MadeAssets* made = nullptr;  ///< what levels loaded before have generated
+};
+
 /// Fails with the loader's error, or that of the first invalid assignment.
-[[nodiscard]] Result<std::unique_ptr<Stage>> open_stage(
-    const std::string& scene, std::optional<std::uint64_t> seed = std::nullopt,
-    std::span<const Assignment> assignments = {});
+[[nodiscard]] Result<std::unique_ptr<Stage>>
+open_stage(const std::string& scene, const StageOptions& options = {});
 
 /// One step of the simulation.
 void step_stage(Stage& stage);

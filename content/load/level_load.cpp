@@ -29,7 +29,7 @@ constexpr LevelKey kLevelKeys[] = {
     {"materials", JsonKind::Object}, {"paths", JsonKind::Object},
     {"meshes", JsonKind::Object},    {"prefabs", JsonKind::Object},
     {"entities", JsonKind::Array},   {"events", JsonKind::Array},
-    {"bindings", JsonKind::Object}};
+    {"bindings", JsonKind::Object},  {"shows", JsonKind::Array}};
 constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm"};
 
 using Names = std::unordered_map<std::string, std::uint32_t>;
@@ -72,6 +72,7 @@ class LevelParser {
         LIMN_TRY(read_section("resources", &LevelParser::read_resource));
         LIMN_TRY(read_section("bindings", &LevelParser::read_binding));
         LIMN_TRY(read_entities());
+        level_.shows = LIMN_TRY(read_shows(json_, level_.file));
         place_cameras();
         return std::move(level_);
     }
@@ -377,7 +378,8 @@ std::string place_of(const Level& level, SourcePosition at, std::string_view pat
     return fmt::format("{}:{}:{}: {}", level.file, at.line, at.column, path);
 }
 
-Status make_pattern(Level& level, const LevelImage& image, std::uint64_t& pixels_left) {
+Status make_pattern(
+    Level& level, const LevelImage& image, MadeAssets& made, std::uint64_t& pixels_left) {
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));
@@ -388,7 +390,7 @@ Status make_pattern(Level& level, const LevelImage& image, std::uint64_t& pixels
             place_of(level, image.at, "images." + image.name), pixels, pixels_left);
     }
     pixels_left -= pixels;
-    PatternMaps maps = image.pattern->make(image.parameters.data());
+    PatternMaps maps = made.pattern(*image.pattern, image.parameters);
     std::size_t index = image.index;
     for (ImageData* const map : {&maps.base_color, &maps.normal, &maps.orm}) {
         map->name = level.assets.images[index].name;
@@ -431,14 +433,14 @@ void add_rig(Assets& assets, const std::string& name, MeshRig rig) {
     }
 }
 
-Status make_meshes(Level& level, const LevelLimits& limits) {
+Status make_meshes(Level& level, const LevelLimits& limits, MadeAssets& made) {
     std::uint64_t vertices = 0;
     for (const LevelMesh& mesh : level.meshes) {
-        MeshData& data =
-            level.assets.meshes.emplace_back(mesh.kind->make(mesh.parameters.data(), level.assets));
+        MadeMesh made_mesh = made.mesh(*mesh.kind, mesh.parameters, level.assets);
+        MeshData& data = level.assets.meshes.emplace_back(std::move(made_mesh.data));
         data.name = mesh.name;
-        if (mesh.kind->make_rig != nullptr) {
-            add_rig(level.assets, mesh.name, mesh.kind->make_rig(mesh.parameters.data()));
+        if (made_mesh.rig) {
+            add_rig(level.assets, mesh.name, *std::move(made_mesh.rig));
         }
         vertices += data.positions.size();
         if (vertices > limits.max_vertices) {
@@ -466,14 +468,18 @@ parse_level(std::string_view text, const std::string& file, const LevelLimits& l
     return LevelParser(json, file, limits).parse();
 }
 
-Status load_level_assets(Level& level, const std::string& folder, const LevelLimits& limits) {
+Status load_level_assets(
+    Level& level, const std::string& folder, const LevelLimits& limits, MadeAssets* made) {
+    MadeAssets own;
+    MadeAssets& makes = made != nullptr ? *made : own;
+    makes.begin_level();
     std::uint64_t pixels_left = limits.max_pixels;
     for (const LevelImage& image : level.images) {
         LIMN_TRY(
-            image.pattern != nullptr ? make_pattern(level, image, pixels_left)
+            image.pattern != nullptr ? make_pattern(level, image, makes, pixels_left)
                                      : load_image_file(level, image, folder, limits, pixels_left));
     }
-    LIMN_TRY(make_meshes(level, limits));
+    LIMN_TRY(make_meshes(level, limits, makes));
     for (const GltfUse& use : level.gltfs) {
         GltfScene scene = LIMN_TRY(load_scene_file(level, use, folder, limits));
         for (const std::string& warning : scene.warnings) {
@@ -484,11 +490,15 @@ Status load_level_assets(Level& level, const std::string& folder, const LevelLim
     return resolve_deferred_names(level);
 }
 
-Result<Level> load_level(const std::string& path, const LevelLimits& limits) {
-    const JsonValue json = LIMN_TRY(load_json(path, limits.json));
+Result<Level> load_level(
+    const std::string& path, const LevelLimits& limits, const ShowChoice& choice,
+    MadeAssets* made) {
+    JsonValue json = LIMN_TRY(load_json(path, limits.json));
+    std::optional<LevelShow> show = LIMN_TRY(choose_show(choice, path, json));
     Level level = LIMN_TRY(LevelParser(json, path, limits).parse());
+    level.show = std::move(show);
     const std::string parent = std::filesystem::path(path).parent_path().string();
-    LIMN_TRY(load_level_assets(level, parent.empty() ? "." : parent, limits));
+    LIMN_TRY(load_level_assets(level, parent.empty() ? "." : parent, limits, made));
     return level;
 }
 

@@ -3,6 +3,8 @@
 #include "content/load/gltf_load.h"
 #include "content/load/json_document.h"
 #include "content/load/level_entities.h"
+#include "content/load/level_show.h"
+#include "content/load/made_assets.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns.h"
 #include "ecs/any_component.h"
@@ -13,6 +15,7 @@
 #include "ecs/prefab.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,7 +46,8 @@ class World;
 //                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
 //       "prefabs": {"lamp": NODE},
 //       "entities": [NODE, ...],
-//       "events": [EVENT, ...]
+//       "events": [EVENT, ...],
+//       "shows": [SHOW, ...]                    // techniques, each on and off: level_show.h
 //     }
 //
 // A NODE is an entity and its descendants. Every entity has a Transform.
@@ -112,6 +116,8 @@ struct Level {
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(index in `entities`).
     EventList events;
+    std::vector<LevelShow> shows;
+    std::optional<LevelShow> show;  ///< the one that was chosen and is applied
 
     /// Names of skeletons, skins and clips; components hold indices into this list until
     /// load_level_assets has read the files that define them.
@@ -126,12 +132,16 @@ struct Level {
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});
 
-/// Fills `assets` and `scenes`; files are resolved under `folder`.
-[[nodiscard]] Status
-load_level_assets(Level& level, const std::string& folder, const LevelLimits& limits = {});
+/// Fills `assets` and `scenes`; files are resolved under `folder`. Generates what `made` does not
+/// have.
+[[nodiscard]] Status load_level_assets(
+    Level& level, const std::string& folder, const LevelLimits& limits = {},
+    MadeAssets* made = nullptr);
 
-/// Both, for the file `path`.
-[[nodiscard]] Result<Level> load_level(const std::string& path, const LevelLimits& limits = {});
+/// Both, for the file `path`, with the chosen show applied before.
+[[nodiscard]] Result<Level> load_level(
+    const std::string& path, const LevelLimits& limits = {}, const ShowChoice& choice = {},
+    MadeAssets* made = nullptr);
 
 /// Puts the level into the world: appends assets, replaces resources, creates entities in one
 /// batch, inserts the EventList. Returns the entities in the order of `level.entities`.

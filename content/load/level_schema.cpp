@@ -1,6 +1,7 @@
 #include "content/load/level_schema.h"
 
 #include "content/load/level_repeat.h"
+#include "content/load/level_show.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns.h"
 #include "ecs/components/input.h"
@@ -268,6 +269,24 @@ JsonValue schema_of_event() {
         {text("at")});
 }
 
+JsonValue schema_of_show() {
+    const auto patch = [] {
+        return of_type("object", {member("description", text("JSON merge patch of the level"))});
+    };
+    return closed_object(
+        {member("technique", of_type("string")), member("text", of_type("string")),
+         member("set", patch()), member("off", patch()),
+         member(
+             "time",
+             of_type("number", {member("minimum", number(0)), member("maximum", number(3600))})),
+         member(
+             "camera", any_of(
+                           {of_type("string"),
+                            schema_of_fields(component_info<ShowCamera>().fields)})),
+         member("equal", of_type("boolean"))},
+        {text("technique"), text("text")});
+}
+
 JsonValue definitions() {
     Members all = {
         member("node", schema_of_node()), member("repeat of a node", schema_of_repeat()),
@@ -292,6 +311,7 @@ JsonValue level_schema() {
          member("prefabs", map_of(reference("node"))),
          member("entities", array_of(reference("node"))),
          member("events", array_of(reference("event"))),
+         member("shows", array_of(schema_of_show())),
          member("bindings", map_of(array_of(one_of_words(key_names()))))});
     schema.members.insert(
         schema.members.begin(),

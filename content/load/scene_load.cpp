@@ -211,13 +211,18 @@ load_gltf_scene(World& world, const std::string& path, const SceneOptions& optio
 
 Result<LoadedScene>
 load_level_scene(World& world, const std::string& path, const SceneOptions& options) {
-    Level level = LIMN_TRY(load_level(path));
+    Level level = LIMN_TRY(load_level(path, {}, options.show, options.made));
     LoadedScene scene;
     scene.name = level.name;
     scene.title = level.title;
     scene.path = path;
+    scene.shows = std::move(level.shows);
+    scene.show = std::move(level.show);
     (void)spawn_level(world, std::move(level));
     complete_scene(world, options, scene);
+    if (scene.show) {
+        scene.camera = LIMN_TRY(place_show_camera(world, *scene.show, scene.camera));
+    }
     return scene;
 }
 
@@ -227,6 +232,9 @@ Result<LoadedScene>
 load_scene(World& world, const std::string& scene, const SceneOptions& options) {
     register_all_components();
     if (ends_with_any(scene, {".gltf", ".glb"})) {
+        if (!options.show.technique.empty()) {
+            return fail("{}: found a glTF file, expected a level with --show", scene);
+        }
         return load_gltf_scene(world, scene, options);
     }
     const bool is_path = ends_with_any(scene, {".json"}) || scene.find('/') != std::string::npos;

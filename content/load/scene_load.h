@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/level_show.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/entity.h"
@@ -7,9 +8,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace limn {
 
+class MadeAssets;
 class World;
 
 // Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a glTF file.
@@ -17,7 +20,9 @@ class World;
 // three lights if it has none, and the Studio environment.
 
 struct SceneOptions {
-    std::optional<std::uint64_t> seed;  ///< overrides the level's
+    std::optional<std::uint64_t> seed = {};  ///< overrides the level's
+    ShowChoice show = {};                    ///< only levels have shows
+    MadeAssets* made = nullptr;              ///< what levels loaded before have generated
 };
 
 struct LoadedScene {
@@ -27,10 +32,13 @@ struct LoadedScene {
     Bounds bounds;          ///< initial world-space bounds of everything drawn; may be empty
     Entity camera;          ///< the camera to render from, never null
     double duration = 0.0;  ///< of the longest camera path [s]; 0: none
+    std::vector<LevelShow> shows;
+    std::optional<LevelShow> show;  ///< the chosen one
 };
 
 /// Fills `world`, which afterwards has the resources Assets, Environment, Rendering, Exposure,
-/// FrameTime, RandomSeed and EventList. Registers all components. On failure, `world` is unchanged.
+/// FrameTime, RandomSeed and EventList. Registers all components. On failure, `world` is unchanged,
+/// but where a show names a camera that the level does not have.
 [[nodiscard]] Result<LoadedScene>
 load_scene(World& world, const std::string& scene, const SceneOptions& options = {});
 

@@ -379,20 +379,4 @@ PatchLevels make_patch_levels(const BezierPatch& patch, int count) {
     return levels;
 }
 
-int choose_patch_level(float projected_pixels, int count, int current, float pixels_per_quad) {
-    LIMN_CHECK(count >= 1 && pixels_per_quad > 0);
-    const auto level_for = [&](float pixels) {
-        const float quads = std::max(pixels / pixels_per_quad, 1.0f);
-        return std::min(static_cast<int>(std::floor(std::log2(quads))), count - 1);
-    };
-    const int wanted = level_for(projected_pixels);
-    if (wanted > current) {
-        return std::max(level_for(projected_pixels / 1.1f), current);
-    }
-    if (wanted < current) {
-        return std::min(level_for(projected_pixels * 1.1f), current);
-    }
-    return wanted;
-}
-
 }  // namespace limn

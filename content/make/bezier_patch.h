@@ -86,9 +86,4 @@ struct PatchLevels {
 
 [[nodiscard]] PatchLevels make_patch_levels(const BezierPatch& patch, int count);
 
-/// The level 0 .. count-1 whose quads span about `pixels_per_quad` when the patch spans
-/// `projected_pixels`. A hysteresis of 10 % about `current` avoids flicker.
-[[nodiscard]] int
-choose_patch_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
-
 }  // namespace limn

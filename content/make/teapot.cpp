@@ -171,9 +171,35 @@ std::vector<TeapotPatch> teapot_patches(bool bottom) {
     return patches;
 }
 
+namespace {
+
+/// The pieces of all patches at a level of their hierarchy, each a patch.
+std::vector<TeapotPatch> patches_at_level(const std::vector<TeapotPatch>& pot, int level) {
+    std::vector<TeapotPatch> pieces;
+    const std::size_t side = std::size_t{1} << level;
+    for (const TeapotPatch& patch : pot) {
+        const PatchLevels levels = make_patch_levels(patch.surface, level + 1);
+        for (std::size_t i = 0; i < side * side; ++i) {
+            const Vec2 at = Vec2(i % side, i / side) / static_cast<float>(side);
+            const auto uv = [&](const Vec2& corner) {
+                return glm::mix(patch.uv_at_start, patch.uv_at_end, corner);
+            };
+            pieces.push_back(
+                {patch.part, levels.level.back()[i], uv(at),
+                 uv(at + 1.0f / static_cast<float>(side))});
+        }
+    }
+    return pieces;
+}
+
+}  // namespace
+
 MeshData make_teapot(const TeapotShape& shape) {
     LIMN_CHECK(shape.height > 0 && shape.tolerance >= 0);
-    const std::vector<TeapotPatch> pot = teapot_patches(shape.bottom);
+    const std::vector<TeapotPatch> whole = teapot_patches(shape.bottom);
+    const std::vector<TeapotPatch> pot =
+        shape.level >= 0 ? patches_at_level(whole, shape.level) : whole;
+    const int divisions = shape.level >= 0 ? 1 : shape.divisions;
     const float scale = shape.height / kHeight;
     std::vector<BezierPatch> surfaces;
     for (const TeapotPatch& patch : pot) {
@@ -186,7 +212,7 @@ MeshData make_teapot(const TeapotShape& shape) {
     }
     const PatchTriangles triangles = shape.tolerance > 0
                                          ? tessellate_adaptive(surfaces, shape.tolerance)
-                                         : tessellate_uniform(surfaces.size(), shape.divisions);
+                                         : tessellate_uniform(surfaces.size(), divisions);
     MeshData mesh = make_patch_mesh(surfaces, triangles);
     for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
         const PatchSample& sample = triangles.samples[i];

@@ -29,6 +29,7 @@ struct TeapotPatch {
 struct TeapotShape {
     int divisions = 10;
     float tolerance = 0.0f;
+    int level = -1;
     float height = 1.0f;
     bool bottom = true;
 };
@@ -38,6 +39,10 @@ LIMN_FIELDS(TeapotShape) {
     LIMN_FIELD(
         tolerance, "if not 0: adaptive tessellation with this error, instead of divisions", "m", 0,
         10);
+    LIMN_FIELD(
+        level, "if >= 0: this level of the patches' hierarchy, 4^level flat pieces of each, instead "
+               "of divisions",
+        "", -1, 7);
     LIMN_FIELD(height, "with the lid", "m", 1e-4, 1e5);
     LIMN_FIELD(bottom, "closed from below");
 }

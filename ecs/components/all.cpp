@@ -12,6 +12,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
+#include "ecs/components/mesh_levels.h"
 #include "ecs/components/mirror_caustic.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
@@ -21,6 +22,7 @@
 #include "ecs/components/projector.h"
 #include "ecs/components/rendering.h"
 #include "ecs/components/ripple.h"
+#include "ecs/components/rotation_track.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
 #include "ecs/components/speed_lines.h"
@@ -53,6 +55,7 @@ void register_all_components() {
     register_component<Spin>();
     register_component<Sway>();
     register_component<MeshInstance>();
+    register_component<MeshLevels>();
     register_component<Inflate>();
     register_component<SpeedLines>();
     register_component<Skeleton>();
@@ -63,6 +66,7 @@ void register_all_components() {
     register_component<Deformed>();
     register_component<JointAttachment>();
     register_component<PathFollower>();
+    register_component<RotationTrack>();
     register_component<PointLight>();
     register_component<SpotLight>();
     register_component<DirectionalLight>();

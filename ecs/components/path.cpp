@@ -1,5 +1,6 @@
 #include "ecs/components/path.h"
 
+#include "ecs/base/rotation.h"
 #include "ecs/base/text.h"
 
 #include <glm/geometric.hpp>
@@ -35,6 +36,17 @@ void smooth_knot(PathKnot& knot, const PathKnot* last, const PathKnot* next) {
     knot.after = slope * (b / 3.0f);
 }
 
+/// The edits of a knot, its tangents once they are known (anim.bezier-edit).
+void edit_knot(PathKnot& knot) {
+    const BezierKnot given = {
+        knot.position + knot.before, knot.position, knot.position + knot.after};
+    BezierKnot edited = knot.slide > 0.0f ? slide_knot(given, knot.slide) : given;
+    edited = rotate_knot(edited, normalize_or_identity(knot.turn));
+    knot.position = edited.key;
+    knot.before = edited.before - edited.key;
+    knot.after = edited.after - edited.key;
+}
+
 struct PathPlace {
     std::size_t segment = 0;
     float u = 0;
@@ -67,7 +79,7 @@ Result<PathData> make_path(const PathShape& shape) {
     for (std::size_t i = 0; i < count; ++i) {
         const PathKnot& knot = knots[i];
         if (!is_finite(knot.position) || !is_finite(knot.before) || !is_finite(knot.after)
-            || !std::isfinite(knot.roll)) {
+            || !std::isfinite(knot.roll) || !std::isfinite(knot.slide)) {
             return fail("knots[{}]: found a number that is not finite", i);
         }
     }
@@ -80,6 +92,11 @@ Result<PathData> make_path(const PathShape& shape) {
                 last ? nullptr : &knots[(i + 1) % count]);
         }
     }
+    for (PathKnot& knot : knots) {
+        if (knot.slide > 0.0f || knot.turn != Quat(1, 0, 0, 0)) {
+            edit_knot(knot);
+        }
+    }
     PathData path;
     path.closed = shape.closed;
     path.begins.push_back(0.0f);
@@ -88,8 +105,10 @@ Result<PathData> make_path(const PathShape& shape) {
     for (std::size_t i = 0; i < segments; ++i) {
         const PathKnot& from = knots[i];
         const PathKnot& to = knots[(i + 1) % count];
+        const Bezier<Vec3> points = {
+            from.position, from.position + from.after, to.position + to.before, to.position};
         path.segments.push_back(
-            {from.position, from.position + from.after, to.position + to.before, to.position});
+            shape.curve == PathCurve::Parabolic ? bezier_of(points) : points);
         path.chords.push_back(measure_chords(path.segments.back()));
         length += static_cast<double>(path.chords.back().total());
         path.begins.push_back(static_cast<float>(length));
@@ -124,6 +143,15 @@ PathFrame path_frame_at(const PathData& path, double distance) {
     const Vec3 level_up = glm::cross(right, frame.ahead);
     frame.up = level_up * std::cos(frame.roll) + right * std::sin(frame.roll);
     return frame;
+}
+
+std::vector<BezierJoin> path_joins(const PathData& path) {
+    std::vector<BezierJoin> joins;
+    const std::size_t count = path.segments.size();
+    for (std::size_t i = 1; i < count + (path.closed ? 1 : 0); ++i) {
+        joins.push_back(find_join(path.segments[i - 1], path.segments[i % count], 1e-3f));
+    }
+    return joins;
 }
 
 float path_curvature(const PathData& path, double distance) {

@@ -30,6 +30,8 @@ struct PathKnot {
     Vec3 before = {0, 0, 0};
     Vec3 after = {0, 0, 0};
     float roll = 0.0f;
+    float slide = 0.0f;
+    Quat turn = {1, 0, 0, 0};
 };
 
 LIMN_FIELDS(PathKnot) {
@@ -37,17 +39,31 @@ LIMN_FIELDS(PathKnot) {
     LIMN_FIELD(before, "incoming control point, relative to the position", "m");
     LIMN_FIELD(after, "outgoing control point, relative to the position; both 0: smooth", "m");
     LIMN_FIELD(roll, "bank to the right", "rad", -3.2, 3.2);
+    LIMN_FIELD(
+        slide, "moves the knot to this fraction of the line between its control points; 0: stays",
+        "", 0, 1);
+    LIMN_FIELD(turn, "rotates both control points about the knot");
 }
+
+/// What the two points between the knots of a segment are.
+enum class PathCurve : std::uint8_t {
+    Bezier,    ///< control points of a cubic Bezier curve
+    Parabolic  ///< corners of a parabolic blend, which the curve comes nearer to
+};
 
 /// A path as described in a level.
 struct PathShape {
     std::vector<PathKnot> knots;
     bool closed = false;
+    PathCurve curve = PathCurve::Bezier;
 };
 
 LIMN_FIELDS(PathShape) {
     LIMN_FIELD(knots, "knots in order, at least two");
     LIMN_FIELD(closed, "the last knot connects to the first");
+    LIMN_FIELD(
+        curve, .doc = "what `before` and `after` are: control points, or corners of a blend",
+        .values = "bezier parabolic");
 }
 
 /// Position and orientation at a point of a path.
@@ -76,6 +92,10 @@ struct PathData {
 
 /// Frame at `distance` [m], wrapped on a closed path, clamped on an open one. Exact at knots.
 [[nodiscard]] PathFrame path_frame_at(const PathData& path, double distance);
+
+/// How the curve goes on at each knot between two segments, in order; of a closed path at its last
+/// knot, too.
+[[nodiscard]] std::vector<BezierJoin> path_joins(const PathData& path);
 
 /// Signed curvature about `up`, 1 / radius [1/m]; positive for left turns.
 [[nodiscard]] float path_curvature(const PathData& path, double distance);

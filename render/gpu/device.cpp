@@ -438,16 +438,20 @@ create_pipeline(Device& device, const ProgramDesc& desc, const PipelineState& st
     return Pipeline{*program, state};
 }
 
-void blit_to_window(Device& device, const Texture& texture, int width, int height, GLenum filter) {
+void blit_to_window(Device& device, const Texture& texture, int width, int height, int columns) {
     if (device.blit_serial_ != texture.serial()) {
         const Attachment color = {&texture};
         device.blit_source_ = Framebuffer("blit source", std::span(&color, 1));
         device.blit_serial_ = texture.serial();
     }
-    device.disable_scissor();
+    if (columns >= 0) {
+        device.set_scissor(0, 0, columns, height);
+    } else {
+        device.disable_scissor();
+    }
     glBlitNamedFramebuffer(
         device.blit_source_.id(), 0, 0, 0, texture.width(), texture.height(), 0, 0, width, height,
-        GL_COLOR_BUFFER_BIT, filter);
+        GL_COLOR_BUFFER_BIT, GL_LINEAR);
 }
 
 }  // namespace limn::gpu

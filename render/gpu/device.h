@@ -115,7 +115,7 @@ class Device {
   private:
     explicit Device(const DeviceCaps& caps);
     friend void
-    blit_to_window(Device& device, const Texture& texture, int width, int height, GLenum filter);
+    blit_to_window(Device& device, const Texture& texture, int width, int height, int columns);
 
     static constexpr std::size_t kUnits = 32;
     struct BufferBinding {
@@ -177,8 +177,8 @@ class Device {
 create_pipeline(Device& device, const ProgramDesc& desc, const PipelineState& state = {});
 
 /// Copies level 0 of a color texture over the window's framebuffer, scaled to `width` x `height`
-/// [px].
+/// [px]; only the left `columns` of it, if >= 0.
 void blit_to_window(
-    Device& device, const Texture& texture, int width, int height, GLenum filter = GL_LINEAR);
+    Device& device, const Texture& texture, int width, int height, int columns = -1);
 
 }  // namespace limn::gpu

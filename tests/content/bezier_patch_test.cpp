@@ -383,18 +383,3 @@ TEST_CASE("bezier_patch: level l holds 4^l sub-patches of the same surface, ever
         last = distance;
     }
 }
-
-TEST_CASE("bezier_patch: levels grow with size on screen, and do not flicker") {
-    int last = 0;
-    for (float pixels = 1; pixels < 4096; pixels *= 1.05f) {
-        const int level = choose_patch_level(pixels, 6, last);
-        CHECK(level >= last);
-        last = level;
-    }
-    CHECK(last == 5);
-    CHECK(choose_patch_level(64, 6, 0) == 2);  // 8 quads of 8 pixels would be level 3 ...
-    CHECK(choose_patch_level(71, 6, 0) == 3);  // ... but only 10 % beyond
-    CHECK(choose_patch_level(63, 6, 3) == 3);  // and back 10 % below
-    CHECK(choose_patch_level(57, 6, 3) == 2);
-    CHECK(choose_patch_level(0, 6, 3) == 0);
-}

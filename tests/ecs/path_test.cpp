@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace limn {
 
@@ -149,6 +151,47 @@ TEST_CASE("path: a knot on its control point, or two in one place, still have a 
     }
     CHECK(path_frame_at(path, std::nan("")).position == Vec3(0));
     CHECK(path_frame_at(path, std::numeric_limits<double>::infinity()).position == Vec3(0));
+}
+
+TEST_CASE("path: of a smooth one all joins are of one speed, of a bent one there are corners") {
+    PathShape shape = circle();
+    CHECK(path_joins(*make_path(shape)) == std::vector<BezierJoin>(4, BezierJoin::Speed));
+    shape.knots[1].after *= 2.0f;
+    shape.knots[2].before = {5, 0, 5};
+    shape.closed = false;
+    CHECK(
+        path_joins(*make_path(shape))
+        == std::vector<BezierJoin>{BezierJoin::Direction, BezierJoin::Position});
+}
+
+TEST_CASE("path: a knot slides between its control points and turns them, and stays smooth") {
+    PathShape shape = circle();
+    shape.knots[0].slide = 0.25f;
+    shape.knots[1].turn = glm::angleAxis(0.5f, Vec3(0, 1, 0));
+    const PathData path = *make_path(shape);
+    // Between (10, 0, k) and (10, 0, -k), a quarter of the way from the first.
+    CHECK(path.segments[0][0].x == doctest::Approx(10));
+    CHECK(path.segments[0][0].z == doctest::Approx(0.5 * 10 * 0.5522847));
+    const Vec3 out = path.segments[1][1] - path.segments[1][0];
+    CHECK(glm::length(out) == doctest::Approx(10 * 0.5522847));
+    CHECK(out.x == doctest::Approx(-10 * 0.5522847 * std::cos(0.5)));
+    CHECK(out.z == doctest::Approx(10 * 0.5522847 * std::sin(0.5)));
+    CHECK(
+        path_joins(path)
+        == std::vector<BezierJoin>{
+            BezierJoin::Speed, BezierJoin::Speed, BezierJoin::Speed, BezierJoin::Direction});
+}
+
+TEST_CASE("path: corners of a parabolic blend make the curve that the blend is") {
+    PathShape shape;
+    shape.curve = PathCurve::Parabolic;
+    shape.knots = {{{0, 0, 0}, {0, 0, 0}, {1, 2, 0}, 0}, {{6, 0, 1}, {-2, 3, 0}, {0, 0, 0}, 0}};
+    const PathData path = *make_path(shape);
+    const std::array<Vec3, 4> corners = {Vec3(0, 0, 0), Vec3(1, 2, 0), Vec3(4, 3, 1), Vec3(6, 0, 1)};
+    for (const float u : {0.1f, 0.35f, 0.5f, 0.8f}) {
+        const Vec3 expected = parabolic_blend(corners, u);
+        CHECK(glm::length(bezier_point(path.segments[0], u) - expected) < 1e-5f);
+    }
 }
 
 TEST_CASE("path: what is no way is refused with its place") {

@@ -266,6 +266,37 @@ TEST_CASE("world: create_many makes neighbors with equal values") {
     CHECK(world.create_many(0, Mass{}).empty());
 }
 
+TEST_CASE("world: what is created or added may be a copy of what is there, although rows move") {
+    // Small archetypes share blocks of memory and move to larger ones as they grow: each round, the
+    // value that is copied lies in the column that grows.
+    World world;
+    const std::string text(100, 'x');
+    const Entity first = world.create(Label{text, {1, 2, 3}});
+    const auto& info = component_info<Label>();
+    const auto is_whole = [&](Entity entity) {
+        const Label& label = std::as_const(world).get<Label>(entity);
+        return label.text == text && label.numbers == std::vector<int>{1, 2, 3};
+    };
+    for (int i = 0; i < 300; ++i) {
+        const Entity copied = world.create(std::as_const(world).get<Label>(first));
+        REQUIRE(is_whole(copied));
+        for (const Entity entity : world.create_many(2, std::as_const(world).get<Label>(first))) {
+            REQUIRE(is_whole(entity));
+        }
+        const Entity added = world.create();
+        world.add_copy(added, info.id, world.find<Label>(first));
+        REQUIRE(is_whole(added));
+        const Entity moved = world.create();
+        world.add_move(moved, info.id, world.find<Label>(added));
+        REQUIRE(is_whole(moved));
+        REQUIRE(is_whole(first));
+    }
+    world.add_copy(first, info.id, world.find<Label>(first));
+    world.add_move(first, info.id, world.find<Label>(first));
+    CHECK(world.write(first, info.id, world.find<Label>(first)));
+    CHECK(is_whole(first));
+}
+
 TEST_CASE("world: resources are one of a kind and stay where they are") {
     World world;
     CHECK(world.find_resource<Mass>() == nullptr);

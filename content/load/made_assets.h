@@ -1,0 +1,47 @@
+#pragma once
+
+#include "content/make/make_mesh.h"
+#include "content/make/patterns.h"
+#include "ecs/any_component.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace limn {
+
+// Meshes and patterns that levels have generated, so that a level that is loaded again, or with a
+// show on and off, need not generate them again. Keeps what the last loads used.
+
+struct MadeMesh {
+    MeshData data;
+    std::optional<MeshRig> rig;
+};
+
+class MadeAssets {
+  public:
+    /// Forgets what the last kKeptLoads levels did not use.
+    void begin_level();
+
+    /// Of equal parameters an equal mesh. One whose parameters name assets of the level is
+    /// generated each time.
+    [[nodiscard]] MadeMesh
+    mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets);
+    [[nodiscard]] PatternMaps pattern(const PatternKind& kind, const AnyComponent& parameters);
+
+    /// Number of assets kept.
+    [[nodiscard]] std::size_t size() const { return meshes_.size() + patterns_.size(); }
+
+  private:
+    static constexpr int kKeptLoads = 4;
+    template <typename T>
+    struct Entry {
+        T value;
+        int used = 0;  ///< the load that used it last
+    };
+    std::map<std::string, Entry<MadeMesh>> meshes_;
+    std::map<std::string, Entry<PatternMaps>> patterns_;
+    int load_ = 0;
+};
+
+}  // namespace limn

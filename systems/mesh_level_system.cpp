@@ -1,0 +1,71 @@
+#include "systems/mesh_level_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr float kRows = 1080;  // of the image that pixels are measured in
+
+Vec3 position_of(const WorldTransform& transform) {
+    const Affine& world = transform.world;
+    return {world.row[0].w, world.row[1].w, world.row[2].w};
+}
+
+/// Length of the image of `span` meters along the entity's x axis [px].
+float projected_span(const MeshLevels& levels, const Affine& world, float distance, float fov_y) {
+    const float scale = glm::length(Vec3(world.row[0].x, world.row[1].x, world.row[2].x));
+    const float height = 2.0f * std::max(distance, 1e-6f) * std::tan(0.5f * fov_y);
+    return levels.span * scale / height * kRows;
+}
+
+}  // namespace
+
+int choose_mesh_level(float projected_pixels, int count, int current, float pixels_per_quad) {
+    LIMN_CHECK(count >= 1 && pixels_per_quad > 0);
+    const auto level_for = [&](float pixels) {
+        const float quads = std::clamp(pixels / pixels_per_quad, 1.0f, 1e9f);
+        return std::min(static_cast<int>(std::floor(std::log2(quads))), count - 1);
+    };
+    const int wanted = level_for(projected_pixels);
+    if (wanted > current) {
+        return std::max(level_for(projected_pixels / 1.1f), current);
+    }
+    if (wanted < current) {
+        return std::min(level_for(projected_pixels * 1.1f), current);
+    }
+    return wanted;
+}
+
+void choose_mesh_levels(
+    Query<const MeshLevels, const WorldTransform, MeshInstance> entities,
+    Query<const Camera, const WorldTransform> cameras) {
+    const Camera* active = nullptr;
+    Vec3 eye(0);
+    cameras.each([&](const Camera& camera, const WorldTransform& transform) {
+        if (camera.active && active == nullptr) {
+            active = &camera;
+            eye = position_of(transform);
+        }
+    });
+    if (active == nullptr) {
+        return;
+    }
+    entities.each([&](const MeshLevels& levels, const WorldTransform& transform,
+                      MeshInstance& instance) {
+        if (levels.meshes.empty()) {
+            return;
+        }
+        const auto now = std::find(levels.meshes.begin(), levels.meshes.end(), instance.mesh);
+        const int current =
+            now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
+        const float distance = glm::length(position_of(transform) - eye);
+        const int level = choose_mesh_level(
+            projected_span(levels, transform.world, distance, active->fov_y),
+            static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
+        instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
+    });
+}
+
+}  // namespace limn

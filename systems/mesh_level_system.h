@@ -1,0 +1,21 @@
+#pragma once
+
+#include "ecs/components/camera.h"
+#include "ecs/components/mesh_levels.h"
+#include "ecs/components/transform.h"
+#include "ecs/query.h"
+
+namespace limn {
+
+/// The level 0 .. count-1 whose quads span about `pixels_per_quad` when the one quad of level 0
+/// spans `projected_pixels`. A hysteresis of 10 % about `current` avoids flicker.
+[[nodiscard]] int
+choose_mesh_level(float projected_pixels, int count, int current, float pixels_per_quad = 8.0f);
+
+/// Sets MeshInstance::mesh to the level that suits the distance to the active camera, whatever the
+/// size of the image: a simulation does not depend on the window.
+void choose_mesh_levels(
+    Query<const MeshLevels, const WorldTransform, MeshInstance> entities,
+    Query<const Camera, const WorldTransform> cameras);
+
+}  // namespace limn

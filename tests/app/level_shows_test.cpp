@@ -1,0 +1,115 @@
+// Every show of every level, on and off: the images differ, or for methods that must agree, do not.
+
+#include "content/app/headless.h"
+#include "content/app/render_command.h"
+#include "content/app/stage.h"
+#include "content/load/level_show.h"
+#include "content/load/made_assets.h"
+#include "render/gpu/readback.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace limn {
+namespace {
+
+constexpr int kWidth = 160;
+constexpr int kHeight = 90;
+constexpr int kVisible = 8;          // of 255: a difference of a channel that can be seen
+constexpr double kMinShare = 0.002;  // of the pixels that must differ so much
+constexpr double kMaxShare = 0.001;  // of the pixels that may, where methods must agree
+
+HeadlessRenderer& shared_renderer() {
+    static HeadlessRenderer shared = [] {
+        Result<HeadlessRenderer> made = create_headless_renderer();
+        if (!made) {
+            std::fprintf(stderr, "%s\n", made.error().message.c_str());
+            std::exit(1);
+        }
+        return *std::move(made);
+    }();
+    return shared;
+}
+
+/// The show's image as `limn render` makes it; nothing where the level cannot be loaded.
+std::optional<gpu::ByteImage> draw_show(const FoundShow& found, bool off) {
+    static MadeAssets made;
+    Result<std::unique_ptr<Stage>> stage = open_stage(
+        found.level.path,
+        {.show = {.technique = found.show.technique, .off = off}, .made = &made});
+    CHECK_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
+    if (!stage) {
+        return std::nullopt;
+    }
+    RenderOptions options;
+    options.size = {kWidth, kHeight};
+    options.edge_samples = 1;
+    const FrameOutput frame = draw_still(
+        *shared_renderer().renderer, **stage, (*stage)->scene.camera, options, found.show.time);
+    return gpu::read_bytes(*frame.display);
+}
+
+/// Fraction of the pixels with a visible difference.
+double different_share(const gpu::ByteImage& a, const gpu::ByteImage& b) {
+    REQUIRE(a.pixels.size() == b.pixels.size());
+    const auto channels = static_cast<std::size_t>(a.channels);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); i += channels) {
+        int largest = 0;
+        for (std::size_t c = 0; c < std::min<std::size_t>(channels, 3); ++c) {
+            largest = std::max(largest, std::abs(int{a.pixels[i + c]} - int{b.pixels[i + c]}));
+        }
+        different += largest >= kVisible ? 1 : 0;
+    }
+    return static_cast<double>(different) * static_cast<double>(channels)
+           / static_cast<double>(a.pixels.size());
+}
+
+}  // namespace
+
+TEST_CASE("shows: each changes the image where it is on, or nothing where methods must agree") {
+    const Result<std::vector<FoundShow>> shows = list_shows();
+    REQUIRE_MESSAGE(shows.ok(), (shows ? std::string() : shows.error().message));
+    REQUIRE_FALSE(shows->empty());
+    for (const FoundShow& found : *shows) {
+        CAPTURE(found.level.name);
+        CAPTURE(found.show.technique);
+        const std::optional<gpu::ByteImage> on = draw_show(found, false);
+        const std::optional<gpu::ByteImage> off = draw_show(found, true);
+        if (!on || !off) {
+            continue;
+        }
+        const double share = different_share(*on, *off);
+        if (found.show.equal) {
+            CHECK(share <= kMaxShare);
+        } else {
+            CHECK(share >= kMinShare);
+        }
+    }
+}
+
+TEST_CASE("shows: what a level shows is a row of TECHNIQUES.md that names the level") {
+    const Result<std::vector<FoundShow>> shows = list_shows();
+    REQUIRE(shows.ok());
+    std::ifstream page(std::string(LIMN_SOURCE_DIR) + "/TECHNIQUES.md");
+    std::set<std::string> rows;
+    for (std::string line; std::getline(page, line);) {
+        const std::size_t end = line.find(" |", 2);
+        const std::size_t last = line.rfind('|', line.size() - 2);
+        if (line.starts_with("| ") && end != std::string::npos && last != std::string::npos) {
+            rows.insert(line.substr(2, end - 2) + line.substr(last));
+        }
+    }
+    for (const FoundShow& found : *shows) {
+        CAPTURE(found.show.technique);
+        CHECK(rows.contains(fmt::format("{}| `{}` |", found.show.technique, found.level.name)));
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,50 @@
+#include "ecs/world.h"
+#include "systems/mesh_level_system.h"
+#include "systems/update_world.h"
+
+#include <doctest/doctest.h>
+
+using namespace limn;
+
+TEST_CASE("mesh_levels: they grow with size on screen, and do not flicker") {
+    int last = 0;
+    for (float pixels = 1; pixels < 4096; pixels *= 1.05f) {
+        const int level = choose_mesh_level(pixels, 6, last);
+        CHECK(level >= last);
+        last = level;
+    }
+    CHECK(last == 5);
+    CHECK(choose_mesh_level(64, 6, 0) == 2);  // 8 quads of 8 pixels would be level 3 ...
+    CHECK(choose_mesh_level(71, 6, 0) == 3);  // ... but only 10 % beyond
+    CHECK(choose_mesh_level(63, 6, 3) == 3);  // and back 10 % below
+    CHECK(choose_mesh_level(57, 6, 3) == 2);
+    CHECK(choose_mesh_level(0, 6, 3) == 0);
+}
+
+TEST_CASE("mesh_levels: an entity has a finer mesh near the camera, at any size of it") {
+    World world;
+    const std::vector<MeshId> meshes = {{4}, {5}, {6}, {7}};
+    const MeshLevels levels{.meshes = meshes, .span = 0.5f, .pixels_per_quad = 54};
+    // A camera of 90 degrees sees 2 d meters over 1080 rows at a distance of d: half a meter is
+    // 270 / d pixels, 5 / d quads of 54.
+    world.create(Transform{}, Camera{.fov_y = radians(90.0f)});
+    const auto add = [&](float distance, float scale) {
+        return world.create(
+            Transform{.position = {0, 0, -distance}, .scale = Vec3(scale)}, levels,
+            MeshInstance{.mesh = meshes[0], .material = {}});
+    };
+    const Entity near = add(0.5f, 1);     // 10 quads
+    const Entity middle = add(1.0f, 1);   // 5
+    const Entity far = add(4.0f, 1);      // 1.25
+    const Entity large = add(4.0f, 4);    // 5
+    Schedule schedule = make_world_schedule();
+    start_world(world);
+    step_world(world, schedule);
+    const auto mesh_of = [&](Entity entity) {
+        return std::as_const(world).get<MeshInstance>(entity).mesh.index;
+    };
+    CHECK(mesh_of(near) == 7);
+    CHECK(mesh_of(middle) == 6);
+    CHECK(mesh_of(far) == 4);
+    CHECK(mesh_of(large) == 6);
+}
