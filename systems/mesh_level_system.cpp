@@ -52,20 +52,20 @@ void choose_mesh_levels(
     if (active == nullptr) {
         return;
     }
-    entities.each([&](const MeshLevels& levels, const WorldTransform& transform,
-                      MeshInstance& instance) {
-        if (levels.meshes.empty()) {
-            return;
-        }
-        const auto now = std::find(levels.meshes.begin(), levels.meshes.end(), instance.mesh);
-        const int current =
-            now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
-        const float distance = glm::length(position_of(transform) - eye);
-        const int level = choose_mesh_level(
-            projected_span(levels, transform.world, distance, active->fov_y),
-            static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
-        instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
-    });
+    entities.each(
+        [&](const MeshLevels& levels, const WorldTransform& transform, MeshInstance& instance) {
+            if (levels.meshes.empty()) {
+                return;
+            }
+            const auto now = std::find(levels.meshes.begin(), levels.meshes.end(), instance.mesh);
+            const int current =
+                now != levels.meshes.end() ? static_cast<int>(now - levels.meshes.begin()) : 0;
+            const float distance = glm::length(position_of(transform) - eye);
+            const int level = choose_mesh_level(
+                projected_span(levels, transform.world, distance, active->fov_y),
+                static_cast<int>(levels.meshes.size()), current, levels.pixels_per_quad);
+            instance.mesh = levels.meshes[static_cast<std::size_t>(level)];
+        });
 }
 
 }  // namespace limn

@@ -21,6 +21,7 @@
 #include "systems/transform_system.h"
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/ocean_system.h"
+#include "systems/water/shoaling_system.h"
 #include "systems/water/water_noise_system.h"
 #include "systems/water/water_ripple_system.h"
 #include "systems/water/water_spray_system.h"
@@ -66,6 +67,7 @@ void add_water_systems(SystemList& systems) {
     systems.add<add_touch_parts>(Create, Both);
     systems.add<add_wave_tables>(Create, Both);
     systems.add<add_noise_fields>(Create, Both);
+    systems.add<add_shoaling_states>(Create, Both);
     systems.add<add_spray_drops>(Create);
     systems.add<add_wake_states>(Create, Both);
     systems.add<add_floating_states>(Create, Both);
@@ -73,6 +75,8 @@ void add_water_systems(SystemList& systems) {
     systems.add<update_weather>(Move, Both);
     systems.add<age_wave_packets>(Waves);
     systems.add<update_noise_surfaces>(Waves, Both);
+    systems.add<update_shoaling_waves>(Waves, Both);
+    systems.add<shape_height_meshes>(Waves, Both);
     systems.add<emit_wakes>(Waves);              // after aging: new rings get their exact age
     systems.add<fill_wave_tables>(Waves, Both);  // after aging and wakes
     systems.add<update_oceans>(Waves, Both);

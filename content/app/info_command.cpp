@@ -55,7 +55,8 @@ void print_components(const World& world) {
     }
 }
 
-/// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or not.
+/// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or
+/// not.
 void print_path(const PathData& path) {
     std::array<int, 4> joins = {};
     for (const BezierJoin join : path_joins(path)) {

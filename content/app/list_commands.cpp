@@ -83,7 +83,7 @@ void print_show(const FoundShow& found) {
     }
     fmt::print(
         "\noff {}\n", show.off.kind == JsonKind::Object ? write_json(show.off)
-                                                       : std::string("without what is set"));
+                                                        : std::string("without what is set"));
     fmt::print(
         "\nlimn play --show {0}\nlimn render --show {0} -o on.png\n"
         "limn render --show {0} --off -o off.png\n",

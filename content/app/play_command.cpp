@@ -83,8 +83,8 @@ Status play_headless(const PlayOptions& options, bool no_display) {
 Status run_play(const PlayOptions& given) {
     PlayOptions options = given;
     if (options.scene.empty()) {
-        options.scene = options.show.empty() ? default_scene()
-                                             : LIMN_TRY(find_show(options.show)).level.path;
+        options.scene =
+            options.show.empty() ? default_scene() : LIMN_TRY(find_show(options.show)).level.path;
     }
     const bool no_display = options.headless_frames == 0 && !Window::has_display();
     if (no_display) {

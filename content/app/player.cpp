@@ -189,7 +189,8 @@ Status Player::load(const std::string& scene, const std::string& show) {
         LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = false}, .made = &made_}));
     std::unique_ptr<Stage> off;
     if (!show.empty()) {
-        off = LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = true}, .made = &made_}));
+        off =
+            LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = true}, .made = &made_}));
         advance_stage(*stage, stage->scene.show->time);
         advance_stage(*off, stage->scene.show->time);
     }

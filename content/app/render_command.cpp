@@ -133,11 +133,10 @@ int previous_frames(const World& world) {
     return std::max(averages ? blur->window : 0, accumulates ? kTemporalFrames : 0);
 }
 
-Status write_frame(
-    const FrameOutput& frame, const Stage& stage, double time, const std::string& path) {
+Status
+write_frame(const FrameOutput& frame, const Stage& stage, double time, const std::string& path) {
     return write_image_file(
-        path, frame,
-        {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time)}});
+        path, frame, {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time)}});
 }
 
 }  // namespace
@@ -194,12 +193,11 @@ Status check_render_options(const RenderOptions& options) {
 }
 
 Status run_render(const RenderOptions& options) {
-    const std::string scene =
-        !options.scene.empty() ? options.scene
-                               : LIMN_TRY(find_show(options.show.technique)).level.path;
+    const std::string scene = !options.scene.empty()
+                                  ? options.scene
+                                  : LIMN_TRY(find_show(options.show.technique)).level.path;
     const std::unique_ptr<Stage> opened = LIMN_TRY(open_stage(
-        scene,
-        {.seed = options.seed, .assignments = options.assignments, .show = options.show}));
+        scene, {.seed = options.seed, .assignments = options.assignments, .show = options.show}));
     Stage& stage = *opened;
     const Result<Entity> camera = choose_camera(stage, options.camera);
     if (!camera) {
@@ -219,10 +217,9 @@ Status run_render(const RenderOptions& options) {
     if (!options.frames) {
         const double time = options.time.value_or(stage.scene.show ? stage.scene.show->time : 0.0);
         const FrameOutput frame =
-            options.samples > 0
-                ? draw_sampled(
-                    *headless->renderer, stage, *camera, options, {time, time - stage_step(stage)})
-                : draw_still(*headless->renderer, stage, *camera, options, time);
+            options.samples > 0 ? draw_sampled(
+                *headless->renderer, stage, *camera, options, {time, time - stage_step(stage)})
+                                : draw_still(*headless->renderer, stage, *camera, options, time);
         return write_frame(frame, stage, time, options.out);
     }
     const int count = options.frames->last - options.frames->first + 1;
@@ -231,9 +228,8 @@ Status run_render(const RenderOptions& options) {
         const int frame = options.frames->first + i;
         const FrameTimes time = {frame / options.fps, (frame - 1) / options.fps};
         const FrameOutput output =
-            options.samples > 0
-                ? draw_sampled(*headless->renderer, stage, *camera, options, time)
-                : draw_played(*headless->renderer, stage, *camera, options, time);
+            options.samples > 0 ? draw_sampled(*headless->renderer, stage, *camera, options, time)
+                                : draw_played(*headless->renderer, stage, *camera, options, time);
         const Status status =
             write_frame(output, stage, time.shown, numbered_path(options.out, frame));
         if (!status) {

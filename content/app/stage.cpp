@@ -16,11 +16,11 @@ constexpr double kRounding = 1e-3;
 
 }  // namespace
 
-Result<std::unique_ptr<Stage>>
-open_stage(const std::string& scene, const StageOptions& options) {
+Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageOptions& options) {
     register_game_components();
     auto stage = std::make_unique<Stage>();
-    Result<LoadedScene> loaded = load_scene(stage->world, scene, {.seed = options.seed, .show = options.show, .made = options.made});
+    Result<LoadedScene> loaded = load_scene(
+        stage->world, scene, {.seed = options.seed, .show = options.show, .made = options.made});
     if (!loaded) {
         return loaded.error();
     }

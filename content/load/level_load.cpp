@@ -378,8 +378,8 @@ std::string place_of(const Level& level, SourcePosition at, std::string_view pat
     return fmt::format("{}:{}:{}: {}", level.file, at.line, at.column, path);
 }
 
-Status make_pattern(
-    Level& level, const LevelImage& image, MadeAssets& made, std::uint64_t& pixels_left) {
+Status
+make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint64_t& pixels_left) {
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));

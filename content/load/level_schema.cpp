@@ -280,9 +280,8 @@ JsonValue schema_of_show() {
              "time",
              of_type("number", {member("minimum", number(0)), member("maximum", number(3600))})),
          member(
-             "camera", any_of(
-                           {of_type("string"),
-                            schema_of_fields(component_info<ShowCamera>().fields)})),
+             "camera",
+             any_of({of_type("string"), schema_of_fields(component_info<ShowCamera>().fields)})),
          member("equal", of_type("boolean"))},
         {text("technique"), text("text")});
 }

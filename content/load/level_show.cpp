@@ -17,16 +17,17 @@ namespace limn {
 namespace {
 
 constexpr double kMaxTime = 3600;  // [s]
-constexpr std::string_view kKeys[] = {
-    "technique", "text", "set", "off", "time", "camera", "equal"};
+constexpr std::string_view kKeys[] = {"technique", "text", "set", "off", "time", "camera", "equal"};
 
-Status read_text(const JsonValue& json, const char* key, const JsonPlace& place, std::string& text) {
+Status
+read_text(const JsonValue& json, const char* key, const JsonPlace& place, std::string& text) {
     LIMN_TRY(expect(json[key], JsonKind::String, place_in(place, key), "a string"));
     text = json[key].text;
     return Done{};
 }
 
-Status read_patch(const JsonValue& json, const char* key, const JsonPlace& place, JsonValue& patch) {
+Status
+read_patch(const JsonValue& json, const char* key, const JsonPlace& place, JsonValue& patch) {
     if (const JsonValue* const value = json.find(key)) {
         LIMN_TRY(expect(*value, JsonKind::Object, place_in(place, key), "a patch (an object)"));
         patch = *value;
@@ -100,8 +101,8 @@ Status patch_nodes(JsonValue& nodes, const JsonValue& patch, const JsonPlace& pl
     for (const JsonMember& member : patch.members) {
         if (member.key == "+") {
             const std::vector<JsonValue>& added = member.value.items;
-            LIMN_TRY(expect(
-                member.value, JsonKind::Array, place_in(place, "+"), "entities (an array)"));
+            LIMN_TRY(
+                expect(member.value, JsonKind::Array, place_in(place, "+"), "entities (an array)"));
             nodes.items.insert(nodes.items.end(), added.begin(), added.end());
             continue;
         }

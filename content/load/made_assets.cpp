@@ -38,8 +38,8 @@ void MadeAssets::begin_level() {
     std::erase_if(patterns_, is_old);
 }
 
-MadeMesh MadeAssets::mesh(
-    const MeshKind& kind, const AnyComponent& parameters, const Assets& assets) {
+MadeMesh
+MadeAssets::mesh(const MeshKind& kind, const AnyComponent& parameters, const Assets& assets) {
     if (names_assets(parameters)) {
         return make(kind, parameters, assets);
     }

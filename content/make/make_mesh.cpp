@@ -1,5 +1,6 @@
 #include "content/make/make_mesh.h"
 
+#include "content/make/bar.h"
 #include "content/make/boat.h"
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
@@ -28,11 +29,12 @@ MeshKind mesh_kind(const char* name, const char* doc) {
     return {name, doc, &component_info<Shape>(), call, nullptr};
 }
 
-MeshKind creature_kind() {
-    MeshKind kind = mesh_kind<CreatureShape, make_creature>(
-        "creature", "an animal on four legs that faces z, with skeleton, skin and clips");
+/// A kind whose meshes have a skeleton.
+template <typename Shape, auto make, auto make_rig>
+MeshKind rigged_kind(const char* name, const char* doc) {
+    MeshKind kind = mesh_kind<Shape, make>(name, doc);
     kind.make_rig = [](const void* parameters) {
-        return make_creature_rig(*static_cast<const CreatureShape*>(parameters));
+        return make_rig(*static_cast<const Shape*>(parameters));
     };
     return kind;
 }
@@ -42,10 +44,13 @@ MeshKind creature_kind() {
 std::span<const MeshKind> mesh_kinds() {
     static const std::vector<MeshKind> kinds = {
         mesh_kind<ArchShape, make_arch>("arch", "a pointed rib or frame on two legs, facing z"),
+        rigged_kind<BarShape, make_bar, make_bar_rig>(
+            "bar", "a flexible bar around +y, with two joints and clips that twist and bend it"),
         mesh_kind<BoatShape, make_boat>("boat", "a part of a wooden boat with a sail, facing z"),
         mesh_kind<BoxShape, make_box>("box", "a box, optionally with rounded edges"),
         mesh_kind<ConeShape, make_cone>("cone", "a cone or a frustum around +y"),
-        creature_kind(),
+        rigged_kind<CreatureShape, make_creature, make_creature_rig>(
+            "creature", "an animal on four legs that faces z, with skeleton, skin and clips"),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
         mesh_kind<HovercraftShape, make_hovercraft>(

@@ -40,8 +40,9 @@ LIMN_FIELDS(TeapotShape) {
         tolerance, "if not 0: adaptive tessellation with this error, instead of divisions", "m", 0,
         10);
     LIMN_FIELD(
-        level, "if >= 0: this level of the patches' hierarchy, 4^level flat pieces of each, instead "
-               "of divisions",
+        level,
+        "if >= 0: this level of the patches' hierarchy, 4^level flat pieces of each, instead "
+        "of divisions",
         "", -1, 7);
     LIMN_FIELD(height, "with the lid", "m", 1e-4, 1e5);
     LIMN_FIELD(bottom, "closed from below");

@@ -25,6 +25,7 @@
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/shadow_volume.h"
+#include "ecs/components/shoaling_waves.h"
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/texture_combine.h"
@@ -94,6 +95,7 @@ void register_all_components() {
     register_component<WakeEmitter>();
     register_component<WakeState>();
     register_component<NoiseSurface>();
+    register_component<ShoalingWaves>();
     register_component<SpraySource>();
     register_component<SprayObstacle>();
     register_component<Caustics>();

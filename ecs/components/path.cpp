@@ -107,8 +107,7 @@ Result<PathData> make_path(const PathShape& shape) {
         const PathKnot& to = knots[(i + 1) % count];
         const Bezier<Vec3> points = {
             from.position, from.position + from.after, to.position + to.before, to.position};
-        path.segments.push_back(
-            shape.curve == PathCurve::Parabolic ? bezier_of(points) : points);
+        path.segments.push_back(shape.curve == PathCurve::Parabolic ? bezier_of(points) : points);
         path.chords.push_back(measure_chords(path.segments.back()));
         length += static_cast<double>(path.chords.back().total());
         path.begins.push_back(static_cast<float>(length));

@@ -43,8 +43,7 @@ struct RotationTrack {
 LIMN_FIELDS(RotationTrack) {
     LIMN_FIELD(keys, "keyframes, in order of time");
     LIMN_FIELD(
-        method, .doc = "how rotations between keys are found",
-        .values = "slerp nlerp squad euler");
+        method, .doc = "how rotations between keys are found", .values = "slerp nlerp squad euler");
     LIMN_FIELD(
         timing, .doc = "keys at their own times, or reached at an even angular speed",
         .values = "keys even_speed");

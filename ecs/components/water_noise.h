@@ -9,7 +9,7 @@
 namespace limn {
 
 /// Animated gradient noise as a standalone surface: the one that lights the book's caustics pool
-/// (water.noise-surface).
+/// (water.noise-surface). Fills a HeightField.
 struct NoiseSurface {
     Vec2 size = {10, 10};
     std::uint32_t points = 65;
@@ -29,22 +29,5 @@ LIMN_FIELDS(NoiseSurface) {
     LIMN_FIELD(speed, "rate of change over time", "1/s", 0, 1000);
     LIMN_FIELD(seed, "random seed");
 }
-
-/// With a NoiseSurface: its heights at the current time. Point (i, j) has index j * points + i.
-struct NoiseField {
-    std::uint32_t points = 0;     ///< grid points per side
-    std::vector<float> height{};  ///< [m]
-    std::vector<Vec3> normal{};   ///< unit, up
-    float low = 0;                ///< smallest height [m]
-    float range = 0;              ///< from the smallest height to the largest [m]
-};
-
-/// Derived from NoiseSurface and the time.
-template <>
-struct ComponentTraits<NoiseField> : DefaultTraits {
-    static constexpr bool saved = false;
-    static constexpr bool hashed = false;
-    static constexpr bool in_prefabs = false;
-};
 
 }  // namespace limn

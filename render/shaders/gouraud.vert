@@ -13,6 +13,9 @@ layout(location = 1) out vec3 specular;
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;
 layout(location = 4) flat out uvec2 material_and_flags;
+#ifdef MAP_LAYERS
+layout(location = 7) flat out vec4 map_layers;
+#endif
 invariant gl_Position;  // the depth must equal that of depth_first.frag
 
 SurfaceSample vertex_surface() {
@@ -31,7 +34,7 @@ SurfaceSample vertex_surface() {
     s.material = instance.x;
     s.model = instance.y >> 8;
 #ifdef METAL_ROUGH_MAP
-    float layer = map_layer(instance.x, kMetalRoughSlot);
+    float layer = map_layer(map_layers_of(instance.x), kMetalRoughSlot);
     vec2 mean = textureLod(material_maps[METAL_ROUGH_MAP], vec3(0.5, 0.5, layer), kLastLevel).gb;
     s.roughness *= mean.x;
     s.metalness *= mean.y;
@@ -59,4 +62,7 @@ void main() {
     uv = vec4(first_uv, second_uv);
     vertex_color = color;
     material_and_flags = instance.xy;
+#ifdef MAP_LAYERS
+    map_layers = map_layers_of(instance.x);
+#endif
 }

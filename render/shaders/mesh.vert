@@ -5,6 +5,7 @@
 //   OBJECT_LIGHTS  also the index of the instance
 //   CLIPPED  only on one side of view.clip_plane
 #version 450
+#include "lib/material_record.glsl"
 #include "lib/mesh_vertex.glsl"
 #include "lib/previous_vertex.glsl"
 #include "lib/view.glsl"
@@ -14,6 +15,9 @@ layout(location = 1) out vec4 tangent_ws;  // w: sign of the bitangent
 layout(location = 2) out vec4 uv;
 layout(location = 3) out vec4 vertex_color;
 layout(location = 4) flat out uvec2 material_and_flags;
+#ifdef MAP_LAYERS
+layout(location = 7) flat out vec4 map_layers;
+#endif
 #ifdef VELOCITY
 layout(location = 5) out vec3 previous_clip;  // clip x, y, w
 #endif
@@ -36,6 +40,9 @@ void main() {
     uv = vec4(first_uv, second_uv);
     vertex_color = color;
     material_and_flags = instance.xy;
+#ifdef MAP_LAYERS
+    map_layers = map_layers_of(instance.x);
+#endif
 #ifdef OBJECT_LIGHTS
     object = instance.z;
 #endif

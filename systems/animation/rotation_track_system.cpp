@@ -24,6 +24,9 @@ std::vector<Quat> squad_points(const std::vector<Quat>& keys) {
 Vec3 euler_angles(const Quat& q) {
     const Mat3 m = glm::mat3_cast(q);
     const float pitch = std::asin(std::clamp(-m[2].y, -1.0f, 1.0f));
+    if (std::abs(m[2].y) > 0.999999f) {  // straight up or down: all of the turn is yaw
+        return {std::atan2(-m[0].z, m[0].x), pitch, 0.0f};
+    }
     return {std::atan2(m[2].x, m[2].z), pitch, std::atan2(m[0].y, m[1].y)};
 }
 
@@ -107,13 +110,13 @@ void prepare_rotation_tracks(
 void update_rotation_tracks(
     Query<const RotationTrack, const RotationTrackState, Transform> tracks,
     Res<const FrameTime> time) {
-    tracks.par_each([now = time->time](
-                        const RotationTrack& track, const RotationTrackState& state,
-                        Transform& transform) {
-        if (!track.keys.empty()) {
-            transform.rotation = rotation_at(track, state, now);
-        }
-    });
+    tracks.par_each(
+        [now = time->time](
+            const RotationTrack& track, const RotationTrackState& state, Transform& transform) {
+            if (!track.keys.empty()) {
+                transform.rotation = rotation_at(track, state, now);
+            }
+        });
 }
 
 }  // namespace limn

@@ -38,7 +38,7 @@ float noise_height(const NoiseSurface& noise, const Vec2& at, double time) {
     return std::isfinite(sum) ? sum : 0.0f;
 }
 
-void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field) {
+void fill_noise_field(const NoiseSurface& noise, double time, HeightField& field) {
     const std::uint32_t points = std::clamp(noise.points, 2u, kMaxPoints);
     const std::size_t side = points;
     const std::size_t outer = side + 2;  // with a border, so that every point has neighbors
@@ -47,6 +47,7 @@ void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field)
     std::vector<float>& around = memory;
     around.resize(outer * outer);
     field.points = points;
+    field.size = noise.size;
     field.height.resize(side * side);
     field.normal.resize(side * side);
     parallel_for(outer, kRowGrain, [&](std::size_t begin, std::size_t end) {
@@ -74,13 +75,13 @@ void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field)
     field.range = high - low;
 }
 
-void add_noise_fields(Query<const NoiseSurface, Without<NoiseField>> bare, Commands commands) {
-    bare.each([&](Entity entity, const NoiseSurface&) { commands.add(entity, NoiseField{}); });
+void add_noise_fields(Query<const NoiseSurface, Without<HeightField>> bare, Commands commands) {
+    bare.each([&](Entity entity, const NoiseSurface&) { commands.add(entity, HeightField{}); });
 }
 
 void update_noise_surfaces(
-    Query<const NoiseSurface, NoiseField> surfaces, Res<const FrameTime> time) {
-    surfaces.each([&](const NoiseSurface& noise, NoiseField& field) {
+    Query<const NoiseSurface, HeightField> surfaces, Res<const FrameTime> time) {
+    surfaces.each([&](const NoiseSurface& noise, HeightField& field) {
         fill_noise_field(noise, time->time, field);
     });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/height_field.h"
 #include "ecs/components/time.h"
 #include "ecs/components/water_noise.h"
 #include "ecs/query.h"
@@ -16,14 +17,14 @@ namespace limn {
 [[nodiscard]] float noise_height(const NoiseSurface& noise, const Vec2& at, double time);
 
 /// Fills `field`, reusing its memory. Normals are from central differences between points.
-void fill_noise_field(const NoiseSurface& noise, double time, NoiseField& field);
+void fill_noise_field(const NoiseSurface& noise, double time, HeightField& field);
 
-/// Adds a NoiseField to every NoiseSurface that lacks one. Before update_noise_surfaces, with a
+/// Adds a HeightField to every NoiseSurface that lacks one. Before update_noise_surfaces, with a
 /// sync point in between.
-void add_noise_fields(Query<const NoiseSurface, Without<NoiseField>> bare, Commands commands);
+void add_noise_fields(Query<const NoiseSurface, Without<HeightField>> bare, Commands commands);
 
 /// Fills all fields for the time at the end of the step.
 void update_noise_surfaces(
-    Query<const NoiseSurface, NoiseField> surfaces, Res<const FrameTime> time);
+    Query<const NoiseSurface, HeightField> surfaces, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -41,8 +41,7 @@ HeadlessRenderer& shared_renderer() {
 std::optional<gpu::ByteImage> draw_show(const FoundShow& found, bool off) {
     static MadeAssets made;
     Result<std::unique_ptr<Stage>> stage = open_stage(
-        found.level.path,
-        {.show = {.technique = found.show.technique, .off = off}, .made = &made});
+        found.level.path, {.show = {.technique = found.show.technique, .off = off}, .made = &made});
     CHECK_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
     if (!stage) {
         return std::nullopt;

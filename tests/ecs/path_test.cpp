@@ -187,7 +187,8 @@ TEST_CASE("path: corners of a parabolic blend make the curve that the blend is")
     shape.curve = PathCurve::Parabolic;
     shape.knots = {{{0, 0, 0}, {0, 0, 0}, {1, 2, 0}, 0}, {{6, 0, 1}, {-2, 3, 0}, {0, 0, 0}, 0}};
     const PathData path = *make_path(shape);
-    const std::array<Vec3, 4> corners = {Vec3(0, 0, 0), Vec3(1, 2, 0), Vec3(4, 3, 1), Vec3(6, 0, 1)};
+    const std::array<Vec3, 4> corners = {
+        Vec3(0, 0, 0), Vec3(1, 2, 0), Vec3(4, 3, 1), Vec3(6, 0, 1)};
     for (const float u : {0.1f, 0.35f, 0.5f, 0.8f}) {
         const Vec3 expected = parabolic_blend(corners, u);
         CHECK(glm::length(bezier_point(path.segments[0], u) - expected) < 1e-5f);

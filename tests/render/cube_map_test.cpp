@@ -95,64 +95,6 @@ TEST_CASE_FIXTURE(RenderTest, "cube_map: the hardware finds the same texel") {
     }
 }
 
-TEST_CASE_FIXTURE(RenderTest, "normalise_cube: a cube of unit vectors makes any vector unit") {
-    constexpr int kSize = 64;
-    for (const bool floats : {true, false}) {
-        gpu::Texture cube(
-            "unit vectors", {.format = static_cast<GLenum>(floats ? GL_RGBA32F : GL_RGBA8),
-                             .width = kSize,
-                             .height = kSize,
-                             .target = GL_TEXTURE_CUBE_MAP});
-        cube.set_filter(GL_LINEAR, GL_LINEAR);
-        std::vector<Vec4> centers;
-        for (int face = 0; face < kCubeFaces; ++face) {
-            std::vector<Vec4> texels;
-            for (int i = 0; i < kSize * kSize; ++i) {
-                const Vec2 st = (Vec2(i % kSize, i / kSize) + 0.5f) / float{kSize};
-                const Vec3 unit = glm::normalize(cube_direction({face, st}));
-                texels.emplace_back(0.5f * unit + 0.5f, 1);
-                if (i % 7 == 0) {
-                    centers.emplace_back(unit, 0);
-                }
-            }
-            cube.upload<Vec4>(texels, GL_RGBA, GL_FLOAT, 0, face);
-        }
-        const auto look_up = [&](const std::vector<Vec4>& vectors) {
-            device().bind_texture(3, cube);
-            return evaluate_shader(
-                "layout(binding = 3) uniform samplerCube cube;",
-                "y.xyz = 2.0 * textureLod(cube, x.xyz, 0.0).xyz - 1.0;", vectors);
-        };
-        const double most = floats ? 1e-3 : 0.39 * 3.14159265358979 / 180;
-        const std::vector<Vec4> found = look_up(centers);
-        std::vector<Vec4> longer;
-        std::vector<Vec4> opposite;
-        for (std::size_t i = 0; i < centers.size(); ++i) {
-            const glm::dvec3 a = Vec3(found[i]);
-            const glm::dvec3 b = Vec3(centers[i]);
-            CHECK(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) <= most);
-            longer.push_back(5.0f * centers[i]);
-            opposite.push_back(-centers[i]);
-        }
-        const std::vector<Vec4> of_longer = look_up(longer);
-        const std::vector<Vec4> of_opposite = look_up(opposite);
-        for (std::size_t i = 0; i < centers.size(); ++i) {
-            CHECK(glm::distance(of_longer[i], found[i]) < 1e-4f);
-            // A code of 8 bits has no middle: half a step either way.
-            CHECK(glm::distance(of_opposite[i], -found[i]) < (floats ? 1e-4f : 0.015f));
-        }
-        // Between the centers of texels, over seams too, filtering leaves it nearly so.
-        std::vector<Vec4> any;
-        for (const Vec3& d : random_directions(300)) {
-            any.emplace_back(3.0f * d, 0);
-        }
-        const std::vector<Vec4> between = look_up(any);
-        for (std::size_t i = 0; i < any.size(); ++i) {
-            CHECK(glm::distance(glm::normalize(Vec3(any[i])), Vec3(between[i])) < 0.02f);
-        }
-    }
-}
-
 TEST_CASE("cube_map: a face's camera is a rotation that sees each texel where it is stored") {
     const Vec3 eye = {3, -2, 5};
     for (int face = 0; face < kCubeFaces; ++face) {

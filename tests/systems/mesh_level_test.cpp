@@ -33,10 +33,10 @@ TEST_CASE("mesh_levels: an entity has a finer mesh near the camera, at any size 
             Transform{.position = {0, 0, -distance}, .scale = Vec3(scale)}, levels,
             MeshInstance{.mesh = meshes[0], .material = {}});
     };
-    const Entity near = add(0.5f, 1);     // 10 quads
-    const Entity middle = add(1.0f, 1);   // 5
-    const Entity far = add(4.0f, 1);      // 1.25
-    const Entity large = add(4.0f, 4);    // 5
+    const Entity near = add(0.5f, 1);    // 10 quads
+    const Entity middle = add(1.0f, 1);  // 5
+    const Entity far = add(4.0f, 1);     // 1.25
+    const Entity large = add(4.0f, 4);   // 5
     Schedule schedule = make_world_schedule();
     start_world(world);
     step_world(world, schedule);

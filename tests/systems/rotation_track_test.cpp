@@ -57,7 +57,7 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
     const double expected =
         2 * std::atan2(u * std::sin(half), 1 - u + u * std::cos(half)) * 180 / M_PI;
     CHECK(degrees_at(straight, u) == doctest::Approx(expected).epsilon(1e-5));
-    CHECK(expected < 30);
+    CHECK(expected < 35);  // where slerp is at 40
 
     const auto speed = [](const RotationTrack& track, double time) {
         return (degrees_at(track, time + 1e-2) - degrees_at(track, time)) / 1e-2f;
@@ -71,8 +71,7 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
 TEST_CASE("rotation_track: at an even speed keys are due where the turn has come to") {
     const RotationTrack track = uneven_track(RotationMethod::Slerp, RotationTiming::EvenSpeed);
     for (const double time : {0.0, 0.5, 1.0, 1.7, 2.4, 3.0}) {
-        CHECK(
-            degrees_at(track, time) == doctest::Approx(30 * time).scale(1).epsilon(1e-4));
+        CHECK(degrees_at(track, time) == doctest::Approx(30 * time).scale(1).epsilon(1e-4));
     }
 }
 
@@ -82,8 +81,7 @@ TEST_CASE("rotation_track: Euler angles go their own way, which is no great arc"
         .keys = {{0, yaw(90)}, {1, glm::angleAxis(radians(90.0f), Vec3(1, 0, 0))}},
         .method = RotationMethod::Euler};
     const Quat middle = rotation_at(track, make_rotation_track(track), 0.5);
-    const Quat expected =
-        yaw(45) * glm::angleAxis(radians(45.0f), Vec3(1, 0, 0));
+    const Quat expected = yaw(45) * glm::angleAxis(radians(45.0f), Vec3(1, 0, 0));
     CHECK(std::abs(glm::dot(middle, expected)) == doctest::Approx(1).epsilon(1e-5));
     track.method = RotationMethod::Slerp;
     const Quat arc = rotation_at(track, make_rotation_track(track), 0.5);
@@ -106,8 +104,7 @@ TEST_CASE("rotation_track: in a world it moves the entity, follows changes and s
     Schedule schedule = make_world_schedule();
     start_world(world);
     const auto turned = [&] {
-        return glm::degrees(
-            axis_angle(std::as_const(world).get<Transform>(entity).rotation).angle);
+        return glm::degrees(axis_angle(std::as_const(world).get<Transform>(entity).rotation).angle);
     };
     for (int i = 0; i < 6; ++i) {
         step_world(world, schedule);

@@ -67,7 +67,7 @@ TEST_CASE("water noise: each octave is half as high, twice as fine and twice as 
 }
 
 TEST_CASE("water noise: heights lie between the least and the greatest, normals look up") {
-    NoiseField field;
+    HeightField field;
     fill_noise_field({}, 2.5, field);
     REQUIRE(field.points == 65);
     REQUIRE(field.height.size() == 65 * 65);
@@ -89,7 +89,7 @@ TEST_CASE("water noise: heights lie between the least and the greatest, normals 
 
 TEST_CASE("water noise: normals are those of the heights at the points around") {
     const NoiseSurface noise = {.size = {4, 8}, .points = 33, .amplitude = 0.4f};
-    NoiseField field;
+    HeightField field;
     fill_noise_field(noise, 1.0, field);
     for (const IVec2 point : {IVec2(16, 16), IVec2(0, 0), IVec2(32, 5), IVec2(7, 32)}) {
         const Vec2 at = Vec2(point) * Vec2(4.0f / 32, 8.0f / 32) - Vec2(2, 4);
@@ -105,8 +105,8 @@ TEST_CASE("water noise: normals are those of the heights at the points around") 
 }
 
 TEST_CASE("water noise: the same time is the same field, another time another") {
-    NoiseField a;
-    NoiseField b;
+    HeightField a;
+    HeightField b;
     fill_noise_field({}, 3.0, a);
     fill_noise_field({}, 3.0, b);
     CHECK(a.height == b.height);
@@ -121,7 +121,7 @@ TEST_CASE("water noise: odd settings make a level surface") {
     for (const NoiseSurface& noise :
          {NoiseSurface{.size = {0, 0}, .points = 0}, NoiseSurface{.amplitude = kNan},
           NoiseSurface{.octaves = 0}}) {
-        NoiseField field;
+        HeightField field;
         fill_noise_field(noise, 1, field);
         CHECK(field.range == 0);
         CHECK(field.normal[0] == Vec3(0, 1, 0));
@@ -135,11 +135,11 @@ TEST_CASE("water noise: a world keeps its surfaces moving") {
     Schedule schedule = make_world_schedule();
     const Entity pool = world.create(Transform{}, NoiseSurface{.points = 9});
     start_world(world);
-    CHECK(world.get<NoiseField>(pool).height.size() == 81);
+    CHECK(world.get<HeightField>(pool).height.size() == 81);
     step_world(world, schedule);
-    const std::vector<float> before = world.get<NoiseField>(pool).height;
+    const std::vector<float> before = world.get<HeightField>(pool).height;
     step_world(world, schedule);
-    CHECK(world.get<NoiseField>(pool).height != before);
+    CHECK(world.get<HeightField>(pool).height != before);
 }
 
 }  // namespace limn

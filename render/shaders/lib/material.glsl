@@ -20,14 +20,18 @@ layout(location = 1) in vec4 tangent_ws;
 layout(location = 2) in vec4 uv;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 4) flat in uvec2 material_and_flags;
+#ifdef MAP_LAYERS
+layout(location = 7) flat in vec4 map_layers;
+#endif
 
 vec4 material_texel(int i) {
     return material_texel(material_and_flags.x, i);
 }
 
+#ifdef MAP_LAYERS
 // Where a map is read: texture coordinates and layer.
 vec3 map_place(uint slot) {
-    float layer = map_layer(material_and_flags.x, slot);
+    float layer = map_layer(map_layers, slot);
 #if defined(UV_MAPS) || defined(UV_MAP)
 #ifdef UV_MAP
     slot = 0u;  // all are the same
@@ -40,6 +44,7 @@ vec3 map_place(uint slot) {
     return vec3(uv.xy, layer);
 #endif
 }
+#endif
 
 // sRGB to linear, to within 0.002, without pow().
 vec3 srgb_decode(vec3 c) {

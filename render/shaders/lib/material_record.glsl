@@ -19,8 +19,18 @@ vec4 block_texel(uint material, uint kind, int i) {
     return texelFetch(materials, int(blocks.x) + int(offset) + i);
 }
 
-// Layer of a map in its texture array.
-float map_layer(uint material, uint slot) {
-    uint layers = uint(material_texel(material, 4)[slot / kLayersPerFloat]);
-    return float(bitfieldExtract(layers, int(slot % kLayersPerFloat * kLayerBits), int(kLayerBits)));
+// The layers of all maps of a material.
+vec4 map_layers_of(uint material) {
+    return material_texel(material, 4);
 }
+
+// Layer of one of the maps in its texture array.
+float map_layer(vec4 layers, uint slot) {
+    uint bits = uint(layers[slot / kLayersPerFloat]);
+    return float(bitfieldExtract(bits, int(slot % kLayersPerFloat * kLayerBits), int(kLayerBits)));
+}
+
+// Stages of a program agree on what flows between them.
+#if defined(BASE_COLOR_MAP) || defined(METAL_ROUGH_MAP) || defined(NORMAL_MAP) || defined(OCCLUSION_MAP) || defined(EMISSION_MAP)
+#define MAP_LAYERS
+#endif
