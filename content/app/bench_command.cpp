@@ -155,6 +155,9 @@ Status run_bench(const BenchOptions& options) {
     {
         Progress progress("frame", options.warmup + options.frames);
         for (int i = 0; i < options.warmup + options.frames; ++i) {
+            if (i == options.warmup) {
+                report.resident_begin_mib = resident_memory_mib();
+            }
             run_bench_frame(stage, *headless, options.size, i < options.warmup ? nullptr : &report);
             progress.update(i + 1);
         }

@@ -62,12 +62,13 @@ std::string bench_table(const BenchReport& report) {
     fmt::format_to(
         out,
         "{}, {} x {}, {} frames after {}, {} threads\n{}, OpenGL {}\n"
-        "{} entities, {} draws, {} triangles, {:.0f} MiB resident, {:.0f} MiB of render "
+        "{} entities, {} draws, {} triangles, {:.0f} MiB resident ({:+.1f} since the warm-up), "
+        "{:.0f} MiB of render "
         "targets\n{} shader programs, compiled and tried in {:.0f} ms; {} more while measuring\n\n",
         report.scene, report.size.x, report.size.y, report.frames, report.warmup, report.threads,
         report.gl_renderer, report.gl_version, report.entities, report.draws, report.triangles,
-        report.resident_mib, report.gpu_mib, report.programs - report.compiled, report.compile_ms,
-        report.compiled);
+        report.resident_mib, report.resident_mib - report.resident_begin_mib, report.gpu_mib,
+        report.programs - report.compiled, report.compile_ms, report.compiled);
     fmt::format_to(out, "{:<34} {:>3} {:>11} {:>11} {:>11}\n", "[ms]", "", "median", "p95", "max");
     for (const BenchKind kind : kKinds) {
         std::vector<Line> lines = lines_of(report, kind);
@@ -92,7 +93,10 @@ std::string bench_json(const BenchReport& report) {
         {"warmup", report.warmup},
         {"threads", report.threads},
         {"gl", {{"renderer", report.gl_renderer}, {"version", report.gl_version}}},
-        {"memory", {{"resident_mib", report.resident_mib}, {"gpu_mib", report.gpu_mib}}},
+        {"memory",
+         {{"resident_begin_mib", report.resident_begin_mib},
+          {"resident_mib", report.resident_mib},
+          {"gpu_mib", report.gpu_mib}}},
         {"counts",
          {{"entities", report.entities},
           {"draws", report.draws},

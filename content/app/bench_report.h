@@ -31,8 +31,9 @@ struct BenchReport {
     int threads = 0;
     std::string gl_renderer = {};
     std::string gl_version = {};
-    double resident_mib = 0.0;  ///< memory of the process
-    double gpu_mib = 0.0;       ///< textures and buffers in the frame graph's pool
+    double resident_begin_mib = 0.0;  ///< memory of the process before the measured frames
+    double resident_mib = 0.0;        ///< and after them
+    double gpu_mib = 0.0;             ///< textures and buffers in the frame graph's pool
     std::int64_t entities = 0;
     std::int64_t draws = 0;      ///< of the last frame
     std::int64_t triangles = 0;  ///< of the last frame

@@ -150,7 +150,7 @@ void ShowsPanel::draw_divider(const HudStyle& style) const {
     ImDrawList* const list = ImGui::GetBackgroundDrawList();
     const float x = divider * display.x;
     list->AddLine({x, 0}, {x, display.y}, ImGui::GetColorU32(kHudAccent), 2.0f * style.scale);
-    const float y = display.y - 34.0f * style.scale;
+    const float y = 18.0f * style.scale;
     const float gap = 12.0f * style.scale;
     const auto label = [&](const char* text, float left) {
         const ImVec2 size = ImGui::CalcTextSize(text);

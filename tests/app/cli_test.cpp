@@ -58,7 +58,7 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play", "render", "bench", "hash", "quality", "compare", "info", "levels",
+         {"play", "render", "bench", "hash", "quality", "compare", "info", "levels", "shows",
           "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
@@ -72,7 +72,9 @@ TEST_CASE("cli: wrong usage ends with 2 and one line that names the mistake") {
     const TemporaryFolder folder;
     check_fails(folder, {"rendr"}, 2, "render");
     check_fails(folder, {"--what"}, 2);
-    check_fails(folder, {"render"}, 2, "scene");
+    check_fails(folder, {"render"}, 2, "--out");
+    check_fails(folder, {"render", "-o", "a.png"}, 2, "SCENE or --show");
+    check_fails(folder, {"render", "gallery", "-o", "a.png", "--off"}, 2, "--show ID");
     check_fails(folder, {"render", "gallery"}, 2, "--out");
     check_fails(folder, {"render", "gallery", "-o", "a.png", "--size", "640"}, 2, "640");
     check_fails(folder, {"render", "gallery", "-o", "a.png", "--size", "0x360"}, 2, "0x360");
@@ -135,6 +137,22 @@ TEST_CASE("cli: images that cannot be read or compared end with 1 and one line")
     check_fails(folder, {"compare", "missing.png", "missing.png"}, 1, "missing.png");
     check_fails(folder, {"compare", "empty.png", "empty.png"}, 1, "empty.png");
     check_fails(folder, {"compare", ".", "."}, 1);
+}
+
+TEST_CASE("cli: shows lists techniques with their levels, and says how to see one") {
+    const TemporaryFolder folder;
+    const ProgramRun all = run_limn(folder, {"shows"});
+    CHECK(all.exit_code == 0);
+    CHECK(count_lines(all.out) > 100);
+    CHECK(all.out.find("shadow.penumbra ") != std::string::npos);
+    const ProgramRun one = run_limn(folder, {"shows", "shadow.penumbra"});
+    CHECK(one.exit_code == 0);
+    CHECK(one.out.find("contact_hardening") != std::string::npos);
+    CHECK(one.out.find("limn render --show shadow.penumbra --off") != std::string::npos);
+    check_fails(folder, {"shows", "shadow.penumbr"}, 1, "did you mean shadow.penumbra?");
+    check_fails(folder, {"render", "--show", "shadow.penumbr", "-o", "a.png"}, 1, "did you mean");
+    check_fails(folder, {"render", "ocean", "--show", "shadow.pcf", "-o", "a.png"}, 1, "ocean");
+    check_fails(folder, {"render", "a.glb", "--show", "shadow.pcf", "-o", "a.png"}, 1, "glTF");
 }
 
 TEST_CASE("cli: levels lists the gallery, components their fields with units") {

@@ -49,13 +49,34 @@ constexpr const char* kRace = R"({
   ]
 })";
 
+/// A ball that a show takes away.
+constexpr const char* kShow = R"({
+  "title": "A ball to show",
+  "resources": {"environment": {"sky": "uniform", "zenith": [0.2, 0.3, 0.4]}},
+  "materials": {"red": {"base_color": [0.8, 0.1, 0.05]}},
+  "meshes": {"ball": {"make": "sphere", "radius": 1}},
+  "entities": [
+    {"name": "ball", "mesh_instance": {"mesh": "ball", "material": "red"}},
+    {"name": "eye", "transform": {"position": [0, 0, 5]}, "camera": {}}
+  ],
+  "shows": [{"technique": "a.ball", "text": "A ball.", "off": {"entities": {"ball": null}}}]
+})";
+
 /// The level in a window that fills the display.
 struct PlaySession : test::DisplaySession {
-    void start(const char* level = kLevel) {
+    void start(const char* level = kLevel, const std::vector<std::string>& options = {}) {
         test::write_text(folder.file("toy.level.json"), level);
-        DisplaySession::start({"play", "toy.level.json"});
+        std::vector<std::string> arguments = {"play", "toy.level.json"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        DisplaySession::start(arguments);
     }
 };
+
+/// Whether the pixel is rather red than blue.
+bool is_red(const Pixels& image, int x, int y) {
+    const std::size_t at = static_cast<std::size_t>(y * image.width + x) * 3;
+    return image.bytes[at] > image.bytes[at + 2];
+}
 
 }  // namespace
 
@@ -111,6 +132,36 @@ TEST_CASE("play: who drives does not fly: the keys move the car, and not the cam
     CHECK(session.changes_from(start, 2000));
     xdotool("key Escape");
     CHECK(wait_for([&] { return !session.program->running(); }));
+}
+
+TEST_CASE("play: F7 shows a technique with, without and side by side, F6 lists them all") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    session.start(kShow, {"--show", "a.ball"});
+    xdotool("key F8");
+    const Pixels with = session.wait_until_still();
+    const int left = test::kDisplayWidth / 2 - 40;
+    const int right = test::kDisplayWidth / 2 + 40;
+    const int middle = test::kDisplayHeight / 2;
+    CHECK(is_red(with, left, middle));
+    CHECK(is_red(with, right, middle));
+    xdotool("key F7");
+    REQUIRE(session.changes_from(with, 2000));
+    const Pixels without = session.wait_until_still();
+    CHECK_FALSE(is_red(without, left, middle));
+    CHECK_FALSE(is_red(without, right, middle));
+    xdotool("key F7");
+    REQUIRE(session.changes_from(without, 2000));
+    const Pixels both = session.wait_until_still();
+    CHECK_FALSE(is_red(both, left, middle));
+    CHECK(is_red(both, right, middle));
+    xdotool("key F6");
+    CHECK(session.changes_from(both, 20000));
+    xdotool("key Escape");
+    CHECK(wait_for([&] { return !session.program->running(); }));
+    CHECK(session.program->wait().exit_code == 0);
 }
 
 TEST_CASE("play: a drag looks around, and the level comes back with R") {

@@ -157,6 +157,26 @@ TEST_CASE("render_command: --set and --time change the image") {
     CHECK(test::read_text(folder.file("later.png")) != test::read_text(folder.file("a.png")));
 }
 
+TEST_CASE("render_command: --show renders a technique at its time, and --off without it") {
+    const TemporaryFolder folder;
+    const std::vector<std::string> show = {"render", "--show", "anim.euler",
+                                           "--size", "96x54",  "-o"};
+    const auto render = [&](std::vector<std::string> words, const char* file) {
+        words.emplace_back(file);
+        return words;
+    };
+    check_ok(run_limn(folder, render(show, "on.png")));
+    std::vector<std::string> off = render(show, "off.png");
+    off.emplace_back("--off");
+    check_ok(run_limn(folder, off));
+    std::vector<std::string> timed = render(show, "timed.png");
+    timed.insert(timed.end(), {"--time", "1.5"});
+    check_ok(run_limn(folder, timed));
+    const std::string on = test::read_text(folder.file("on.png"));
+    CHECK(on == test::read_text(folder.file("timed.png")));
+    CHECK(on != test::read_text(folder.file("off.png")));
+}
+
 TEST_CASE("render_command: a range writes one numbered file a frame, the same as single images") {
     const TemporaryFolder folder;
     check_ok(
@@ -231,6 +251,7 @@ TEST_CASE("render_command: bench writes JSON and CSV that hold a line a pass") {
     const std::string json = test::read_text(folder.file("b.json"));
     CHECK(json.find("\"passes\"") != std::string::npos);
     CHECK(json.find("\"systems\"") != std::string::npos);
+    CHECK(json.find("\"resident_begin_mib\"") != std::string::npos);
     CHECK(count_lines(test::read_text(folder.file("b.csv"))) > 5);
 }
 

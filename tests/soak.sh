@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Runs every level for many frames and fails where memory grows: more than 2 MiB after the first 500
+# frames, in which buffers find their sizes and the driver compiles its variants.
+#
+#     tests/soak.sh build/release/limn [FRAMES=10000] [LEVEL ...]
+set -euo pipefail
+limn=$1
+frames=${2:-10000}
+shift $(($# < 2 ? $# : 2))
+levels=("$@")
+if [ ${#levels[@]} -eq 0 ]; then
+    mapfile -t levels < <("$limn" levels | awk 'NF {print $1}')
+fi
+failed=0
+for level in "${levels[@]}"; do
+    json=$("$limn" bench "$level" --warmup 500 --frames "$frames" --size 64x36 --json - 2>/dev/null)
+    read -r begin end < <(tr -d ' \n' <<<"$json" \
+        | sed -E 's/.*"resident_begin_mib":([0-9.]+),"resident_mib":([0-9.]+).*/\1 \2/')
+    growth=$(awk "BEGIN {printf \"%.1f\", $end - $begin}")
+    printf '%-18s %8.1f MiB  %+6.1f in %d frames\n' "$level" "$end" "$growth" "$frames"
+    awk "BEGIN {exit !($growth > 2.0)}" && failed=1
+done
+[ $failed -eq 0 ] || { echo "memory grows" >&2; exit 1; }
