@@ -173,6 +173,11 @@ TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to tha
         for (int i = 0; i < 3; ++i) {
             switch_on(i);
             const gpu::FloatImage one = picture(method, view);
+            int unlit = 0;  // emissive pixels that this light does not reach
+            for (std::size_t p = 0; p < sum.size(); p += static_cast<std::size_t>(all.channels)) {
+                unlit += dark.pixels[p] > 0 && one.pixels[p] == dark.pixels[p] ? 1 : 0;
+            }
+            CHECK(unlit > 10);
             std::transform(sum.begin(), sum.end(), one.pixels.begin(), sum.begin(), std::plus<>());
         }
         float worst = 0;
