@@ -60,15 +60,18 @@ double bar_coverage(double x, double begin, double end, double way) {
     return std::max(high - low, 0.0) / way;
 }
 
-double stretch_coverage(double x, double begin, double end, double way, int samples, bool printed) {
-    const double sign = printed ? -1.0 : 1.0;
+double stretch_coverage(double x, double begin, double end, double way, int samples) {
+    if (x < begin || x > end + way) {
+        return 0;
+    }
+    // Coverage around p by a bar whose ends lie between pixels.
+    const auto filtered = [](double p, double low, double high) {
+        return std::clamp(std::min(p - low, high - p) + 0.5, 0.0, 1.0);
+    };
     double sum = 0;
     for (int i = 0; i < samples; ++i) {
-        const double gone = sign * way * i / (samples - 1);
-        const double before = x - gone;
-        const double now = x + gone;
-        sum += before >= begin && before <= end ? 1.0 : 0.0;
-        sum += now >= begin + way && now <= end + way ? 1.0 : 0.0;
+        const double gone = way * i / (samples - 1);
+        sum += filtered(x - gone, begin, end) + filtered(x + gone, begin + way, end + way);
     }
     return sum / (2 * samples);
 }

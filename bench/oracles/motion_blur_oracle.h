@@ -34,10 +34,9 @@ class MeanImage {
 /// uniformly by `way` in total; its position is given for the middle of the exposure.
 [[nodiscard]] double bar_coverage(double x, double begin, double end, double way);
 
-/// post.motion-blur-stretch of a bar previously from `begin` to `end` that moved by `way`: its
-/// coverage of `x` with `samples` of each image. `printed`: with the signs as printed in the
-/// listing.
-[[nodiscard]] double
-stretch_coverage(double x, double begin, double end, double way, int samples, bool printed = false);
+/// post.motion-blur-stretch of a bar of pixels previously from `begin` to `end` that moved by
+/// `way`: the mean at `x` of `samples` of each image, linearly filtered; 0 beyond what the bar
+/// passes.
+[[nodiscard]] double stretch_coverage(double x, double begin, double end, double way, int samples);
 
 }  // namespace limn::oracle

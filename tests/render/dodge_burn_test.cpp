@@ -160,6 +160,10 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: the blurs of the GPU are the oracle's Gaussia
         gpu::read_floats(*graph.texture(blurred.fine)),
         gpu::read_floats(*graph.texture(blurred.middle)),
         gpu::read_floats(*graph.texture(blurred.coarse))};
+    // Largest and mean relative error: of the shrunken levels, that of reading between texels.
+    constexpr double kLargest[] = {1e-5, 1e-5, 1e-5, 5e-4, 0.21, 0.05, 0.04, 0.03, 0.215, 0.14};
+    constexpr double kMean[] = {1e-6,   1e-6,   1e-6,  1e-5,   0.0067,
+                                0.0031, 0.0014, 0.002, 0.0059, 0.0058};
     constexpr int kSteps[] = {1, 2, 4};
     for (int scale = 0; scale < 10; ++scale) {
         const int level = scale / 4;
@@ -178,8 +182,8 @@ TEST_CASE_FIXTURE(DodgeBurn, "hdr: the blurs of the GPU are the oracle's Gaussia
             }
         }
         CAPTURE(scale);
-        CHECK(largest < (level == 0 ? 1e-3 : 0.25));
-        CHECK(sum / (kWidth * kHeight) < (level == 0 ? 1e-5 : 0.01));
+        CHECK(largest < kLargest[scale]);
+        CHECK(sum / (kWidth * kHeight) < kMean[scale]);
     }
 }
 

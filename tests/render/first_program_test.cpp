@@ -11,7 +11,7 @@
 
 // What the renderer takes for granted of the pipeline - interpolation, the tests at its end, what
 // flows from stage to stage - from the first pair of programs on (shade.pipeline-model,
-// shade.passthrough-cube, shade.parameters, shade.derivatives).
+// shade.passthrough-cube, shade.parameters).
 
 namespace limn::test {
 namespace {
@@ -346,57 +346,6 @@ TEST_CASE_FIXTURE(PairTest, "parameters: an interpolated normal is short, the re
         const gpu::FloatImage normals = scene.aov(scene.look({0, 0, 1}, {0, 0, 0}), "normal");
         CHECK(glm::length(rgb_at(normals, 32, 32)) == doctest::Approx(1).epsilon(1e-4));
         CHECK(rgb_at(normals, 32, 32).z > 0.99f);
-    }
-}
-
-// ---- shade.derivatives -----------------------------------------------------------------------
-
-TEST_CASE_FIXTURE(PairTest, "derivatives: of 3 x + 5 y they are 3 and 5 at every pixel") {
-    for (const std::string variant : {"", "Fine", "Coarse"}) {
-        depth.clear({0, 0, 0, 0});
-        draw(
-            full_quad(1, 1, Vec3(0), Vec3(1)), {},
-            "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() {\n"
-            "    float a = 3.0 * gl_FragCoord.x + 5.0 * gl_FragCoord.y;\n"
-            "    color = vec4(dFdx"
-                + variant + "(a), dFdy" + variant + "(a), 0.0, 1.0);\n}");
-        const gpu::FloatImage image = gpu::read_floats(color);
-        for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
-            CHECK(image.pixels[i] == 3);
-            CHECK(image.pixels[i + 1] == 5);
-        }
-    }
-}
-
-TEST_CASE_FIXTURE(
-    PairTest, "derivatives: of the position they span the face, whatever its normals") {
-    const RenderView view = cube_view({2.6f, 2.9f, 3.2f});
-    const Vec3 corners[] = {{-0.9f, -0.7f, 0.3f}, {1.1f, -0.5f, -0.4f}, {0.2f, 1.2f, 0.6f}};
-    std::vector<Vertex> vertices;
-    for (const Vec3& p : corners) {
-        vertices.push_back({view.clip_from_world * Vec4(p, 1), p});
-    }
-    const Vec3 want = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-    for (const std::string variant : {"Fine", "Coarse"}) {
-        color.clear({0, 0, 0, 0});
-        depth.clear({0, 0, 0, 0});
-        draw(
-            vertices, {.cull = GL_NONE},
-            "#version 450\nlayout(location = 0) in vec3 passed;\n"
-            "layout(location = 0) out vec4 color;\nvoid main() {\n"
-            "    color = vec4(normalize(cross(dFdx"
-                + variant + "(passed), dFdy" + variant + "(passed))), 1.0);\n}");
-        const gpu::FloatImage image = gpu::read_floats(color);
-        int covered = 0;
-        for (int y = 0; y < image.height; ++y) {
-            for (int x = 0; x < image.width; ++x) {
-                if (image.at(x, y, 3) == 1) {
-                    CHECK(std::abs(glm::dot(want, rgb_at(image, x, y))) > 1 - 5e-7f);
-                    ++covered;
-                }
-            }
-        }
-        CHECK(covered > 200);
     }
 }
 

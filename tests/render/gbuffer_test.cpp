@@ -51,6 +51,35 @@ Vec2 project(const RenderView& view, const Mat4& clip_from_world, const Vec3& p)
         (0.5f - clip.y / clip.w * 0.5f) * static_cast<float>(view.height)};
 }
 
+/// What the surface of a pixel, from the top left, has beside its color; see lib/gbuffer.glsl.
+struct StoredFactors {
+    float occlusion;
+    float roughness;
+    float metalness;
+};
+
+std::vector<StoredFactors> stored_factors(Scene& scene, const RenderView& view) {
+    FrameGraph& graph = frame_graph(shared_renderer());
+    graph.keep_named("gbuffer.surface");
+    scene.draw(view);
+    const gpu::Texture& surface = *graph.texture(graph.find("gbuffer.surface"));
+    std::vector<glm::uvec4> texels(static_cast<std::size_t>(view.width * view.height));
+    glGetTextureImage(
+        surface.id(), 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+        static_cast<GLsizei>(texels.size() * sizeof(glm::uvec4)), texels.data());
+    graph.forget_named("gbuffer.surface");
+    std::vector<StoredFactors> factors;
+    for (int y = view.height; y-- > 0;) {  // OpenGL's first row is the bottom one
+        for (int x = 0; x < view.width; ++x) {
+            const std::uint32_t z = texels[static_cast<std::size_t>(y * view.width + x)].z;
+            factors.push_back(
+                {static_cast<float>(z & 255u) / 255, static_cast<float>(z >> 8 & 1023u) / 1023,
+                 static_cast<float>(z >> 18 & 127u) / 127});
+        }
+    }
+    return factors;
+}
+
 Vec2 velocity_at(const gpu::FloatImage& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1)};
 }
@@ -138,10 +167,13 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: attributes come back as they were written") {
     for (int c = 0; c < 3; ++c) {
         CHECK(albedo[c] == doctest::Approx(material.base_color[c]).epsilon(2e-3));
     }
-    // A shared exponent: exact to 1/512 of the largest channel.
+    const StoredFactors factors = stored_factors(*this, view)[4 * 9 + 4];
+    CHECK(factors.occlusion == 1);
+    CHECK(std::abs(factors.roughness - 0.7f) <= 0.5001f / 1023);
+    CHECK(std::abs(factors.metalness - 0.3f) <= 0.5001f / 127);
+    // A shared exponent and nine bits: up to 1022 in steps of 2, rounded.
     const Vec3 emission = rgb_at(aov(view, "emission"), 4, 4);
-    CHECK(std::abs(emission.y - 3.5f) <= 900.0f / 512);
-    CHECK(emission.z == doctest::Approx(900).epsilon(2e-3));
+    CHECK(emission == Vec3(0, 4, 900));
     CHECK(rgb_at(radiance(view), 4, 4) == emission);
 
     world.resource<Assets>().materials[0].emission = {1, 0.5f, 0.25f};
@@ -315,6 +347,45 @@ TEST_CASE_FIXTURE(
     // Seen from behind, what was raised is hollow: the whole normal turns round.
     const Affine behind = affine_from({0, 0, 0}, turn({0, 1, 0}, 180), {1, 1, 1});
     CHECK(glm::distance(normal_of({218, 128, 218, 255}, behind, 1), Vec3(s, 0, s)) < 0.01f);
+}
+
+TEST_CASE_FIXTURE(
+    Scene, "derivatives: a normal map widens the lobe by how much it varies between pixels") {
+    constexpr int kTexels = 16;  // and pixels
+    constexpr float kRoughness = 0.3f;
+    const MeshId square = add(make_square());
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, kTexels, kTexels);
+    const auto normal_of = [](std::uint8_t red) {
+        const auto decoded = [](int byte) { return static_cast<float>(byte) / 255 * 2 - 1; };
+        return glm::normalize(Vec3(decoded(red), decoded(128), decoded(255)));
+    };
+    for (const std::uint8_t red :
+         {std::uint8_t{148}, std::uint8_t{255}}) {  // a little, and more than counts
+        const float change2 =
+            glm::dot(normal_of(red) - normal_of(128), normal_of(red) - normal_of(128));
+        // Even; stripes; a chessboard, which changes along x and along y.
+        for (const auto& [along_x, along_y] :
+             {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
+            ImageData image = {.name = "bumps", .width = kTexels, .height = kTexels, .pixels = {}};
+            for (int i = 0; i < kTexels * kTexels; ++i) {
+                const bool bump = (i % kTexels * along_x + i / kTexels * along_y) % 2 != 0;
+                const std::uint8_t texel = bump ? red : std::uint8_t{128};
+                image.pixels.insert(image.pixels.end(), {texel, 128, 255, 255});
+            }
+            world.clear();
+            Material material = {.roughness = kRoughness};
+            material.normal_texture = nearest(add(std::move(image)));
+            place(square, add(material), at({0, 0, 0}));
+            const auto changes = static_cast<float>(along_x + along_y);
+            const float widened = std::min(2 * 0.159f * changes * change2, 0.18f);
+            const float want = std::pow(std::pow(kRoughness, 4.0f) + widened, 0.25f);
+            CAPTURE(red);
+            CAPTURE(changes);
+            for (const StoredFactors& factors : stored_factors(*this, view)) {
+                CHECK(std::abs(factors.roughness - want) <= 0.6f / 1023);
+            }
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(

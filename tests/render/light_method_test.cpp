@@ -151,9 +151,11 @@ TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to tha
         shine(PointLight{.intensity = 4, .radius = 4}, at({-2, 0, 2})),
         shine(PointLight{.color = {1, 0.3f, 0}, .intensity = 4, .radius = 5}, at({2, 1, 2})),
         shine(SpotLight{.intensity = 9}, look_at({0, -4, 5}, {0, 0, 0}))};
+    constexpr int kAll = -1;
+    constexpr int kNone = 3;
     const auto switch_on = [&](int only) {
         for (int i = 0; i < 3; ++i) {
-            const bool on = only < 0 || only == i;
+            const bool on = only == kAll || only == i;
             if (i < 2) {
                 world.get<PointLight>(lamps[i]).enabled = on;
             } else {
@@ -163,23 +165,36 @@ TEST_CASE_FIXTURE(Methods, "light methods: images of single lights add up to tha
     };
     for (const LightMethod method : kMethods) {
         CAPTURE(static_cast<int>(method));
-        switch_on(-1);
+        switch_on(kNone);
+        const gpu::FloatImage dark = picture(method, view);
+        switch_on(kAll);
         const gpu::FloatImage all = picture(method, view);
         std::vector<float> sum(all.pixels.size(), 0.0f);
         for (int i = 0; i < 3; ++i) {
             switch_on(i);
             const gpu::FloatImage one = picture(method, view);
+            int unlit = 0;  // emissive pixels that this light does not reach
+            for (std::size_t p = 0; p < sum.size(); p += static_cast<std::size_t>(all.channels)) {
+                unlit += dark.pixels[p] > 0 && one.pixels[p] == dark.pixels[p] ? 1 : 0;
+            }
+            CHECK(unlit > 10);
             std::transform(sum.begin(), sum.end(), one.pixels.begin(), sum.begin(), std::plus<>());
         }
         float worst = 0;
+        float brightest = 0;
+        int emissive = 0;
         for (std::size_t i = 0; i < sum.size(); i += static_cast<std::size_t>(all.channels)) {
             for (std::size_t c = 0; c < 3; ++c) {
-                // One of the balls shines by itself: it is in every image.
-                const float emission = 0.1f * 2;
-                const float apart = std::abs(sum[i + c] - all.pixels[i + c]);
-                worst = std::max(worst, std::min(apart, std::abs(apart - emission)));
+                // Some balls shine by themselves: that is in each of the three images.
+                const float emission = dark.pixels[i + c];
+                CHECK((emission == 0 || (c == 0 && std::abs(emission - 0.1f) < 1e-3f)));
+                emissive += emission > 0 ? 1 : 0;
+                worst = std::max(worst, std::abs(sum[i + c] - 2 * emission - all.pixels[i + c]));
+                brightest = std::max(brightest, all.pixels[i + c]);
             }
         }
+        CHECK(emissive > 100);
+        CHECK(brightest > 0.5f);
         CHECK(worst < 1e-3f);
     }
 }

@@ -147,26 +147,29 @@ TEST_CASE_FIXTURE(
     OldShutter, "motion accumulation: n moments of an edge that moves give steps of 1 / n") {
     const Entity edge = bar(unlit({1, 1, 1}), 8, 24, 0);
     const Affine pose = world.get<WorldTransform>(edge).world;
-    const auto mean_of = [&](int count, double shutter) {
-        oracle::MeanImage mean;
-        for (int i = 0; i < count; ++i) {
-            Affine moved = pose;
-            moved.row[0].w += static_cast<float>(
-                32 * oracle::exposure_sample_time(i, count, shutter) / Shutter::kPerMeter);
-            world.get<WorldTransform>(edge).world = moved;
-            mean.add(picture());
+    set_mode(MotionBlurMode::Accumulate);
+    constexpr int kStep = 4;  // [px]
+    for (int frame = 0; frame < 9; ++frame) {
+        Affine moved = pose;
+        moved.row[0].w += static_cast<float>(kStep * frame) / Shutter::kPerMeter;
+        world.get<WorldTransform>(edge).world = moved;
+        const std::vector<double> row = row_of(picture(), 32, 0);
+        const int first = std::max(frame - 4, 0);  // of at most five
+        std::set<int> levels;
+        for (int x = 0; x < kSize; ++x) {
+            int covered = 0;
+            for (int i = first; i <= frame; ++i) {
+                covered += x >= 8 + kStep * i && x < 24 + kStep * i ? 1 : 0;
+            }
+            CAPTURE(frame);
+            CAPTURE(x);
+            const double count = frame - first + 1;
+            CHECK(
+                row[static_cast<std::size_t>(x)] == doctest::Approx(covered / count).epsilon(1e-3));
+            levels.insert(covered);
         }
-        return mean.mean();
-    };
-    world.get<WorldTransform>(edge).world = pose;
-    CHECK(mean_of(1, 0).pixels == picture().pixels);
-    std::set<int> quarters;
-    const gpu::FloatImage mean = mean_of(4, 180);
-    for (const double value : row_of(mean, 32, 0)) {
-        CHECK(4 * value == doctest::Approx(std::round(4 * value)));
-        quarters.insert(static_cast<int>(std::round(4 * value)));
+        CHECK(levels.size() >= std::min<std::size_t>(frame + 2, 5));
     }
-    CHECK(quarters == std::set<int>{0, 1, 2, 3, 4});
 }
 
 // ---- the spread of a point by the camera's motion
@@ -311,21 +314,6 @@ TEST_CASE_FIXTURE(
 
 // ---- stretched geometry
 
-TEST_CASE("motion stretch: a bar covers its way in proportion, with the signs put right") {
-    // From 0 to 10, going 4.
-    for (const auto& [share, coverage] : {std::pair{0.5, 0.5}, std::pair{0.25, 0.3}}) {
-        CHECK(oracle::stretch_coverage(4 * share, 0, 10, 4, 10) == doctest::Approx(coverage));
-    }
-    for (int i = 1; i < 20; ++i) {
-        const double share = i / 20.0;
-        CHECK(std::abs(oracle::stretch_coverage(4 * share, 0, 10, 4, 10) - share) <= 0.1);
-        CHECK(
-            std::abs(oracle::stretch_coverage(10 + 4 * share, 0, 10, 4, 10) - (1 - share)) <= 0.1);
-        // As printed: two half bars wherever one looks.
-        CHECK(std::abs(oracle::stretch_coverage(4 * share, 0, 10, 4, 10, true) - 0.5) <= 0.1);
-    }
-}
-
 TEST_CASE_FIXTURE(OldShutter, "motion stretch: two frames of a box make the ramp of the bar") {
     const MeshId box = add(make_block());
     const float way = 16;
@@ -340,12 +328,14 @@ TEST_CASE_FIXTURE(OldShutter, "motion stretch: two frames of a box make the ramp
     world.get<WorldTransform>(entity).world = pose(8 / Shutter::kPerMeter);
     const std::vector<double> row = row_of(picture(), 32, 0);
     // It was from 12 to 36 and is from 28 to 52.
+    int steps = 0;
     for (int x = 0; x < kSize; ++x) {
         CAPTURE(x);
         const double want = oracle::stretch_coverage(x + 0.5, 12, 36, way, 10);
-        CHECK(std::abs(row[x] - want) <= 0.1);
+        CHECK(std::abs(row[x] - want) <= 0.01);
+        steps += want > 0.02 && want < 0.98 ? 1 : 0;
     }
-    CHECK(row[20] == doctest::Approx(0.5).epsilon(0.15));
+    CHECK(steps > 30);
 }
 
 TEST_CASE_FIXTURE(
