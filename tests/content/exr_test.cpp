@@ -70,31 +70,57 @@ std::size_t find_attribute(
 
 }  // namespace
 
-TEST_CASE("exr: halves are IEEE 754 binary16, rounded to even") {
-    CHECK(half(1.0f).bits() == 0x3C00);
-    CHECK(half(0.5f).bits() == 0x3800);
-    CHECK(half(0.1f).bits() == 0x2E66);
-    CHECK(half(1.0f / 3.0f).bits() == 0x3555);
-    CHECK(half(0.18f).bits() == 0x31C3);
-    CHECK(half(65504.0f).bits() == 0x7BFF);
-    CHECK(half(std::ldexp(1.0f, -14)).bits() == 0x0400);
-    CHECK(half(std::ldexp(1.0f, -24)).bits() == 0x0001);
-    CHECK(half(65519.0f).bits() == 0x7BFF);
-    CHECK(std::isinf(static_cast<float>(half(65520.0f))));
-    CHECK(static_cast<float>(half(0.1f)) == doctest::Approx(0.0999756).epsilon(1e-6));
-    CHECK(65504.0 / std::ldexp(1.0, -14) > 1e5);
+TEST_CASE("exr: halves are IEEE 754 binary16, rounded to even, in files and in textures") {
+    const std::pair<float, std::uint16_t> cases[] = {
+        {1.0f, 0x3C00},
+        {-0.5f, 0xB800},
+        {0.1f, 0x2E66},
+        {1.0f / 3.0f, 0x3555},
+        {0.18f, 0x31C3},
+        {65504.0f, 0x7BFF},
+        {65519.0f, 0x7BFF},
+        {std::ldexp(1.0f, -14), 0x0400},
+        {std::ldexp(1.0f, -24), 0x0001},
+        {std::ldexp(1.0f, -26), 0x0000},
+        {1 + std::ldexp(1.0f, -11), 0x3C00},  // ties
+        {1 + std::ldexp(3.0f, -11), 0x3C02},
+    };
+    std::vector<float> values;
+    for (const auto& tried : cases) {
+        values.push_back(tried.first);
+    }
+    ExrImage image{.width = static_cast<int>(values.size()), .height = 1};
+    add_layer(image, "", "Y", values, true);
+    const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
+    REQUIRE(back.ok());
+    const ImageData texture = to_image_data(image, "exact");
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::uint16_t want = cases[i].second;
+        half exact;
+        exact.setBits(want);
+        CAPTURE(values[i]);
+        CHECK(back->channels[0].values[i] == static_cast<float>(exact));
+        std::uint16_t bits = 0;
+        std::memcpy(&bits, &texture.pixels[8 * i], 2);
+        CHECK(bits == want);
+    }
 }
 
-TEST_CASE("exr: every half goes through a float and back without a change") {
+TEST_CASE("exr: every half of a file reaches the texture without a change") {
+    const ExrImage image = make_all_halves();
+    const Result<ExrImage> back = decode_exr(bytes_of(image), "a.exr");
+    REQUIRE(back.ok());
+    const ImageData texture = to_image_data(*back, "all");
+    REQUIRE(texture.format == PixelFormat::Rgba16F);
+    REQUIRE(texture.pixels.size() == 65536 * 8);
     for (std::uint32_t i = 0; i < 65536; ++i) {
-        half h;
-        h.setBits(static_cast<std::uint16_t>(i));
-        const half back(static_cast<float>(h));
-        if (h.isNan()) {
-            CHECK(back.isNan());
-        } else {
-            REQUIRE(back.bits() == h.bits());
+        const bool is_nan = (i & 0x7C00u) == 0x7C00u && (i & 0x03FFu) != 0;
+        std::uint16_t bits[4];
+        std::memcpy(bits, &texture.pixels[std::size_t{8} * i], 8);
+        for (int c = 0; c < 3; ++c) {
+            REQUIRE(bits[c] == (is_nan ? 0u : i));
         }
+        REQUIRE(bits[3] == 0x3C00);
     }
 }
 
