@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -163,10 +165,19 @@ TEST_CASE("view: in the window a key and its opposite lead back to the same imag
     write_picture_exr(session.folder.file("a.exr"), make_ramp());
     session.start({"view", "a.exr", "--ev", "2"});
     test::xdotool("key F2");  // the panel, whose numbers change
+    const auto brightness = [](const test::Pixels& image) {
+        return std::accumulate(image.bytes.begin(), image.bytes.end(), std::int64_t{0});
+    };
     const test::Pixels first = session.wait_until_still();
     test::xdotool("key Up");
-    CHECK(session.changes_from(first, 5000));
+    REQUIRE(session.changes_from(first, 5000));
+    CHECK(brightness(session.wait_until_still()) > brightness(first));
     test::xdotool("key Down");
+    CHECK(session.wait_until_still() == first);
+    test::xdotool("key Down");
+    REQUIRE(session.changes_from(first, 5000));
+    CHECK(brightness(session.wait_until_still()) < brightness(first));
+    test::xdotool("key Up");
     CHECK(session.wait_until_still() == first);
     test::xdotool("key c");
     CHECK(session.changes_from(first, 5000));
