@@ -116,11 +116,11 @@ TEST_CASE("level_show: what is not a show is an error of one line") {
              {"technique": "a.b", "text": "T", "set": {}}])",
          "a second show of a.b"},
     };
-    for (const auto& [shows, says] : cases) {
-        CAPTURE(shows);
-        const std::string error = error_of(shows);
+    for (const auto& test : cases) {
+        CAPTURE(test.shows);
+        const std::string error = error_of(test.shows);
         CHECK(error.starts_with("a.level.json:"));
-        CHECK(error.find(says) != std::string::npos);
+        CHECK(error.find(test.says) != std::string::npos);
         CHECK(error.find('\n') == std::string::npos);
     }
 }
