@@ -4,6 +4,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/render_view.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -38,7 +39,7 @@ TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
     const auto left = pick_entity(world, {{-0.2f, 0.2f, 0}, {0, 0, -1}});
     REQUIRE(left);
     CHECK(left->entity == front);
-    CHECK(left->distance == doctest::Approx(1.0f));
+    CHECK(left->distance == test::near(1.0f));
     // Through the missing half of the front one, inside its box.
     const auto right = pick_entity(world, {{0.2f, 0.1f, 0}, {0, 0, -1}});
     REQUIRE(right);
@@ -46,7 +47,7 @@ TEST_CASE("pick: the nearest triangle wins, not the nearest box") {
     const auto shifted = pick_entity(world, {{-0.6f, 0.2f, 0}, {0, 0, -1}});
     REQUIRE(shifted);
     CHECK(shifted->entity == back);
-    CHECK(shifted->distance == doctest::Approx(2.0f));
+    CHECK(shifted->distance == test::near(2.0f));
 }
 
 TEST_CASE("pick: an inflated mesh is met where it is drawn") {
@@ -58,9 +59,9 @@ TEST_CASE("pick: an inflated mesh is met where it is drawn") {
     world.add(entity, Inflate{.distance = 0.5f});
     const auto hit = pick_entity(world, {{-0.4f, 0.4f, 0}, {0, 0, -1}});
     REQUIRE(hit);
-    CHECK(hit->distance == doctest::Approx(2.0f));
-    CHECK(entity_bounds(world, entity).max.z == doctest::Approx(-2.0f));
-    CHECK(entity_bounds(world, entity).max.x == doctest::Approx(2.0f));
+    CHECK(hit->distance == test::near(2.0f));
+    CHECK(entity_bounds(world, entity).max.z == test::near(-2.0f));
+    CHECK(entity_bounds(world, entity).max.x == test::near(2.0f));
 }
 
 TEST_CASE("pick: a posed mesh is met where its joints take it") {
@@ -87,8 +88,8 @@ TEST_CASE("pick: a posed mesh is met where its joints take it") {
         CHECK_FALSE(pick_entity(world, where_it_rests));
         const auto hit = pick_entity(world, where_it_is);
         REQUIRE(hit);
-        CHECK(hit->distance == doctest::Approx(2.5f));
-        CHECK(entity_bounds(world, entity).min.x == doctest::Approx(4.5f));
+        CHECK(hit->distance == test::near(2.5f));
+        CHECK(entity_bounds(world, entity).min.x == test::near(4.5f));
         world.remove<Deformed>(entity);
     }
     // What has lost its character is drawn, and met, at rest.
@@ -117,8 +118,8 @@ TEST_CASE("pick: the ray through the middle of the image is where the camera loo
         return corner.origin + corner.direction * 7.0f;
     }();
     const Vec4 clip = view.unjittered_from_world * Vec4(point, 1.0f);
-    CHECK(clip.x / clip.w == doctest::Approx(-1.0f).epsilon(1e-4));
-    CHECK(clip.y / clip.w == doctest::Approx(1.0f).epsilon(1e-4));
+    CHECK(clip.x / clip.w == test::near(-1.0f).epsilon(1e-4));
+    CHECK(clip.y / clip.w == test::near(1.0f).epsilon(1e-4));
 }
 
 }  // namespace limn

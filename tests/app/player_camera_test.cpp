@@ -1,5 +1,6 @@
 #include "content/app/player_camera.h"
 #include "render/render_view.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -44,9 +45,7 @@ TEST_CASE("player_camera: W flies forward at the set speed, five times as fast w
         for (int i = 0; i < 60; ++i) {
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
         }
-        CHECK(
-            camera.place.position.z - before
-            == doctest::Approx(fast ? -10.0f : -2.0f).epsilon(1e-3));
+        CHECK(camera.place.position.z - before == test::near(fast ? -10.0f : -2.0f).epsilon(1e-3));
     }
 }
 
@@ -59,8 +58,7 @@ TEST_CASE("player_camera: two keys at once are no faster than one") {
     const Vec3 before = camera.place.position;
     step_fly(camera, {.move = {1, 0, 1}}, 1.0f);
     CHECK(
-        glm::distance(before, camera.place.position)
-        == doctest::Approx(camera.fly.speed).epsilon(1e-3));
+        glm::distance(before, camera.place.position) == test::near(camera.fly.speed).epsilon(1e-3));
 }
 
 TEST_CASE("player_camera: looking up never goes over the head") {
@@ -81,7 +79,7 @@ TEST_CASE("player_camera: orbit starts where the camera stood and keeps its dist
     check_near(position_of(camera.pose), {0, 3, 4});
     for (int i = 0; i < 20; ++i) {
         step_orbit(camera, {.look = {37, -21}}, {0, 0, 0}, 1.0f / 60.0f);
-        CHECK(glm::length(position_of(camera.pose)) == doctest::Approx(5.0f).epsilon(1e-4));
+        CHECK(glm::length(position_of(camera.pose)) == test::near(5.0f).epsilon(1e-4));
         check_near(forward_of(camera.pose), -position_of(camera.pose) / 5.0f, 1e-3f);
     }
 }
@@ -93,10 +91,10 @@ TEST_CASE("player_camera: the lag is the same at 30 and at 60 frames a second") 
     const Vec3 target = {10, 0, 0};
     step_orbit(slow, {}, target, 1.0f / 30.0f);
     step_orbit(quick, {}, target, 1.0f / 60.0f);
-    CHECK(quick.focus.x == doctest::Approx(9.0f).epsilon(1e-4));  // follow 0.9 leaves a tenth
+    CHECK(quick.focus.x == test::near(9.0f).epsilon(1e-4));  // follow 0.9 leaves a tenth
     step_orbit(quick, {}, target, 1.0f / 60.0f);
-    CHECK(quick.focus.x == doctest::Approx(9.9f).epsilon(1e-4));
-    CHECK(slow.focus.x == doctest::Approx(quick.focus.x).epsilon(1e-4));
+    CHECK(quick.focus.x == test::near(9.9f).epsilon(1e-4));
+    CHECK(slow.focus.x == test::near(quick.focus.x).epsilon(1e-4));
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "content/app/exposure_samples.h"
 #include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -76,10 +77,10 @@ TEST_CASE("exposure samples: time runs on in equal steps about the middle, alone
         double sum = 0;
         for (int i = 0; i < count; ++i) {
             const double moment = exposure_sample(i, count).time;
-            CHECK(moment == doctest::Approx((i + 0.5) / count - 0.5));
+            CHECK(moment == test::near((i + 0.5) / count - 0.5));
             sum += moment;
         }
-        CHECK(sum == doctest::Approx(0).epsilon(1e-9));
+        CHECK(sum == doctest::Approx(0).scale(1).epsilon(1e-9));
     }
     const ExposureSample one = exposure_sample(0, 1);
     CHECK(one.time == 0);
@@ -144,9 +145,11 @@ TEST_CASE(
         const double covered = std::max(high - low, 0.0) / way;
         CHECK(std::abs(red(blurred, x, kHeight / 2) - covered) < 0.05);
     }
-    CHECK(sum(blurred) == doctest::Approx(sum(still)).epsilon(0.01));
-    CHECK(red(still, static_cast<int>(middle + 0.4 * width), kHeight / 2) == doctest::Approx(1));
-    CHECK(red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2) == doctest::Approx(0));
+    CHECK(sum(blurred) == test::near(sum(still)).epsilon(0.01));
+    CHECK(red(still, static_cast<int>(middle + 0.4 * width), kHeight / 2) == test::near(1));
+    CHECK(
+        red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2)
+        == doctest::Approx(0).scale(1));
 }
 
 TEST_CASE("render sampled: what goes less far than it is wide is a ramp at each edge") {
@@ -199,8 +202,8 @@ TEST_CASE("render sampled: out of focus a small light is a disc of the circle of
     }
     const double side = 0.05 * 27;
     const double found = std::sqrt(8 * (moment / total - side * side / 6 - 1.0 / 6));
-    CHECK(found == doctest::Approx(diameter).epsilon(0.02));
-    CHECK(total == doctest::Approx(side * side).epsilon(0.02));
+    CHECK(found == test::near(diameter).epsilon(0.02));
+    CHECK(total == test::near(side * side).epsilon(0.02));
     // In focus it is itself again.
     const Picture sharp =
         render(folder, text, {"--spp", "64", "--set", "view.lens.focus_distance=2"});
@@ -236,8 +239,7 @@ TEST_CASE("render sampled: more samples come nearer, and layers are those of the
     // Depth is no mean: 2 m where the square is at that moment.
     const auto depth = static_cast<std::size_t>(few.channel("depth.Z"));
     const std::size_t middle = static_cast<std::size_t>(kHeight / 2 * kWidth + kWidth / 2);
-    CHECK(
-        few.values[middle * few.channels.size() + depth] == doctest::Approx(1.9995).epsilon(1e-3));
+    CHECK(few.values[middle * few.channels.size() + depth] == test::near(1.9995).epsilon(1e-3));
     CHECK(few.values[depth] > 1e9f);
 }
 

@@ -2,6 +2,7 @@
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/skin_kernels.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -22,16 +23,16 @@ TEST_CASE("bar: weights sum to 1, and change smoothly from one joint to the othe
             sum += mesh.skin.weights[i];
             tip += mesh.skin.joints[i] == 1 ? mesh.skin.weights[i] : 0.0f;
         }
-        CHECK(sum == doctest::Approx(1));
+        CHECK(sum == test::near(1));
         const float share = mesh.positions[v].y / shape.height;
         if (share < 0.25f) {
             CHECK(tip == 0);
         }
         if (share > 0.75f) {
-            CHECK(tip == doctest::Approx(1));
+            CHECK(tip == test::near(1));
         }
         if (std::abs(share - 0.5f) < 1e-6f) {
-            CHECK(tip == doctest::Approx(0.5));
+            CHECK(tip == test::near(0.5));
         }
     }
 }
@@ -54,7 +55,7 @@ TEST_CASE("bar: its sides face outward, and its clips are those of its skeleton"
     sample_clip(rig.clips[0], 2.0f, pose, weights);
     CHECK(
         std::abs(glm::dot(pose.rotations[1], glm::angleAxis(radians(170.0f), Vec3(0, 1, 0))))
-        == doctest::Approx(1).epsilon(1e-5));
+        == test::near(1).epsilon(1e-5));
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "content/make/bezier_patch.h"
 #include "ecs/base/rng.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -63,7 +64,7 @@ TEST_CASE("bezier_patch: the weights of a cubic sum to 1, are positive inside, a
     for (int k = 0; k <= 100; ++k) {
         const float u = static_cast<float>(k) / 100.0f;
         const Vec4 b = bernstein(u);
-        CHECK(b.x + b.y + b.z + b.w == doctest::Approx(1.0f).epsilon(1e-6));
+        CHECK(b.x + b.y + b.z + b.w == test::near(1.0f).epsilon(1e-6));
         if (k > 0 && k < 100) {
             CHECK(glm::min(glm::min(b.x, b.y), glm::min(b.z, b.w)) > 0);
         }
@@ -86,7 +87,7 @@ TEST_CASE("bezier_patch: equally spaced points on a line give constant speed") {
     const std::array<float, 4> line = {2, 3, 4, 5};
     for (int k = 0; k <= 10; ++k) {
         const float u = static_cast<float>(k) / 10.0f;
-        CHECK(bezier_point(line, u) == doctest::Approx(2 + 3 * u).epsilon(1e-6));
+        CHECK(bezier_point(line, u) == test::near(2 + 3 * u).epsilon(1e-6));
     }
 }
 
@@ -164,7 +165,7 @@ TEST_CASE("bezier_patch: the unit square is (u, v, 0) with the frame of the axes
 TEST_CASE("bezier_patch: one inner point lifts the middle by 9/64 and no boundary") {
     BezierPatch patch = unit_square();
     patch.p[1][1].z = 1;
-    CHECK(patch_point(patch, 0.5f, 0.5f).z == doctest::Approx(0.140625));
+    CHECK(patch_point(patch, 0.5f, 0.5f).z == test::near(0.140625));
     for (int k = 0; k <= 16; ++k) {
         const float t = static_cast<float>(k) / 16.0f;
         CHECK(patch_point(patch, t, 0).z == 0);
@@ -233,9 +234,9 @@ TEST_CASE("bezier_patch: the saddle z = u v has the mixed derivative 1") {
             saddle.p[i][j].z = static_cast<float>(i * j) / 9.0f;
         }
     }
-    CHECK(patch_duv(saddle, 0, 0).z == doctest::Approx(1.0f));
-    CHECK(patch_duv(saddle, 0.7f, 0.2f).z == doctest::Approx(1.0f));
-    CHECK(patch_point(saddle, 0.7f, 0.2f).z == doctest::Approx(0.14f));
+    CHECK(patch_duv(saddle, 0, 0).z == test::near(1.0f));
+    CHECK(patch_duv(saddle, 0.7f, 0.2f).z == test::near(1.0f));
+    CHECK(patch_point(saddle, 0.7f, 0.2f).z == test::near(0.14f));
 }
 
 TEST_CASE("bezier_patch: where an edge is a point, the frame is the limit from inside") {
@@ -251,8 +252,8 @@ TEST_CASE("bezier_patch: where an edge is a point, the frame is the limit from i
 
     BezierPatch point = {};
     const PatchFrame nowhere = patch_frame(point, 0.3f, 0.3f);
-    CHECK(glm::length(nowhere.normal) == doctest::Approx(1.0f));
-    CHECK(glm::length(nowhere.tangent) == doctest::Approx(1.0f));
+    CHECK(glm::length(nowhere.normal) == test::near(1.0f));
+    CHECK(glm::length(nowhere.tangent) == test::near(1.0f));
 }
 
 TEST_CASE("bezier_patch: four children are the parent") {
@@ -302,8 +303,8 @@ TEST_CASE("bezier_patch: the error of flat quads falls four times with each dept
         }
         return worst;
     };
-    CHECK(worst_error(16) / worst_error(32) == doctest::Approx(4.0).epsilon(0.15));
-    CHECK(worst_error(32) / worst_error(64) == doctest::Approx(4.0).epsilon(0.1));
+    CHECK(worst_error(16) / worst_error(32) == test::near(4.0).epsilon(0.15));
+    CHECK(worst_error(32) / worst_error(64) == test::near(4.0).epsilon(0.1));
 }
 
 TEST_CASE("bezier_patch: a flat patch stays one quad, a bent one gets more where it bends") {

@@ -1,5 +1,6 @@
 #include "content/make/boat.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -42,8 +43,8 @@ TEST_CASE("boat: every part has frames at right angles that look the way its tri
 TEST_CASE("boat: hull and deck are their own mirror image, as long as asked for") {
     for (const BoatPart part : {BoatPart::Hull, BoatPart::Deck}) {
         const MeshData mesh = make_boat({.part = part, .length = 9});
-        CHECK(mesh.bounds.max.x == doctest::Approx(-mesh.bounds.min.x).epsilon(1e-3));
-        CHECK(mesh.bounds.max.x == doctest::Approx(1.5).epsilon(0.06));  // half its beam
+        CHECK(mesh.bounds.max.x == test::near(-mesh.bounds.min.x).epsilon(1e-3));
+        CHECK(mesh.bounds.max.x == test::near(1.5).epsilon(0.06));  // half its beam
         Vec3 sum(0);
         for (const Vec3& p : mesh.positions) {
             sum += p;
@@ -51,7 +52,7 @@ TEST_CASE("boat: hull and deck are their own mirror image, as long as asked for"
         CHECK(std::abs(sum.x) < 1e-2f * static_cast<float>(mesh.positions.size()));
     }
     const MeshData deck = make_boat({.part = BoatPart::Deck, .length = 9});
-    CHECK(deck.bounds.max.z - deck.bounds.min.z == doctest::Approx(9).epsilon(0.1));
+    CHECK(deck.bounds.max.z - deck.bounds.min.z == test::near(9).epsilon(0.1));
 }
 
 TEST_CASE("boat: the deck lies inside the hull and closes it from above") {
@@ -82,7 +83,7 @@ TEST_CASE("boat: the sail's belly is to port, its boom and gaff point astern") {
         sum += double_area(rig, t);
     }
     CHECK(std::abs(sum.x) < 0.5f);
-    CHECK(mast_position(12).z == doctest::Approx(3.8));
+    CHECK(mast_position(12).z == test::near(3.8));
 }
 
 }  // namespace limn

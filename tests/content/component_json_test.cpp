@@ -6,6 +6,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -171,7 +172,7 @@ TEST_CASE("component json: a field of every type is read") {
     CHECK(all.mood == Mood::Wild);
     CHECK(all.friend_of == Entity{4, 2});
     CHECK(all.mesh.index == 7);
-    CHECK(all.knob.turn == doctest::Approx(1.5707963f));
+    CHECK(all.knob.turn == test::near(1.5707963f));
     CHECK(all.knob.clicks == 3);
     CHECK(all.triple[2] == 6.0f);
     REQUIRE(all.knobs.size() == 2);
@@ -198,7 +199,7 @@ TEST_CASE("component json: null is no entity and no asset") {
 TEST_CASE("component json: a color may be written in sRGB, and its alpha left out") {
     const auto all = read<Everything>(R"({"tint": "#ff8000", "glass": "#00ff0080"})");
     CHECK(all.tint.x == 1.0f);
-    CHECK(all.tint.y == doctest::Approx(0.2158605f));  // (128 / 255) decoded
+    CHECK(all.tint.y == test::near(0.2158605f));  // (128 / 255) decoded
     CHECK(all.tint.z == 0.0f);
     CHECK(all.glass == Vec4(0, 1, 0, 128.0f / 255.0f));
     CHECK(read<Everything>(R"({"glass": [0, 0, 1]})").glass == Vec4(0, 0, 1, 0.5f));
@@ -208,14 +209,14 @@ TEST_CASE("component json: a color may be written in sRGB, and its alpha left ou
 TEST_CASE("component json: angles turn about y, then x, then z") {
     const Quat q = rotation_from_degrees({90, 0, 0});
     const Vec3 ahead = q * Vec3(0, 0, -1);
-    CHECK(ahead.x == doctest::Approx(-1.0f));  // yaw turns to the left
+    CHECK(ahead.x == test::near(-1.0f));  // yaw turns to the left
     const Vec3 up = rotation_from_degrees({0, 90, 0}) * Vec3(0, 0, -1);
-    CHECK(up.y == doctest::Approx(1.0f));  // pitch looks up
+    CHECK(up.y == test::near(1.0f));  // pitch looks up
     const Vec3 both = rotation_from_degrees({90, 30, 0}) * Vec3(0, 0, -1);
-    CHECK(both.x == doctest::Approx(-std::cos(radians(30.0f))));
-    CHECK(both.y == doctest::Approx(0.5f));
+    CHECK(both.x == test::near(-std::cos(radians(30.0f))));
+    CHECK(both.y == test::near(0.5f));
     const Vec3 rolled = rotation_from_degrees({0, 0, 90}) * Vec3(1, 0, 0);
-    CHECK(rolled.y == doctest::Approx(1.0f));
+    CHECK(rolled.y == test::near(1.0f));
     const auto transform = read<Transform>(R"({"rotation": [90, 30, 0]})");
     CHECK(glm::length(transform.rotation * Vec3(0, 0, -1) - both) < 1e-6f);
 }
@@ -231,10 +232,10 @@ TEST_CASE("json: angles in between depend on the names of the poses, and lock a 
     const Quat half_pitched = rotation_from_degrees({0, 90, 0});
     const Quat half_twisted = rotation_from_degrees({90, 0, 90});
     CHECK(apart(half_pitched, half_twisted) > 0.5f);
-    CHECK(half_pitched.w == doctest::Approx(0.70710678));
-    CHECK(half_pitched.x == doctest::Approx(0.70710678));
+    CHECK(half_pitched.w == test::near(0.70710678));
+    CHECK(half_pitched.x == test::near(0.70710678));
     for (int i = 0; i < 4; ++i) {
-        CHECK(std::abs(half_twisted[i]) == doctest::Approx(0.5));
+        CHECK(std::abs(half_twisted[i]) == test::near(0.5));
     }
     CHECK(apart(slerp(Quat(1, 0, 0, 0), pitched, 0.5f), half_pitched) < 1e-6f);
     // Looking up, yaw and roll are one axis: of three angles two are left.

@@ -12,6 +12,7 @@
 #include "systems/animation/skin_kernels.h"
 #include "systems/update_world.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -90,7 +91,7 @@ TEST_CASE("implicit_mesh: a ball is closed, even and as large as it should be") 
     mesh.indices = net.indices;
     CHECK(open_edges(mesh) == 0);
     CHECK(crowded_edges(mesh) == 0);
-    CHECK(signed_volume(mesh) == doctest::Approx(4.0 / 3.0 * 3.14159265 * 0.125).epsilon(0.01));
+    CHECK(signed_volume(mesh) == test::near(4.0 / 3.0 * 3.14159265 * 0.125).epsilon(0.01));
     CHECK(worst_facing(mesh) > 0.97f);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         CHECK(std::abs(glm::length(mesh.positions[v]) - 0.5f) < 1e-5f);
@@ -140,7 +141,7 @@ TEST_CASE("creature: at most four joints move a vertex, their weights sum to 1, 
             left = left || (side > 0 && mesh.skin.weights[i] > 0.1f);
             right = right || (side < 0 && mesh.skin.weights[i] > 0.1f);
         }
-        CHECK(sum == doctest::Approx(1).epsilon(1e-5));
+        CHECK(sum == test::near(1).epsilon(1e-5));
         CHECK_FALSE((left && right && mesh.positions[v].y < 0.25f));  // legs do not stick together
     }
     for (const float some : share) {
@@ -252,18 +253,18 @@ TEST_CASE("creature: a foot in the air rises in a third of its way and comes dow
     constexpr float kPiF = kPi;
     const auto at = [](float x) { return swing_height(x / (3 * kPi)); };
     CHECK(at(0) == 0);
-    CHECK(at(0.5f * kPiF) == doctest::Approx(1).epsilon(1e-5));
-    CHECK(at(kPiF) == doctest::Approx(2).epsilon(1e-5));
-    CHECK(at(1.5f * kPiF) == doctest::Approx(1.707107).epsilon(1e-5));
-    CHECK(at(2 * kPiF) == doctest::Approx(1).epsilon(1e-5));
-    CHECK(at(2.5f * kPiF) == doctest::Approx(0.292893).epsilon(1e-4));
+    CHECK(at(0.5f * kPiF) == test::near(1).epsilon(1e-5));
+    CHECK(at(kPiF) == test::near(2).epsilon(1e-5));
+    CHECK(at(1.5f * kPiF) == test::near(1.707107).epsilon(1e-5));
+    CHECK(at(2 * kPiF) == test::near(1).epsilon(1e-5));
+    CHECK(at(2.5f * kPiF) == test::near(0.292893).epsilon(1e-4));
     CHECK(std::abs(at(3 * kPiF)) < 1e-5f);
     double sum = 0;
     for (int i = 0; i < 3000; ++i) {
         sum += static_cast<double>(swing_height((static_cast<float>(i) + 0.5f) / 3000));
         CHECK(swing_height(static_cast<float>(i) / 3000) <= 2.0f);
     }
-    CHECK(sum / 3000 == doctest::Approx(1).epsilon(1e-4));
+    CHECK(sum / 3000 == test::near(1).epsilon(1e-4));
     CHECK(std::abs(swing_height(1e-3f) - swing_height(0)) < 1e-4f);  // no slope at the ends
     CHECK(std::abs(swing_height(1) - swing_height(1 - 1e-3f)) < 1e-4f);
 
@@ -343,7 +344,7 @@ TEST_CASE("creature: simplified to a twentieth it is closed, and keeps its weigh
     CHECK(mesh.indices.size() / 3 > 700);
     CHECK(mesh.indices.size() / 3 < 1600);
     CHECK(open_edges(mesh) == 0);
-    CHECK(signed_volume(mesh) == doctest::Approx(signed_volume(creature())).epsilon(0.06));
+    CHECK(signed_volume(mesh) == test::near(signed_volume(creature())).epsilon(0.06));
     CHECK(mesh.skin.first.size() == mesh.positions.size() + 1);
     CHECK(mesh.colors.size() == mesh.positions.size());
     for (const MorphTarget& morph : mesh.morphs) {

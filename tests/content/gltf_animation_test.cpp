@@ -2,6 +2,7 @@
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -147,10 +148,10 @@ TEST_CASE("gltf animation: channels of the same times are one sheet, rotations u
     LocalPose pose = scene->skeleton.rest;
     for (std::size_t key = 0; key < 3; ++key) {
         sample_clip(clip, arm.times[key], pose, {});
-        CHECK(glm::length(straight.rotations[key]) == doctest::Approx(1));
+        CHECK(glm::length(straight.rotations[key]) == test::near(1));
         CHECK(
             degrees(axis_angle(pose.rotations[2]).angle)
-            == doctest::Approx(arm.angles[key]).epsilon(1e-4));
+            == test::near(arm.angles[key]).epsilon(1e-4));
         CHECK(pose.translations[3].y == arm.places[3 * key + 1]);
     }
     CHECK(pose.scales[3] == Vec3(14, 1, 1));
@@ -174,8 +175,8 @@ TEST_CASE("gltf animation: a cubic rotation of the other sign takes its slopes w
     const ClipSheet& sheet = scene->clips[0].sheets[0];
     REQUIRE(sheet.rotations.size() == 6);
     CHECK(sheet.rotations[4].w > 0.9f);
-    CHECK(sheet.rotations[3].z == doctest::Approx(0.5));
-    CHECK(sheet.rotations[5].z == doctest::Approx(0.5));
+    CHECK(sheet.rotations[3].z == test::near(0.5));
+    CHECK(sheet.rotations[5].z == test::near(0.5));
 }
 
 TEST_CASE("gltf animation: a clip of a single key holds it, at any time") {
@@ -192,8 +193,7 @@ TEST_CASE("gltf animation: a clip of a single key holds it, at any time") {
         for (const float at : {-1.0f, 0.0f, 0.3f, 7.0f}) {
             LocalPose pose = scene->skeleton.rest;
             sample_clip(scene->clips[0], clip_time(time, at, true), pose, {});
-            CHECK(
-                degrees(axis_angle(pose.rotations[2]).angle) == doctest::Approx(30).epsilon(1e-4));
+            CHECK(degrees(axis_angle(pose.rotations[2]).angle) == test::near(30).epsilon(1e-4));
             CHECK(pose.translations[3] == Vec3(0, 3, 0));
             CHECK(pose.scales[3] == Vec3(2, 1, 1));
         }
@@ -318,7 +318,7 @@ TEST_CASE("gltf animation: Fox has 24 joints in a row of parents, and three ways
             const std::vector<float> lengths = bone_lengths(pose);
             for (std::size_t i = 1; i < lengths.size(); ++i) {
                 if (std::find(moved.begin(), moved.end(), i) == moved.end()) {
-                    CHECK(lengths[i] == doctest::Approx(at_rest[i]).epsilon(1e-4));
+                    CHECK(lengths[i] == test::near(at_rest[i]).epsilon(1e-4));
                 }
             }
         }

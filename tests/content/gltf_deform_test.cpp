@@ -2,6 +2,7 @@
 #include "content/load/gltf_load.h"
 #include "systems/animation/clip_sampling.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -130,8 +131,8 @@ TEST_CASE("gltf deform: further sets of weights, of other types, count as the fi
     REQUIRE(all.size() == 2);
     CHECK(all[0].joint == 0);
     CHECK(all[1].joint == 1);
-    CHECK(all[1].weight == doctest::Approx(0.5).epsilon(1e-4));
-    CHECK(all[0].weight + all[1].weight == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(all[1].weight == test::near(0.5).epsilon(1e-4));
+    CHECK(all[0].weight + all[1].weight == test::near(1.0).epsilon(1e-6));
 }
 
 TEST_CASE("gltf deform: weights that do not sum to 1 are scaled, with a warning") {
@@ -142,7 +143,7 @@ TEST_CASE("gltf deform: weights that do not sum to 1 are scaled, with a warning"
     });
     const SkinWeights& skin = scene.meshes[0].skin;
     CHECK(influences(skin, 0) == std::vector<Influence>{{0, 1.0f}});
-    CHECK(influences(skin, 1)[0].weight == doctest::Approx(0.75));
+    CHECK(influences(skin, 1)[0].weight == test::near(0.75));
     REQUIRE(scene.warnings.size() == 1);
     CHECK(
         scene.warnings[0]
@@ -221,7 +222,7 @@ TEST_CASE("gltf deform: normals that were made turn with their morph targets, ta
             CHECK(glm::length(normal - shape.normals[v]) < 1e-5f);
             const Vec3 tangent = Vec3(mesh.tangents[v]) + morph.tangents[i];
             CHECK(std::abs(glm::dot(tangent, normal)) < 1e-5f);
-            CHECK(glm::length(tangent) == doctest::Approx(1.0));
+            CHECK(glm::length(tangent) == test::near(1.0));
         }
     }
     CHECK(mesh.morphs[0].vertices.size() == 4);  // one corner lifted turns all four normals
@@ -268,8 +269,8 @@ TEST_CASE("gltf deform: clips move morph weights, straight and cubic") {
         f.amounts = {9, 9, 0, 1, 1, 0, 1, 0, 2, 1, 9, 9};  // slopes of the first 1, straight
     });
     sample_clip(cubic.clips[0], 1, pose, weights);
-    CHECK(weights[0] == doctest::Approx(1));
-    CHECK(weights[1] == doctest::Approx(1));
+    CHECK(weights[0] == test::near(1));
+    CHECK(weights[1] == test::near(1));
 }
 
 TEST_CASE("gltf deform: bad morph targets and their weights are refused with their place") {

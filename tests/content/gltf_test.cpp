@@ -8,6 +8,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "tests/content/gltf_samples.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -164,7 +165,7 @@ TEST_CASE("gltf: strips keep the winding of their first triangle") {
         const Vec3& a = mesh.positions[mesh.indices[i]];
         const Vec3& b = mesh.positions[mesh.indices[i + 1]];
         const Vec3& c = mesh.positions[mesh.indices[i + 2]];
-        CHECK(glm::cross(b - a, c - a).z == doctest::Approx(1));
+        CHECK(glm::cross(b - a, c - a).z == test::near(1));
     }
 }
 
@@ -528,7 +529,7 @@ TEST_CASE("gltf: CornellBox has its lamp's strength and stands on its floor") {
         check_mesh(mesh);
     }
     const Vec3 size = 2.0f * half_extent(find_bounds(*scene));
-    CHECK(size.y == doctest::Approx(548.8).epsilon(0.01));
+    CHECK(size.y == test::near(548.8).epsilon(0.01));
 }
 
 TEST_CASE("gltf: Fox stands upright in its bind pose, with normals made for it") {

@@ -1,5 +1,6 @@
 #include "content/make/hovercraft.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -17,7 +18,7 @@ TEST_CASE("hovercraft: closed, outward, of the length asked for, simplified or n
         CHECK(open_edges(mesh) == 0);
         CHECK(crowded_edges(mesh) == 0);
         CHECK(signed_volume(mesh) > 2);  // [m^3]
-        CHECK(mesh.bounds.max.z - mesh.bounds.min.z == doctest::Approx(4.75).epsilon(0.02));
+        CHECK(mesh.bounds.max.z - mesh.bounds.min.z == test::near(4.75).epsilon(0.02));
         if (triangles > 0) {
             CHECK(mesh.indices.size() / 3 < 16500);
         }
@@ -33,21 +34,21 @@ TEST_CASE("hovercraft: closed, outward, of the length asked for, simplified or n
         CHECK(inward < 1e-3 * area);
     }
     const MeshData small = make_hovercraft({.length = 0.5f, .detail = 0.1f});
-    CHECK(small.bounds.max.z - small.bounds.min.z == doctest::Approx(0.475).epsilon(0.05));
+    CHECK(small.bounds.max.z - small.bounds.min.z == test::near(0.475).epsilon(0.05));
 }
 
 TEST_CASE("hovercraft: its own mirror image, with frames at right angles") {
     const MeshData mesh = make_hovercraft({.detail = 0.06f, .triangles = 0});
-    CHECK(mesh.bounds.max.x == doctest::Approx(-mesh.bounds.min.x).epsilon(1e-3));
+    CHECK(mesh.bounds.max.x == test::near(-mesh.bounds.min.x).epsilon(1e-3));
     double left = 0;
     double right = 0;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         (mesh.positions[i].x > 0 ? left : right) += 1;
-        REQUIRE(glm::length(mesh.normals[i]) == doctest::Approx(1));
-        REQUIRE(glm::length(Vec3(mesh.tangents[i])) == doctest::Approx(1));
+        REQUIRE(glm::length(mesh.normals[i]) == test::near(1));
+        REQUIRE(glm::length(Vec3(mesh.tangents[i])) == test::near(1));
         REQUIRE(std::abs(glm::dot(mesh.normals[i], Vec3(mesh.tangents[i]))) < 1e-4f);
     }
-    CHECK(left == doctest::Approx(right).epsilon(0.05));
+    CHECK(left == test::near(right).epsilon(0.05));
     CHECK(mesh.colors.size() == mesh.positions.size());
 }
 

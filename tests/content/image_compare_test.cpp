@@ -1,5 +1,6 @@
 #include "content/bake/image_compare.h"
 #include "ecs/base/rng.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -203,7 +204,7 @@ Grid slow_flip(const ColorImage& a, const ColorImage& b, double ppd) {
 TEST_CASE("image_compare: an image is equal to itself by every measure") {
     const ColorImage image = scene(40, 30, 0);
     CHECK(psnr(image, image) == std::numeric_limits<double>::infinity());
-    CHECK(ssim(image, image) == doctest::Approx(1.0));
+    CHECK(ssim(image, image) == test::near(1.0));
     CHECK(summarize_errors(flip_map(image, image)).mean == 0);
     CHECK(summarize_errors(flip_map(image, image)).p99 == 0);
     CHECK(relative_mse(image, image) == 0);
@@ -215,21 +216,19 @@ TEST_CASE("image_compare: PSNR, SSIM, FLIP and color correctness do not mind the
     const ColorImage a = scene(40, 30, 0);
     const ColorImage b = scene(40, 30, 1.5f);
     CHECK(psnr(a, b) == psnr(b, a));
-    CHECK(ssim(a, b) == doctest::Approx(ssim(b, a)).epsilon(1e-12));
+    CHECK(ssim(a, b) == test::near(ssim(b, a)).epsilon(1e-12));
     CHECK(flip_map(a, b) == flip_map(b, a));
     CHECK(color_correctness(a, b) == color_correctness(b, a));
 }
 
 TEST_CASE("psnr: a difference of a tenth everywhere is 20 dB, of one step in 255 is 48.13 dB") {
-    CHECK(
-        psnr(flat(8, 8, Vec3(0.4f)), flat(8, 8, Vec3(0.5f)))
-        == doctest::Approx(20.0).epsilon(1e-5));
+    CHECK(psnr(flat(8, 8, Vec3(0.4f)), flat(8, 8, Vec3(0.5f))) == test::near(20.0).epsilon(1e-5));
     CHECK(
         psnr(flat(8, 8, Vec3(0)), flat(8, 8, Vec3(1.0f / 255)))
-        == doctest::Approx(48.1308).epsilon(1e-5));
+        == test::near(48.1308).epsilon(1e-5));
     CHECK(
         psnr(flat(8, 8, Vec3(0)), flat(8, 8, Vec3(1, 0, 0)))
-        == doctest::Approx(10 * std::log10(3.0)).epsilon(1e-6));
+        == test::near(10 * std::log10(3.0)).epsilon(1e-6));
 }
 
 TEST_CASE("ssim: two flat images differ by their means alone") {
@@ -238,7 +237,7 @@ TEST_CASE("ssim: two flat images differ by their means alone") {
     const double expected = (2 * a * b + 1e-4) / (a * a + b * b + 1e-4);
     CHECK(
         ssim(flat(20, 20, Vec3(0.3f)), flat(20, 20, Vec3(0.7f)))
-        == doctest::Approx(expected).epsilon(1e-3));
+        == test::near(expected).epsilon(1e-3));
 }
 
 TEST_CASE("ssim: one window is the formula of the paper") {
@@ -269,7 +268,7 @@ TEST_CASE("ssim: one window is the formula of the paper") {
         std::array<double, 5>{moments[0], moments[1], moments[2], moments[3], moments[4]};
     const double expected = (2 * ma * mb + 1e-4) * (2 * (ab - ma * mb) + 9e-4)
                             / ((ma * ma + mb * mb + 1e-4) * (aa - ma * ma + bb - mb * mb + 9e-4));
-    CHECK(ssim(a, b) == doctest::Approx(expected).epsilon(1e-9));
+    CHECK(ssim(a, b) == test::near(expected).epsilon(1e-9));
 }
 
 TEST_CASE("ssim: it falls with noise, is negative for a negative, and takes tiny images") {
@@ -290,7 +289,7 @@ TEST_CASE("ssim: it falls with noise, is negative for a negative, and takes tiny
         pixel = 1.0f - pixel;
     }
     CHECK(ssim(b, inverted) < 0);
-    CHECK(ssim(flat(3, 2, Vec3(0.5f)), flat(3, 2, Vec3(0.5f))) == doctest::Approx(1.0));
+    CHECK(ssim(flat(3, 2, Vec3(0.5f)), flat(3, 2, Vec3(0.5f))) == test::near(1.0));
 }
 
 TEST_CASE("flip: it agrees with the two-dimensional kernels of the paper in double precision") {
@@ -308,7 +307,7 @@ TEST_CASE("flip: it agrees with the two-dimensional kernels of the paper in doub
             CHECK(worst < 2e-3);  // where both images nearly agree, the root of a rounding error
             CHECK(
                 mean(fast)
-                == doctest::Approx(
+                == test::near(
                        std::accumulate(slow.begin(), slow.end(), 0.0)
                        / static_cast<double>(slow.size()))
                        .epsilon(1e-4));
@@ -319,19 +318,18 @@ TEST_CASE("flip: it agrees with the two-dimensional kernels of the paper in doub
 TEST_CASE("flip: flat green against flat blue is the largest error there is") {
     const std::vector<float> errors = flip_map(flat(30, 30, {0, 1, 0}), flat(30, 30, {0, 0, 1}));
     for (const float error : errors) {
-        CHECK(error == doctest::Approx(1.0f).epsilon(1e-4));
+        CHECK(error == test::near(1.0f).epsilon(1e-4));
     }
 }
 
 TEST_CASE("flip: flat images differ by their colors alone, a little or beyond the knee") {
     // Black and white: HyAB 100, of at most 203.3 (green and blue), both to the 0.7th power.
     const double most = std::pow(slow_hyab(slow_hunt({0, 1, 0}), slow_hunt({0, 0, 1})), 0.7);
-    CHECK(
-        most == doctest::Approx(41.2761).epsilon(1e-5));  // the constant of the published evaluator
+    CHECK(most == test::near(41.2761).epsilon(1e-5));  // the constant of the published evaluator
     const double white = std::pow(100.0, 0.7);
     const double expected = 0.95 + (white - 0.4 * most) / (0.6 * most) * 0.05;
     const std::vector<float> errors = flip_map(flat(20, 20, Vec3(0)), flat(20, 20, Vec3(1)));
-    CHECK(errors[210] == doctest::Approx(expected).epsilon(1e-4));
+    CHECK(errors[210] == test::near(expected).epsilon(1e-4));
     CHECK(mean(flip_map(flat(20, 20, Vec3(0.5f)), flat(20, 20, Vec3(0.505f)))) < 0.06);
 }
 
@@ -367,19 +365,17 @@ TEST_CASE("flip: the same difference is worse where it adds an edge") {
 TEST_CASE("image_compare: a summary is the mean and what 99 of 100 do not exceed") {
     std::vector<float> errors(200, 0.0f);
     errors[7] = errors[50] = 1.0f;
-    CHECK(summarize_errors(errors).mean == doctest::Approx(0.01));
+    CHECK(summarize_errors(errors).mean == test::near(0.01));
     CHECK(summarize_errors(errors).p99 == 0);
     errors[51] = 0.5f;
-    CHECK(summarize_errors(errors).p99 == doctest::Approx(0.5));
+    CHECK(summarize_errors(errors).p99 == test::near(0.5));
     CHECK(summarize_errors({}).mean == 0);
 }
 
 TEST_CASE("relative_mse: it is relative to the first image") {
-    CHECK(relative_mse(flat(4, 4, Vec3(10)), flat(4, 4, Vec3(11)), 1e-9) == doctest::Approx(0.01));
-    CHECK(
-        relative_mse(flat(4, 4, Vec3(1000)), flat(4, 4, Vec3(1100)), 1e-9)
-        == doctest::Approx(0.01));
-    CHECK(relative_mse(flat(4, 4, Vec3(0)), flat(4, 4, Vec3(0.1f)), 0.01) == doctest::Approx(1.0));
+    CHECK(relative_mse(flat(4, 4, Vec3(10)), flat(4, 4, Vec3(11)), 1e-9) == test::near(0.01));
+    CHECK(relative_mse(flat(4, 4, Vec3(1000)), flat(4, 4, Vec3(1100)), 1e-9) == test::near(0.01));
+    CHECK(relative_mse(flat(4, 4, Vec3(0)), flat(4, 4, Vec3(0.1f)), 0.01) == test::near(1.0));
     CHECK(
         relative_mse(flat(4, 4, Vec3(1)), flat(4, 4, Vec3(2)))
         > relative_mse(flat(4, 4, Vec3(2)), flat(4, 4, Vec3(1))));
@@ -391,7 +387,7 @@ TEST_CASE("image_compare: the largest difference names its pixel and channel, an
     b.pixels[3 * 10 + 7].y += 0.25f;
     b.pixels[5 * 10 + 1].z -= 0.125f;
     const LargestDifference found = largest_difference(a, b);
-    CHECK(found.difference == doctest::Approx(0.25f));
+    CHECK(found.difference == test::near(0.25f));
     CHECK(found.pixel == IVec2(7, 3));
     CHECK(found.channel == 1);
     CHECK(
@@ -407,9 +403,7 @@ TEST_CASE("color_correctness: 1 for equal, 0 for black and white, 1 - 51/765 for
           "channel") {
     CHECK(color_correctness(flat(4, 4, Vec3(0)), flat(4, 4, Vec3(1))) == 0);
     const ColorImage a = flat(4, 4, {0.4f, 0.2f, 0.6f});
-    CHECK(
-        color_correctness(a, flat(4, 4, {0.6f, 0.2f, 0.6f}))
-        == doctest::Approx(1.0 - 51.0 / 765.0));
+    CHECK(color_correctness(a, flat(4, 4, {0.6f, 0.2f, 0.6f})) == test::near(1.0 - 51.0 / 765.0));
 }
 
 TEST_CASE("color_correctness: the background does not count, however large") {
@@ -438,12 +432,12 @@ TEST_CASE("enhanced_difference: 0 stays 0, 255 stays 255, one step shows as 146.
     };
     CHECK(shown(0) == 0);
     CHECK(shown(1) == 1);
-    CHECK(255.0f * shown(1.0f / 255) == doctest::Approx(146.5).epsilon(1e-3));
+    CHECK(255.0f * shown(1.0f / 255) == test::near(146.5).epsilon(1e-3));
     float last = 0;
     for (int step = 1; step <= 255; ++step) {
         const float now = shown(static_cast<float>(step) / 255);
         CHECK(now > last);
-        CHECK(std::pow(now, 10.0f) == doctest::Approx(step / 255.0).epsilon(1e-4));
+        CHECK(std::pow(now, 10.0f) == test::near(step / 255.0).epsilon(1e-4));
         last = now;
     }
 }
@@ -470,7 +464,7 @@ TEST_CASE("scanline: place and height of a highlight, and a kink, are found") {
     CHECK(same.largest_difference == 0);
     const ScanlineComparison other = compare_scanlines(a, b);
     CHECK(other.peak_shift == 3);
-    CHECK(other.peak_ratio == doctest::Approx(0.5));
-    CHECK(other.roughness_b == doctest::Approx(0.1).epsilon(1e-3));
+    CHECK(other.peak_ratio == test::near(0.5));
+    CHECK(other.roughness_b == test::near(0.1).epsilon(1e-3));
     CHECK(other.roughness_a < 0.05);
 }

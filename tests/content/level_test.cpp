@@ -18,6 +18,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -96,12 +97,12 @@ TEST_CASE("level: resources, materials, meshes and entities arrive in the world 
     const Assets& assets = world.resource<Assets>();
     const MeshInstance& instance = named<MeshInstance>(world, "one");
     CHECK(assets.meshes[instance.mesh.index].name == "ball");
-    CHECK(assets.meshes[instance.mesh.index].bounds.max.y == doctest::Approx(2.0f));
+    CHECK(assets.meshes[instance.mesh.index].bounds.max.y == test::near(2.0f));
     const Material& dull = assets.materials[instance.material.index];
     CHECK(dull.name == "dull");
     CHECK(dull.metalness == 1.0f);
     CHECK(dull.roughness == 0.9f);
-    CHECK(dull.base_color.y == doctest::Approx(0.2158605f));
+    CHECK(dull.base_color.y == test::near(0.2158605f));
     CHECK(named<Transform>(world, "one").position == Vec3(1, 2, 3));
     CHECK(world.query<const PointLight, const Transform>().count() == 1);  // every entity has one
 }
@@ -299,7 +300,7 @@ TEST_CASE("level: a ring turns its copies with it") {
         world, R"({"entities": [{"name": "r", "repeat": {"count": [4, 1, 1], "radius": 3}}]})");
     for (int i = 0; i < 4; ++i) {
         const Transform& t = named<Transform>(world, "r[" + std::to_string(i) + "]");
-        CHECK(glm::length(t.position) == doctest::Approx(3.0f));
+        CHECK(glm::length(t.position) == test::near(3.0f));
         const Vec3 ahead = t.rotation * Vec3(0, 0, -1);
         CHECK(glm::length(t.position + 3.0f * ahead) < 1e-5f);  // toward the middle
     }
@@ -324,7 +325,7 @@ TEST_CASE("level: copies differ as asked: in between, picked, at random, and the
     for (int i = 0; i < 5; ++i) {
         const std::string name = "v[" + std::to_string(i) + "]";
         const PointLight& light = named<PointLight>(world, name);
-        CHECK(light.intensity == doctest::Approx(1.0f + 0.5f * static_cast<float>(i)));
+        CHECK(light.intensity == test::near(1.0f + 0.5f * static_cast<float>(i)));
         CHECK(light.color.x == light.color.y);  // a color is one number
         const Sway sway = sway_named(world, name);
         CHECK(sway.phase.x != sway.phase.y);  // a vector is one a lane
@@ -349,7 +350,7 @@ TEST_CASE("level: copies differ as asked: in between, picked, at random, and the
     CHECK(material(2) == "green");
     CHECK(material(4) == "blue");
     const Vec3 turned = named<Transform>(world, "v[4]").rotation * Vec3(0, 0, -1);
-    CHECK(turned.x == doctest::Approx(-1.0f));
+    CHECK(turned.x == test::near(-1.0f));
 }
 
 TEST_CASE("level: numbers by radius, angle and with times cover their range") {
@@ -364,15 +365,15 @@ TEST_CASE("level: numbers by radius, angle and with times cover their range") {
     world.query<const Transform, const PointLight, const Spin>().each(
         [&](const Transform& t, const PointLight& light, const Spin& spin) {
             const float expected = glm::length(t.position) / glm::length(Vec3(4, 0, 4));
-            CHECK(light.intensity == doctest::Approx(expected));
+            CHECK(light.intensity == test::near(expected));
             CHECK(light.radius >= 0.0f);
             CHECK(light.radius <= 1.0f);
             const float turns = 4.0f * (t.position.x + 4.0f) / 8.0f;
-            CHECK(spin.speed == doctest::Approx(turns - std::floor(turns)));
+            CHECK(spin.speed == test::near(turns - std::floor(turns)));
             most = std::max(most, light.intensity);
             least = std::min(least, light.intensity);
         });
-    CHECK(most == doctest::Approx(1.0f));
+    CHECK(most == test::near(1.0f));
     CHECK(least == 0.0f);
 }
 
@@ -403,7 +404,7 @@ TEST_CASE("level: who uses a repeated prefab changes single keys of the repetiti
                      {"name": "c", "prefab": "row", "repeat": {"count": [2, 1, 1], "jitter": [0, 0, 0]}},
                      {"name": "d", "prefab": "row", "repeat": null}]})");
     CHECK(named<Transform>(world, "a[2]").position != named<Transform>(world, "b[2]").position);
-    CHECK(named<Transform>(world, "b[2]").position.x == doctest::Approx(2.0f).epsilon(0.1));
+    CHECK(named<Transform>(world, "b[2]").position.x == test::near(2.0f).epsilon(0.1));
     CHECK(named<Transform>(world, "c[1]").position == Vec3(1, 0, 0));
     CHECK(named<Transform>(world, "d").position == Vec3(0));
     CHECK(world.entity_count() == 3 + 3 + 2 + 1);
@@ -441,7 +442,7 @@ TEST_CASE("level: a camera with a path begins where the path does") {
         {"time": 0, "position": [3, 1, 0], "look_at": [0, 1, 0]}, {"time": 2, "position": [0, 1, 3]}]}}]})");
     const Transform& t = named<Transform>(world, "c");
     CHECK(t.position == Vec3(3, 1, 0));
-    CHECK((t.rotation * Vec3(0, 0, -1)).x == doctest::Approx(-1.0f));
+    CHECK((t.rotation * Vec3(0, 0, -1)).x == test::near(-1.0f));
 }
 
 TEST_CASE("level: events name entities, resources and what they spawn") {
@@ -534,8 +535,8 @@ TEST_CASE("scene: bounds follow the hierarchy") {
     World world;
     const Result<LoadedScene> scene = load_scene(world, folder.file("b.level.json"));
     REQUIRE(scene.ok());
-    CHECK(scene->bounds.min.x == doctest::Approx(11.0f));
-    CHECK(scene->bounds.max.x == doctest::Approx(13.0f));
+    CHECK(scene->bounds.min.x == test::near(11.0f));
+    CHECK(scene->bounds.max.x == test::near(13.0f));
 }
 
 TEST_CASE("set: one field of an entity, a resource or a material changes") {

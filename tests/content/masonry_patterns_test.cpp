@@ -1,4 +1,5 @@
 #include "content/make/masonry_patterns.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -84,7 +85,7 @@ TEST_CASE("masonry_patterns: courses of ashlar are level, and their joints the s
         }
     }
     // 0.2 of the height, and 0.2 / 2 of the length of what is left of it; edges are ragged.
-    CHECK(joints / 65536.0 == doctest::Approx(1 - 0.8 * 0.9).epsilon(0.15));
+    CHECK(joints / 65536.0 == test::near(1 - 0.8 * 0.9).epsilon(0.15));
     for (int row = 0; row < 4; ++row) {
         int dark = 0;
         for (int x = 0; x < 256; ++x) {
@@ -121,8 +122,8 @@ TEST_CASE("masonry_patterns: glass is colored between black lead, one pane in si
             }
         }
     }
-    CHECK(share[0] == doctest::Approx(0.18 * 0.8).epsilon(0.2));
-    CHECK(share[1] / (share[1] + share[2]) == doctest::Approx(1.0 / 6).epsilon(0.5));
+    CHECK(share[0] == test::near(0.18 * 0.8).epsilon(0.2));
+    CHECK(share[1] / (share[1] + share[2]) == test::near(1.0 / 6).epsilon(0.5));
     CHECK(share[1] + share[2] > 0.5);
 }
 

@@ -1,5 +1,6 @@
 #include "content/make/masonry.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -56,12 +57,12 @@ TEST_CASE("masonry: an equilateral arch has its arcs about the opposite springin
     const float rise = std::sqrt(3.0f);
     for (const float radius : {0.0f, 1.0f}) {  // by its rise, or by its name
         for (const CurvePoint& point : pointed_curve(2.0f, rise, radius, 16)) {
-            CHECK(glm::distance(point.place, Vec2(-1, 0)) == doctest::Approx(2.0f));
+            CHECK(glm::distance(point.place, Vec2(-1, 0)) == test::near(2.0f));
         }
     }
     // What is too low for two arcs is half an ellipse; half a circle has no point.
     for (const CurvePoint& point : pointed_curve(4.0f, 1.0f, 0.0f, 16)) {
-        CHECK(glm::length(point.place * Vec2(0.5f, 1)) == doctest::Approx(1.0f));
+        CHECK(glm::length(point.place * Vec2(0.5f, 1)) == test::near(1.0f));
     }
     CHECK(pointed_curve(2.0f, 1.0f, 0.5f, 4).back().normal == Vec2(0, 1));
 }
@@ -76,12 +77,10 @@ TEST_CASE("masonry: arches are closed, with legs and chamfers or without") {
 TEST_CASE("masonry: the volume of half a ring is that of the ring") {
     const MeshData ring =
         make_arch({.span = 2, .rise = 1, .thickness = 0.5f, .depth = 0.4f, .segments = 64});
-    CHECK(signed_volume(ring) == doctest::Approx(0.4 * 0.5 * kPiD * (2.25 - 1)).epsilon(2e-3));
+    CHECK(signed_volume(ring) == test::near(0.4 * 0.5 * kPiD * (2.25 - 1)).epsilon(2e-3));
     const MeshData legs = make_arch(
         {.span = 2, .rise = 1, .legs = 3, .thickness = 0.5f, .depth = 0.4f, .segments = 64});
-    CHECK(
-        signed_volume(legs) - signed_volume(ring)
-        == doctest::Approx(2 * 3 * 0.5 * 0.4).epsilon(1e-4));
+    CHECK(signed_volume(legs) - signed_volume(ring) == test::near(2 * 3 * 0.5 * 0.4).epsilon(1e-4));
     CHECK(legs.bounds.min.y == -3.0f);
     CHECK(legs.bounds.max == Vec3(1.5f, 1.5f, 0.2f));
 }
@@ -108,10 +107,10 @@ TEST_CASE("masonry: a wall weighs what its opening leaves of it") {
         {.size = {4, 6, 0.5f}, .span = 2, .spring = 3, .rise = 2, .radius = 1, .segments = 64});
     CHECK(
         signed_volume(door)
-        == doctest::Approx(0.5 * (4 * 6 - 2 * 3 - area_below(2, 2, 1))).epsilon(1e-3));
+        == test::near(0.5 * (4 * 6 - 2 * 3 - area_below(2, 2, 1))).epsilon(1e-3));
     const MeshData rose =
         make_wall({.size = {8, 9, 1}, .span = 6, .spring = 5, .round = true, .segments = 64});
-    CHECK(signed_volume(rose) == doctest::Approx(72 - 9 * kPiD).epsilon(1e-3));
+    CHECK(signed_volume(rose) == test::near(72 - 9 * kPiD).epsilon(1e-3));
     CHECK(rose.bounds.min == Vec3(-4, 0, -0.5f));
     CHECK(rose.bounds.max == Vec3(4, 9, 0.5f));
 }
@@ -125,7 +124,7 @@ TEST_CASE("masonry: vaults are closed over squares and oblongs") {
 TEST_CASE("masonry: a vault is as thick everywhere, and lies on the arch over its diagonal") {
     const VaultShape shape{.size = {6, 4}, .rise = 3, .radius = 0.8f, .thickness = 0.2f};
     const MeshData vault = make_vault(shape);
-    CHECK(signed_volume(vault) == doctest::Approx(6 * 4 * 0.2).epsilon(1e-4));
+    CHECK(signed_volume(vault) == test::near(6 * 4 * 0.2).epsilon(1e-4));
     CHECK(vault.bounds.min == Vec3(-3, 0, -2));
     CHECK(vault.bounds.max == Vec3(3, 3.2f, 2));
     const float diagonal = std::sqrt(52.0f);

@@ -1,6 +1,7 @@
 #include "content/make/patterns.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -127,7 +128,7 @@ TEST_CASE("patterns: normals are unit, point outwards and have no lean") {
                                    channel(maps.normal, x, y, 2))
                                    / 127.5f
                                - 1.0f;
-                REQUIRE(glm::length(n) == doctest::Approx(1.0f).epsilon(0.02));
+                REQUIRE(glm::length(n) == test::near(1.0f).epsilon(0.02));
                 REQUIRE(n.z > 0);
                 sum += glm::dvec3(n);
             }
@@ -150,7 +151,7 @@ TEST_CASE("patterns: red points right and green up where the surface falls that 
     // A slope of 1/2: the normal is (0, 1, 2) / sqrt(5).
     CHECK(
         channel(up.normal, 32, 16, 1)
-        == doctest::Approx(127.5 * (1 + 1 / std::sqrt(5.0))).epsilon(0.01));
+        == test::near(127.5 * (1 + 1 / std::sqrt(5.0))).epsilon(0.01));
 }
 
 TEST_CASE("patterns: a texel's numbers arrive in their channels") {
@@ -194,7 +195,7 @@ TEST_CASE("patterns: metals are metal, rust is not, and everything else is no me
         }
         const std::string name = kind.name;
         if (name == "brushed_metal") {
-            CHECK(metal == doctest::Approx(1.0));
+            CHECK(metal == test::near(1.0));
         } else if (name == "rust") {
             CHECK(metal > 0.2);
             CHECK(metal < 0.8);

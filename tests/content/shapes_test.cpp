@@ -2,6 +2,7 @@
 #include "content/make/make_mesh.h"
 #include "content/make/shapes.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -91,7 +92,7 @@ TEST_CASE("shapes: closed shapes are watertight") {
 TEST_CASE("shapes: a lathe turns its profile, closes its ends and has edges where it bends") {
     const MeshData tube = make_lathe({.profile = {{0.5f, 0}, {0.5f, 2}}, .segments = 256});
     CHECK(open_edges(tube) == 0);
-    CHECK(signed_volume(tube) == doctest::Approx(kPiD * 0.5).epsilon(1e-3));
+    CHECK(signed_volume(tube) == test::near(kPiD * 0.5).epsilon(1e-3));
     // Half a circle as a profile is a ball: smooth, so that its normals are its radii.
     LatheShape half_circle{.segments = 96, .crease = 1.0f};
     half_circle.profile.clear();
@@ -101,7 +102,7 @@ TEST_CASE("shapes: a lathe turns its profile, closes its ends and has edges wher
     }
     const MeshData ball = make_lathe(half_circle);
     CHECK(open_edges(ball) == 0);
-    CHECK(signed_volume(ball) == doctest::Approx(4.0 / 3.0 * kPiD).epsilon(3e-3));
+    CHECK(signed_volume(ball) == test::near(4.0 / 3.0 * kPiD).epsilon(3e-3));
     for (std::size_t i = 0; i < ball.positions.size(); ++i) {
         if (std::abs(ball.positions[i].y) < 0.99f) {  // at the ends there is one neighbor only
             REQUIRE(glm::dot(ball.positions[i], ball.normals[i]) > 0.9995f);
@@ -128,7 +129,7 @@ TEST_CASE("shapes: lobes keep a lathe closed, and its area is that of the curve"
     CHECK(worst_facing(mesh) > 0.99f);
     CHECK(worst_tangent(mesh) > 0.95f);
     // The mean of (1 + d cos)^2 is 1 + d^2 / 2.
-    CHECK(signed_volume(mesh) == doctest::Approx(kPiD * 0.25 * 1.02).epsilon(1e-3));
+    CHECK(signed_volume(mesh) == test::near(kPiD * 0.25 * 1.02).epsilon(1e-3));
 }
 
 TEST_CASE("shapes: metric texture coordinates are meters") {
@@ -140,7 +141,7 @@ TEST_CASE("shapes: metric texture coordinates are meters") {
             const std::uint32_t b = mesh.indices[t % 3 == 2 ? t - 2 : t + 1];
             CHECK(
                 glm::distance(mesh.uvs[a], mesh.uvs[b])
-                == doctest::Approx(glm::distance(mesh.positions[a], mesh.positions[b])));
+                == test::near(glm::distance(mesh.positions[a], mesh.positions[b])));
         }
         CHECK(worst_tangent(mesh) > 0.99999f);
     }
@@ -148,21 +149,20 @@ TEST_CASE("shapes: metric texture coordinates are meters") {
 
 TEST_CASE("shapes: volume and area converge to the closed forms") {
     const MeshData ball = make_sphere({.radius = 0.5f, .segments = 256, .rings = 128});
-    CHECK(signed_volume(ball) == doctest::Approx(kPiD / 6.0).epsilon(1e-3));
-    CHECK(surface_area(ball) == doctest::Approx(kPiD).epsilon(1e-3));
+    CHECK(signed_volume(ball) == test::near(kPiD / 6.0).epsilon(1e-3));
+    CHECK(surface_area(ball) == test::near(kPiD).epsilon(1e-3));
     const MeshData ring =
         make_torus({.radius = 0.35f, .tube = 0.15f, .segments = 256, .sides = 128});
-    CHECK(
-        signed_volume(ring) == doctest::Approx(2 * kPiD * kPiD * 0.35 * 0.15 * 0.15).epsilon(1e-3));
+    CHECK(signed_volume(ring) == test::near(2 * kPiD * kPiD * 0.35 * 0.15 * 0.15).epsilon(1e-3));
     const MeshData tube = make_cylinder({.radius = 0.5f, .height = 2, .segments = 256});
-    CHECK(signed_volume(tube) == doctest::Approx(kPiD * 0.5).epsilon(1e-3));
+    CHECK(signed_volume(tube) == test::near(kPiD * 0.5).epsilon(1e-3));
     const MeshData cone = make_cone({.radius = 0.5f, .height = 2, .segments = 256});
-    CHECK(signed_volume(cone) == doctest::Approx(kPiD / 6.0).epsilon(1e-3));
-    CHECK(signed_volume(make_box({.size = {1, 2, 3}})) == doctest::Approx(6.0));
-    CHECK(surface_area(make_plane({.size = {2, 3}, .divisions = 4})) == doctest::Approx(6.0));
+    CHECK(signed_volume(cone) == test::near(kPiD / 6.0).epsilon(1e-3));
+    CHECK(signed_volume(make_box({.size = {1, 2, 3}})) == test::near(6.0));
+    CHECK(surface_area(make_plane({.size = {2, 3}, .divisions = 4})) == test::near(6.0));
     CHECK(
         surface_area(make_disc({.radius = 1, .inner_radius = 0.5f, .segments = 256}))
-        == doctest::Approx(0.75 * kPiD).epsilon(1e-3));
+        == test::near(0.75 * kPiD).epsilon(1e-3));
 
     // A box rounded by r: its core, six slabs, twelve quarter tubes and eight eighths of a ball.
     const double r = 0.25;
@@ -172,17 +172,17 @@ TEST_CASE("shapes: volume and area converge to the closed forms") {
                            + kPiD * r * r * (core[0] + core[1] + core[2])
                            + 4.0 / 3.0 * kPiD * r * r * r;
     const MeshData soft = make_box({.size = {1, 2, 3}, .bevel = 0.25f, .bevel_segments = 24});
-    CHECK(signed_volume(soft) == doctest::Approx(rounded).epsilon(1e-3));
+    CHECK(signed_volume(soft) == test::near(rounded).epsilon(1e-3));
 }
 
 TEST_CASE(
     "shapes: every vertex of a sphere is on the sphere, and moving it along its normal swells it") {
     const MeshData ball = make_sphere({.radius = 1.0f, .segments = 48, .rings = 24});
     for (std::size_t i = 0; i < ball.positions.size(); ++i) {
-        REQUIRE(glm::length(ball.positions[i]) == doctest::Approx(1.0).epsilon(1e-6));
+        REQUIRE(glm::length(ball.positions[i]) == test::near(1.0).epsilon(1e-6));
         REQUIRE(
             glm::length(ball.positions[i] + 0.2f * ball.normals[i])
-            == doctest::Approx(1.2).epsilon(1e-6));
+            == test::near(1.2).epsilon(1e-6));
     }
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("shapes: a hard-edged box has 24 vertices and swelling it opens gaps o
                 ++pairs;
                 const Vec3 gap = (box.positions[a] + f * box.normals[a])
                                  - (box.positions[b] + f * box.normals[b]);
-                CHECK(glm::length(gap) == doctest::Approx(f * std::sqrt(2.0f)));
+                CHECK(glm::length(gap) == test::near(f * std::sqrt(2.0f)));
             }
         }
     }
@@ -229,7 +229,7 @@ TEST_CASE("shapes: the normals of a rounded edge turn by equal angles, and a bev
     CHECK(halfway > 0);
     const MeshData ball = make_box({.size = {2, 2, 2}, .bevel = 9, .bevel_segments = 16});
     CHECK(ball.bounds.max == Vec3(1));
-    CHECK(signed_volume(ball) == doctest::Approx(kPiD * 4 / 3).epsilon(0.01));
+    CHECK(signed_volume(ball) == test::near(kPiD * 4 / 3).epsilon(0.01));
 }
 
 TEST_CASE("shapes: at a pole each triangle has its own vertex, half way between its columns") {
@@ -247,8 +247,8 @@ TEST_CASE("shapes: at a pole each triangle has its own vertex, half way between 
             if (apex >= 0) {
                 const float low = std::min({u[0], u[1], u[2]});
                 const float high = std::max({u[0], u[1], u[2]});
-                CHECK(apex == doctest::Approx(0.5f * (low + high)));
-                CHECK(high - low == doctest::Approx(1.0f / 8));
+                CHECK(apex == test::near(0.5f * (low + high)));
+                CHECK(high - low == test::near(1.0f / 8));
             }
         }
     }

@@ -2,6 +2,7 @@
 #include "content/make/sweep.h"
 #include "ecs/components/all.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -56,17 +57,17 @@ TEST_CASE(
     const MeshData mesh = make_sweep(shape, ring());
     check_arrays(mesh);
     CHECK(worst_facing(mesh) > 0.999f);
-    CHECK(area(mesh) == doctest::Approx(kPi * (12 * 12 - 8 * 8)).epsilon(2e-3));
+    CHECK(area(mesh) == test::near(kPi * (12 * 12 - 8 * 8)).epsilon(2e-3));
     for (const Vec3& normal : mesh.normals) {
-        CHECK(normal.y == doctest::Approx(1));
+        CHECK(normal.y == test::near(1));
     }
     float longest = 0;
     for (const Vec2& uv : mesh.uvs) {
         CHECK((uv.x >= 0 && uv.x <= 4.0001f));
         longest = std::max(longest, uv.y);
     }
-    CHECK(longest == doctest::Approx(2 * kPi * 10).epsilon(1e-3));
-    CHECK(mesh.bounds.max.x == doctest::Approx(12).epsilon(1e-3));
+    CHECK(longest == test::near(2 * kPi * 10).epsilon(1e-3));
+    CHECK(mesh.bounds.max.x == test::near(12).epsilon(1e-3));
 }
 
 TEST_CASE("sweep: a tube is closed and holds what a torus or a cylinder holds") {
@@ -76,12 +77,12 @@ TEST_CASE("sweep: a tube is closed and holds what a torus or a cylinder holds") 
     shape.segments = 48;
     shape.step = 0.25f;
     const MeshData torus = make_sweep(shape, ring());
-    CHECK(signed_volume(torus) == doctest::Approx(2 * kPi * kPi * 10).epsilon(0.01));
+    CHECK(signed_volume(torus) == test::near(2 * kPi * kPi * 10).epsilon(0.01));
     CHECK(open_edges(torus) == 0);
     const MeshData cylinder = make_sweep(shape, {});  // no path: 10 m along +z
     CHECK(open_edges(cylinder) == 0);
-    CHECK(signed_volume(cylinder) == doctest::Approx(kPi * 10).epsilon(0.01));
-    CHECK(cylinder.bounds.max.z == doctest::Approx(10));
+    CHECK(signed_volume(cylinder) == test::near(kPi * 10).epsilon(0.01));
+    CHECK(cylinder.bounds.max.z == test::near(10));
     CHECK(worst_facing(cylinder) > 0.99f);
 }
 
@@ -94,7 +95,7 @@ TEST_CASE("sweep: edges sharper than the crease stay edges") {
     CHECK(sharp.positions.size() > smooth.positions.size());
     CHECK(worst_facing(sharp) > 0.999f);
     CHECK(worst_facing(smooth) < 0.8f);
-    CHECK(area(sharp) == doctest::Approx(10 * 4));
+    CHECK(area(sharp) == test::near(10 * 4));
 }
 
 TEST_CASE("sweep: dashes cover their share of the way, between begin and end") {
@@ -102,13 +103,13 @@ TEST_CASE("sweep: dashes cover their share of the way, between begin and end") {
     shape.profile = {{-0.1f, 0}, {0.1f, 0}};
     shape.begin = 1;
     shape.end = 9;
-    CHECK(area(make_sweep(shape, {})) == doctest::Approx(0.2 * 8));
+    CHECK(area(make_sweep(shape, {})) == test::near(0.2 * 8));
     shape.dash = 1.5f;
     shape.gap = 0.5f;
     const MeshData mesh = make_sweep(shape, {});
-    CHECK(area(mesh) == doctest::Approx(0.2 * 6));
-    CHECK(mesh.bounds.min.z == doctest::Approx(1));
-    CHECK(mesh.bounds.max.z == doctest::Approx(8.5));
+    CHECK(area(mesh) == test::near(0.2 * 6));
+    CHECK(mesh.bounds.min.z == test::near(1));
+    CHECK(mesh.bounds.max.z == test::near(8.5));
 }
 
 TEST_CASE("sweep: a tube that climbs straight up does not twist") {

@@ -1,5 +1,6 @@
 #include "content/bake/tangents.h"
 #include "ecs/components/surface.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -104,8 +105,8 @@ TEST_CASE("tangents: the frame of a triangle is the gradient of position along u
             triangle_frame({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 0}, {1, 0}, {1, 1}});
         CHECK(near(frame.tangent, {1, 0, 0}));
         CHECK(near(frame.bitangent, {0, 1, 0}));
-        CHECK(degrees_between({2, 1, 0}, frame.tangent) == doctest::Approx(26.565).epsilon(1e-4));
-        CHECK(degrees_between({1, 1, 0}, frame.bitangent) == doctest::Approx(45.0).epsilon(1e-4));
+        CHECK(degrees_between({2, 1, 0}, frame.tangent) == test::near(26.565).epsilon(1e-4));
+        CHECK(degrees_between({1, 1, 0}, frame.bitangent) == test::near(45.0).epsilon(1e-4));
     }
     SUBCASE("lengths are meters a unit of u and v") {
         const TriangleFrame frame =
@@ -158,8 +159,8 @@ TEST_CASE("tangents: the normals of a cube's corners do not depend on how its fa
 
 TEST_CASE("tangents: equal weights, which we do not use, would be up to 19.47 degrees off") {
     // One, two and one triangle on the three faces of a corner; then two, two and one.
-    CHECK(degrees_between({1, 2, 1}, {1, 1, 1}) == doctest::Approx(19.47).epsilon(1e-3));
-    CHECK(degrees_between({2, 2, 1}, {1, 1, 1}) == doctest::Approx(15.79).epsilon(1e-3));
+    CHECK(degrees_between({1, 2, 1}, {1, 1, 1}) == test::near(19.47).epsilon(1e-3));
+    CHECK(degrees_between({2, 2, 1}, {1, 1, 1}) == test::near(15.79).epsilon(1e-3));
 }
 
 TEST_CASE("tangents: below its crease angle a cube stays flat, with four vertices a face") {

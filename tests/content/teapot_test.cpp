@@ -1,5 +1,6 @@
 #include "content/make/teapot.h"
 #include "tests/content/mesh_laws.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -47,13 +48,13 @@ TEST_CASE("teapot: the control points are those of the public data") {
             }
         }
     }
-    CHECK(sum.x == doctest::Approx(18.9).epsilon(1e-6));
-    CHECK(sum.y == doctest::Approx(883.275).epsilon(1e-6));
+    CHECK(sum.x == test::near(18.9).epsilon(1e-6));
+    CHECK(sum.y == test::near(883.275).epsilon(1e-6));
     CHECK(std::abs(sum.z) < 1e-5);
-    CHECK(squares.x == doctest::Approx(1335.8293).epsilon(1e-6));
-    CHECK(squares.y == doctest::Approx(2062.7902).epsilon(1e-6));
-    CHECK(squares.z == doctest::Approx(420.9316).epsilon(1e-6));
-    CHECK(mixed == doctest::Approx(111.9469).epsilon(1e-6));
+    CHECK(squares.x == test::near(1335.8293).epsilon(1e-6));
+    CHECK(squares.y == test::near(2062.7902).epsilon(1e-6));
+    CHECK(squares.z == test::near(420.9316).epsilon(1e-6));
+    CHECK(mixed == test::near(111.9469).epsilon(1e-6));
 }
 
 TEST_CASE("teapot: n divisions make 64 n^2 triangles") {
@@ -100,7 +101,7 @@ TEST_CASE("teapot: triangles and normals face outwards") {
 TEST_CASE("teapot: it stands on y = 0, is as high as asked, and its spout points along +x") {
     const MeshData pot = make_teapot({.height = 2.0f});
     CHECK(pot.bounds.min.y == 0);
-    CHECK(pot.bounds.max.y == doctest::Approx(2.0f));
+    CHECK(pot.bounds.max.y == test::near(2.0f));
     CHECK(pot.bounds.max.x > -pot.bounds.min.x);
     CHECK(pot.bounds.max.z == -pot.bounds.min.z);
 }
@@ -118,7 +119,7 @@ TEST_CASE("teapot: turned parts are circles but for the error of the cubic") {
             const float radius = glm::length(Vec2(start.x, start.z));
             for (int column = 0; column <= 8; ++column) {
                 const Vec3 p = patch_point(patch.surface, static_cast<float>(column) / 8.0f, v);
-                CHECK(p.y == doctest::Approx(start.y).epsilon(1e-6));
+                CHECK(p.y == test::near(start.y).epsilon(1e-6));
                 CHECK(
                     std::abs(glm::length(Vec2(p.x, p.z)) - radius)
                     <= (is_knob ? 0.0055f : 0.00415f) * radius + 1e-6f);

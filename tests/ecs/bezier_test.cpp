@@ -1,6 +1,7 @@
 #include "ecs/base/bezier.h"
 #include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -65,34 +66,32 @@ bool is_smooth(const BezierKnot& knot) {
 TEST_CASE("bezier: chords measure the way from below, the better the more they are") {
     // The arch is 2 long; until u it is 3 u - 3 u^2 + 2 u^3.
     const ChordTable table = measure_chords(kArch);
-    CHECK(table.total() == doctest::Approx(1.999921).epsilon(1e-6));
-    CHECK(table.length[25] == doctest::Approx(0.59375).epsilon(1e-4));
-    CHECK(table.length[50] == doctest::Approx(1).epsilon(1e-4));
-    CHECK(chords_of(kArch, 10) == doctest::Approx(1.992141).epsilon(1e-6));
-    CHECK(table.total() == doctest::Approx(chords_of(kArch, 100)).epsilon(1e-6));
-    CHECK(
-        2 - chords_of(kArch, 10)
-        == doctest::Approx(100 * (2 - chords_of(kArch, 100))).epsilon(0.02));
+    CHECK(table.total() == test::near(1.999921).epsilon(1e-6));
+    CHECK(table.length[25] == test::near(0.59375).epsilon(1e-4));
+    CHECK(table.length[50] == test::near(1).epsilon(1e-4));
+    CHECK(chords_of(kArch, 10) == test::near(1.992141).epsilon(1e-6));
+    CHECK(table.total() == test::near(chords_of(kArch, 100)).epsilon(1e-6));
+    CHECK(2 - chords_of(kArch, 10) == test::near(100 * (2 - chords_of(kArch, 100))).epsilon(0.02));
     CHECK(std::is_sorted(table.length.begin(), table.length.end()));
     CHECK(table.total() < 2);
-    CHECK(measure_chords(kBend).total() == doctest::Approx(11.0366).epsilon(1e-5));
+    CHECK(measure_chords(kBend).total() == test::near(11.0366).epsilon(1e-5));
 }
 
 TEST_CASE("bezier: equal shares of the way are equally long, equal steps of u are not") {
     const ChordTable table = measure_chords(kBend);
-    CHECK(unevenness(kBend, [](float u) { return u; }) == doctest::Approx(4.1301).epsilon(1e-4));
+    CHECK(unevenness(kBend, [](float u) { return u; }) == test::near(4.1301).epsilon(1e-4));
     const float even = unevenness(kBend, [&](float share) { return table.parameter_at(share); });
-    CHECK(even == doctest::Approx(1.042).epsilon(1e-3));
+    CHECK(even == test::near(1.042).epsilon(1e-3));
 }
 
 TEST_CASE("bezier: on a straight, even curve the share is u; on a point it is, too") {
     const ChordTable line = measure_chords(Bezier<float>{2, 3, 4, 5});
     const ChordTable point = measure_chords(Bezier<float>{7, 7, 7, 7});
-    CHECK(line.total() == doctest::Approx(3));
+    CHECK(line.total() == test::near(3));
     CHECK(point.total() == 0);
     for (const float share : {-1.0f, 0.0f, 0.005f, 0.37f, 0.995f, 1.0f, 2.0f}) {
         const float expected = std::clamp(share, 0.0f, 1.0f);
-        CHECK(line.parameter_at(share) == doctest::Approx(expected).epsilon(1e-5));
+        CHECK(line.parameter_at(share) == test::near(expected).epsilon(1e-5));
         CHECK(point.parameter_at(share) == expected);
     }
     // A way of which some is no way at all.
@@ -101,7 +100,7 @@ TEST_CASE("bezier: on a straight, even curve the share is u; on a point it is, t
     CHECK(late.parameter_at(1) == 1);
     const ChordTable early = measure_chords(Bezier<float>{1e4f, 1e4f + 1, 1e4f + 1, 1e4f + 1});
     CHECK(early.length[99] == early.total());
-    CHECK(early.parameter_at(1) == doctest::Approx(1).epsilon(0.2));
+    CHECK(early.parameter_at(1) == test::near(1).epsilon(0.2));
 }
 
 TEST_CASE("bezier: joined curves are classed by place, direction and speed") {
@@ -110,7 +109,7 @@ TEST_CASE("bezier: joined curves are classed by place, direction and speed") {
         const Vec3 in = bezier_derivative(joined.first, 1);
         const Vec3 out = bezier_derivative(joined.second, 0);
         CHECK(glm::length(glm::cross(in, out)) < 1e-5f);
-        CHECK(glm::length(in) / glm::length(out) == doctest::Approx(k));
+        CHECK(glm::length(in) / glm::length(out) == test::near(k));
         CHECK(
             find_join(joined.first, joined.second)
             == (k == 1 ? BezierJoin::Speed : BezierJoin::Direction));
@@ -137,18 +136,15 @@ TEST_CASE("bezier: a key may slide, turn and move with its control points, and s
         CHECK(slid.after == knot.after);
         const float share =
             glm::length(slid.key - slid.before) / glm::length(slid.after - slid.before);
-        CHECK(share == doctest::Approx(std::clamp(t, 0.01f, 0.99f)).epsilon(1e-4));
+        CHECK(share == test::near(std::clamp(t, 0.01f, 0.99f)).epsilon(1e-4));
     }
     const BezierKnot turned = rotate_knot(knot, rotation_about({1, -1, 2}, 0.7f));
     CHECK(is_smooth(turned));
     CHECK(turned.key == knot.key);
     CHECK(glm::length(turned.before - knot.before) > 0.1f);
     CHECK(
-        glm::length(turned.before - turned.key)
-        == doctest::Approx(glm::length(knot.before - knot.key)));
-    CHECK(
-        glm::length(turned.after - turned.key)
-        == doctest::Approx(glm::length(knot.after - knot.key)));
+        glm::length(turned.before - turned.key) == test::near(glm::length(knot.before - knot.key)));
+    CHECK(glm::length(turned.after - turned.key) == test::near(glm::length(knot.after - knot.key)));
     const BezierKnot moved = move_knot(knot, {3, -1, 2});
     CHECK(is_smooth(moved));
     CHECK(moved.before - moved.key == knot.before - knot.key);

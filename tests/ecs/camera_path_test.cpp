@@ -1,4 +1,5 @@
 #include "ecs/components/camera_path.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -57,7 +58,7 @@ TEST_CASE("camera path: evenly spaced keys on a line give constant speed") {
     const CameraPath path =
         path_through({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {6, 0, 0}}, {0, 1, 2, 3});
     for (double t = 0; t <= 3; t += 0.1) {
-        CHECK(camera_pose(path, t).position.x == doctest::Approx(2.0 * t).epsilon(1e-4));
+        CHECK(camera_pose(path, t).position.x == test::near(2.0 * t).epsilon(1e-4));
     }
 }
 
@@ -122,7 +123,7 @@ TEST_CASE("camera path: along a curve it neither stops nor hurries between keys 
     const float speed = glm::length(velocity(path, 1.0, 0.01));
     CHECK(speed > 1.8f);  // a circle's would be 1.885
     for (double t = 0; t < 10; t += 0.13) {
-        CHECK(glm::length(velocity(path, t, 0.01)) == doctest::Approx(speed).epsilon(0.01));
+        CHECK(glm::length(velocity(path, t, 0.01)) == test::near(speed).epsilon(0.01));
     }
 }
 
@@ -142,8 +143,8 @@ TEST_CASE("camera path: aims look where they should, with a level horizon") {
 
 TEST_CASE("camera path: roll tips the camera about its view axis") {
     const Quat q = look_along({0, 0, -1}, radians(30.0f));
-    CHECK(ahead(q).z == doctest::Approx(-1.0f));
-    CHECK(right(q).y == doctest::Approx(0.5f));
+    CHECK(ahead(q).z == test::near(-1.0f));
+    CHECK(right(q).y == test::near(0.5f));
 }
 
 TEST_CASE("camera path: keys out of order do no harm") {
@@ -163,12 +164,12 @@ TEST_CASE("camera path: interpolated rotations are set upright without turning t
     const Quat end = glm::angleAxis(radians(90.0f), Vec3(0, 1, 0))
                      * glm::angleAxis(radians(60.0f), Vec3(1, 0, 0));
     const Quat half = glm::slerp(Quat(1, 0, 0, 0), end, 0.5f);
-    CHECK(right(half).y == doctest::Approx(-0.219275f).epsilon(1e-4));
+    CHECK(right(half).y == test::near(-0.219275f).epsilon(1e-4));
     const Quat level = upright_rotation(half);
     CHECK(std::abs(right(level).y) < 1e-6f);
     CHECK(glm::length(ahead(level) - ahead(half)) < 1e-6f);
     const Quat twice = upright_rotation(level);
-    CHECK(std::abs(glm::dot(twice, level)) == doctest::Approx(1.0f));
+    CHECK(std::abs(glm::dot(twice, level)) == test::near(1.0f));
     for (const float pitch : {90.0f, -90.0f}) {
         const Quat vertical = upright_rotation(glm::angleAxis(radians(pitch), Vec3(1, 0, 0)));
         CHECK(std::isfinite(vertical.w));
@@ -184,12 +185,12 @@ TEST_CASE("camera path: interpolated rotations are set upright without turning t
     }
     CHECK(
         right(camera_pose(path, 1).rotation).y
-        == doctest::Approx(0.5f * std::sqrt(1.0f - square(ahead(half).y))).epsilon(1e-3));
+        == test::near(0.5f * std::sqrt(1.0f - square(ahead(half).y))).epsilon(1e-3));
     for (CameraKey& key : path.keys) {
         key.roll = 0.0f;
     }
     path.upright = false;
-    CHECK(right(camera_pose(path, 1).rotation).y == doctest::Approx(-0.219275f).epsilon(1e-4));
+    CHECK(right(camera_pose(path, 1).rotation).y == test::near(-0.219275f).epsilon(1e-4));
 }
 
 TEST_CASE("camera path: looking along a direction is exact for vertical and missing ones") {
@@ -198,5 +199,5 @@ TEST_CASE("camera path: looking along a direction is exact for vertical and miss
         CHECK(glm::length(ahead(q) - glm::normalize(d)) < 1e-5f);
         CHECK(std::abs(right(q).y) < 1e-5f);
     }
-    CHECK(ahead(look_along({0, 0, 0})).z == doctest::Approx(-1.0f));
+    CHECK(ahead(look_along({0, 0, 0})).z == test::near(-1.0f));
 }

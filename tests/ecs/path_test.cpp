@@ -1,4 +1,5 @@
 #include "ecs/components/path.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -62,7 +63,7 @@ TEST_CASE("path: control points at thirds of the way make straight lines at cons
         {{3, 0, 0}, {-1, 0, 0}, {0, 0, 2}, 0},
         {{3, 0, 6}, {0, 0, -2}, {}, 0}};
     const PathData path = *make_path(shape);
-    CHECK(path.length() == doctest::Approx(9));
+    CHECK(path.length() == test::near(9));
     for (int i = 0; i <= 90; ++i) {
         const float s = 0.1f * static_cast<float>(i);
         const Vec3 expected = s < 3 ? Vec3(s, 0, 0) : Vec3(3, 0, s - 3);
@@ -86,13 +87,13 @@ TEST_CASE("path: the first knot's incoming and the last one's outgoing point hav
 TEST_CASE("path: equal distances are equal ways, round and round") {
     const PathData path = *make_path(circle());
     const double length = path.length();
-    CHECK(length == doctest::Approx(2 * kPi * 10).epsilon(1e-3));
+    CHECK(length == test::near(2 * kPi * 10).epsilon(1e-3));
     for (int i = 0; i < 200; ++i) {
         const double s = length * i / 100.0;  // twice round
         const Vec3 here = path_frame_at(path, s).position;
         const Vec3 there = path_frame_at(path, s + 0.01 * length).position;
         const float chord = 20 * std::sin(kPi / 100);
-        CHECK(glm::distance(here, there) == doctest::Approx(chord).epsilon(2e-3));
+        CHECK(glm::distance(here, there) == test::near(chord).epsilon(2e-3));
         CHECK(glm::distance(here, path_frame_at(path, s - 3 * length).position) < 1e-4f);
     }
 }
@@ -102,18 +103,18 @@ TEST_CASE("path: frames are upright, at right angles, and turn with the curve") 
     for (int i = 0; i < 40; ++i) {
         const double s = 1.57 * i;
         const PathFrame frame = path_frame_at(path, s);
-        CHECK(glm::length(frame.ahead) == doctest::Approx(1));
+        CHECK(glm::length(frame.ahead) == test::near(1));
         CHECK(std::abs(glm::dot(frame.ahead, frame.up)) < 1e-6f);
-        CHECK(frame.up.y == doctest::Approx(1));
+        CHECK(frame.up.y == test::near(1));
         CHECK(std::abs(glm::dot(frame.ahead, glm::normalize(frame.position))) < 0.01f);
-        CHECK(path_curvature(path, s) == doctest::Approx(0.1).epsilon(0.02));  // to the left
+        CHECK(path_curvature(path, s) == test::near(0.1).epsilon(0.02));  // to the left
     }
     PathShape mirrored = circle();
     std::swap(mirrored.knots[1], mirrored.knots[3]);
     for (PathKnot& each : mirrored.knots) {
         std::swap(each.before, each.after);
     }
-    CHECK(path_curvature(*make_path(mirrored), 5) == doctest::Approx(-0.1).epsilon(0.02));
+    CHECK(path_curvature(*make_path(mirrored), 5) == test::near(-0.1).epsilon(0.02));
 }
 
 TEST_CASE("path: roll leans to the right, smoothly from knot to knot") {
@@ -124,8 +125,8 @@ TEST_CASE("path: roll leans to the right, smoothly from knot to knot") {
     CHECK(path_frame_at(path, 0).up == Vec3(0, 1, 0));
     const PathFrame middle = path_frame_at(path, 10);
     const Vec3 right = {-1, 0, 0};  // looking along +z
-    CHECK(glm::dot(middle.up, right) == doctest::Approx(std::sin(0.5)));
-    CHECK(middle.up.y == doctest::Approx(std::cos(0.5)));
+    CHECK(glm::dot(middle.up, right) == test::near(std::sin(0.5)));
+    CHECK(middle.up.y == test::near(std::cos(0.5)));
     float last = 0;
     for (int i = 0; i <= 100; ++i) {
         const float roll = path_frame_at(path, 0.1 * i).roll;
@@ -146,7 +147,7 @@ TEST_CASE("path: a knot on its control point, or two in one place, still have a 
     for (int i = -5; i <= 100; ++i) {
         const PathFrame frame = path_frame_at(path, 0.1 * i);
         CHECK(std::isfinite(frame.position.z));
-        CHECK(glm::length(frame.ahead) == doctest::Approx(1));
+        CHECK(glm::length(frame.ahead) == test::near(1));
         CHECK(std::isfinite(path_curvature(path, 0.1 * i)));
     }
     CHECK(path_frame_at(path, std::nan("")).position == Vec3(0));
@@ -170,12 +171,12 @@ TEST_CASE("path: a knot slides between its control points and turns them, and st
     shape.knots[1].turn = glm::angleAxis(0.5f, Vec3(0, 1, 0));
     const PathData path = *make_path(shape);
     // Between (10, 0, k) and (10, 0, -k), a quarter of the way from the first.
-    CHECK(path.segments[0][0].x == doctest::Approx(10));
-    CHECK(path.segments[0][0].z == doctest::Approx(0.5 * 10 * 0.5522847));
+    CHECK(path.segments[0][0].x == test::near(10));
+    CHECK(path.segments[0][0].z == test::near(0.5 * 10 * 0.5522847));
     const Vec3 out = path.segments[1][1] - path.segments[1][0];
-    CHECK(glm::length(out) == doctest::Approx(10 * 0.5522847));
-    CHECK(out.x == doctest::Approx(-10 * 0.5522847 * std::cos(0.5)));
-    CHECK(out.z == doctest::Approx(10 * 0.5522847 * std::sin(0.5)));
+    CHECK(glm::length(out) == test::near(10 * 0.5522847));
+    CHECK(out.x == test::near(-10 * 0.5522847 * std::cos(0.5)));
+    CHECK(out.z == test::near(10 * 0.5522847 * std::sin(0.5)));
     CHECK(
         path_joins(path)
         == std::vector<BezierJoin>{

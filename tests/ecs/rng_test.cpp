@@ -1,4 +1,5 @@
 #include "ecs/base/rng.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -62,8 +63,8 @@ TEST_CASE("rng: uniform stays in 0 <= x < 1 with the mean and variance of an eve
         squares += double{x} * x;
     }
     const double mean = sum / kCount;
-    CHECK(mean == doctest::Approx(0.5).epsilon(0.002));
-    CHECK(squares / kCount - mean * mean == doctest::Approx(1.0 / 12.0).epsilon(0.005));
+    CHECK(mean == test::near(0.5).epsilon(0.002));
+    CHECK(squares / kCount - mean * mean == test::near(1.0 / 12.0).epsilon(0.005));
 }
 
 TEST_CASE("rng: below reaches every number about equally often and no other") {
@@ -92,7 +93,7 @@ TEST_CASE("rng: normal has mean 0 and standard deviation 1, and is finite") {
         squares += double{x} * x;
     }
     CHECK(std::abs(sum / kCount) < 0.012);
-    CHECK(squares / kCount == doctest::Approx(1.0).epsilon(0.02));
+    CHECK(squares / kCount == test::near(1.0).epsilon(0.02));
 }
 
 TEST_CASE("rng: directions are unit vectors without a preferred side; discs are filled evenly") {
@@ -102,12 +103,12 @@ TEST_CASE("rng: directions are unit vectors without a preferred side; discs are 
     constexpr int kCount = 100'000;
     for (int i = 0; i < kCount; ++i) {
         const Vec3 d = random.direction();
-        REQUIRE(glm::dot(d, d) == doctest::Approx(1.0f).epsilon(1e-5));
+        REQUIRE(glm::dot(d, d) == test::near(1.0f).epsilon(1e-5));
         sum += d;
         const Vec2 p = random.in_disc();
         REQUIRE(glm::dot(p, p) <= 1.0f);
         inner += glm::dot(p, p) < 0.25f ? 1 : 0;  // half the radius: a quarter of the area
     }
     CHECK(std::sqrt(glm::dot(sum, sum)) / kCount < 0.01f);
-    CHECK(inner / static_cast<double>(kCount) == doctest::Approx(0.25).epsilon(0.03));
+    CHECK(inner / static_cast<double>(kCount) == test::near(0.25).epsilon(0.03));
 }

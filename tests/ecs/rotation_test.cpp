@@ -1,5 +1,6 @@
 #include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/gtc/quaternion.hpp>
@@ -88,7 +89,7 @@ TEST_CASE("rotation: vectors turn about the axis by the angle, right-handed") {
         const double s = std::sin(static_cast<double>(angle));
         const glm::dvec3 want = c * r + (1 - c) * glm::dot(n, r) * n + s * glm::cross(n, r);
         const Quat q = rotation_about(Vec3(axis), angle);
-        CHECK(glm::length(q) == doctest::Approx(1).epsilon(1e-6));
+        CHECK(glm::length(q) == test::near(1).epsilon(1e-6));
         CHECK(apart(q * Vec3(r), Vec3(want)) < 4e-6f);
         const auto [back_axis, back_angle] = axis_angle(q);
         CHECK(apart(rotation_about(back_axis, back_angle), q) < 2e-6f);
@@ -101,13 +102,13 @@ TEST_CASE("rotation: axis and angle come back, from 0 to a whole turn") {
     for (int degree = 1; degree < 360; ++degree) {
         const AxisAngle back =
             axis_angle(rotation_about(3.0f * axis, radians(static_cast<float>(degree))));
-        CHECK(degrees(back.angle) == doctest::Approx(degree).epsilon(1e-5));
+        CHECK(degrees(back.angle) == test::near(degree).epsilon(1e-5));
         CHECK(apart(back.axis, axis) < 2e-5f);
     }
     CHECK(axis_angle(kNone).angle == 0);
     CHECK(axis_angle(kNone).axis == kX);
     CHECK(axis_angle(Quat(1.0000002f, 0, 0, 0)).angle == 0);  // its arc cosine is NaN
-    CHECK(angle_of(-kNone) == doctest::Approx(360));
+    CHECK(angle_of(-kNone) == test::near(360));
     CHECK(rotation_about(Vec3(0), 1) == kNone);
 }
 
@@ -178,10 +179,10 @@ TEST_CASE("rotation: slerp goes the great circle at constant speed") {
         const float omega = std::acos(std::min(glm::dot(a, b), 1.0f));
         for (const float u : {0.0f, 0.1f, 0.5f, 0.8f, 1.0f}) {
             const Quat q = slerp(a, b, u);
-            CHECK(glm::length(q) == doctest::Approx(1).epsilon(1e-6));
+            CHECK(glm::length(q) == test::near(1).epsilon(1e-6));
             CHECK(
                 std::atan2(apart(a, q) / 2, glm::length(a + q) / 2) * 2
-                == doctest::Approx(u * omega).epsilon(1e-4));
+                == test::near(u * omega).epsilon(1e-4));
             CHECK(turned(q, slerp(b, a, 1 - u)) < 2e-6f);
             CHECK(turned(q, slerp(a, -b, u)) < 1e-6f);
             CHECK(apart(slerp(p * a, p * b, u), p * q) < 2e-6f);
@@ -199,12 +200,12 @@ TEST_CASE("rotation: slerp does not jump where it becomes a straight line, nor d
         }
         CHECK(turned(slerp(kNone, -kNone, u), kNone) < 1e-7f);
         const Quat stays = slerp_along(kNone, -kNone, u);
-        CHECK(glm::length(stays) == doctest::Approx(1));
+        CHECK(glm::length(stays) == test::near(1));
         // Half a turn may go either way, but goes evenly.
         const AxisAngle half =
             axis_angle(to_same_hemisphere(kNone, slerp(kNone, rotation_about(kY, kPi), u)));
-        CHECK(half.angle == doctest::Approx(u * kPi).epsilon(1e-5));
-        CHECK(std::abs(half.axis.y) == doctest::Approx(1));
+        CHECK(half.angle == test::near(u * kPi).epsilon(1e-5));
+        CHECK(std::abs(half.axis.y) == test::near(1));
     }
 }
 
@@ -212,17 +213,17 @@ TEST_CASE("rotation: the straight way is slow at the ends and fast in the middle
     for (const float u : {0.0f, 0.5f, 1.0f}) {
         CHECK(apart(nlerp(kNone, about_z(90), u), slerp(kNone, about_z(90), u)) < 1e-6f);
     }
-    CHECK(angle_of(nlerp(kNone, about_z(90), 0.25f)) == doctest::Approx(21.598161).epsilon(1e-5));
-    CHECK(angle_of(nlerp(kNone, about_z(170), 0.25f)) == doctest::Approx(35.768757).epsilon(1e-5));
+    CHECK(angle_of(nlerp(kNone, about_z(90), 0.25f)) == test::near(21.598161).epsilon(1e-5));
+    CHECK(angle_of(nlerp(kNone, about_z(170), 0.25f)) == test::near(35.768757).epsilon(1e-5));
     const auto speed = [](float total, float u) {
         constexpr float kStep = 1e-2f;
         return (angle_of(nlerp(kNone, about_z(total), u + kStep))
                 - angle_of(nlerp(kNone, about_z(total), u)))
                / kStep;
     };
-    CHECK(speed(90, 0.495f) / speed(90, 0.0f) == doctest::Approx(1.171573).epsilon(0.02));
-    CHECK(speed(179.9f, 0.495f) / speed(179.9f, 0.0f) == doctest::Approx(2).epsilon(0.03));
-    CHECK(glm::length(nlerp(kNone, -kNone, 0.5f)) == doctest::Approx(1));
+    CHECK(speed(90, 0.495f) / speed(90, 0.0f) == test::near(1.171573).epsilon(0.02));
+    CHECK(speed(179.9f, 0.495f) / speed(179.9f, 0.0f) == test::near(2).epsilon(0.03));
+    CHECK(glm::length(nlerp(kNone, -kNone, 0.5f)) == test::near(1));
 }
 
 TEST_CASE("rotation: aligned keys are near each other and stay the rotations they were") {
@@ -238,8 +239,7 @@ TEST_CASE("rotation: aligned keys are near each other and stay the rotations the
         if (i > 0) {
             const float dot = glm::dot(keys[i - 1], keys[i]);
             CHECK(dot >= 0);
-            CHECK(
-                square(apart(keys[i - 1], keys[i])) == doctest::Approx(2 - 2 * dot).epsilon(1e-5));
+            CHECK(square(apart(keys[i - 1], keys[i])) == test::near(2 - 2 * dot).epsilon(1e-5));
         }
     }
     std::vector<Quat> again = keys;
@@ -259,20 +259,20 @@ TEST_CASE("rotation: squad passes through its keys with the tangent of their nei
     }
     const Quat a1 = squad_point(q[0], q[1], q[2]);
     const Quat a2 = squad_point(q[1], q[2], q[3]);
-    CHECK(angle_of(a1) == doctest::Approx(5).epsilon(1e-4));
-    CHECK(angle_of(a2) == doctest::Approx(35).epsilon(1e-4));
+    CHECK(angle_of(a1) == test::near(5).epsilon(1e-4));
+    CHECK(angle_of(a2) == test::near(35).epsilon(1e-4));
     const auto between = [&](float u) { return squad(q[1], a1, a2, q[2], u); };
-    CHECK(angle_of(between(0)) == doctest::Approx(10).epsilon(1e-5));
-    CHECK(angle_of(between(0.25f)) == doctest::Approx(15.625).epsilon(1e-4));
-    CHECK(angle_of(between(0.5f)) == doctest::Approx(22.5).epsilon(1e-4));
-    CHECK(angle_of(between(0.75f)) == doctest::Approx(30.625).epsilon(1e-4));
-    CHECK(angle_of(between(1)) == doctest::Approx(40).epsilon(1e-5));
+    CHECK(angle_of(between(0)) == test::near(10).epsilon(1e-5));
+    CHECK(angle_of(between(0.25f)) == test::near(15.625).epsilon(1e-4));
+    CHECK(angle_of(between(0.5f)) == test::near(22.5).epsilon(1e-4));
+    CHECK(angle_of(between(0.75f)) == test::near(30.625).epsilon(1e-4));
+    CHECK(angle_of(between(1)) == test::near(40).epsilon(1e-5));
     // From both sides of the key at 40 degrees: (90 - 10) / 2 an interval.
     constexpr float kStep = 1e-2f;
     const float left = (40 - angle_of(between(1 - kStep))) / kStep;
     const float right = (angle_of(squad(q[2], a2, q[3], q[3], kStep)) - 40) / kStep;
-    CHECK(left == doctest::Approx(40).epsilon(0.01));
-    CHECK(right == doctest::Approx(40).epsilon(0.02));
+    CHECK(left == test::near(40).epsilon(0.01));
+    CHECK(right == test::near(40).epsilon(0.02));
 }
 
 TEST_CASE("rotation: squad over evenly spaced keys about one axis is slerp") {
@@ -280,7 +280,7 @@ TEST_CASE("rotation: squad over evenly spaced keys about one axis is slerp") {
     const Quat inner_60 = squad_point(about_z(30), about_z(60), about_z(90));
     CHECK(apart(inner_30, about_z(30)) < 1e-6f);
     const Quat q = squad(about_z(30), inner_30, inner_60, about_z(60), 0.25f);
-    CHECK(angle_of(q) == doctest::Approx(37.5).epsilon(1e-5));
+    CHECK(angle_of(q) == test::near(37.5).epsilon(1e-5));
 }
 
 TEST_CASE("rotation: squad has no corner at a key where slerp has one, and turns with its keys") {
@@ -312,7 +312,7 @@ TEST_CASE("rotation: squad has no corner at a key where slerp has one, and turns
                                 [&](float u) { return slerp_along(q[2], q[3], u); }));
         const Quat p = quats.next();
         for (const float u : {0.2f, 0.7f}) {
-            CHECK(glm::length(first(u)) == doctest::Approx(1).epsilon(1e-5));
+            CHECK(glm::length(first(u)) == test::near(1).epsilon(1e-5));
             const Quat turned_first = squad(p * q[1], p * inner[1], p * inner[2], p * q[2], u);
             CHECK(apart(turned_first, p * first(u)) < 3e-6f);
         }

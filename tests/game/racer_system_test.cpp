@@ -4,6 +4,7 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -69,7 +70,7 @@ TEST_CASE("racer: full throttle ends at the top speed, a boost at its own, brake
     CHECK(racer.speed > 15);  // 20 m/s^2 at first
     CHECK(racer.speed < 20);
     racer.run(track, {.throttle = 1}, 20);
-    CHECK(racer.speed == doctest::Approx(racer.settings.top_speed).epsilon(0.01));
+    CHECK(racer.speed == test::near(racer.settings.top_speed).epsilon(0.01));
     racer.run(track, {.throttle = 1, .boost = true}, 3);
     CHECK(racer.speed > 0.97f * racer.settings.boost_speed);
     CHECK(racer.speed < racer.settings.boost_speed);
@@ -88,7 +89,7 @@ TEST_CASE("racer: boosts last four seconds, and come back in twelve") {
     racer.run(track, {.boost = true}, 0.2f);
     CHECK(racer.energy < 0.01f);
     racer.run(track, {}, 6);
-    CHECK(racer.energy == doctest::Approx(0.5).epsilon(0.03));
+    CHECK(racer.energy == test::near(0.5).epsilon(0.03));
     racer.run(track, {}, 7);
     CHECK(racer.energy == 1);
 }
@@ -119,7 +120,7 @@ TEST_CASE("racer: bends carry it outward, the inner lane is shorter, and walls h
     RacerState outside{.lateral = 5, .speed = 20};
     step_racer({.half_width = 6}, track, {}, kStep, inside);
     step_racer({.half_width = 6}, track, {}, kStep, outside);
-    CHECK(inside.distance / outside.distance == doctest::Approx(1.05 / 0.95).epsilon(0.01));
+    CHECK(inside.distance / outside.distance == test::near(1.05 / 0.95).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(Race, "racer: left alone it keeps its lane, round and round, within its grip") {
@@ -136,8 +137,8 @@ TEST_CASE_FIXTURE(Race, "racer: left alone it keeps its lane, round and round, w
     }
     const RacerState& racer = world.get<RacerState>(entity);
     const Vec3 at = world.get<Transform>(entity).position;
-    CHECK(glm::length(Vec2(at.x, at.z)) == doctest::Approx(100 + racer.lateral).epsilon(0.002));
-    CHECK(at.y == doctest::Approx(Racer{}.height).epsilon(0.1));
+    CHECK(glm::length(Vec2(at.x, at.z)) == test::near(100 + racer.lateral).epsilon(0.002));
+    CHECK(at.y == test::near(Racer{}.height).epsilon(0.1));
 }
 
 TEST_CASE_FIXTURE(Race, "racer: who is faster goes around who is slower") {
@@ -178,16 +179,16 @@ TEST_CASE_FIXTURE(Race, "racer: the lens opens with speed, where there is a moti
     const Entity camera = world.create(Camera{}, SpeedView{.racer = racer});
     start_world(world, add_game_systems);
     world.run(update_speed_views);
-    CHECK(world.get<Camera>(camera).fov_y == doctest::Approx(radians(72.0f)));
+    CHECK(world.get<Camera>(camera).fov_y == test::near(radians(72.0f)));
     CHECK(world.find_resource<MotionBlur>() == nullptr);
     world.insert_resource(MotionBlur{});
     world.get<RacerState>(racer).speed = 0;
     world.run(update_speed_views);
-    CHECK(world.get<Camera>(camera).fov_y == doctest::Approx(radians(50.0f)));
-    CHECK(world.resource<MotionBlur>().shutter == doctest::Approx(120));
+    CHECK(world.get<Camera>(camera).fov_y == test::near(radians(50.0f)));
+    CHECK(world.resource<MotionBlur>().shutter == test::near(120));
     world.get<SpeedView>(camera).racer = Entity{};
     world.run(update_speed_views);
-    CHECK(world.resource<MotionBlur>().shutter == doctest::Approx(120));
+    CHECK(world.resource<MotionBlur>().shutter == test::near(120));
 }
 
 TEST_CASE_FIXTURE(Race, "racer: a track that does not exist leaves it in place") {

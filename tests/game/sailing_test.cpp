@@ -14,6 +14,7 @@
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/floating_body.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -106,8 +107,8 @@ TEST_CASE("sailing: a foil lifts to the side that the flow comes from, as much o
         CAPTURE(degrees);
         const FoilForce one = foil_force(radians(degrees));
         const FoilForce other = foil_force(-radians(degrees));
-        CHECK(one.lift == doctest::Approx(-other.lift));
-        CHECK(one.drag == doctest::Approx(other.drag));
+        CHECK(one.lift == test::near(-other.lift));
+        CHECK(one.drag == test::near(other.drag));
         CHECK(one.drag > 0);
         CHECK(one.lift * (90 - degrees) >= 0);
     }
@@ -200,7 +201,7 @@ TEST_CASE("sailing: a boat that stands does not turn by its rudder") {
     boat.run(3);
     boat.boat.rudder = 1;
     boat.run(3);
-    CHECK(heading_of(boat.place.rotation) == doctest::Approx(kPi / 2).epsilon(1e-3));
+    CHECK(heading_of(boat.place.rotation) == test::near(kPi / 2).epsilon(1e-3));
 }
 
 TEST_CASE("sailing: in a mirror it sails the mirrored way") {
@@ -215,10 +216,10 @@ TEST_CASE("sailing: in a mirror it sails the mirrored way") {
     for (int second = 0; second < 20; ++second) {
         one.run(1);
         other.run(1);
-        CHECK(one.place.position.x == doctest::Approx(-other.place.position.x).epsilon(1e-3));
-        CHECK(one.place.position.z == doctest::Approx(other.place.position.z).epsilon(1e-3));
-        CHECK(one.heel() == doctest::Approx(-other.heel()).epsilon(1e-2));
-        CHECK(one.boat.boom == doctest::Approx(-other.boat.boom).epsilon(1e-2));
+        CHECK(one.place.position.x == test::near(-other.place.position.x).epsilon(1e-3));
+        CHECK(one.place.position.z == test::near(other.place.position.z).epsilon(1e-3));
+        CHECK(one.heel() == test::near(-other.heel()).epsilon(1e-2));
+        CHECK(one.boat.boom == test::near(-other.boat.boom).epsilon(1e-2));
     }
     CHECK(std::abs(one.place.position.x) > 1);
 }
@@ -361,7 +362,7 @@ TEST_CASE("sailing: the keys steer a player's boat, once they do") {
     set_action(input, "sheet_out");
     bay.run(60);
     CHECK(bay.world.get<SailboatState>(boat).player_active);
-    CHECK(bay.world.get<SailboatState>(boat).rudder == doctest::Approx(1));
+    CHECK(bay.world.get<SailboatState>(boat).rudder == test::near(1));
     const float sheet = bay.world.get<SailboatState>(boat).sheet;
     input = {};
     set_action(input, "rudder_port");
@@ -408,9 +409,9 @@ TEST_CASE("sailing: a lookout goes with its boat and stays upright") {
     const auto& hull = bay.world.get<Transform>(boat);
     const auto& upright = bay.world.get<Transform>(lookout);
     CHECK((hull.rotation * Vec3(0, 1, 0)).y < 0.999f);  // it heels
-    CHECK((upright.rotation * Vec3(0, 1, 0)).y == doctest::Approx(1));
+    CHECK((upright.rotation * Vec3(0, 1, 0)).y == test::near(1));
     CHECK(upright.position == hull.position);
-    CHECK(heading_of(upright.rotation) == doctest::Approx(heading_of(hull.rotation)));
+    CHECK(heading_of(upright.rotation) == test::near(heading_of(hull.rotation)));
 }
 
 TEST_CASE("sailing: any number of threads sails fifty boats to the same places, to the bit") {

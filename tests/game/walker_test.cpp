@@ -6,6 +6,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -67,7 +68,7 @@ TEST_CASE("walker: goes as fast as it can on land, and where it looks") {
     pool.run(1);
     const float before = pool.feet.x;
     pool.run(1);
-    CHECK(pool.feet.x - before == doctest::Approx(pool.settings.speed).epsilon(0.02));
+    CHECK(pool.feet.x - before == test::near(pool.settings.speed).epsilon(0.02));
     CHECK(std::abs(pool.feet.z - 2) < 1e-3f);
     pool.input.move = {1, 0, 0};  // right of +x is +z
     pool.run(0.5f);
@@ -87,13 +88,13 @@ TEST_CASE("walker: goes down the steps, the slower the deeper, until its eyes ar
     }
     CHECK(highest < 1e-3f);
     CHECK(fall < 0.1f);  // never drops a whole step at once
-    CHECK(pool.feet.y == doctest::Approx(-1.6).epsilon(0.01));
-    CHECK(pool.walker.depth == doctest::Approx(1.5).epsilon(0.02));
+    CHECK(pool.feet.y == test::near(-1.6).epsilon(0.01));
+    CHECK(pool.walker.depth == test::near(1.5).epsilon(0.02));
     CHECK(glm::length(pool.walker.velocity) < 0.45f * pool.settings.speed);
     pool.input.move = {0, -1, 0};
     pool.run(2);
     CHECK(pool.walker.duck > 0.95f);  // its head under water
-    CHECK(pool.feet.y == doctest::Approx(-1.6).epsilon(0.01));
+    CHECK(pool.feet.y == test::near(-1.6).epsilon(0.01));
     // And up again.
     pool.input.move = {0, 0, -1};
     for (int i = 0; i < 60 * 14 && pool.feet.z < 1.5f; ++i) {
@@ -110,9 +111,9 @@ TEST_CASE("walker: a wall stops it, and it slides along") {
     pool.walker.yaw = kPi;  // toward +z
     pool.input.move = {0.5f, 0, 1};
     pool.run(3);
-    CHECK(pool.feet.z == doctest::Approx(4.5f - pool.settings.radius).epsilon(0.01));
+    CHECK(pool.feet.z == test::near(4.5f - pool.settings.radius).epsilon(0.01));
     CHECK(pool.feet.x < -1);  // its right
-    CHECK(pool.feet.y == doctest::Approx(0).epsilon(0.001));
+    CHECK(pool.feet.y == doctest::Approx(0).scale(1).epsilon(0.001));
 }
 
 TEST_CASE("walker: swims where it cannot stand, eyes above the water, and dives when told") {
@@ -179,13 +180,13 @@ TEST_CASE("walker: in a world it obeys while its eyes are looked out of, and pus
     for (int i = 0; i < 60; ++i) {
         step_world(world, schedule);
     }
-    CHECK(world.get<Transform>(walker).position.z == doctest::Approx(2));
+    CHECK(world.get<Transform>(walker).position.z == test::near(2));
     world.get<Camera>(eyes).active = true;
     for (int i = 0; i < 60; ++i) {
         step_world(world, schedule);
     }
     CHECK(world.get<Transform>(walker).position.z < 1);
-    CHECK(world.get<Transform>(eyes).position.y == doctest::Approx(1.5));
+    CHECK(world.get<Transform>(eyes).position.y == test::near(1.5));
     float most = 0;
     for (const float height : world.get<RippleState>(water).height) {
         most = std::max(most, std::abs(height));

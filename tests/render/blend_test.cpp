@@ -1,3 +1,4 @@
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 namespace limn::test {
@@ -41,7 +42,7 @@ TEST_CASE_FIXTURE(
         }
         const Vec3 got = middle();
         for (int c = 0; c < 3; ++c) {
-            CHECK(got[c] == doctest::Approx(want[c]).epsilon(2e-3));
+            CHECK(got[c] == test::near(want[c]).epsilon(2e-3));
         }
     }
 }
@@ -57,7 +58,7 @@ TEST_CASE_FIXTURE(
     world.clear();
     place(square, {1}, at({0, 0, 0}));
     CHECK(aov(view(), "depth").at(4, 4, 0) == kNoDepth);
-    CHECK(middle().x == doctest::Approx(0.5f).epsilon(1e-3));
+    CHECK(middle().x == test::near(0.5f).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still mirrors, most where it is seen edge on") {
@@ -66,7 +67,7 @@ TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still mirrors, most where it is
     Material glass = {.alpha_mode = AlphaMode::Blend, .base_color = {1, 1, 1, 0}, .roughness = 0};
     place(add(make_ball(64)), add(glass), at({0, 0, -1.2f}));
     const gpu::FloatImage image = radiance(look({0, 0, 1}, {0, 0, 0}, 128, 128));
-    CHECK(image.at(64, 64, 0) == doctest::Approx(0.04f).epsilon(0.05));
+    CHECK(image.at(64, 64, 0) == test::near(0.04f).epsilon(0.05));
     float rim = 0;
     for (int x = 0; x < 128; ++x) {
         rim = std::max(rim, image.at(x, 64, 0));
@@ -75,7 +76,7 @@ TEST_CASE_FIXTURE(PaneScene, "blend: clear glass still mirrors, most where it is
     // What it mirrors takes the place of what is behind: in a furnace nothing of it is to be seen.
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {1, 1, 1}});
     for (const float value : radiance(look({0, 0, 1}, {0, 0, 0}, 32, 32)).pixels) {
-        CHECK(value == doctest::Approx(1).epsilon(0.02));
+        CHECK(value == test::near(1).epsilon(0.02));
     }
 }
 
@@ -92,7 +93,7 @@ TEST_CASE_FIXTURE(PaneScene, "blend: an opaque blended pane is lit as an opaque 
     });
     const gpu::FloatImage blended = radiance(view());
     for (std::size_t i = 0; i < opaque.pixels.size(); ++i) {
-        CHECK(blended.pixels[i] == doctest::Approx(opaque.pixels[i]).epsilon(5e-3));
+        CHECK(blended.pixels[i] == test::near(opaque.pixels[i]).epsilon(5e-3));
     }
 }
 

@@ -1,5 +1,6 @@
 #include "ecs/base/caustic_optics.h"
 #include "ecs/base/optics.h"
+#include "tests/near.h"
 #include "tests/render/shader_eval.h"
 
 #include <doctest/doctest.h>
@@ -63,7 +64,7 @@ Mirror mirror_at(float a) {
 
 TEST_CASE("caustic optics: a ray meets a plane where it should, and one beside it never does") {
     const Plane plane = {{0, 0, 1}, 0};
-    CHECK(distance_to_plane({0, 0, 2}, {0, 0, -1}, plane) == doctest::Approx(2));
+    CHECK(distance_to_plane({0, 0, 2}, {0, 0, -1}, plane) == test::near(2));
     CHECK(distance_to_plane({0, 0, 2}, {1, 0, 0}, plane) == kFarPlane);
     CHECK(distance_to_plane({0, 0, 2}, {0, 0, 1}, plane) == kFarPlane);
     for (const float x : {-1.0f, 0.0f, 1.0f}) {
@@ -110,12 +111,12 @@ TEST_CASE("caustic optics: by areas no light is made or lost, and flat water lig
             const float after = glm::length(glm::cross(b - a, c - a));
             const float light = irradiance_ratio(0.01f, after);
             if (high == 0) {
-                CHECK(light == doctest::Approx(1).epsilon(1e-3));
+                CHECK(light == test::near(1).epsilon(1e-3));
             }
             entered += 0.01;
             arrived += static_cast<double>(after * light);
         }
-        CHECK(arrived == doctest::Approx(entered).epsilon(1e-3));
+        CHECK(arrived == test::near(entered).epsilon(1e-3));
     }
 }
 
@@ -124,9 +125,9 @@ TEST_CASE("caustic optics: a pool is as bright as the water is high, cubed") {
     const float scale = pool_scale(least, 0.5f);
     const auto at = [&](float share) { return pool_light(least + 0.8f * share, least, scale); };
     CHECK(at(0) == 0);
-    CHECK(at(1) == doctest::Approx(1));
-    CHECK(at(0.5f) == doctest::Approx(0.125));
-    CHECK(at(0.75f) == doctest::Approx(0.421875));
+    CHECK(at(1) == test::near(1));
+    CHECK(at(0.5f) == test::near(0.125));
+    CHECK(at(0.75f) == test::near(0.421875));
     double sum = 0;
     float before = -1;
     for (int i = 0; i < 1000; ++i) {
@@ -135,8 +136,8 @@ TEST_CASE("caustic optics: a pool is as bright as the water is high, cubed") {
         before = light;
         sum += static_cast<double>(light);
     }
-    CHECK(sum / 1000 == doctest::Approx(0.25).epsilon(1e-3));
-    CHECK(pool_light_squared(0.5f, 0, pool_scale(0, 1)) == doctest::Approx(0.25));
+    CHECK(sum / 1000 == test::near(0.25).epsilon(1e-3));
+    CHECK(pool_light_squared(0.5f, 0, pool_scale(0, 1)) == test::near(0.25));
     CHECK(pool_light(0.2f, 0.2f, pool_scale(0.2f, 0.2f)) == 0);  // still water
 }
 
@@ -148,7 +149,7 @@ TEST_CASE(
     CHECK(glm::length(below - Vec3(0.4f, -2, -0.7f)) < 1e-5f);
     CHECK(lit_area(-0.1f) < 0.95f);
     CHECK(lit_area(0.1f) > 1.05f);
-    CHECK(lit_area(0) == doctest::Approx(1).epsilon(1e-4));
+    CHECK(lit_area(0) == test::near(1).epsilon(1e-4));
 }
 
 TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book computes it") {
@@ -158,11 +159,11 @@ TEST_CASE("caustic optics: a vertex mirrors light onto a plane as the book compu
     const Vec3 light = vertex - 4.0f * l;
     const MirroredVertex moved = mirror_vertex(vertex, {-1, 0, 0}, light, plane);
     CHECK(glm::length(moved.position) < 1e-5f);
-    CHECK(glm::distance(moved.position, vertex) == doctest::Approx(1.414214));
-    CHECK(moved.light == doctest::Approx(0.125));
+    CHECK(glm::distance(moved.position, vertex) == test::near(1.414214));
+    CHECK(moved.light == test::near(0.125));
     const MirroredVertex text = mirror_vertex(
         vertex, {-1, 0, 0}, light, plane, {.plane_exponent = 1, .surface_exponent = 4});
-    CHECK(text.light == doctest::Approx(0.176777));
+    CHECK(text.light == test::near(0.176777));
 
     const MirroredVertex away = mirror_vertex(vertex, {1, 0, 0}, light, plane);
     CHECK(away.position == vertex);
@@ -189,7 +190,7 @@ TEST_CASE(
     for (const auto& [degrees, crossing] : expected) {
         const Mirror mirror = mirror_at(radians(degrees));
         const MirroredVertex moved = mirror_vertex(mirror.at, mirror.normal, mirror.light, axis);
-        CHECK(moved.position.x == doctest::Approx(crossing).epsilon(2e-4));
+        CHECK(moved.position.x == test::near(crossing).epsilon(2e-4));
     }
     constexpr float kStep = 0.01f;
     for (float a = 0.05f; a < 1.4f; a += 0.1f) {
@@ -202,7 +203,7 @@ TEST_CASE(
         const float way = (between.x * e.z - between.z * e.x) / (d.x * e.z - d.z * e.x);
         const Vec3 meet = one.at + way * d;
         const float t = a + 0.5f * kStep;
-        CHECK(meet.x == doctest::Approx((3 * std::cos(t) - std::cos(3 * t)) / 4).epsilon(0.01));
+        CHECK(meet.x == test::near((3 * std::cos(t) - std::cos(3 * t)) / 4).epsilon(0.01));
         CHECK(std::abs(meet.z - (3 * std::sin(t) - std::sin(3 * t)) / 4) < 0.01f);
     }
 }
@@ -241,7 +242,7 @@ TEST_CASE_FIXTURE(RenderTest, "caustic optics: shaders have the same functions")
         CHECK(glm::distance(Vec3(hits[static_cast<std::size_t>(i)]), expected) < 1e-3f);
         CHECK(
             hits[static_cast<std::size_t>(i)].w
-            == doctest::Approx(pool_light(start_of(i).y, -0.1f, 5)).epsilon(1e-4));
+            == test::near(pool_light(start_of(i).y, -0.1f, 5)).epsilon(1e-4));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "ecs/components/water.h"
 #include "render/graph/frame_graph.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -139,11 +140,11 @@ TEST_CASE_FIXTURE(
         const Vec3 middle(
             static_cast<float>(6 * (i % 10)), -kDepth + 0.5f, static_cast<float>(6 * (i / 10)));
         const gpu::FloatImage seen = radiance(from(middle, 20));
-        CHECK(seen.at(32, 32, 1) / (flat) == doctest::Approx(1).epsilon(0.01));
+        CHECK(seen.at(32, 32, 1) / (flat) == test::near(1).epsilon(0.01));
         const float left = std::exp(-red * (kDepth + 0.5f));  // down, and half a meter to the lens
-        CHECK(seen.at(32, 32, 0) / (flat * left) == doctest::Approx(1).epsilon(0.02));
+        CHECK(seen.at(32, 32, 0) / (flat * left) == test::near(1).epsilon(0.02));
         const gpu::FloatImage dry = radiance(from(middle + Vec3(3, 0, 0), 20));
-        CHECK(dry.at(32, 32, 0) / (1 / kPi) == doctest::Approx(1).epsilon(0.01));
+        CHECK(dry.at(32, 32, 0) / (1 / kPi) == test::near(1).epsilon(0.01));
     }
 }
 

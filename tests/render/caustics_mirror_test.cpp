@@ -7,6 +7,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/water/caustic_list.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -149,7 +150,7 @@ TEST_CASE_FIXTURE(
             CAPTURE(entry.x);
             CHECK(
                 above({entry.x + aside.x, 0.2f, entry.y + aside.y}) / expected
-                == doctest::Approx(1).epsilon(0.005));
+                == test::near(1).epsilon(0.005));
         }
         for (const Vec2 beside : {Vec2(2.2f, 0), Vec2(0, -2.2f)}) {
             CHECK(above({beside.x + aside.x, 0.2f, beside.y + aside.y}) == 0);
@@ -172,7 +173,7 @@ TEST_CASE_FIXTURE(Grotto, "caustics: all light that waves mirror arrives above, 
             sum += static_cast<double>(texel);
         }
         sum *= static_cast<double>(found.size.x) * found.size.y / (kSide * kSide);
-        CHECK(sum / traced.entered == doctest::Approx(1).epsilon(0.005));
+        CHECK(sum / traced.entered == test::near(1).epsilon(0.005));
         world.destroy(light);
     }
 }
@@ -223,9 +224,9 @@ TEST_CASE_FIXTURE(
     CHECK(open > 0);
     lay({hit.x, hangs, hit.y}, 0.2f);
     CHECK(above({behind.x, 1.2f, behind.y}) == 0);
-    CHECK(above({hit.x, 0.5f, hit.y}) / open == doctest::Approx(1).epsilon(0.01));
+    CHECK(above({hit.x, 0.5f, hit.y}) / open == test::near(1).epsilon(0.01));
     for (const float x : {-0.35f, 0.35f}) {
-        CHECK(above({behind.x + x, 1.2f, behind.y}) / open == doctest::Approx(1).epsilon(0.01));
+        CHECK(above({behind.x + x, 1.2f, behind.y}) / open == test::near(1).epsilon(0.01));
     }
 }
 
@@ -248,7 +249,7 @@ TEST_CASE_FIXTURE(Grotto, "caustics: a wall gets mirrored light, and the same by
          {LightMethod::Clustered, LightMethod::FullScreen, LightMethod::ObjectMajor,
           LightMethod::LightMajor}) {
         world.resource<Rendering>().lights = method;
-        CHECK(rgb_at(radiance(view), 16, 16).x / expected == doctest::Approx(1).epsilon(0.003));
+        CHECK(rgb_at(radiance(view), 16, 16).x / expected == test::near(1).epsilon(0.003));
     }
 }
 

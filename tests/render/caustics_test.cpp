@@ -13,6 +13,7 @@
 #include "render/water/caustic_splat.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -205,12 +206,11 @@ TEST_CASE_FIXTURE(
             world.remove<Caustics>(water);
         }
         const Vec3 seen = rgb_at(radiance(from_below()), 48, 48);
-        CHECK(seen.y == doctest::Approx(through).epsilon(0.005));
-        CHECK(seen.x == doctest::Approx(through * left * veil).epsilon(0.005));
+        CHECK(seen.y == test::near(through).epsilon(0.005));
+        CHECK(seen.x == test::near(through * left * veil).epsilon(0.005));
     }
     world.destroy(water);
-    CHECK(
-        rgb_at(radiance(from_below()), 48, 48).x == doctest::Approx(to_sun.y / kPi).epsilon(0.005));
+    CHECK(rgb_at(radiance(from_below()), 48, 48).x == test::near(to_sun.y / kPi).epsilon(0.005));
 }
 
 TEST_CASE_FIXTURE(Pool, "caustics: all light that waves let in arrives, to 1 %") {
@@ -222,13 +222,13 @@ TEST_CASE_FIXTURE(Pool, "caustics: all light that waves let in arrives, to 1 %")
     oracle::CausticPool pool = {.half = glm::dvec2(1.06 * kHalf), .depth = kDepth, .boxes = {}};
     const oracle::CausticLight traced = oracle::trace_photons(
         pool, surface_of(world.get<WaveTable>(water)), glm::dvec3(to_sun), 64, 90000);
-    CHECK(traced.received() == doctest::Approx(traced.entered).epsilon(1e-9));
+    CHECK(traced.received() == test::near(traced.entered).epsilon(1e-9));
     double sum = 0;
     for (const float texel : found.pixels) {
         sum += static_cast<double>(texel);
     }
     sum *= std::pow(2 * 1.06 * kHalf / found.width, 2);
-    CHECK(sum == doctest::Approx(traced.entered).epsilon(0.01));
+    CHECK(sum == test::near(traced.entered).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(
@@ -337,7 +337,7 @@ TEST_CASE_FIXTURE(Pool, "caustics: no strength is flat water, and the same twice
     const gpu::FloatImage flat = radiance(from_below());
     const float through = (1 - fresnel(to_sun.y, 1.333f)) * to_sun.y / kPi;
     for (const int x : {10, 48, 80}) {
-        CHECK(flat.at(x, 40, 0) == doctest::Approx(through).epsilon(0.005));
+        CHECK(flat.at(x, 40, 0) == test::near(through).epsilon(0.005));
     }
     world.get<Caustics>(water).strength = 1;
     const gpu::FloatImage first = map();
@@ -422,7 +422,7 @@ TEST_CASE_FIXTURE(
     std::vector<std::uint32_t> found(none.size());
     light.read(0, std::as_writable_bytes(std::span(found)));
     for (std::size_t i = 0; i < found.size(); ++i) {
-        CHECK(static_cast<float>(found[i]) / 524288 == doctest::Approx(expected[i]).epsilon(2e-3));
+        CHECK(static_cast<float>(found[i]) / 524288 == test::near(expected[i]).epsilon(2e-3));
     }
 }
 
@@ -447,8 +447,8 @@ TEST_CASE_FIXTURE(Pool, "caustics: a mirror sends the sun where the book says, a
         const int j = static_cast<int>(48 + 48 * z / 0.5f);
         return with.at(i, j, 0) - without.at(i, j, 0);
     };
-    CHECK(added(0, 0) == doctest::Approx(0.125).epsilon(1e-3));
-    CHECK(added(0.17f, -0.17f) == doctest::Approx(0.125).epsilon(1e-3));
+    CHECK(added(0, 0) == test::near(0.125).epsilon(1e-3));
+    CHECK(added(0.17f, -0.17f) == test::near(0.125).epsilon(1e-3));
     for (const float out : {-0.23f, 0.23f}) {
         CHECK(added(out, 0) == 0);
         CHECK(added(0, out) == 0);

@@ -1,6 +1,7 @@
 #include "bench/oracles/cluster_oracle.h"
 #include "bench/oracles/cluster_readback.h"
 #include "bench/oracles/light_oracle.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -278,7 +279,7 @@ TEST_CASE_FIXTURE(Scene, "clusters: a million lights are drawn, each where it re
             }
         }
         CHECK(sum > 0);
-        CHECK(image.at(x, y, 0) == doctest::Approx(sum).epsilon(4e-3));
+        CHECK(image.at(x, y, 0) == test::near(sum).epsilon(4e-3));
     }
 }
 

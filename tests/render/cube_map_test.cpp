@@ -1,5 +1,6 @@
 #include "render/cube_map.h"
 #include "render/gpu/readback.h"
+#include "tests/near.h"
 #include "tests/render/shader_eval.h"
 
 #include <glm/geometric.hpp>
@@ -22,8 +23,8 @@ std::vector<Vec3> random_directions(int count) {
 void check_point(const Vec3& direction, int face, const Vec2& st) {
     const CubePoint point = cube_point(direction);
     CHECK(point.face == face);
-    CHECK(point.st.x == doctest::Approx(st.x));
-    CHECK(point.st.y == doctest::Approx(st.y));
+    CHECK(point.st.x == test::near(st.x));
+    CHECK(point.st.y == test::near(st.y));
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ TEST_CASE("cube_map: a face is a sixth of the sphere, whatever its texels") {
                 sum += cube_texel_solid_angle(size, x, y);
             }
         }
-        CHECK(sum == doctest::Approx(4 * 3.14159265358979 / 6).epsilon(1e-12));
+        CHECK(sum == test::near(4 * 3.14159265358979 / 6).epsilon(1e-12));
     }
     CHECK(cube_texel_solid_angle(32, 16, 16) > 4 * cube_texel_solid_angle(32, 0, 0));
 }

@@ -4,6 +4,7 @@
 #include "render/passes/depth_of_field_pass.h"
 #include "render/shaders/depth_of_field_gpu.h"
 #include "render/window_depth.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -139,7 +140,7 @@ TEST_CASE_FIXTURE(
          {-44.0f, -30.0f, -20.0f, -12.0f, -7.0f, -3.0f, 2.0f, 4.5f, 9.0f, 16.0f, 26.0f, 40.0f}) {
         CAPTURE(diameter);
         const Moments m = moments_of(photograph(view, spark(distance_of(diameter, kAll), 93, 101)));
-        CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+        CHECK(m.sum == test::near(1000).epsilon(0.01));
         CHECK(std::abs(diameter_of(m) - std::abs(double(diameter))) < 0.5);
         // Half resolution knows places to a pixel; highlights are placed by their own.
         const double near = std::abs(diameter) > 24 ? 0.1 : 0.75;
@@ -157,7 +158,7 @@ TEST_CASE_FIXTURE(
         const Moments m = moments_of(photograph(view, [&](int x, int y) {
             return x == 93 && y == 101 ? Seen{Vec3(1000), distance} : Seen{Vec3(0), kInfinity};
         }));
-        CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+        CHECK(m.sum == test::near(1000).epsilon(0.01));
         CHECK(std::abs(diameter_of(m) - std::abs(double(diameter))) < 0.5);
     }
 }
@@ -167,7 +168,7 @@ TEST_CASE_FIXTURE(
     const RenderView view = lens_view(192, 192, kAll);  // 432 px wide by the law, 0.2 m away
     const Moments m = moments_of(photograph(view, spark(0.2f, 96, 96)));
     CHECK(std::abs(diameter_of(m) - 0.25 * 192) < 0.5);
-    CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+    CHECK(m.sum == test::near(1000).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(
@@ -183,7 +184,7 @@ TEST_CASE_FIXTURE(
         }));
         // Half of it gathered from the image, half from its half: each hides some of the other.
         const double most = std::abs(diameter) == 4.5f ? 0.05 : 0.02;
-        CHECK(m.sum == doctest::Approx(1000).epsilon(most));
+        CHECK(m.sum == test::near(1000).epsilon(most));
         const double own = 0.25;  // of 2 x 2 px
         const double found = 4 * std::sqrt(m.variance - 1.0 / 12 - own);
         CHECK(std::abs(found - std::abs(double(diameter))) < 0.75);
@@ -221,7 +222,7 @@ TEST_CASE("depth_of_field: kernels of the half image are as wide as circles less
             area += covered;
             square_sum += covered * double(texel.x * texel.x + texel.y * texel.y);
         }
-        CHECK(double(block.kernel[i / 2][2 * (i % 2) + 1]) == doctest::Approx(1 / area));
+        CHECK(double(block.kernel[i / 2][2 * (i % 2) + 1]) == test::near(1 / area));
         const double radius = static_cast<double>(i) / layout::kKernelStep;
         const double tents = 1.5;  // [px^2]
         const double disc = 4 * (0.5 * square_sum / area) + tents;
@@ -233,7 +234,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: the sky is blurred as what is infin
     const RenderView view = lens_view(160, 160, 36);
     const Moments m = moments_of(photograph(view, spark(kInfinity, 80, 80)));
     CHECK(std::abs(diameter_of(m) - 36) < 0.5);
-    CHECK(m.sum == doctest::Approx(1000).epsilon(0.01));
+    CHECK(m.sum == test::near(1000).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(Darkroom, "depth_of_field: discs are even, round and crisp") {
@@ -249,7 +250,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: discs are even, round and crisp") {
                     static_cast<int>(80.5f + radius * std::sin(angle)));
             };
             for (const float radius : {0.0f, 6.0f, 12.0f, 17.5f}) {
-                CHECK(along(radius) == doctest::Approx(even).epsilon(0.12));
+                CHECK(along(radius) == test::near(even).epsilon(0.12));
             }
             CHECK(along(23.5f) < 0.12f * even);
         }
@@ -274,7 +275,7 @@ TEST_CASE_FIXTURE(
         CHECK(at_right(-0.75f, 0) < 0.3f * even);  // beyond the side
         CHECK(at_right(-0.3f, 0.45f) > 0.7f * even);
         CHECK(at_right(0.5f, 0.5f) < 0.3f * even);
-        CHECK(moments_of(disc).sum == doctest::Approx(1000).epsilon(0.01));
+        CHECK(moments_of(disc).sum == test::near(1000).epsilon(0.01));
     }
 }
 
@@ -470,7 +471,7 @@ TEST_CASE_FIXTURE(Darkroom, "depth_of_field: by mip levels, an uniform image sta
     });
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
-            CHECK(light_at(image, x, y) == doctest::Approx(0.5f).epsilon(1e-5));
+            CHECK(light_at(image, x, y) == test::near(0.5f).epsilon(1e-5));
         }
     }
 }
@@ -526,10 +527,10 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE("depth_of_field: window depth of eye distances, and back") {
     CHECK(window_depth(1, 1, 100) == 0);
-    CHECK(window_depth(100, 1, 100) == doctest::Approx(1));
-    CHECK(window_depth(2, 1, 100) == doctest::Approx(0.505051).epsilon(1e-5));
-    CHECK(window_depth(10, 1, 100) == doctest::Approx(0.909091).epsilon(1e-5));
-    CHECK(window_depth(50, 1, 100) == doctest::Approx(0.989899).epsilon(1e-5));
+    CHECK(window_depth(100, 1, 100) == test::near(1));
+    CHECK(window_depth(2, 1, 100) == test::near(0.505051).epsilon(1e-5));
+    CHECK(window_depth(10, 1, 100) == test::near(0.909091).epsilon(1e-5));
+    CHECK(window_depth(50, 1, 100) == test::near(0.989899).epsilon(1e-5));
     CHECK(window_depth(0, 1, 100) == 0);
     CHECK(window_depth(-3, 1, 100) == 0);
     double before = -1;
@@ -542,13 +543,13 @@ TEST_CASE("depth_of_field: window depth of eye distances, and back") {
             slope = depth - before;
         }
         before = depth;
-        CHECK(eye_distance_of(depth, 1, 100) == doctest::Approx(e).epsilon(1e-5));
+        CHECK(eye_distance_of(depth, 1, 100) == test::near(e).epsilon(1e-5));
         const double ndc = (100.0 + 1) / (100 - 1) - 2 * 100.0 / (100 - 1) / e;
-        CHECK(depth == doctest::Approx(0.5 * ndc + 0.5));
-        CHECK(reversed_depth(e, 1, 100) == doctest::Approx(1 - depth));
+        CHECK(depth == test::near(0.5 * ndc + 0.5));
+        CHECK(reversed_depth(e, 1, 100) == test::near(1 - depth));
     }
     // A source feeds the z of clip space, 0.0202 at 2 m, for the distance: nonsense.
-    CHECK(window_depth(0.0202, 1, 100) == doctest::Approx(-48.99).epsilon(1e-3));
+    CHECK(window_depth(0.0202, 1, 100) == test::near(-48.99).epsilon(1e-3));
 }
 
 TEST_CASE(
@@ -557,8 +558,8 @@ TEST_CASE(
     for (const float z : {0.1f, 0.5f, 3.0f, 1000.0f}) {
         const Vec4 clip = view.clip_from_world * Vec4(0, 0, -z, 1);
         const double depth = reversed_depth(static_cast<double>(z), double(kNear));
-        CHECK(static_cast<double>(clip.z / clip.w) == doctest::Approx(depth).epsilon(1e-5));
-        CHECK(reversed_depth(static_cast<double>(z), double(kNear), 1e9) == doctest::Approx(depth));
+        CHECK(static_cast<double>(clip.z / clip.w) == test::near(depth).epsilon(1e-5));
+        CHECK(reversed_depth(static_cast<double>(z), double(kNear), 1e9) == test::near(depth));
     }
     CHECK(reversed_depth(-1, 0.1) == 1);
     CHECK(reversed_depth(static_cast<double>(kInfinity), 0.1) == 0);

@@ -3,6 +3,7 @@
 // clang-format on
 #include "bench/oracles/pbr_oracle.h"
 #include "render/environment_light.h"
+#include "tests/near.h"
 
 #include <glm/geometric.hpp>
 
@@ -78,7 +79,7 @@ TEST_CASE("environment: the table of specular albedo is the oracle's") {
                 oracle::directional_albedo(x / double(kSize - 1), y / double(kSize - 1), 1 << 16);
             const Vec2 got = table[y * kSize + x];
             CHECK(std::abs(got.x - want.scale) < 0.01);
-            CHECK(got.x + got.y == doctest::Approx(want.scale + want.bias).epsilon(0.01));
+            CHECK(got.x + got.y == test::near(want.scale + want.bias).epsilon(0.01));
         }
     }
 }
@@ -91,8 +92,8 @@ TEST_CASE("environment: the metal-rough model returns all light of a white furna
             const double plastic = oracle::furnace({glm::dvec3(1), 0, roughness}, n_v).x;
             CAPTURE(roughness);
             CAPTURE(n_v);
-            CHECK(metal == doctest::Approx(1).epsilon(0.02));
-            CHECK(plastic == doctest::Approx(1).epsilon(0.02));
+            CHECK(metal == test::near(1).epsilon(0.02));
+            CHECK(plastic == test::near(1).epsilon(0.02));
         }
     }
 }

@@ -1,6 +1,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/shader_library.h"
 #include "render/mesh_pool.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support.h"
 
@@ -156,10 +157,10 @@ RenderView cube_view(const Vec3& eye) {
 TEST_CASE_FIXTURE(PairTest, "pipeline: interpolation is that of space, not of the screen") {
     draw(full_quad(1, 3, Vec3(0), Vec3(1)));
     const gpu::FloatImage image = gpu::read_floats(color);
-    CHECK(image.at(32, 32, 0) == doctest::Approx(0.25).epsilon(1e-5));
+    CHECK(image.at(32, 32, 0) == test::near(0.25).epsilon(1e-5));
     for (int x = 0; x < 65; ++x) {
         const double s = (x + 0.5) / 65;
-        CHECK(image.at(x, 10, 0) == doctest::Approx(s / 3 / ((1 - s) + s / 3)).epsilon(1e-5));
+        CHECK(image.at(x, 10, 0) == test::near(s / 3 / ((1 - s) + s / 3)).epsilon(1e-5));
     }
 }
 
@@ -337,14 +338,14 @@ TEST_CASE_FIXTURE(PairTest, "parameters: an interpolated normal is short, the re
         depth.clear({0, 0, 0, 0});
         draw(full_quad(1, 1, left, right));
         const gpu::FloatImage image = gpu::read_floats(color);
-        CHECK(glm::length(rgb_at(image, 32, 32)) == doctest::Approx(length).epsilon(1e-4));
+        CHECK(glm::length(rgb_at(image, 32, 32)) == test::near(length).epsilon(1e-4));
 
         Scene scene;
         MeshData mesh = make_square();
         mesh.normals = {left, right, right, left};
         scene.place(scene.add(std::move(mesh)), scene.add(Material{}), at({0, 0, 0}));
         const gpu::FloatImage normals = scene.aov(scene.look({0, 0, 1}, {0, 0, 0}), "normal");
-        CHECK(glm::length(rgb_at(normals, 32, 32)) == doctest::Approx(1).epsilon(1e-4));
+        CHECK(glm::length(rgb_at(normals, 32, 32)) == test::near(1).epsilon(1e-4));
         CHECK(rgb_at(normals, 32, 32).z > 0.99f);
     }
 }

@@ -1,4 +1,5 @@
 #include "render/graph/frame_graph.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/render/shader_eval.h"
 
@@ -114,7 +115,7 @@ TEST_CASE_FIXTURE(
                     1 - (static_cast<float>(y) + 0.5f) / 48};
                 const Vec3 p = Vec3(0, 0, 2.2f) + depth.at(x, y, 0) * Vec3(ndc, -1);
                 const Vec3 local = Vec3(ball_from_world * Vec4(p, 1));
-                CHECK(glm::length(local) == doctest::Approx(1).epsilon(4e-3));
+                CHECK(glm::length(local) == test::near(1).epsilon(4e-3));
                 const Vec3 want = glm::normalize(inverse_transpose * local);
                 CHECK(glm::dot(want, rgb_at(normals, x, y)) > 0.998f);
                 ++seen;
@@ -129,10 +130,10 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: depth is reversed and gives the distance back
     for (const float distance : {0.06f, 1.0f, 30.0f, 1000.0f}) {
         const RenderView view = look({0, 0, distance}, {0, 0, 0}, 9, 9);
         frame_graph(shared_renderer()).keep_named("gbuffer.depth");
-        CHECK(aov(view, "depth").at(4, 4, 0) == doctest::Approx(distance).epsilon(1e-5));
+        CHECK(aov(view, "depth").at(4, 4, 0) == test::near(distance).epsilon(1e-5));
         FrameGraph& graph = frame_graph(shared_renderer());
         const gpu::FloatImage raw = gpu::read_floats(*graph.texture(graph.find("gbuffer.depth")));
-        CHECK(raw.at(4, 4, 0) == doctest::Approx(0.05f / distance).epsilon(1e-5));
+        CHECK(raw.at(4, 4, 0) == test::near(0.05f / distance).epsilon(1e-5));
         graph.forget_named("gbuffer.depth");
     }
     // Nothing there: the far end.
@@ -165,7 +166,7 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: attributes come back as they were written") {
     const RenderView view = look({0, 0, 1}, {0, 0, 0}, 9, 9);
     const Vec3 albedo = rgb_at(aov(view, "albedo"), 4, 4);
     for (int c = 0; c < 3; ++c) {
-        CHECK(albedo[c] == doctest::Approx(material.base_color[c]).epsilon(2e-3));
+        CHECK(albedo[c] == test::near(material.base_color[c]).epsilon(2e-3));
     }
     const StoredFactors factors = stored_factors(*this, view)[4 * 9 + 4];
     CHECK(factors.occlusion == 1);
@@ -295,9 +296,9 @@ TEST_CASE_FIXTURE(Scene, "gbuffer: sRGB images are decoded, vertex colors multip
     square.colors.assign(4, {0.5f, 1, 1, 1});
     place(add(square), add(material), at({0, 0, 0}));
     const Vec3 albedo = rgb_at(aov(look({0, 0, 1}, {0, 0, 0}, 9, 9), "albedo"), 4, 4);
-    CHECK(albedo.x == doctest::Approx(0.5f * 0.5029f).epsilon(5e-3));
-    CHECK(albedo.y == doctest::Approx(0.5f * 0.5029f).epsilon(5e-3));
-    CHECK(albedo.z == doctest::Approx(0.5029f).epsilon(5e-3));
+    CHECK(albedo.x == test::near(0.5f * 0.5029f).epsilon(5e-3));
+    CHECK(albedo.y == test::near(0.5f * 0.5029f).epsilon(5e-3));
+    CHECK(albedo.z == test::near(0.5029f).epsilon(5e-3));
 }
 
 TEST_CASE_FIXTURE(Scene, "gbuffer: a missing or broken image is magenta") {
@@ -489,11 +490,11 @@ TEST_CASE_FIXTURE(Scene, "velocity: between two steps it spans from frame to fra
     const RenderView view = make_render_view(
         {.fov_y = radians(90)}, eye, eye,
         {.width = 64, .height = 64, .alpha = 0.75f, .previous_alpha = 0.25f});
-    CHECK(velocity_at(aov(view, "velocity"), 40, 32).x == doctest::Approx(0.2f * 32).epsilon(2e-3));
+    CHECK(velocity_at(aov(view, "velocity"), 40, 32).x == test::near(0.2f * 32).epsilon(2e-3));
     // The plate stands at 0.3: from -0.7 on.
     const gpu::FloatImage depth = aov(view, "depth");
     CHECK(depth.at(8, 32, 0) == kNoDepth);
-    CHECK(depth.at(10, 32, 0) == doctest::Approx(1));
+    CHECK(depth.at(10, 32, 0) == test::near(1));
 }
 
 }  // namespace limn::test

@@ -1,5 +1,6 @@
 #include "render/gpu/readback.h"
 #include "render/passes/glare_pass.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ TEST_CASE_FIXTURE(RenderTest, "glare: the light added grows with what is above t
     const Glare glare = {.strength = 0.5f, .threshold = 1, .length = 0.4f};
     for (const double luminance : {2.0, 3.0, 9.0}) {
         const gpu::FloatImage made = glare_of(static_cast<float>(luminance / kLuminance), glare);
-        CHECK(added(made) == doctest::Approx(0.5 * (luminance - 1) / kLuminance).epsilon(0.01));
+        CHECK(added(made) == test::near(0.5 * (luminance - 1) / kLuminance).epsilon(0.01));
     }
 }
 
@@ -98,8 +99,8 @@ TEST_CASE_FIXTURE(
             }
         }
     }
-    CHECK(sums[0] / sums[1] == doctest::Approx(610.0 / 550).epsilon(0.01));
-    CHECK(sums[2] / sums[1] == doctest::Approx(465.0 / 550).epsilon(0.01));
+    CHECK(sums[0] / sums[1] == test::near(610.0 / 550).epsilon(0.01));
+    CHECK(sums[2] / sums[1] == test::near(465.0 / 550).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(RenderTest, "glare: NaN never spreads") {

@@ -2,6 +2,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/rendering.h"
 #include "render/passes/glow_pass.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <cmath>
@@ -105,16 +106,14 @@ TEST_CASE_FIXTURE(Scene, "glow: an image of many samples glows once, with the su
     world.insert_resource(Glow{.strength = 0.5f});
     const LightImage with = accumulated();
     CHECK(with.pixels != without.pixels);
-    CHECK(green_sum(with) == doctest::Approx(green_sum(without)).epsilon(1e-4));
+    CHECK(green_sum(with) == test::near(green_sum(without)).epsilon(1e-4));
     CHECK(pass_names().find("accumulate") == std::string::npos);  // of the last frame alone
 }
 
 TEST_CASE("glow: the weights of the levels sum to 1, and the last one comes in gradually") {
     for (const float radius : {0.001f, 0.01f, 0.1f, 0.15f, 1.0f}) {
         const std::vector<float> weights = glow_weights({.radius = radius}, 640, 360);
-        CHECK(
-            std::accumulate(weights.begin(), weights.end(), 0.0)
-            == doctest::Approx(1).epsilon(1e-6));
+        CHECK(std::accumulate(weights.begin(), weights.end(), 0.0) == test::near(1).epsilon(1e-6));
     }
     std::vector<float> before = glow_weights({.radius = 0.05f}, 640, 360);
     for (float radius = 0.05f; radius < 0.5f; radius *= 1.01f) {
@@ -141,7 +140,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: no light is made or lost, at any size, in c
             CAPTURE(place.y);
             const LightImage made =
                 glowing(dot_at(size.x, size.y, place, 20), {.strength = 1, .radius = 0.4f});
-            CHECK(green_sum(made) == doctest::Approx(20).epsilon(1e-4));
+            CHECK(green_sum(made) == test::near(20).epsilon(1e-4));
         }
     }
 }
@@ -154,8 +153,8 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a uniform image stays as it is") {
         }
         const LightImage made = glowing(even, {.strength = 0.7f});
         for (const glm::dvec3& pixel : made.pixels) {
-            CHECK(pixel.y == doctest::Approx(1).epsilon(1e-5));
-            CHECK(pixel.z == doctest::Approx(300).epsilon(1e-5));
+            CHECK(pixel.y == test::near(1).epsilon(1e-5));
+            CHECK(pixel.z == test::near(300).epsilon(1e-5));
         }
     }
 }
@@ -180,7 +179,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: light falls with the power of the distance 
             {.strength = 1, .radius = 0.5f, .falloff = falloff, .firefly = 0});
         const double near = made.at(160 + 12, 120).y;
         const double far = made.at(160 + 48, 120).y;
-        CHECK(std::log2(near / far) / 2 == doctest::Approx(falloff).epsilon(0.1));
+        CHECK(std::log2(near / far) / 2 == test::near(falloff).epsilon(0.1));
     }
 }
 
@@ -196,7 +195,7 @@ TEST_CASE_FIXTURE(RenderTest, "glow: a pixel's light that moves by eighths does 
         }
         CAPTURE(light);
         CHECK(std::sqrt(std::max(squares - sum * sum, 0.0)) < 0.02 * sum);
-        CHECK(sum == doctest::Approx(light).epsilon(0.005));
+        CHECK(sum == test::near(light).epsilon(0.005));
     }
 }
 
@@ -305,12 +304,12 @@ TEST_CASE_FIXTURE(Scene, "glow: a mask adds the lamp's light once more, twice as
             lamp += bare.pixels[i].y;
             made.pixels[i] -= bare.pixels[i];
         }
-        CHECK(green_sum(made) == doctest::Approx(strength * lamp).epsilon(1e-3));
+        CHECK(green_sum(made) == test::near(strength * lamp).epsilon(1e-3));
         return green_sum(made);
     };
     const double once = added({4, 2, 1}, 1);
-    CHECK(added({8, 4, 2}, 1) == doctest::Approx(2 * once).epsilon(1e-4));
-    CHECK(added({4, 2, 1}, 0.5f) == doctest::Approx(0.5 * once).epsilon(1e-4));
+    CHECK(added({8, 4, 2}, 1) == test::near(2 * once).epsilon(1e-4));
+    CHECK(added({4, 2, 1}, 0.5f) == test::near(0.5 * once).epsilon(1e-4));
 }
 
 }  // namespace limn::test

@@ -3,6 +3,7 @@
 #include "render/gpu/gpu_timer.h"
 #include "render/gpu/readback.h"
 #include "render/gpu/shader_library.h"
+#include "tests/near.h"
 #include "tests/render/render_fixture.h"
 
 #include <array>
@@ -100,7 +101,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: texels come back the way they went, to
     CHECK(image.channels == 3);
     CHECK(image.at(0, 1, 0) == 1);  // OpenGL's first row is the bottom one
     CHECK(image.at(2, 0, 2) == 18);
-    CHECK(gpu::read_floats(bytes).at(0, 1, 1) == doctest::Approx(2.0 / 255.0));
+    CHECK(gpu::read_floats(bytes).at(0, 1, 1) == test::near(2.0 / 255.0));
 }
 
 TEST_CASE_FIXTURE(test::RenderTest, "gpu: floats, integers and depth come back exactly") {
@@ -529,7 +530,7 @@ TEST_CASE_FIXTURE(test::RenderTest, "gpu: a sampler replaces the texture's own f
     device().bind_uniforms(2, scale);
     device().bind_texture(3, source);
     device().draw_fullscreen();
-    CHECK(gpu::read_floats(target).at(1, 0, 0) == doctest::Approx(0.25f));  // linear by default
+    CHECK(gpu::read_floats(target).at(1, 0, 0) == test::near(0.25f));  // linear by default
     device().bind_texture(3, source, &nearest);
     device().draw_fullscreen();
     CHECK(gpu::read_floats(target).at(1, 0, 0) == 0.0f);

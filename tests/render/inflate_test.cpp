@@ -1,4 +1,5 @@
 // clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
+#include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 // clang-format on
 #include "tests/render/shader_eval.h"
@@ -111,7 +112,7 @@ TEST_CASE_FIXTURE(
     for (const float f : {0.1f, 0.5f, -0.2f}) {
         CHECK(
             widest_gap(split, inflate_vertices(split, f))
-            == doctest::Approx(std::abs(f) * std::sqrt(2.0)).epsilon(1e-5));
+            == test::near(std::abs(f) * std::sqrt(2.0)).epsilon(1e-5));
         const MeshData shared = make_cube(true);
         CHECK(widest_gap(shared, inflate_vertices(shared, f)) == 0);
     }

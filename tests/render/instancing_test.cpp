@@ -1,4 +1,5 @@
 #include "ecs/base/jobs.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <random>
@@ -114,8 +115,8 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: every instance has its own place and 
     for (int y = 0; y < kCells; ++y) {
         for (int x = 0; x < kCells; ++x) {
             const Vec3 color = rgb_at(image, 4 * x + 2, 4 * (kCells - 1 - y) + 2);
-            CHECK(color.x == doctest::Approx(static_cast<float>(x) / kCells).epsilon(4e-3));
-            CHECK(color.y == doctest::Approx(static_cast<float>(y) / kCells).epsilon(4e-3));
+            CHECK(color.x == test::near(static_cast<float>(x) / kCells).epsilon(4e-3));
+            CHECK(color.y == test::near(static_cast<float>(y) / kCells).epsilon(4e-3));
         }
     }
 }
@@ -168,7 +169,7 @@ TEST_CASE_FIXTURE(CrowdScene, "instancing: an unknown material is magenta, none 
     world.clear();
     place(square, {}, at({0, 0, 0}));
     const Vec3 albedo = rgb_at(aov(look({0, 0, 1}, {0, 0, 0}), "albedo"), 32, 32);
-    CHECK(albedo.x == doctest::Approx(0.8f).epsilon(1e-3));
+    CHECK(albedo.x == test::near(0.8f).epsilon(1e-3));
 }
 
 }  // namespace limn::test

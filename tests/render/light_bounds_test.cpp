@@ -1,6 +1,7 @@
 #include "render/light_list.h"
 #include "render/render_view.h"
 #include "render/shadow/light_bounds.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -37,14 +38,14 @@ class Random {
 
 TEST_CASE("light_bounds: the slopes of a sphere's tangents are the closed form") {
     const SlopeRange ahead = sphere_slopes(0, -10, 1, 0.1f);
-    CHECK(ahead.high == doctest::Approx(0.1005038).epsilon(1e-5));
-    CHECK(ahead.low == doctest::Approx(-0.1005038).epsilon(1e-5));
+    CHECK(ahead.high == test::near(0.1005038).epsilon(1e-5));
+    CHECK(ahead.low == test::near(-0.1005038).epsilon(1e-5));
     const SlopeRange aside = sphere_slopes(3, -4, 1, 0.1f);
-    CHECK(aside.low == doctest::Approx(0.4734014).epsilon(1e-5));
-    CHECK(aside.high == doctest::Approx(1.1265986).epsilon(1e-5));
+    CHECK(aside.low == test::near(0.4734014).epsilon(1e-5));
+    CHECK(aside.high == test::near(1.1265986).epsilon(1e-5));
     for (const float k : {aside.low, aside.high}) {
         // The line x = -k z passes the middle at the radius.
-        CHECK(std::abs(3 - k * 4) / std::sqrt(1 + k * k) == doctest::Approx(1).epsilon(1e-4));
+        CHECK(std::abs(3 - k * 4) / std::sqrt(1 + k * k) == test::near(1).epsilon(1e-4));
     }
 }
 
@@ -122,8 +123,8 @@ TEST_CASE("light_bounds: depths are those of the nearest and the farthest point"
         const double z = -1.0 / static_cast<double>(depth);
         return (100.0 * 1.0 / z + 100.0) / (100.0 - 1.0);
     };
-    CHECK(forward(bounds.depth_max) == doctest::Approx(0.897868).epsilon(1e-6));
-    CHECK(forward(bounds.depth_min) == doctest::Approx(0.918274).epsilon(1e-6));
+    CHECK(forward(bounds.depth_max) == test::near(0.897868).epsilon(1e-6));
+    CHECK(forward(bounds.depth_min) == test::near(0.918274).epsilon(1e-6));
 }
 
 TEST_CASE(

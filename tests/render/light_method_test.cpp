@@ -3,6 +3,7 @@
 #include "ecs/components/shadow.h"
 #include "render/gpu/gpu_query.h"
 #include "render/light_objects.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -382,7 +383,7 @@ TEST_CASE_FIXTURE(Methods, "light volumes: the lit disc has the radius where bal
         }
         return lit;
     };
-    CHECK(lit_pixels() == doctest::Approx(65.973 * 100).epsilon(0.01));
+    CHECK(lit_pixels() == test::near(65.973 * 100).epsilon(0.01));
     world.get<WorldTransform>(lamp).world = at({0, 0, 5.01f});
     const gpu::FloatImage dark = picture(LightMethod::Volumes, view);
     CHECK(*std::max_element(dark.pixels.begin(), dark.pixels.end()) <= 1);  // alpha alone

@@ -4,6 +4,7 @@
 #include "render/gpu/shader_source.h"
 #include "render/light_list.h"
 #include "render/shading_models.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -90,18 +91,17 @@ TEST_CASE("light: attenuation by a polynomial has the values of light.attenuatio
     const auto value = [](float c, float l, float q, double d) {
         return oracle::attenuation(polynomial(c, l, q), 0, d);
     };
-    CHECK(value(1, 0, 0, 123) == doctest::Approx(1));
-    CHECK(value(0, 1, 0, 2) == doctest::Approx(0.5));
-    CHECK(value(0, 1, 0, 10) == doctest::Approx(0.1));
-    CHECK(value(0, 0, 1, 2) == doctest::Approx(0.25));
-    CHECK(value(0, 0, 1, 10) == doctest::Approx(0.01));
-    CHECK(value(1, 0.7f, 1.8f, 0) == doctest::Approx(1));
-    CHECK(value(1, 0.7f, 1.8f, 1) == doctest::Approx(0.285714).epsilon(1e-5));
-    CHECK(value(1, 0.7f, 1.8f, 2) == doctest::Approx(0.104167).epsilon(1e-5));
-    CHECK(value(1, 0.7f, 1.8f, 5) == doctest::Approx(0.020202).epsilon(1e-5));
-    CHECK(value(1, 0.7f, 1.8f, 10) == doctest::Approx(0.005319).epsilon(1e-4));
-    CHECK(
-        oracle::cutoff_distance(polynomial(1, 0.7f, 1.8f), 1.0 / 256) == doctest::Approx(11.7095));
+    CHECK(value(1, 0, 0, 123) == test::near(1));
+    CHECK(value(0, 1, 0, 2) == test::near(0.5));
+    CHECK(value(0, 1, 0, 10) == test::near(0.1));
+    CHECK(value(0, 0, 1, 2) == test::near(0.25));
+    CHECK(value(0, 0, 1, 10) == test::near(0.01));
+    CHECK(value(1, 0.7f, 1.8f, 0) == test::near(1));
+    CHECK(value(1, 0.7f, 1.8f, 1) == test::near(0.285714).epsilon(1e-5));
+    CHECK(value(1, 0.7f, 1.8f, 2) == test::near(0.104167).epsilon(1e-5));
+    CHECK(value(1, 0.7f, 1.8f, 5) == test::near(0.020202).epsilon(1e-5));
+    CHECK(value(1, 0.7f, 1.8f, 10) == test::near(0.005319).epsilon(1e-4));
+    CHECK(oracle::cutoff_distance(polynomial(1, 0.7f, 1.8f), 1.0 / 256) == test::near(11.7095));
     CHECK(std::isfinite(value(0, 1, 1, 0)));
 }
 
@@ -109,14 +109,14 @@ TEST_CASE("light: the smooth fall-off has the values of engine.light-falloff") {
     const auto value = [](float m, double share) {
         return oracle::attenuation(smooth(m), 8, 8 * share);
     };
-    CHECK(value(1, 0) == doctest::Approx(1));
-    CHECK(value(1, 0.5) == doctest::Approx(0.75));
-    CHECK(value(1, 0.75) == doctest::Approx(0.4375));
-    CHECK(value(1, 1) == doctest::Approx(0));
-    CHECK(value(2, 0.7071) == doctest::Approx(1).epsilon(1e-4));
-    CHECK(value(2, 0.75) == doctest::Approx(0.875));
-    CHECK(value(2, 0.9) == doctest::Approx(0.38));
-    CHECK(value(4, 0.866) == doctest::Approx(1).epsilon(1e-3));
+    CHECK(value(1, 0) == test::near(1));
+    CHECK(value(1, 0.5) == test::near(0.75));
+    CHECK(value(1, 0.75) == test::near(0.4375));
+    CHECK(value(1, 1) == doctest::Approx(0).scale(1));
+    CHECK(value(2, 0.7071) == test::near(1).epsilon(1e-4));
+    CHECK(value(2, 0.75) == test::near(0.875));
+    CHECK(value(2, 0.9) == test::near(0.38));
+    CHECK(value(4, 0.866) == test::near(1).epsilon(1e-3));
     for (const float m : {1.0f, 2.0f, 4.0f, 9.0f}) {
         CHECK(value(m, 0.999 * std::sqrt(1 - 1 / m)) == 1);
         CHECK(value(m, 1.001) == 0);
@@ -142,9 +142,9 @@ TEST_CASE("light: spot profiles have the values of light.spot-falloff") {
     const auto value = [](SpotProfile p, double angle) {
         return oracle::spot_factor(p, deg(20), deg(30), deg(angle));
     };
-    CHECK(value(SpotProfile::LinearCosine, 25) == doctest::Approx(0.546816).epsilon(1e-5));
-    CHECK(value(SpotProfile::Smoothstep, 25) == doctest::Approx(0.570018).epsilon(1e-5));
-    CHECK(value(SpotProfile::LinearAngle, 25) == doctest::Approx(0.5));
+    CHECK(value(SpotProfile::LinearCosine, 25) == test::near(0.546816).epsilon(1e-5));
+    CHECK(value(SpotProfile::Smoothstep, 25) == test::near(0.570018).epsilon(1e-5));
+    CHECK(value(SpotProfile::LinearAngle, 25) == test::near(0.5));
     for (const SpotProfile p :
          {SpotProfile::LinearCosine, SpotProfile::Smoothstep, SpotProfile::LinearAngle}) {
         CHECK(value(p, 0) == 1);
@@ -165,7 +165,7 @@ TEST_CASE("light: spot profiles have the values of light.spot-falloff") {
 
 TEST_CASE("light: lit gates specular where the light has set") {
     CHECK(oracle::lit(0.5, 0.8, 2).diffuse == 0.5);
-    CHECK(oracle::lit(0.5, 0.8, 2).specular == doctest::Approx(0.64));
+    CHECK(oracle::lit(0.5, 0.8, 2).specular == test::near(0.64));
     CHECK(oracle::lit(-0.1, 0.8, 2).diffuse == 0);
     CHECK(oracle::lit(-0.1, 0.8, 2).specular == 0);
     CHECK(oracle::lit(0.5, -0.1, 2).diffuse == 0.5);
@@ -185,17 +185,17 @@ TEST_CASE("light: the local reflection model has the values of light.phong-model
         return oracle::phong(material, DVec3(1), {&one, 1}, kUp, from(eye)).x;
     };
     for (const double n : {1.0, 20.0, 100.0}) {
-        CHECK(phong(0, 0, n, 1) == doctest::Approx(1));
-        CHECK(phong(60, -60, n, 1) == doctest::Approx(0.7));
-        CHECK(phong(100, -60, n, 1) == doctest::Approx(0.1));
+        CHECK(phong(0, 0, n, 1) == test::near(1));
+        CHECK(phong(60, -60, n, 1) == test::near(0.7));
+        CHECK(phong(100, -60, n, 1) == test::near(0.1));
     }
-    CHECK(phong(30, 10, 20, 3) - 0.1 == doctest::Approx(3 * (phong(30, 10, 20, 1) - 0.1)));
+    CHECK(phong(30, 10, 20, 3) - 0.1 == test::near(3 * (phong(30, 10, 20, 1) - 0.1)));
     // Where the lobe has fallen to a half.
     const std::array<std::array<double, 2>, 6> widths = {
         {{1, 60.0}, {5, 29.48}, {10, 21.09}, {20, 15.0}, {50, 9.52}, {100, 6.74}}};
     for (const auto& [n, angle] : widths) {
-        CHECK(std::pow(std::cos(deg(angle)), n) == doctest::Approx(0.5).epsilon(2e-3));
-        CHECK(phong(0, angle, n, 1) == doctest::Approx(0.1 + 0.6 + 0.15).epsilon(1e-3));
+        CHECK(std::pow(std::cos(deg(angle)), n) == test::near(0.5).epsilon(2e-3));
+        CHECK(phong(0, angle, n, 1) == test::near(0.1 + 0.6 + 0.15).epsilon(1e-3));
     }
 }
 
@@ -213,19 +213,19 @@ TEST_CASE("light: the halfway vector has the values of light.halfway-vector") {
         const oracle::Arriving one = {from(light), DVec3(1)};
         return oracle::phong(m, DVec3(0), {&one, 1}, kUp, from(eye)).x;
     };
-    CHECK(blinn(0, 30) == doctest::Approx(0.4999).epsilon(1e-3));
-    CHECK(phong(0, 30) == doctest::Approx(0.0563).epsilon(1e-2));
-    CHECK(blinn(25, -50) == doctest::Approx(blinn(-50, 25)));
+    CHECK(blinn(0, 30) == test::near(0.4999).epsilon(1e-3));
+    CHECK(phong(0, 30) == test::near(0.0563).epsilon(1e-2));
+    CHECK(blinn(25, -50) == test::near(blinn(-50, 25)));
     // The angle to the half vector is half the angle to the mirrored one.
     for (const double eye : {-40.0, -10.0, 35.0}) {
         CHECK(
             std::acos(std::pow(blinn(20, eye), 1 / 20.0)) * 2
-            == doctest::Approx(deg(std::abs(eye + 20))));
+            == test::near(deg(std::abs(eye + 20))));
     }
     m.shininess = 80;
-    CHECK(blinn(0, 30) == doctest::Approx(0.0624).epsilon(1e-2));
+    CHECK(blinn(0, 30) == test::near(0.0624).epsilon(1e-2));
     m.shininess = 4;
-    CHECK(blinn(60, 60) == doctest::Approx(0.0625));
+    CHECK(blinn(60, 60) == test::near(0.0625));
     CHECK(phong(60, 60) == 0);
 }
 
@@ -426,7 +426,7 @@ TEST_CASE("light: twice the light is twice the radiance") {
     const gpu::FloatImage twice = scene.picture();
     for (std::size_t i = 0; i < once.pixels.size(); ++i) {
         if (i % 4 != 3) {
-            CHECK(twice.pixels[i] == doctest::Approx(2 * once.pixels[i]).epsilon(1e-3));
+            CHECK(twice.pixels[i] == test::near(2 * once.pixels[i]).epsilon(1e-3));
         }
     }
 }
@@ -461,8 +461,7 @@ TEST_CASE("light: lights of all types add up, in any order") {
         if (i % 4 != 3) {
             CHECK(
                 all.pixels[i]
-                == doctest::Approx(first.pixels[i] + second.pixels[i] + third.pixels[i])
-                       .epsilon(2e-3));
+                == test::near(first.pixels[i] + second.pixels[i] + third.pixels[i]).epsilon(2e-3));
         }
     }
     CHECK(largest_difference(all, reversed) <= 1e-6f);
@@ -473,7 +472,7 @@ TEST_CASE("light: lights of all types add up, in any order") {
         }
     });
     for (std::size_t i = 0; i < copies.pixels.size(); i += 4) {
-        CHECK(copies.pixels[i] == doctest::Approx(5 * first.pixels[i]).epsilon(2e-3));
+        CHECK(copies.pixels[i] == test::near(5 * first.pixels[i]).epsilon(2e-3));
     }
 }
 
@@ -501,9 +500,9 @@ TEST_CASE("light: without lights only the surroundings light") {
     CHECK(scene.picture().at(5, 5, 0) == 0);
     scene.world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0.4f, 0.6f, 0.8f}});
     const gpu::FloatImage image = scene.picture();
-    CHECK(image.at(5, 5, 0) == doctest::Approx(0.2).epsilon(2e-3));
-    CHECK(image.at(5, 5, 1) == doctest::Approx(0.3).epsilon(2e-3));
-    CHECK(image.at(5, 5, 2) == doctest::Approx(0.4).epsilon(2e-3));
+    CHECK(image.at(5, 5, 0) == test::near(0.2).epsilon(2e-3));
+    CHECK(image.at(5, 5, 1) == test::near(0.3).epsilon(2e-3));
+    CHECK(image.at(5, 5, 2) == test::near(0.4).epsilon(2e-3));
 }
 
 TEST_CASE("light: a directional light is the same everywhere, and the limit of a far point light") {
@@ -513,7 +512,7 @@ TEST_CASE("light: a directional light is the same everywhere, and the limit of a
     const gpu::FloatImage near = scene.picture();
     const float want = 2 / kPi * from.z;
     for (int i = 0; i < kSide; ++i) {
-        CHECK(near.at(i, kSide - 1 - i, 0) == doctest::Approx(want).epsilon(1e-3));
+        CHECK(near.at(i, kSide - 1 - i, 0) == test::near(want).epsilon(1e-3));
     }
     scene.world.destroy(sun);
     scene.shine(
@@ -537,7 +536,7 @@ TEST_CASE("light: moving light and plane together changes nothing") {
         PointLight{.intensity = kPi, .radius = 0, .attenuation = {.falloff = Falloff::None}},
         at({-0.5f, 0, 0.5f}));
     const gpu::FloatImage image = scene.radiance(scene.look({0, 0, 1}, {0, 0, 0}, 33, 33));
-    CHECK(image.at(16, 16, 0) == doctest::Approx(0.7071).epsilon(2e-3));
+    CHECK(image.at(16, 16, 0) == test::near(0.7071).epsilon(2e-3));
 }
 
 TEST_CASE("light: nothing is lit beyond the radius") {
@@ -558,8 +557,8 @@ TEST_CASE("light: nothing is lit beyond the radius") {
 
 TEST_CASE("light: a pulse modulates the intensity and never makes it negative") {
     const LightPulse pulse = {.amplitude = 0.5f, .frequency = 2, .phase = 0.3f};
-    CHECK(pulse_factor(pulse, 0) == doctest::Approx(1 + 0.5 * std::sin(0.3)));
-    CHECK(pulse_factor(pulse, 1.7) == doctest::Approx(1 + 0.5 * std::sin(3.7)));
+    CHECK(pulse_factor(pulse, 0) == test::near(1 + 0.5 * std::sin(0.3)));
+    CHECK(pulse_factor(pulse, 1.7) == test::near(1 + 0.5 * std::sin(3.7)));
     CHECK(pulse_factor({.amplitude = 3, .frequency = 1, .phase = 0}, 1.5 * kPiD) == 0);
 
     PlaneScene scene;
@@ -568,7 +567,7 @@ TEST_CASE("light: a pulse modulates the intensity and never makes it negative") 
     const float steady = scene.picture().at(9, 9, 0);
     scene.world.add(lamp, LightPulse{.amplitude = 1, .frequency = 1, .phase = 0});
     scene.world.resource<FrameTime>().time = 0.5 * kPiD;
-    CHECK(scene.picture().at(9, 9, 0) == doctest::Approx(2 * steady).epsilon(1e-3));
+    CHECK(scene.picture().at(9, 9, 0) == test::near(2 * steady).epsilon(1e-3));
 }
 
 TEST_CASE("light: broken lights are left out") {

@@ -1,4 +1,5 @@
 #include "bench/oracles/light_oracle.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -123,7 +124,7 @@ TEST_CASE_FIXTURE(
         CHECK(std::abs(in_object[i] - in_world[i]) < 1e-5);
         CHECK(std::abs(in_view[i] - in_world[i]) < 1e-5);
     }
-    CHECK(rgb_at(radiance(view), 32, 32).x == doctest::Approx(in_world[0]).epsilon(2e-3));
+    CHECK(rgb_at(radiance(view), 32, 32).x == test::near(in_world[0]).epsilon(2e-3));
 }
 
 TEST_CASE_FIXTURE(
@@ -164,7 +165,7 @@ TEST_CASE_FIXTURE(
     for (const float scale : {1.0f, 2.0f, 5.0f}) {
         world.get<WorldTransform>(square).world = affine_from({0, 0, 0}, {1, 0, 0, 0}, Vec3(scale));
         const gpu::FloatImage image = radiance(look({0, 0, 0.5f}, {0, 0, 0}, 65, 65));
-        CHECK(image.at(32, 32, 0) == doctest::Approx(0.1042).epsilon(2e-3));
+        CHECK(image.at(32, 32, 0) == test::near(0.1042).epsilon(2e-3));
     }
 }
 

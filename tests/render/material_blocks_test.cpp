@@ -1,5 +1,6 @@
 #include "render/material_blocks.h"
 #include "render/shaders/material_blocks_gpu.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -96,7 +97,7 @@ TEST_CASE("material blocks: beside materials with others, each looks as when alo
         for (std::size_t k = 0; k < one.pixels.size(); k += 4) {
             if (one.pixels[k + 3] > 0) {
                 for (std::size_t c = k; c < k + 3; ++c) {
-                    CHECK(one.pixels[c] == doctest::Approx(together.pixels[c]).epsilon(1e-4));
+                    CHECK(one.pixels[c] == test::near(together.pixels[c]).epsilon(1e-4));
                 }
                 ++seen;
             }
@@ -117,7 +118,7 @@ TEST_CASE("material blocks: what is in a block does not depend on those before i
     const gpu::FloatImage plain = without.picture();
     CHECK(*std::max_element(plain.pixels.begin(), plain.pixels.end()) > 0.1f);
     for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
-        CHECK(moved.pixels[i] == doctest::Approx(plain.pixels[i]).epsilon(1e-5));
+        CHECK(moved.pixels[i] == test::near(plain.pixels[i]).epsilon(1e-5));
     }
 }
 

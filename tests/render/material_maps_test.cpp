@@ -1,5 +1,6 @@
 #include "render/image_pool.h"
 #include "render/material_maps.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ TEST_CASE_FIXTURE(RenderTest, "image pool: images of one size and format share a
     CHECK(pool.find({5}).array != before.array);
     for (const std::uint32_t i : {0u, 2u, 5u}) {
         const gpu::FloatImage texels = gpu::read_floats(*pool.find_texture({i}));
-        CHECK(texels.pixels[0] == doctest::Approx(images[i].pixels[0] / 255.0f).epsilon(1e-4));
+        CHECK(texels.pixels[0] == test::near(images[i].pixels[0] / 255.0f).epsilon(1e-4));
         CHECK(texels.width == 2);
     }
 }
@@ -122,7 +123,7 @@ TEST_CASE_FIXTURE(Scene, "material maps: materials that differ in their images a
         const Vec3 color = rgb_at(seen, 96 + (static_cast<int>(i) - 1) * 20, 32);
         CAPTURE(i);
         for (int c = 0; c < 3; ++c) {
-            CHECK(color[c] == doctest::Approx(colors[i][static_cast<std::size_t>(c)] / 255.0f));
+            CHECK(color[c] == test::near(colors[i][static_cast<std::size_t>(c)] / 255.0f));
         }
     }
     CHECK(draw(view).statistics.draws == 1);

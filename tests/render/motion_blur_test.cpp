@@ -1,6 +1,7 @@
 #include "bench/oracles/motion_blur_oracle.h"
 #include "ecs/components/rendering.h"
 #include "render/graph/frame_graph.h"
+#include "tests/near.h"
 #include "tests/render/shutter_fixture.h"
 
 #include <algorithm>
@@ -29,13 +30,13 @@ TEST_CASE("motion blur: the oracle's box and bar agree with each other") {
         double sum = 0;
         for (int x = 0; x < 40; ++x) {
             CAPTURE(x);
-            CHECK(filtered[x] == doctest::Approx(oracle::bar_coverage(x + 0.5, 12, 25, way)));
+            CHECK(filtered[x] == test::near(oracle::bar_coverage(x + 0.5, 12, 25, way)));
             sum += filtered[x];
         }
-        CHECK(sum == doctest::Approx(13));
+        CHECK(sum == test::near(13));
     }
-    CHECK(oracle::exposure_sample_time(0, 2, 180) == doctest::Approx(-0.125));
-    CHECK(oracle::exposure_sample_time(1, 2, 180) == doctest::Approx(0.125));
+    CHECK(oracle::exposure_sample_time(0, 2, 180) == test::near(-0.125));
+    CHECK(oracle::exposure_sample_time(1, 2, 180) == test::near(0.125));
 }
 
 TEST_CASE_FIXTURE(Shutter, "motion blur: a shutter of 0 adds no pass and changes no bit") {
@@ -101,7 +102,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: a plane that goes by is a box filter of
             const std::vector<double> found = row_of(blurred, 32, channel);
             for (int x = 10; x < 54; ++x) {
                 CAPTURE(x);
-                CHECK(found[x] == doctest::Approx(want[x]).epsilon(2e-3));
+                CHECK(found[x] == test::near(want[x]).epsilon(2e-3));
             }
         }
     }
@@ -124,7 +125,7 @@ TEST_CASE_FIXTURE(
         CHECK(blurred.at(42, 32, 0) > 0.3);
         CHECK(blurred.at(22 - static_cast<int>(way / 2) - 1, 32, 0) == 0.0f);
         CHECK(blurred.at(42 + static_cast<int>(way / 2), 32, 0) == 0.0f);
-        CHECK(sum_of(blurred, 0) == doctest::Approx(sum_of(sharp(), 0)).epsilon(0.02));
+        CHECK(sum_of(blurred, 0) == test::near(sum_of(sharp(), 0)).epsilon(0.02));
     }
 }
 
@@ -161,7 +162,7 @@ TEST_CASE_FIXTURE(
     const std::vector<double> want = oracle::box_filter(row_of(sharp(), 32, 0), 10);
     for (int x = 0; x < kSize; ++x) {
         CAPTURE(x);
-        CHECK(blurred.at(x, 32, 0) == doctest::Approx(want[x]).epsilon(2e-3));
+        CHECK(blurred.at(x, 32, 0) == test::near(want[x]).epsilon(2e-3));
     }
 }
 
@@ -238,7 +239,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: no smear is longer than the longest") {
         }
     }
     CHECK(blurred.at(24, 32, 0) > 0.1f);
-    CHECK(sum_of(blurred, 0) == doctest::Approx(sum_of(sharp(), 0)).epsilon(0.05));
+    CHECK(sum_of(blurred, 0) == test::near(sum_of(sharp(), 0)).epsilon(0.05));
 }
 
 TEST_CASE_FIXTURE(Shutter, "motion blur: NaN motion is no motion") {
@@ -267,7 +268,7 @@ TEST_CASE_FIXTURE(Shutter, "motion blur: it works in an image 16384 pixels wide"
     const gpu::FloatImage wide = radiance(front(16384, 4));
     CHECK(wide.width == 16384);
     CHECK(all_finite(wide));
-    CHECK(wide.at(8192, 2, 0) == doctest::Approx(1));
+    CHECK(wide.at(8192, 2, 0) == test::near(1));
 }
 
 TEST_CASE_FIXTURE(Shutter, "motion blur: the same frame twice gives the same bits") {

@@ -1,6 +1,7 @@
 #include "bench/oracles/motion_blur_oracle.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/time.h"
+#include "tests/near.h"
 #include "tests/render/shader_eval.h"
 #include "tests/render/shutter_fixture.h"
 
@@ -75,17 +76,17 @@ TEST_CASE_FIXTURE(
     OldShutter, "motion accumulation: a flash of one frame is a fifth of it in five frames") {
     flash(true);
     const float full = middle();
-    CHECK(full == doctest::Approx(1));
+    CHECK(full == test::near(1));
     flash(false);
     set_mode(MotionBlurMode::Accumulate);
     for (int i = 0; i < 5; ++i) {
         CHECK(middle() == 0.0f);
     }
     flash(true);
-    CHECK(middle() == doctest::Approx(0.2f * full).epsilon(1e-6));
+    CHECK(middle() == test::near(0.2f * full).epsilon(1e-6));
     flash(false);
     for (int i = 0; i < 4; ++i) {
-        CHECK(middle() == doctest::Approx(0.2f * full).epsilon(1e-6));
+        CHECK(middle() == test::near(0.2f * full).epsilon(1e-6));
     }
     CHECK(middle() == 0.0f);
 }
@@ -94,10 +95,10 @@ TEST_CASE_FIXTURE(
     OldShutter, "motion accumulation: at first it is the mean of the frames that there are") {
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
-    CHECK(middle() == doctest::Approx(1));
+    CHECK(middle() == test::near(1));
     flash(false);
-    CHECK(middle() == doctest::Approx(1.0 / 2));
-    CHECK(middle() == doctest::Approx(1.0 / 3));
+    CHECK(middle() == test::near(1.0 / 2));
+    CHECK(middle() == test::near(1.0 / 3));
 }
 
 TEST_CASE_FIXTURE(
@@ -124,7 +125,7 @@ TEST_CASE_FIXTURE(
     set_time(1);
     set_mode(MotionBlurMode::Accumulate);
     flash(true);
-    CHECK(middle() == doctest::Approx(1));
+    CHECK(middle() == test::near(1));
     flash(false);
     set_time(5);
     CHECK(middle() == 0.0f);
@@ -164,8 +165,7 @@ TEST_CASE_FIXTURE(
             CAPTURE(frame);
             CAPTURE(x);
             const double count = frame - first + 1;
-            CHECK(
-                row[static_cast<std::size_t>(x)] == doctest::Approx(covered / count).epsilon(1e-3));
+            CHECK(row[static_cast<std::size_t>(x)] == test::near(covered / count).epsilon(1e-3));
             levels.insert(covered);
         }
         CHECK(levels.size() >= std::min<std::size_t>(frame + 2, 5));
@@ -211,7 +211,7 @@ TEST_CASE_FIXTURE(
             CHECK(std::abs(blurred.at(x, 32, 0) - want[x]) < 1e-3);
             energy += blurred.at(x, 32, 0);
         }
-        CHECK(energy == doctest::Approx(1).epsilon(1e-3));
+        CHECK(energy == test::near(1).epsilon(1e-3));
     }
 }
 
@@ -248,11 +248,11 @@ TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of
     const std::vector<Vec4> found = evaluate_shader(
         "#include \"lib/motion.glsl\"\n",
         "y.xyz = flow_offset(x.xyz, x.w > 0.5 ? vec3(0.0) : vec3(0.0, 0.0, -2.0));", normals);
-    CHECK(Vec3(found[0]) == Vec3(0, 0, -2));                     // ahead: the motion
-    CHECK(Vec3(found[1]) == Vec3(0));                            // along: nothing
-    CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                      // behind: backward
-    CHECK(glm::length(Vec3(found[3])) == doctest::Approx(1.6));  // never more than the motion
-    CHECK(Vec3(found[4]) == Vec3(0));                            // no motion, no NaN
+    CHECK(Vec3(found[0]) == Vec3(0, 0, -2));                // ahead: the motion
+    CHECK(Vec3(found[1]) == Vec3(0));                       // along: nothing
+    CHECK(Vec3(found[2]) == Vec3(0, 0, 2));                 // behind: backward
+    CHECK(glm::length(Vec3(found[3])) == test::near(1.6));  // never more than the motion
+    CHECK(Vec3(found[4]) == Vec3(0));                       // no motion, no NaN
 
     Random random(4, 0, 0, 0);
     std::vector<Vec4> any;
@@ -263,7 +263,7 @@ TEST_CASE("motion flow: the offset is the share of the motion that goes ahead of
         "#include \"lib/motion.glsl\"\n", "y.xyz = flow_offset(x.xyz, vec3(0.0, x.w, 0.0));", any);
     for (std::size_t i = 0; i < any.size(); ++i) {
         CHECK(glm::length(Vec3(offsets[i])) <= any[i].w * 1.000001f);
-        CHECK(offsets[i].y == doctest::Approx(any[i].y * any[i].w).epsilon(1e-5));
+        CHECK(offsets[i].y == test::near(any[i].y * any[i].w).epsilon(1e-5));
     }
 }
 

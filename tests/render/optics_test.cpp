@@ -1,4 +1,5 @@
 #include "ecs/base/optics.h"
+#include "tests/near.h"
 #include "tests/render/shader_eval.h"
 
 #include <cmath>
@@ -50,14 +51,14 @@ TEST_CASE("optics: into water light bends toward the normal as Snell says") {
     const float pairs[][2] = {{30, 22.0824f}, {45, 32.1176f}, {60, 40.6281f}};
     for (const auto& pair : pairs) {
         const Vec3 t = refract_ray(kUp, light_at(pair[0]), kIntoWater);
-        CHECK(degrees(std::atan2(-t.x, -t.y)) == doctest::Approx(pair[1]).epsilon(1e-6));
+        CHECK(degrees(std::atan2(-t.x, -t.y)) == test::near(pair[1]).epsilon(1e-6));
         const Vec3 r = reflect_ray(kUp, light_at(pair[0]));
-        CHECK(degrees(std::atan2(-r.x, r.y)) == doctest::Approx(pair[0]).epsilon(1e-6));
+        CHECK(degrees(std::atan2(-r.x, r.y)) == test::near(pair[0]).epsilon(1e-6));
     }
 }
 
 TEST_CASE("optics: out of water nothing comes beyond 48.75 degrees") {
-    CHECK(glm::length(refract_ray(kUp, light_at(48.74f), kWater)) == doctest::Approx(1));
+    CHECK(glm::length(refract_ray(kUp, light_at(48.74f), kWater)) == test::near(1));
     CHECK(refract_ray(kUp, light_at(48.77f), kWater) == Vec3(0));
     CHECK(fresnel_at(48.77f, 1 / kWater) == 1.0f);
     CHECK(fresnel_at(48.5f, 1 / kWater) < 0.7f);
@@ -71,12 +72,12 @@ TEST_CASE("optics: rays are unit, in one plane, and go back the way they came") 
         light = glm::dot(light, normal) < 0 ? -light : light;
         const Vec3 r = reflect_ray(normal, light);
         const Vec3 t = refract_ray(normal, light, kIntoWater);
-        CHECK(glm::length(r) == doctest::Approx(1));
-        CHECK(glm::length(t) == doctest::Approx(1));
+        CHECK(glm::length(r) == test::near(1));
+        CHECK(glm::length(t) == test::near(1));
         CHECK(std::abs(glm::dot(glm::cross(normal, light), r)) < 1e-6f);
         CHECK(std::abs(glm::dot(glm::cross(normal, light), t)) < 1e-6f);
         const float sine_in = glm::length(glm::cross(normal, light));
-        CHECK(glm::length(glm::cross(normal, t)) == doctest::Approx(sine_in / kWater));
+        CHECK(glm::length(glm::cross(normal, t)) == test::near(sine_in / kWater));
         // From below, where it went, it comes out where it came from.
         CHECK(glm::distance(refract_ray(normal, t, kWater), light) < 1e-3f);
         CHECK(glm::distance(reflect_ray(normal, r), light) < 1e-6f);
@@ -93,12 +94,12 @@ TEST_CASE("optics: where there is no boundary light goes on and nothing is mirro
 }
 
 TEST_CASE("optics: water mirrors as much as Fresnel says") {
-    CHECK(fresnel(1, kWater) == doctest::Approx(0.0200593).epsilon(1e-5));
-    CHECK(fresnel(1, 1.3f) == doctest::Approx(0.0170132).epsilon(1e-5));
+    CHECK(fresnel(1, kWater) == test::near(0.0200593).epsilon(1e-5));
+    CHECK(fresnel(1, 1.3f) == test::near(0.0170132).epsilon(1e-5));
     const double pairs[][2] = {{30, 0.0211125}, {45, 0.0275214}, {53.06123, 0.0385538},
                                {60, 0.0591256}, {75, 0.211427},  {85, 0.582728}};
     for (const auto& pair : pairs) {
-        CHECK(fresnel_at(static_cast<float>(pair[0])) == doctest::Approx(pair[1]).epsilon(2e-5));
+        CHECK(fresnel_at(static_cast<float>(pair[0])) == test::near(pair[1]).epsilon(2e-5));
     }
     CHECK(fresnel(0, kWater) == 1.0f);
     CHECK(fresnel(-0.1f, kWater) == 1.0f);
@@ -121,22 +122,22 @@ TEST_CASE("optics: the form with cosines is the one with angles, and rises all t
 TEST_CASE("optics: both sides of a boundary mirror alike along the same ray") {
     for (const float angle : {0.0f, 20.0f, 50.0f, 80.0f}) {
         const Vec3 t = refract_ray(kUp, light_at(angle), kIntoWater);
-        CHECK(fresnel(-t.y, 1 / kWater) == doctest::Approx(fresnel_at(angle)).epsilon(1e-4));
+        CHECK(fresnel(-t.y, 1 / kWater) == test::near(fresnel_at(angle)).epsilon(1e-4));
     }
 }
 
 TEST_CASE("optics: the book's cheap form has its numbers, its bend and its error") {
     CHECK(tso_barsky_at(44.9f) == 0.02f);
-    CHECK(tso_barsky_at(45) == doctest::Approx(0.02));
-    CHECK(tso_barsky_at(60) == doctest::Approx(0.128889).epsilon(1e-5));
-    CHECK(tso_barsky_at(75) == doctest::Approx(0.455556).epsilon(1e-5));
-    CHECK(fresnel_tso_barsky(0) == doctest::Approx(1.0));
+    CHECK(tso_barsky_at(45) == test::near(0.02));
+    CHECK(tso_barsky_at(60) == test::near(0.128889).epsilon(1e-5));
+    CHECK(tso_barsky_at(75) == test::near(0.455556).epsilon(1e-5));
+    CHECK(fresnel_tso_barsky(0) == test::near(1.0));
     CHECK(fresnel_tso_barsky(-0.5f) == fresnel_tso_barsky(0));
     // (R - 0.02) / (angle - pi/4)^2 is 392 / (25 pi^2) everywhere, so that it begins without a
     // kink.
     for (const float angle : {50.0f, 70.0f, 88.0f}) {
         const float coefficient = (tso_barsky_at(angle) - 0.02f) / square(radians(angle - 45));
-        CHECK(coefficient == doctest::Approx(1.588716).epsilon(1e-4));
+        CHECK(coefficient == test::near(1.588716).epsilon(1e-4));
     }
     float most = 0;
     float where = 0;
@@ -153,20 +154,20 @@ TEST_CASE("optics: the book's cheap form has its numbers, its bend and its error
             CHECK((error < 0) == (angle < 50.33f));
         }
     }
-    CHECK(most == doctest::Approx(0.266238).epsilon(1e-5));
-    CHECK(where == doctest::Approx(79.52).epsilon(1e-3));
-    CHECK(least == doctest::Approx(-0.007956).epsilon(1e-3));
+    CHECK(most == test::near(0.266238).epsilon(1e-5));
+    CHECK(where == test::near(79.52).epsilon(1e-3));
+    CHECK(least == test::near(-0.007956).epsilon(1e-3));
 }
 
 TEST_CASE("optics: Schlick's form is exact at both ends and nearer than the book's between") {
-    CHECK(fresnel_schlick(1, kWater) == doctest::Approx(fresnel(1, kWater)));
-    CHECK(fresnel_schlick(0, kWater) == doctest::Approx(1));
+    CHECK(fresnel_schlick(1, kWater) == test::near(fresnel(1, kWater)));
+    CHECK(fresnel_schlick(0, kWater) == test::near(1));
     float most = 0;
     for (int i = 0; i <= 900; ++i) {
         const float cosine = std::cos(radians(0.1f * static_cast<float>(i)));
         most = std::max(most, std::abs(fresnel_schlick(cosine, kWater) - fresnel(cosine, kWater)));
     }
-    CHECK(most == doctest::Approx(0.0599).epsilon(1e-3));
+    CHECK(most == test::near(0.0599).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(RenderTest, "optics: shaders have the same functions") {
@@ -199,7 +200,7 @@ TEST_CASE_FIXTURE(RenderTest, "optics: shaders have the same functions") {
         mirrored += t == Vec3(0) ? 1 : 0;
         CHECK(
             rays[i].w
-            == doctest::Approx(glm::dot(reflect_ray(normal, light), Vec3(1, 2, 3))).epsilon(1e-5));
+            == test::near(glm::dot(reflect_ray(normal, light), Vec3(1, 2, 3))).epsilon(1e-5));
         CHECK(std::abs(shares[i].x - fresnel(light.x, inputs[i].w)) < 1e-3f);
         CHECK(std::abs(shares[i].y - fresnel_schlick(light.x, inputs[i].w)) < 1e-5f);
         // The arc cosine of shaders is off by as much as 3e-4.

@@ -1,5 +1,6 @@
 #include "render/shadow/perspective_view.h"
 #include "render/shadow/shadow_list.h"
+#include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 
 #include <glm/matrix.hpp>
@@ -59,27 +60,27 @@ TEST_CASE("perspective map: under a sun above, what is ten times nearer has ten 
     };
     const auto map = fit_light_view(virtual_camera(camera, 1, 100, 0), sun, corners, 1);
     REQUIRE(map);
-    CHECK(length_at(*map, 2) / length_at(*map, 20) == doctest::Approx(10).epsilon(1e-9));
+    CHECK(length_at(*map, 2) / length_at(*map, 20) == test::near(10).epsilon(1e-9));
     const auto uniform = fit_light_view(dmat4(1), sun, corners, 1);
     REQUIRE(uniform);
-    CHECK(length_at(*uniform, 2) / length_at(*uniform, 20) == doctest::Approx(1).epsilon(1e-9));
+    CHECK(length_at(*uniform, 2) / length_at(*uniform, 20) == test::near(1).epsilon(1e-9));
     // The farther behind the virtual camera stands, the less it distorts.
     const auto tempered = fit_light_view(virtual_camera(camera, 1, 100, 8), sun, corners, 1);
     REQUIRE(tempered);
-    CHECK(length_at(*tempered, 2) / length_at(*tempered, 20) == doctest::Approx(28.0 / 10));
+    CHECK(length_at(*tempered, 2) / length_at(*tempered, 20) == test::near(28.0 / 10));
 }
 
 TEST_CASE("perspective map: a sun is a place at depth 1.020202, beside the camera a direction") {
     const dmat4 camera = virtual_camera(straight_view(), 1, 100, 0);
     for (const DVec3& toward : {DVec3(0.3, 0.5, -0.6), DVec3(0, 0, -1), DVec3(-1, 2, 0.7)}) {
         const dvec4 light = camera * dvec4(toward, 0);
-        CHECK(light.z / light.w == doctest::Approx(101.0 / 99).epsilon(1e-12));
+        CHECK(light.z / light.w == test::near(101.0 / 99).epsilon(1e-12));
         CHECK((light.w > 0) == (toward.z < 0));  // behind the camera its w is negative
     }
     CHECK((camera * dvec4(1, 1, 0, 0)).w == 0);
     // The book's depths: -1 at near, 1 at far.
-    CHECK(project(camera, {0, 0, -1}).z == doctest::Approx(-1));
-    CHECK(project(camera, {0, 0, -100}).z == doctest::Approx(1));
+    CHECK(project(camera, {0, 0, -1}).z == test::near(-1));
+    CHECK(project(camera, {0, 0, -100}).z == test::near(1));
 }
 
 TEST_CASE("perspective map: of a camera without perspective it is an ordinary shadow map") {
@@ -106,7 +107,7 @@ TEST_CASE("perspective map: of a camera without perspective it is an ordinary sh
             const dvec4 here = project(*map, p);
             const dvec4 there = project(*map, p + 3.0 * toward);
             CHECK(glm::distance(dvec2(here), dvec2(there)) < 1e-9);
-            CHECK(there.z - here.z == doctest::Approx(3 * rise).epsilon(1e-9));
+            CHECK(there.z - here.z == test::near(3 * rise).epsilon(1e-9));
         }
     }
 }

@@ -3,6 +3,7 @@
 #include "render/frame_clock.h"
 #include "render/shaders/tone_gpu.h"
 #include "render/tone_mapper.h"
+#include "tests/near.h"
 #include "tests/render/render_fixture.h"
 
 #include <cmath>
@@ -75,12 +76,12 @@ TEST_CASE_FIXTURE(
         const oracle::ImageStatistics want = expected_statistics(pixels);
         const layout::ImageStatistics got = measure(pixels, size.x);
         CAPTURE(size.x);
-        CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
+        CHECK(got.luminance.x == test::near(want.log_average).epsilon(1e-3));
         for (int c = 0; c < 3; ++c) {
-            CHECK(got.mean_scale[c] == doctest::Approx(want.mean[c]).epsilon(1e-5));
+            CHECK(got.mean_scale[c] == test::near(want.mean[c]).epsilon(1e-5));
         }
-        CHECK(got.luminance.z == doctest::Approx(want.least).epsilon(1e-6));
-        CHECK(got.luminance.w == doctest::Approx(want.largest).epsilon(1e-6));
+        CHECK(got.luminance.z == test::near(want.least).epsilon(1e-6));
+        CHECK(got.luminance.w == test::near(want.largest).epsilon(1e-6));
         CHECK(got.pixels.x == pixels.size());
         CHECK(got.pixels.y == 0);
         CHECK(got.mean_scale.w == 1);
@@ -89,10 +90,10 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(
     Statistics, "hdr: the log-average of one color is its luminance, of black delta") {
-    CHECK(even({1, 0.5f, 0.25f}).luminance.x == doctest::Approx(0.62 + 1e-4).epsilon(1e-5));
-    CHECK(even(Vec3(0)).luminance.x == doctest::Approx(1e-4).epsilon(1e-4));
+    CHECK(even({1, 0.5f, 0.25f}).luminance.x == test::near(0.62 + 1e-4).epsilon(1e-5));
+    CHECK(even(Vec3(0)).luminance.x == test::near(1e-4).epsilon(1e-4));
     const std::vector<Vec3> two = {Vec3(1), Vec3(100), Vec3(1), Vec3(100)};
-    CHECK(measure(two, 2).luminance.x == doctest::Approx(10).epsilon(1e-3));
+    CHECK(measure(two, 2).luminance.x == test::near(10).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(
@@ -100,11 +101,11 @@ TEST_CASE_FIXTURE(
     for (const float unit : {1.0f, 0.125f, 37.0f}) {
         const std::vector<Vec3> two = {Vec3(0.01f * unit), Vec3(1000 * unit)};
         const layout::ImageStatistics got = measure(two, 2, {.histogram = true});
-        CHECK(ratio(got.luminance.w, got.luminance.z) == doctest::Approx(1e5).epsilon(1e-5));
-        CHECK(ratio(got.clipped.y, got.clipped.x) == doctest::Approx(1e5).epsilon(1e-5));
+        CHECK(ratio(got.luminance.w, got.luminance.z) == test::near(1e5).epsilon(1e-5));
+        CHECK(ratio(got.clipped.y, got.clipped.x) == test::near(1e5).epsilon(1e-5));
     }
     const std::vector<Vec3> lit = {Vec3(0), Vec3(0.5f), Vec3(2), Vec3(0)};
-    CHECK(measure(lit, 2).luminance.z == doctest::Approx(0.5));  // black has no ratio
+    CHECK(measure(lit, 2).luminance.z == test::near(0.5));  // black has no ratio
     const layout::ImageStatistics black = even(Vec3(0), {.histogram = true});
     CHECK(black.luminance.z == 0);
     CHECK(black.luminance.w == 0);
@@ -139,19 +140,19 @@ TEST_CASE_FIXTURE(Statistics, "hdr: NaN and infinity are counted and change noth
     const oracle::ImageStatistics want = expected_statistics(good);
     CHECK(got.pixels.x == 90);
     CHECK(got.pixels.y == 6);
-    CHECK(got.luminance.x == doctest::Approx(want.log_average).epsilon(1e-3));
-    CHECK(got.luminance.w == doctest::Approx(want.largest).epsilon(1e-6));
-    CHECK(got.mean_scale.x == doctest::Approx(want.mean.x).epsilon(1e-5));
+    CHECK(got.luminance.x == test::near(want.log_average).epsilon(1e-3));
+    CHECK(got.luminance.w == test::near(want.largest).epsilon(1e-6));
+    CHECK(got.mean_scale.x == test::near(want.mean.x).epsilon(1e-5));
 
     const layout::ImageStatistics nothing = even(Vec3(kNan), {.key = 0.18f});
     CHECK(nothing.pixels.x == 0);
-    CHECK(nothing.luminance.x == doctest::Approx(1e-4));
+    CHECK(nothing.luminance.x == test::near(1e-4));
     CHECK(std::isfinite(nothing.mean_scale.w));
 }
 
 TEST_CASE_FIXTURE(Statistics, "hdr: light below 0 counts as none, above the largest half as that") {
     CHECK(even({-5, -1, -2}).luminance.w == 0);
-    CHECK(even(Vec3(1e20f)).luminance.w == doctest::Approx(65504));
+    CHECK(even(Vec3(1e20f)).luminance.w == test::near(65504));
     CHECK(even({-5, 0.5f, -2}).mean_scale.x == 0);
 }
 
@@ -169,30 +170,30 @@ TEST_CASE_FIXTURE(
     for (const float unit : {1.0f, 1000.0f}) {
         const std::vector<Vec3> pixels = make_noise(64 * 64, unit);
         const layout::ImageStatistics got = measure(pixels, 64, {.key = 0.18f});
-        CHECK(got.mean_scale.w * got.luminance.x == doctest::Approx(0.18).epsilon(1e-5));
+        CHECK(got.mean_scale.w * got.luminance.x == test::near(0.18).epsilon(1e-5));
         CHECK(
             unit * got.mean_scale.w * expected_statistics(make_noise(64 * 64)).log_average
-            == doctest::Approx(0.18).epsilon(2e-3));
+            == test::near(0.18).epsilon(2e-3));
     }
     const std::vector<Vec3> two = {Vec3(1), Vec3(100)};
-    CHECK(measure(two, 2, {.key = 0.18f}).mean_scale.w == doctest::Approx(0.018).epsilon(1e-3));
+    CHECK(measure(two, 2, {.key = 0.18f}).mean_scale.w == test::near(0.018).epsilon(1e-3));
     // In the dark the key is delta, and no further than it may adapt.
-    CHECK(even(Vec3(0), {.key = 0.18f}).mean_scale.w == doctest::Approx(1800).epsilon(1e-3));
+    CHECK(even(Vec3(0), {.key = 0.18f}).mean_scale.w == test::near(1800).epsilon(1e-3));
     CHECK(
         even(Vec3(0), {.key = 0.18f, .adaptation_range = {0.01f, 10}}).mean_scale.w
-        == doctest::Approx(18).epsilon(1e-3));
+        == test::near(18).epsilon(1e-3));
     CHECK(
         even(Vec3(100), {.key = 0.18f, .adaptation_range = {0.01f, 10}}).mean_scale.w
-        == doctest::Approx(0.018).epsilon(1e-3));
+        == test::near(0.018).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(
     Statistics, "hdr: the eye is at home in its first frame, then goes the share it is given") {
-    CHECK(even(Vec3(2), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(2.0001));
-    CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0.25f}).luminance.y == doctest::Approx(4.0001));
+    CHECK(even(Vec3(2), {.key = 0.18f, .blend = 0.25f}).luminance.y == test::near(2.0001));
+    CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0.25f}).luminance.y == test::near(4.0001));
     const layout::ImageStatistics again = even(Vec3(10), {.key = 0.18f, .blend = 0.25f});
-    CHECK(again.luminance.y == doctest::Approx(5.5001));
-    CHECK(again.mean_scale.w == doctest::Approx(0.18 / 5.5001));
+    CHECK(again.luminance.y == test::near(5.5001));
+    CHECK(again.mean_scale.w == test::near(0.18 / 5.5001));
     CHECK(even(Vec3(10), {.key = 0.18f, .blend = 0}).luminance.y == again.luminance.y);
     const layout::ImageStatistics home = even(Vec3(0.1f), {.key = 0.18f, .blend = 1});
     CHECK(home.luminance.y == home.luminance.x);
@@ -209,7 +210,7 @@ TEST_CASE("hdr: only cuts restart the frame clock") {
     turned.row[0] = {0, 0, 1, 0};
     turned.row[2] = {-1, 0, 0, 0};
     CHECK_FALSE(seconds_since_last(clock, 1, 5.0, here).has_value());
-    CHECK(seconds_since_last(clock, 1, 5.1, near_by).value() == doctest::Approx(0.1));
+    CHECK(seconds_since_last(clock, 1, 5.1, near_by).value() == test::near(0.1));
     CHECK(seconds_since_last(clock, 1, 5.1, near_by).value() == 0);
     CHECK_FALSE(seconds_since_last(clock, 2, 5.2, near_by).has_value());    // another world
     CHECK_FALSE(seconds_since_last(clock, 2, 5.1, near_by).has_value());    // earlier
@@ -217,7 +218,7 @@ TEST_CASE("hdr: only cuts restart the frame clock") {
     CHECK_FALSE(seconds_since_last(clock, 2, 7.01, far_away).has_value());  // elsewhere
     CHECK_FALSE(seconds_since_last(clock, 2, 7.02, turned).has_value());
     CHECK_FALSE(seconds_since_last(clock, 2, 7.03, here).has_value());
-    CHECK(seconds_since_last(clock, 2, 7.05, here).value() == doctest::Approx(0.02));
+    CHECK(seconds_since_last(clock, 2, 7.05, here).value() == test::near(0.02));
 }
 
 }  // namespace limn::test

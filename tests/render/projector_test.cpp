@@ -2,6 +2,7 @@
 #include "ecs/components/rendering.h"
 #include "ecs/components/time.h"
 #include "render/projector_list.h"
+#include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 
 namespace limn::test {
@@ -75,19 +76,19 @@ TEST_CASE_FIXTURE(
     const float half = 2 * std::tan(0.5f * fov);  // at 2 m
     const Vec3 red = at_wall(image, {-0.5f * half, 0.5f * half});
     CHECK(red.x > 0.5f);
-    CHECK(red.y == doctest::Approx(0));
+    CHECK(red.y == doctest::Approx(0).scale(1));
     // Seen from before the wall, the lamp's right is ours.
     const Vec3 green = at_wall(image, {0.5f * half, 0.5f * half});
     CHECK(green.y > 0.5f);
-    CHECK(green.z == doctest::Approx(0));
+    CHECK(green.z == doctest::Approx(0).scale(1));
     const Vec3 blue = at_wall(image, {-0.5f * half, -0.5f * half});
     CHECK(blue.z > 0.5f);
-    CHECK(blue.x == doctest::Approx(0));
+    CHECK(blue.x == doctest::Approx(0).scale(1));
     int lit = 0;
     for (int x = 0; x < 96; ++x) {
         lit += rgb_at(image, x, 40).x + rgb_at(image, x, 40).y > 0 ? 1 : 0;
     }
-    CHECK(lit == doctest::Approx(2 * half / 6 * 96).epsilon(0.04));
+    CHECK(lit == test::near(2 * half / 6 * 96).epsilon(0.04));
     CHECK(at_wall(image, {1.1f * half, 0}) == Vec3(0));
     CHECK(at_wall(image, {0, -1.1f * half}) == Vec3(0));
 }
@@ -99,9 +100,9 @@ TEST_CASE(
     for (const float distance : {0.5f, 3.0f, 40.0f}) {
         const Vec4 ahead = {1, 2 - distance, 3, 1};
         const float q = glm::dot(record.row_q, ahead);
-        CHECK(q == doctest::Approx(distance));
-        CHECK(glm::dot(record.row_s, ahead) / q == doctest::Approx(0.5));
-        CHECK(glm::dot(record.row_t, ahead) / q == doctest::Approx(0.5));
+        CHECK(q == test::near(distance));
+        CHECK(glm::dot(record.row_s, ahead) / q == test::near(0.5));
+        CHECK(glm::dot(record.row_t, ahead) / q == test::near(0.5));
     }
     CHECK(glm::dot(record.row_q, Vec4(1, 4, 3, 1)) < 0);
 }
@@ -153,9 +154,7 @@ TEST_CASE_FIXTURE(
     const gpu::FloatImage grey = wall();
     for (int y = 36; y < 60; ++y) {
         for (int x = 36; x < 60; ++x) {
-            REQUIRE(
-                rgb_at(grey, x, y).x
-                == doctest::Approx(0.5f * rgb_at(plain, x, y).x).epsilon(0.02));
+            REQUIRE(rgb_at(grey, x, y).x == test::near(0.5f * rgb_at(plain, x, y).x).epsilon(0.02));
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "ecs/components/ripple.h"
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -94,19 +95,19 @@ TEST_CASE("ripple: the wave of the screen has the printed zeros, values and extr
         CHECK(std::abs(wave(zero)) < 1e-9);
     }
     CHECK(oracle::screen_wave(3, 2, 1) == 0);
-    CHECK(wave(0.1) == doctest::Approx(0.0707107).epsilon(1e-6));
-    CHECK(wave(0.4) == doctest::Approx(-0.4).epsilon(1e-6));
-    CHECK(wave(0.8) == doctest::Approx(0.8).epsilon(1e-6));
+    CHECK(wave(0.1) == test::near(0.0707107).epsilon(1e-6));
+    CHECK(wave(0.4) == test::near(-0.4).epsilon(1e-6));
+    CHECK(wave(0.8) == test::near(0.8).epsilon(1e-6));
     double high = 0;
     double low = 0;
     for (int i = 0; i <= 100000; ++i) {
         high = std::max(high, wave(i * 1e-5));
         low = std::min(low, wave(i * 1e-5));
     }
-    CHECK(high == doctest::Approx(0.809908).epsilon(1e-5));
-    CHECK(high == doctest::Approx(wave(0.81962)).epsilon(1e-6));
-    CHECK(low == doctest::Approx(-0.418688).epsilon(1e-5));
-    CHECK(low == doctest::Approx(wave(0.43616)).epsilon(1e-6));
+    CHECK(high == test::near(0.809908).epsilon(1e-5));
+    CHECK(high == test::near(wave(0.81962)).epsilon(1e-6));
+    CHECK(low == test::near(-0.418688).epsilon(1e-5));
+    CHECK(low == test::near(wave(0.43616)).epsilon(1e-6));
 }
 
 TEST_CASE("ripple: the screen folds over itself exactly when amplitude / radius is 0.196074") {
@@ -157,7 +158,7 @@ TEST_CASE_FIXTURE(Rippled, "ripple: a round one is round in pixels, several add 
     for (int i = 1; i < 18; ++i) {  // a quarter turn about the middle
         const float right = alone.at(kWidth / 2 + i, kHeight / 2, 0);
         const float up = alone.at(kWidth / 2, kHeight / 2 - 1 - i, 1);
-        CHECK(right == doctest::Approx(up).epsilon(1e-3));
+        CHECK(right == test::near(up).epsilon(1e-3));
     }
     const Entity second = world.create(two);
     const gpu::FloatImage both = field().shift;
@@ -165,7 +166,7 @@ TEST_CASE_FIXTURE(Rippled, "ripple: a round one is round in pixels, several add 
     const gpu::FloatImage other = field().shift;
     world.destroy(second);
     for (std::size_t i = 0; i < both.pixels.size(); i += 4) {
-        CHECK(both.pixels[i] == doctest::Approx(alone.pixels[i] + other.pixels[i]).epsilon(1e-4));
+        CHECK(both.pixels[i] == test::near(alone.pixels[i] + other.pixels[i]).epsilon(1e-4));
     }
 }
 
@@ -319,7 +320,7 @@ TEST_CASE_FIXTURE(Rippled, "ripple: places outside of the image show its edge") 
     const gpu::FloatImage made = radiance(seen());
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            CHECK(made.at(x, y, 1) == doctest::Approx(0.5f).epsilon(1e-3));
+            CHECK(made.at(x, y, 1) == test::near(0.5f).epsilon(1e-3));
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "ecs/base/rng.h"
 #include "render/gpu/readback.h"
 #include "render/separable_blur.h"
+#include "tests/near.h"
 #include "tests/render/render_fixture.h"
 
 #include <algorithm>
@@ -82,10 +83,10 @@ TEST_CASE_FIXTURE(RenderTest, "separable blur: a point becomes the outer product
     LightImage point = oracle::make_black_image(kSide, kSide);
     point.pixels[12 * kSide + 11] = glm::dvec3(1);
     const LightImage made = blurred(point, kBinomialKernel);
-    CHECK(made.at(11, 12).y == doctest::Approx(0.09765625).epsilon(1e-6));
-    CHECK(oracle::sum_of(made).y == doctest::Approx(1).epsilon(1e-6));
-    CHECK(made.at(11 + 3, 12 - 2).y == doctest::Approx(0.015625 * 0.09375).epsilon(1e-5));
-    CHECK(blurred(point, kBox).at(11, 12).y == doctest::Approx(1.0 / 49).epsilon(1e-6));
+    CHECK(made.at(11, 12).y == test::near(0.09765625).epsilon(1e-6));
+    CHECK(oracle::sum_of(made).y == test::near(1).epsilon(1e-6));
+    CHECK(made.at(11 + 3, 12 - 2).y == test::near(0.015625 * 0.09375).epsilon(1e-5));
+    CHECK(blurred(point, kBox).at(11, 12).y == test::near(1.0 / 49).epsilon(1e-6));
 }
 
 TEST_CASE_FIXTURE(RenderTest, "separable blur: two passes of 7 are the 49 weights at once") {

@@ -2,6 +2,7 @@
 #include "render/graph/frame_graph.h"
 #include "render/shading_models.h"
 #include "render/variant.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <algorithm>
@@ -144,7 +145,7 @@ TEST_CASE("shading models: none changes the others") {
         for (int y = 37; y < 43; ++y) {
             for (int c = 0; c < 3; ++c) {
                 CHECK(one.at(x, y, c) > 0.01f);
-                CHECK(one.at(x, y, c) == doctest::Approx(all.at(x, y, c)).epsilon(1e-4));
+                CHECK(one.at(x, y, c) == test::near(all.at(x, y, c)).epsilon(1e-4));
             }
         }
     }

@@ -1,5 +1,6 @@
 #include "bench/oracles/light_oracle.h"
 #include "ecs/components/rendering.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -169,11 +170,11 @@ TEST_CASE_FIXTURE(ShadingRates, "phong pixel: in between, normals are as long as
     shine(DirectionalLight{.illuminance = kPi}, look_at({0, 0, 0}, {0, 0, -1}));
     const float middle = rgb_at(picture(ShadingRate::Pixel, above()), 32, 32).x;
     const float straight = 0.9f;
-    CHECK(middle == doctest::Approx(straight).epsilon(0.002));
+    CHECK(middle == test::near(straight).epsilon(0.002));
     // Gouraud's is the mean of the corners, whose cosine is 0.866.
     CHECK(
         rgb_at(picture(ShadingRate::Vertex, above()), 32, 32).x
-        == doctest::Approx(straight * 0.8660f).epsilon(0.002));
+        == test::near(straight * 0.8660f).epsilon(0.002));
 }
 
 TEST_CASE_FIXTURE(

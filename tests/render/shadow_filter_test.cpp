@@ -1,5 +1,6 @@
 #include "render/gpu/framebuffer.h"
 #include "render/gpu/shader_library.h"
+#include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 
 #include <array>
@@ -73,7 +74,7 @@ TEST_CASE_FIXTURE(
             map[static_cast<std::size_t>((5 - y) * 8 + 2 + x)] = rows[y][x] == '1' ? 1.0f : 0.0f;
         }
     }
-    CHECK(lit(map, {4, 4}, false) == doctest::Approx(0.75));
+    CHECK(lit(map, {4, 4}, false) == test::near(0.75));
 }
 
 TEST_CASE_FIXTURE(FilterTest, "shadow filter: 2x2 comparisons are weighted by how near they are") {
@@ -81,13 +82,13 @@ TEST_CASE_FIXTURE(FilterTest, "shadow filter: 2x2 comparisons are weighted by ho
     map[3 * 8 + 3] = 1;  // one lit texel, its middle at (3.5, 3.5)
     for (const float x : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) {
         for (const float y : {0.0f, 0.5f, 0.9f}) {
-            CHECK(lit(map, {3.5f + x, 3.5f + y}, false) == doctest::Approx((1 - x) * (1 - y)));
+            CHECK(lit(map, {3.5f + x, 3.5f + y}, false) == test::near((1 - x) * (1 - y)));
         }
     }
     // At a corner of texels all four count the same: multiples of a quarter.
-    CHECK(lit(map, {4, 4}, false) == doctest::Approx(0.25));
+    CHECK(lit(map, {4, 4}, false) == test::near(0.25));
     map[3 * 8 + 4] = 1;
-    CHECK(lit(map, {4, 4}, false) == doctest::Approx(0.5));
+    CHECK(lit(map, {4, 4}, false) == test::near(0.5));
 }
 
 TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard one takes the nearest texel alone") {
@@ -101,7 +102,7 @@ TEST_CASE_FIXTURE(FilterTest, "shadow filter: the hard one takes the nearest tex
 TEST_CASE_FIXTURE(FilterTest, "shadow filter: all lit is 1 and none lit is 0, to the bit") {
     for (const bool soft : {false, true}) {
         for (const Vec2 st : {Vec2(4, 4), Vec2(3.3f, 4.9f), Vec2(4.5f, 2.25f)}) {
-            CHECK(lit(edge_at(0), st, soft) == doctest::Approx(1).epsilon(1e-6));
+            CHECK(lit(edge_at(0), st, soft) == test::near(1).epsilon(1e-6));
             CHECK(lit(edge_at(8), st, soft) == 0);
         }
     }
@@ -112,16 +113,14 @@ TEST_CASE_FIXTURE(
     // At texel middles the weights along an axis are (1, 2, 2, 2, 1) / 8.
     const float want[] = {0, 0.125f, 0.375f, 0.625f, 0.875f, 1};
     for (int i = 0; i < 6; ++i) {
-        CHECK(
-            lit(edge_at(4), {1.5f + static_cast<float>(i), 4.5f}, true)
-            == doctest::Approx(want[i]));
+        CHECK(lit(edge_at(4), {1.5f + static_cast<float>(i), 4.5f}, true) == test::near(want[i]));
     }
     // Between them (1 - f, 1, 1, 1, f) / 4: linear, and never falling.
     float last = 0;
     for (float x = 1.5f; x < 6.5f; x += 0.125f) {
         const float now = lit(edge_at(4), {x, 4.3f}, true);
         CHECK(now >= last - 1e-6f);
-        CHECK(now == doctest::Approx(std::clamp((x - 2) / 4, 0.0f, 1.0f)));
+        CHECK(now == test::near(std::clamp((x - 2) / 4, 0.0f, 1.0f)));
         last = now;
     }
 }
@@ -134,7 +133,7 @@ TEST_CASE_FIXTURE(
         for (int x = 0; x < 5; ++x) {
             std::array<float, 64> map = edge_at(0);
             map[static_cast<std::size_t>((2 + y) * 8 + 2 + x)] = 0;
-            CHECK(1 - lit(map, {4.5f, 4.5f}, true) == doctest::Approx(want[x] * want[y] / 64.0));
+            CHECK(1 - lit(map, {4.5f, 4.5f}, true) == test::near(want[x] * want[y] / 64.0));
         }
     }
 }
@@ -143,14 +142,14 @@ TEST_CASE_FIXTURE(
 // -------------------------------------------------------------------------------
 
 TEST_CASE("shadow filter: the penumbra's width is similar triangles (shadow.penumbra)") {
-    CHECK(oracle::penumbra_width(1, 2, 3) == doctest::Approx(0.5));
+    CHECK(oracle::penumbra_width(1, 2, 3) == test::near(0.5));
     CHECK(oracle::penumbra_width(0, 2, 3) == 0);
     CHECK(oracle::penumbra_width(1, 3, 3) == 0);
-    CHECK(oracle::penumbra_width(2, 2, 3) == doctest::Approx(2 * oracle::penumbra_width(1, 2, 3)));
+    CHECK(oracle::penumbra_width(2, 2, 3) == test::near(2 * oracle::penumbra_width(1, 2, 3)));
     CHECK(oracle::penumbra_width(1, 2, 4) > oracle::penumbra_width(1, 2, 3));
     // Outer width of the shadow of an occluder of width 1, and its umbra.
-    CHECK(1 * 3 / 2.0 + oracle::penumbra_width(1, 2, 3) == doctest::Approx(2.0));
-    CHECK(1 * 3 / 2.0 - oracle::penumbra_width(1, 2, 3) == doctest::Approx(1.0));
+    CHECK(1 * 3 / 2.0 + oracle::penumbra_width(1, 2, 3) == test::near(2.0));
+    CHECK(1 * 3 / 2.0 - oracle::penumbra_width(1, 2, 3) == test::near(1.0));
 }
 
 TEST_CASE_FIXTURE(
@@ -212,8 +211,8 @@ TEST_CASE_FIXTURE(
         CAPTURE(height);
         CAPTURE(source);
         CAPTURE(mean);
-        CHECK(sum == doctest::Approx(1).epsilon(0.05));
-        CHECK(width / law == doctest::Approx(1).epsilon(0.15));
+        CHECK(sum == test::near(1).epsilon(0.05));
+        CHECK(width / law == test::near(1).epsilon(0.15));
         world.destroy(screen);
         world.destroy(lamp);
     }
@@ -257,7 +256,7 @@ TEST_CASE_FIXTURE(
         Shadow{.filter = ShadowFilter::ContactHardening, .resolution = 512, .source_size = 0.3f});
     const RenderView view = look({0.0f, 2, 1}, {0, 0, 0}, 64, 64);
     for (const Receiver& r : receivers(lamp, view)) {
-        CHECK((!r.there || r.seen == doctest::Approx(1)));
+        CHECK((!r.there || r.seen == test::near(1)));
     }
     put(make_plane({.size = {2, 4}}), {-1, 1, 0});
     world.get<Shadow>(lamp).source_size = 0;

@@ -2,6 +2,7 @@
 #include "render/mesh_pool.h"
 #include "render/shadow/shadow_list.h"
 #include "render/skinning/deformed_list.h"
+#include "tests/near.h"
 #include "tests/render/shadow_fixture.h"
 
 #include <array>
@@ -71,7 +72,7 @@ TEST_CASE_FIXTURE(
         }
         const double edge = std::max(std::abs(r.position.x), std::abs(r.position.z)) - 0.5;
         if (std::abs(edge) > texel) {
-            CHECK(r.seen == doctest::Approx(edge < 0 ? 0 : 1));
+            CHECK(r.seen == test::near(edge < 0 ? 0 : 1));
         }
         dark += r.seen < 0.5 ? 1 : 0;
     }
@@ -141,7 +142,7 @@ TEST_CASE_FIXTURE(BallScene, "shadow map: what a spot does not reach is not in i
         const DVec3 down = r.position - DVec3(0, 3, 0);
         const double angle = std::atan2(glm::length(DVec3(down.x, 0, down.z)), -down.y);
         if (r.there && angle > radians(9.0f)) {
-            CHECK(r.seen == doctest::Approx(1));
+            CHECK(r.seen == test::near(1));
         }
     }
 }
@@ -265,7 +266,7 @@ TEST_CASE_FIXTURE(
             CAPTURE(pixel.x);
             CHECK(
                 image.at(pixel.x, pixel.y, 0)
-                == doctest::Approx(texels_per_pixel(map, view, point, {0, 1, 0})).epsilon(0.01));
+                == test::near(texels_per_pixel(map, view, point, {0, 1, 0})).epsilon(0.01));
         }
         CHECK(image.at(1, 1, 0) == 0);  // beyond the cone
     }
@@ -295,7 +296,7 @@ TEST_CASE_FIXTURE(
                 }
                 const double edge = std::abs(r.position.y) - 0.2 * radius / 0.5;
                 if (std::abs(edge) > 4 * texel) {
-                    CHECK(r.seen == doctest::Approx(edge < 0 ? 0 : 1));
+                    CHECK(r.seen == test::near(edge < 0 ? 0 : 1));
                     dark += edge < 0 ? 1 : 0;
                 }
             }
@@ -434,7 +435,7 @@ TEST_CASE_FIXTURE(
                     }
                     const Receiver& left = before[static_cast<std::size_t>(y * kSize + x - 1)];
                     edges += std::abs(there.seen - left.seen) > 0.05 ? 1 : 0;
-                    CHECK(here.seen == doctest::Approx(there.seen).epsilon(0.01));
+                    CHECK(here.seen == test::near(there.seen).epsilon(0.01));
                 }
             }
         }
@@ -506,7 +507,7 @@ TEST_CASE_FIXTURE(
         }
     }
     REQUIRE(count > 1000);
-    CHECK(dark / count == doctest::Approx(0.5).epsilon(0.1));
+    CHECK(dark / count == test::near(0.5).epsilon(0.1));
 }
 
 TEST_CASE_FIXTURE(

@@ -5,6 +5,7 @@
 #include "ecs/components/surface.h"
 #include "render/shaders/shadow_volume_gpu.h"
 #include "render/shadow/shadow_mesh.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -232,7 +233,7 @@ TEST_CASE("shadow_mesh: the sign the book prints turns the volume inside out") {
     const DVec3 light = {3, 10, 2};
     CHECK(
         oracle::signed_volume(extruded(geometry, Extrude::AsPrinted, light, 40, 0))
-        == doctest::Approx(-521.62).epsilon(1e-5));
+        == test::near(-521.62).epsilon(1e-5));
     CHECK(oracle::signed_volume(extruded(geometry, Extrude::ByFace, light, 40, 0)) > 0);
 }
 
@@ -408,7 +409,7 @@ TEST_CASE("silhouette: it runs counter-clockwise about the lit part, seen from t
         const Vec3& b = cube.positions[edge.end];
         area += 0.5f * (a.z * b.x - a.x * b.z);
     }
-    CHECK(area == doctest::Approx(1));
+    CHECK(area == test::near(1));
 }
 
 TEST_CASE("silhouette: a light inside a closed mesh sees no edge of it") {
@@ -432,7 +433,7 @@ TEST_CASE("extrusion: corners move away from the light by the distance, near one
         const Vec3 moved = shift_from_light(p, light, 7);
         const Vec3 l = Vec3(light);
         CHECK(glm::length(glm::cross(p - l, moved - l)) < 1e-3f);
-        CHECK(glm::distance(moved, l) == doctest::Approx(glm::distance(p, l) + 7).epsilon(1e-5));
+        CHECK(glm::distance(moved, l) == test::near(glm::distance(p, l) + 7).epsilon(1e-5));
         check(shift_from_light(p, {0, 1, 0, 0}, 2), p - Vec3(0, 2, 0));
     }
     // A corner in the light itself goes somewhere.
@@ -458,15 +459,15 @@ TEST_CASE("extrusion: by radius the cap cuts into the light's sphere, by plane i
         return 0.5f * glm::length(Vec3(far_a) + Vec3(far_b));
     };
     // The interval 7.0711 .. 10 below the light is wrongly lit.
-    CHECK(middle({kExtrudeRadius, 10, 0, 0}) == doctest::Approx(10 * std::cos(kPi / 4)));
-    CHECK(middle({kExtrudePlane, 10, 0, 0}) == doctest::Approx(10));
+    CHECK(middle({kExtrudeRadius, 10, 0, 0}) == test::near(10 * std::cos(kPi / 4)));
+    CHECK(middle({kExtrudePlane, 10, 0, 0}) == test::near(10));
     CHECK(
         glm::distance(
             Vec3(extrude_corner(a, light, {kExtrudePlane, 10, 0, 0}, 1)), Vec3(-10, -10, 0))
         < 1e-4f);
     // A constant distance leaks below R / cos(theta) - d and not above.
     const float least = 10 / std::cos(kPi / 4) - std::sqrt(2.0f);
-    CHECK(least == doctest::Approx(12.728).epsilon(1e-4));
+    CHECK(least == test::near(12.728).epsilon(1e-4));
     CHECK(middle({kExtrudeConstant, least - 0.01f, 0, 0}) < 10);
     CHECK(middle({kExtrudeConstant, least + 0.01f, 0, 0}) > 10);
     // A plane through the light cannot be pushed out: infinite; one beyond the radius stays.

@@ -1,5 +1,6 @@
 #include "render/culling.h"
 #include "render/shadow/shadow_view.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -47,11 +48,10 @@ TEST_CASE("shadow view: a point on the light's axis is in the middle, at near / 
     const auto record = record_of(make_spot_view(eye, axis, radians(30.0f), 0.1f, 128, 2));
     for (const float distance : {0.1f, 1.0f, 7.0f, 100.0f}) {
         const Vec4 at = project(record, eye + distance * axis);
-        CHECK(at.x == doctest::Approx(320).epsilon(1e-4));
-        CHECK(at.y == doctest::Approx(576).epsilon(1e-4));
-        CHECK(
-            at.z == doctest::Approx(0.1 / distance).epsilon(1e-4));  // 1 at near, 0 infinitely far
-        CHECK(at.w == doctest::Approx(distance).epsilon(1e-4));
+        CHECK(at.x == test::near(320).epsilon(1e-4));
+        CHECK(at.y == test::near(576).epsilon(1e-4));
+        CHECK(at.z == test::near(0.1 / distance).epsilon(1e-4));  // 1 at near, 0 infinitely far
+        CHECK(at.w == test::near(distance).epsilon(1e-4));
     }
     CHECK(project(record, eye - axis).w < 0);  // behind the light: no projection
 }
@@ -63,7 +63,7 @@ TEST_CASE("shadow view: what a spot lights lies within its square, and a border 
         const float turn = 2 * kPi * static_cast<float>(i) / 16;
         const Vec4 at = project(
             record, {std::tan(angle) * std::cos(turn), std::tan(angle) * std::sin(turn), -1});
-        CHECK(glm::distance(Vec2(at), Vec2(320, 576)) == doctest::Approx(60).epsilon(1e-4));
+        CHECK(glm::distance(Vec2(at), Vec2(320, 576)) == test::near(60).epsilon(1e-4));
     }
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("shadow view: a spot's rows run as it is turned, across its axis") {
     for (const Vec3& right : {Vec3(1, 0, 0), Vec3(0, 3, 1), Vec3(-1, 0.1f, 1)}) {
         const Vec3 across = right - axis * glm::dot(axis, right);
         CHECK(moved(right, across).x > 1);
-        CHECK(moved(right, across).y == doctest::Approx(0).epsilon(1e-3));
+        CHECK(moved(right, across).y == doctest::Approx(0).scale(1).epsilon(1e-3));
     }
     // Without a way across, any will do.
     for (const Vec3& right : {Vec3(0, 0, 0), axis}) {
@@ -96,7 +96,7 @@ TEST_CASE("shadow view: the map is linear before the division") {
             const float middle = glm::dot(row, Vec4(0.5f * (a + b), 1));
             CHECK(
                 middle
-                == doctest::Approx(0.5f * (glm::dot(row, Vec4(a, 1)) + glm::dot(row, Vec4(b, 1))))
+                == test::near(0.5f * (glm::dot(row, Vec4(a, 1)) + glm::dot(row, Vec4(b, 1))))
                        .epsilon(1e-3));
         }
     }
@@ -126,7 +126,7 @@ TEST_CASE("shadow view: a plane's slope is that between its points") {
                 here.z
                 - (in_shadow.x * (there.x - here.x) + in_shadow.y * (there.y - here.y))
                       / in_shadow.z;
-            CHECK(predicted == doctest::Approx(there.z).epsilon(2e-3));
+            CHECK(predicted == test::near(there.z).epsilon(2e-3));
         }
     }
 }
@@ -149,7 +149,7 @@ TEST_CASE("shadow view: six faces see every direction, with a border each") {
             if (inside) {
                 // The depth is that of the major axis.
                 const float m = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-                CHECK(at.z == doctest::Approx(0.1 / m).epsilon(1e-3));
+                CHECK(at.z == test::near(0.1 / m).epsilon(1e-3));
             }
         }
         CHECK(owners == 1);
@@ -166,10 +166,10 @@ TEST_CASE("shadow view: a face's depth tells the book's, with a far plane, along
             project(record, {static_cast<float>(m), 0.3f * static_cast<float>(m), 0}).z;
         return far / (far - near) * (1 - ours);
     };
-    CHECK(book(0.1) == doctest::Approx(0).epsilon(1e-5));
-    CHECK(book(1) == doctest::Approx(0.900901).epsilon(1e-5));
-    CHECK(book(10) == doctest::Approx(0.990991).epsilon(1e-5));
-    CHECK(book(100) == doctest::Approx(1).epsilon(1e-5));
+    CHECK(book(0.1) == doctest::Approx(0).scale(1).epsilon(1e-5));
+    CHECK(book(1) == test::near(0.900901).epsilon(1e-5));
+    CHECK(book(10) == test::near(0.990991).epsilon(1e-5));
+    CHECK(book(100) == test::near(1).epsilon(1e-5));
 }
 
 TEST_CASE("shadow view: cascades cover the distance without a gap, the near ones shorter") {
@@ -184,7 +184,7 @@ TEST_CASE("shadow view: cascades cover the distance without a gap, the near ones
             length = end - begin;
             begin = end;
         }
-        CHECK(begin == doctest::Approx(60));
+        CHECK(begin == test::near(60));
         for (int i = count; i < kMaxCascades; ++i) {
             CHECK(std::isinf(ends[static_cast<std::size_t>(i)]));
         }
@@ -293,8 +293,8 @@ TEST_CASE("shadow view: texels of a cascade stay where they are when the camera 
             first_s = s;
             first_t = t;
         }
-        CHECK(s == doctest::Approx(first_s).epsilon(0.01));
-        CHECK(t == doctest::Approx(first_t).epsilon(0.01));
+        CHECK(s == test::near(first_s).epsilon(0.01));
+        CHECK(t == test::near(first_t).epsilon(0.01));
     }
 }
 
@@ -311,14 +311,14 @@ TEST_CASE("shadow view: twice the resolution is four times the texels a pixel") 
         const double ratio = resolution / 256.0;
         CHECK(
             texels_per_pixel(lamp, camera, {1, 2, -4}, {0, 0, 1})
-            == doctest::Approx(ratio * ratio).epsilon(1e-5));
+            == test::near(ratio * ratio).epsilon(1e-5));
         // From one place they see the same, however the surface is inclined.
         for (int i = 0; i < 20; ++i) {
             const Vec3 point = Vec3(1, 2, -3) + random_point(random, 1.5f);
             const Vec3 normal = glm::normalize(Vec3(0, 0, 3) + random_point(random, 1.5f));
             CHECK(
                 texels_per_pixel(lamp, camera, point, normal)
-                == doctest::Approx(ratio * ratio).epsilon(1e-4));
+                == test::near(ratio * ratio).epsilon(1e-4));
         }
     }
     // From elsewhere, against the texels of the pixel's corners on the surface.
@@ -335,7 +335,7 @@ TEST_CASE("shadow view: twice the resolution is four times the texels a pixel") 
     const Vec3 middle = Vec3(1, 2, 3) + Vec3(0.2f, -0.7f, -1) * (2 / 0.7f);
     CHECK(
         texels_per_pixel(lamp, camera, middle, {0, 1, 0})
-        == doctest::Approx(std::abs(right.x * up.y - right.y * up.x)).epsilon(0.01));
+        == test::near(std::abs(right.x * up.y - right.y * up.x)).epsilon(0.01));
 }
 
 TEST_CASE("culling: a box counts if the light's ball touches it (shadow.caster-cull)") {

@@ -3,6 +3,7 @@
 // clang-format on
 #include "render/skinning/deformed_list.h"
 #include "systems/animation/skin_kernels.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <glm/geometric.hpp>
@@ -214,7 +215,7 @@ TEST_CASE_FIXTURE(
             CHECK(axis_distance(kept[i]) / 0.2f <= 1.01f);
             // char.skin-defects: r cos(a / 2).
             const float want = 0.2f * std::cos(radians(angle) / 2);
-            CHECK(axis_distance(shrunk[i]) == doctest::Approx(want).epsilon(1e-4));
+            CHECK(axis_distance(shrunk[i]) == test::near(want).epsilon(1e-4));
         }
         world.destroy(linear);
         world.destroy(dual);

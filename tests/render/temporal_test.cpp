@@ -2,6 +2,7 @@
 #include "ecs/components/time.h"
 #include "render/graph/frame_graph.h"
 #include "render/passes/temporal_pass.h"
+#include "tests/near.h"
 #include "tests/render/shutter_fixture.h"
 
 #include <cmath>
@@ -102,7 +103,7 @@ TEST_CASE_FIXTURE(Temporal, "temporal: what appears from behind something keeps 
         CAPTURE(x);
         CHECK(glm::distance(rgb_at(gone, x, 32), wall) < 2e-3f);
     }
-    CHECK(gone.at(40, 32, 0) == doctest::Approx(1).epsilon(0.01));
+    CHECK(gone.at(40, 32, 0) == test::near(1).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(Temporal, "temporal: what goes by and darkens leaves no light behind") {
@@ -201,7 +202,7 @@ TEST_CASE_FIXTURE(
     static_cast<void>(after(48));
     world.insert_resource(Environment{.sky = SkyKind::Uniform, .zenith = {0.5f, 0.5f, 0.5f}});
     const gpu::FloatImage healed = after(kTemporalSamples);
-    CHECK(healed.at(32, 32, 1) == doctest::Approx(0.5).epsilon(0.02));
+    CHECK(healed.at(32, 32, 1) == test::near(0.5).epsilon(0.02));
 }
 
 TEST_CASE_FIXTURE(Temporal, "temporal: motion vectors know nothing of the jitter") {

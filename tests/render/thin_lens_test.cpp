@@ -3,6 +3,7 @@
 #include "ecs/world.h"
 #include "render/render_view.h"
 #include "render/thin_lens.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -66,11 +67,11 @@ float cross(const Vec2& a, const Vec2& b) {
 
 TEST_CASE("thin_lens: circles of the spec's lens") {
     CHECK(circle_at(2) == 0);
-    CHECK(circle_at(1) == doctest::Approx(6.410256e-4).epsilon(1e-6));
-    CHECK(circle_at(4) == doctest::Approx(3.205128e-4).epsilon(1e-6));
-    CHECK(circle_at(8) == doctest::Approx(4.807692e-4).epsilon(1e-6));
-    CHECK(circle_at(kInfinity) == doctest::Approx(6.410256e-4).epsilon(1e-6));
-    CHECK(circle_at(1e9) == doctest::Approx(circle_at(kInfinity)).epsilon(1e-6));
+    CHECK(circle_at(1) == test::near(6.410256e-4).epsilon(1e-6));
+    CHECK(circle_at(4) == test::near(3.205128e-4).epsilon(1e-6));
+    CHECK(circle_at(8) == test::near(4.807692e-4).epsilon(1e-6));
+    CHECK(circle_at(kInfinity) == test::near(6.410256e-4).epsilon(1e-6));
+    CHECK(circle_at(1e9) == test::near(circle_at(kInfinity)).epsilon(1e-6));
 }
 
 TEST_CASE("thin_lens: the circle is the cone of light cut by the film") {
@@ -78,12 +79,12 @@ TEST_CASE("thin_lens: the circle is the cone of light cut by the film") {
     for (const double z : {0.3, 0.9, 1.5, 2.5, 7.0, 100.0}) {
         const double image = 1 / (1 / 0.05 - 1 / z);
         const double cone = 0.05 / 2 * std::abs(film - image) / image;
-        CHECK(circle_at(z) == doctest::Approx(cone).epsilon(1e-6));
+        CHECK(circle_at(z) == test::near(cone).epsilon(1e-6));
     }
 }
 
 TEST_CASE("thin_lens: half the f-number doubles the circle, and it grows away from the focus") {
-    CHECK(circle_of_confusion(0.05, 1, 2, 5) == doctest::Approx(2 * circle_at(5)));
+    CHECK(circle_of_confusion(0.05, 1, 2, 5) == test::near(2 * circle_at(5)));
     double before = 0;
     for (double z = 1.99; z > 0.1; z -= 0.01) {
         CHECK(circle_at(z) > before);
@@ -98,16 +99,16 @@ TEST_CASE("thin_lens: half the f-number doubles the circle, and it grows away fr
 
 TEST_CASE("thin_lens: the circle is linear in 1 / z, not in the distance from the focus") {
     const auto by_inverse = [](double inverse) { return circle_at(1 / inverse); };
-    CHECK(by_inverse(0.1) - by_inverse(0.2) == doctest::Approx(by_inverse(0.2) - by_inverse(0.3)));
+    CHECK(by_inverse(0.1) - by_inverse(0.2) == test::near(by_inverse(0.2) - by_inverse(0.3)));
     CHECK(circle_at(8) - circle_at(6) < 0.5 * (circle_at(4) - circle_at(2)));
 }
 
 TEST_CASE("thin_lens: every focus in front of the camera is beyond the focal length") {
-    CHECK(focal_length(2 * std::atan(0.012 / 0.05), 0.024, kInfinity) == doctest::Approx(0.05));
+    CHECK(focal_length(2 * std::atan(0.012 / 0.05), 0.024, kInfinity) == test::near(0.05));
     for (const double focus : {1e-3, 0.01, 0.05, 0.3, 10.0}) {
         const double length = focal_length(0.5, 0.024, focus);
         CHECK(length < focus);
-        CHECK(1 / (1 / length - 1 / focus) == doctest::Approx(0.012 / std::tan(0.25)));
+        CHECK(1 / (1 / length - 1 / focus) == test::near(0.012 / std::tan(0.25)));
     }
 }
 
@@ -120,7 +121,7 @@ TEST_CASE("thin_lens: pixels of the view are those of the film") {
     for (const float z : {0.2f, 0.5f, 0.9f, 20.0f}) {
         const double on_film = circle_of_confusion(length, 1.8, 0.7, static_cast<double>(z));
         const double pixels = on_film / 0.03 * 720;
-        CHECK(std::abs(scale * (1 / 0.7f - 1 / z)) == doctest::Approx(pixels).epsilon(1e-4));
+        CHECK(std::abs(scale * (1 / 0.7f - 1 / z)) == test::near(pixels).epsilon(1e-4));
     }
 }
 
@@ -262,7 +263,7 @@ TEST_CASE("thin_lens: equal areas of the square are equal areas of the aperture"
         // Of a disc 1/2; of a polygon (2 + cos(2 pi / n)) / 6.
         const float n = static_cast<float>(blades);
         const float expected = blades == 0 ? 0.5f : (2 + std::cos(2 * kPi / n)) / 6;
-        CHECK(second == doctest::Approx(expected).epsilon(2e-3));
+        CHECK(second == test::near(expected).epsilon(2e-3));
 
         // A small disc anywhere holds as many points as its share of the area.
         const float area = blades == 0 ? kPi : 0.5f * n * std::sin(2 * kPi / n);
@@ -271,7 +272,7 @@ TEST_CASE("thin_lens: equal areas of the square are equal areas of the aperture"
                 return glm::distance(p, middle) < 0.2f;
             });
             const float share = kPi * square(0.2f) / area;
-            CHECK(static_cast<float>(inside) / count == doctest::Approx(share).epsilon(0.03));
+            CHECK(static_cast<float>(inside) / count == test::near(share).epsilon(0.03));
         }
     }
 }

@@ -1,5 +1,6 @@
 #include "bench/oracles/tone_oracle.h"
 #include "render/passes/statistics_pass.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +14,7 @@ namespace limn::oracle {
 namespace {
 
 doctest::Approx near(double value, double epsilon = 1e-5) {
-    return doctest::Approx(value).epsilon(epsilon);
+    return test::near(value).epsilon(epsilon);
 }
 
 std::vector<double> log_ramp(double least, double stops, int count) {

@@ -3,6 +3,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/water.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -120,7 +121,7 @@ TEST_CASE_FIXTURE(
         without += mean(even);
         contrast += deviation(shafts) - deviation(even);
     }
-    CHECK(with / without == doctest::Approx(1).epsilon(0.01));
+    CHECK(with / without == test::near(1).epsilon(0.01));
     CHECK(contrast / 5 > 0.01);
 }
 
@@ -134,7 +135,7 @@ TEST_CASE_FIXTURE(Pool, "water shafts: what stands in the water throws a dark on
     caustics().shaft_steps = 0;
     const float before = radiance(view).at(kSize / 2, kSize / 2, 1);
     CHECK(dark < 0.9f * open);
-    CHECK(before / open == doctest::Approx(1).epsilon(0.01));
+    CHECK(before / open == test::near(1).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(Pool, "under water: lamps lose light on their way, and where they go in") {
@@ -160,7 +161,7 @@ TEST_CASE_FIXTURE(Pool, "under water: lamps lose light on their way, and where t
         const float way = height > 0 ? kDepth : kDepth + height;
         CHECK(
             wet / (bare * let_in * std::exp(-extinction * way) * veil)
-            == doctest::Approx(1).epsilon(0.002));
+            == test::near(1).epsilon(0.002));
         world.destroy(lamp);
     }
 }

@@ -6,6 +6,7 @@
 #include "render/water/water_reflection.h"
 #include "systems/water/water_query.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -121,7 +122,7 @@ TEST_CASE_FIXTURE(
     };
     CHECK(blue_share() > 5);
     world.add(pond, WaterLook{.reflection = WaterReflection::Environment});
-    CHECK(blue_share() == doctest::Approx(1).epsilon(0.01));
+    CHECK(blue_share() == test::near(1).epsilon(0.01));
 }
 
 TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored again the same") {
@@ -135,18 +136,18 @@ TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored a
     CHECK(mirrored.width == 100);
     CHECK(mirrored.height == 50);
     const auto& pose = mirrored.world_from_camera.row;
-    CHECK(pose[0].w == doctest::Approx(1));
-    CHECK(pose[1].w == doctest::Approx(2 * kLevel - 2));
-    CHECK(pose[2].w == doctest::Approx(3));
+    CHECK(pose[0].w == test::near(1));
+    CHECK(pose[1].w == test::near(2 * kLevel - 2));
+    CHECK(pose[2].w == test::near(3));
     // A camera that turns triangles around would see their backs.
     const glm::mat3 turned{Vec3(pose[0]), Vec3(pose[1]), Vec3(pose[2])};
-    CHECK(glm::determinant(turned) == doctest::Approx(1));
+    CHECK(glm::determinant(turned) == test::near(1));
     for (const Vec3 p : {Vec3(0, 1, -2), Vec3(-3, 0.2f, -5), Vec3(2, 5, -9)}) {
         const Vec4 seen = view.clip_from_world * Vec4(p.x, 2 * kLevel - p.y, p.z, 1);
         const Vec4 found = mirrored.clip_from_world * Vec4(p, 1);
-        CHECK(found.x == doctest::Approx(seen.x));
-        CHECK(found.y == doctest::Approx(-seen.y));
-        CHECK(found.w == doctest::Approx(seen.w));
+        CHECK(found.x == test::near(seen.x));
+        CHECK(found.y == test::near(-seen.y));
+        CHECK(found.w == test::near(seen.w));
         // What is above the surface is shown, what is below is not.
         CHECK((glm::dot(mirrored.clip_plane, Vec4(p, 1)) >= 0) == (p.y >= kLevel));
     }
@@ -154,8 +155,7 @@ TEST_CASE("water reflection: its camera is the image's, mirrored, and mirrored a
     for (int c = 0; c < 4; ++c) {
         for (int r = 0; r < 4; ++r) {
             CHECK(
-                again.unjittered_from_world[c][r]
-                == doctest::Approx(view.unjittered_from_world[c][r]));
+                again.unjittered_from_world[c][r] == test::near(view.unjittered_from_world[c][r]));
         }
     }
 }
@@ -339,7 +339,7 @@ TEST_CASE_FIXTURE(Look, "water refraction: a map of the floor is where bent rays
             }
         }
         CHECK(worst < 0.02f);
-        CHECK(at_30 == doctest::Approx(0.811401).epsilon(0.01));
+        CHECK(at_30 == test::near(0.811401).epsilon(0.01));
         CHECK(at_0 < 0.05f);
     }
     SUBCASE("waves: as their normals bend them") {

@@ -10,6 +10,7 @@
 #include "systems/water/water_query.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -131,7 +132,7 @@ TEST_CASE(
             }
         }
         // Where a larger neighbor begins, all of its vertices have slid onto every second one.
-        CHECK(a.morph_end == doctest::Approx(2 * source.detail * a.size));
+        CHECK(a.morph_end == test::near(2 * source.detail * a.size));
     }
     CHECK(smallest < 1);
     CHECK(largest > 1000);

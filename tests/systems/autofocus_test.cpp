@@ -3,6 +3,7 @@
 #include "ecs/world.h"
 #include "systems/autofocus_system.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -41,18 +42,18 @@ struct Scene {
 }  // namespace
 
 TEST_CASE("autofocus: the first frame is in focus") {
-    CHECK(Scene({.response = 0.5f}).focus() == doctest::Approx(4));
+    CHECK(Scene({.response = 0.5f}).focus() == test::near(4));
 }
 
 TEST_CASE("autofocus: it is the distance along the view axis that counts, of the point meant") {
     Scene scene({.offset = {0, 3, 1}, .response = 0});
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(3));
+    CHECK(scene.focus() == test::near(3));
     scene.world.get<Transform>(scene.camera).rotation =
         glm::angleAxis(radians(-90.0f), Vec3(0, 1, 0));
     scene.world.get<Transform>(scene.camera).scale = {3, 3, 3};
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(0.5f));  // looks along +x now
+    CHECK(scene.focus() == test::near(0.5f));  // looks along +x now
 }
 
 TEST_CASE(
@@ -63,17 +64,16 @@ TEST_CASE(
         scene.move_target({0, 0, -2});
         scene.run(0.4f);
         const float gone = (1 / scene.focus() - 0.25f) / (0.5f - 0.25f);
-        CHECK(gone == doctest::Approx(1 - std::exp(-1.0f)).epsilon(1e-4));
+        CHECK(gone == test::near(1 - std::exp(-1.0f)).epsilon(1e-4));
     }
 }
 
 TEST_CASE("autofocus: two half steps are one whole step") {
     const float whole = pull_focus(3, 0.5f, 0.2f, 0.1f);
-    CHECK(
-        pull_focus(pull_focus(3, 0.5f, 0.2f, 0.05f), 0.5f, 0.2f, 0.05f) == doctest::Approx(whole));
-    CHECK(pull_focus(3, 3, 0.2f, 0.1f) == doctest::Approx(3));
+    CHECK(pull_focus(pull_focus(3, 0.5f, 0.2f, 0.05f), 0.5f, 0.2f, 0.05f) == test::near(whole));
+    CHECK(pull_focus(3, 3, 0.2f, 0.1f) == test::near(3));
     CHECK(pull_focus(3, 0.5f, 0, 0.1f) == 0.5f);
-    CHECK(pull_focus(3, 0.5f, 0.2f, 0) == doctest::Approx(3));
+    CHECK(pull_focus(3, 0.5f, 0.2f, 0) == test::near(3));
 }
 
 TEST_CASE("autofocus: without a target in front of the camera the focus stays") {
@@ -81,16 +81,16 @@ TEST_CASE("autofocus: without a target in front of the camera the focus stays") 
     scene.run(0.1f);
     scene.move_target({0, 0, 5});
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(4));  // behind
+    CHECK(scene.focus() == test::near(4));  // behind
     scene.move_target({0, 0, -std::numeric_limits<float>::infinity()});
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(4));
+    CHECK(scene.focus() == test::near(4));
     scene.world.destroy(scene.target);
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(4));  // gone
+    CHECK(scene.focus() == test::near(4));  // gone
     scene.world.get<Autofocus>(scene.camera).target = Entity{};
     scene.run(0.1f);
-    CHECK(scene.focus() == doctest::Approx(4));  // null
+    CHECK(scene.focus() == test::near(4));  // null
 }
 
 TEST_CASE("autofocus: it jumps with what is teleported, and mends a focus that is none") {
@@ -99,8 +99,8 @@ TEST_CASE("autofocus: it jumps with what is teleported, and mends a focus that i
     scene.move_target({0, 0, -7});
     scene.world.add(scene.target, Teleport{});
     scene.run(1.0f / 60.0f);
-    CHECK(scene.focus() == doctest::Approx(7));
+    CHECK(scene.focus() == test::near(7));
     scene.world.get<Lens>(scene.camera).focus_distance = std::numeric_limits<float>::quiet_NaN();
     scene.run(1.0f / 60.0f);
-    CHECK(scene.focus() == doctest::Approx(7));
+    CHECK(scene.focus() == test::near(7));
 }

@@ -8,6 +8,7 @@
 #include "systems/update_world.h"
 #include "systems/water/floating_body.h"
 #include "systems/water/water_ripple_field.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -184,7 +185,7 @@ TEST_CASE("buoyancy: what a body displaces is what is below the surface") {
     const Transform even = {.position = {0, 0.1f, 0}, .rotation = tilted(0.2f)};
     const Displaced displaced = displaced_water(box({0.6f, 0.3f, 0.4f}), even, still);
     CHECK(std::abs(displaced.volume / (1.2 * 0.8 * (0.3 - 0.1 / std::cos(0.2))) - 1) < 1e-5f);
-    CHECK(displaced.whole == doctest::Approx(1.2 * 0.8 * 0.6));
+    CHECK(displaced.whole == test::near(1.2 * 0.8 * 0.6));
 }
 
 TEST_CASE("buoyancy: a box bobs with the period of its draft") {
@@ -359,7 +360,7 @@ TEST_CASE("buoyancy: through air it falls freely, and splashes as its momentum s
         REQUIRE(tank.splashes.size() >= 1);
         const RippleImpulse& splash = tank.splashes[0].impulse;
         CHECK(splash.height < last);
-        CHECK(splash.radius == doctest::Approx(1.5 * 0.05));
+        CHECK(splash.radius == test::near(1.5 * 0.05));
         last = splash.height;
     }
     Tank laid{.touch = ball(0.05f), .body = {.density = 300}};
@@ -375,9 +376,9 @@ TEST_CASE("buoyancy: through air it falls freely, and splashes as its momentum s
 TEST_CASE("buoyancy: a splash grows with momentum, not beyond half its width") {
     const RippleImpulse slow = splash_of(1, 0.1f, 1);
     const RippleImpulse fast = splash_of(1, 0.1f, 2);
-    CHECK(fast.height == doctest::Approx(2 * slow.height));
-    CHECK(splash_of(2, 0.1f, 1).height == doctest::Approx(2 * slow.height));
-    CHECK(splash_of(1e6f, 0.1f, 100).height == doctest::Approx(-0.5 * 0.15));
+    CHECK(fast.height == test::near(2 * slow.height));
+    CHECK(splash_of(2, 0.1f, 1).height == test::near(2 * slow.height));
+    CHECK(splash_of(1e6f, 0.1f, 100).height == test::near(-0.5 * 0.15));
     CHECK(slow.height < 0);
 }
 

@@ -1,6 +1,7 @@
 #include "ecs/base/rng.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/pose_kernels.h"
+#include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
 
 #include <doctest/doctest.h>
@@ -95,11 +96,11 @@ TEST_CASE("clip: at a key the pose is the key, between keys it turns with consta
     CHECK(glm::length(quarter - Quat(0.980785f, 0, 0, 0.195090f)) < 1e-6f);
     for (int k = 0; k <= 20; ++k) {
         const float t = static_cast<float>(k) / 20;
-        CHECK(angle_at(clip, t) == doctest::Approx(90 * t).epsilon(1e-5));
-        CHECK(angle_at(clip, 1 + 2 * t) == doctest::Approx(90 + 10 * t).epsilon(1e-5));
+        CHECK(angle_at(clip, t) == test::near(90 * t).epsilon(1e-5));
+        CHECK(angle_at(clip, 1 + 2 * t) == test::near(90 + 10 * t).epsilon(1e-5));
     }
-    CHECK(angle_at(clip, -1) == doctest::Approx(0));
-    CHECK(angle_at(clip, 99) == doctest::Approx(100).epsilon(1e-5));
+    CHECK(angle_at(clip, -1) == doctest::Approx(0).scale(1));
+    CHECK(angle_at(clip, 99) == test::near(100).epsilon(1e-5));
 }
 
 TEST_CASE("clip: samples taken 30 times a second are shown 100 times, none lost and none rushed") {
@@ -159,7 +160,7 @@ TEST_CASE("clip: the sign of a key does not matter, and all joints turn as each 
             const Quat expected = slerp(sheet.rotations[i], sheet.rotations[count + i], 0.3f);
             const Quat& found = pose.rotations[count - 1 - i];
             CHECK(apart(found, expected) < 2e-6f);
-            CHECK(glm::length(found) == doctest::Approx(1).epsilon(1e-6));
+            CHECK(glm::length(found) == test::near(1).epsilon(1e-6));
         }
         for (std::size_t i = count; i < 2 * count; i += 2) {
             clip.sheets[0].rotations[i] = -clip.sheets[0].rotations[i];
@@ -193,7 +194,7 @@ TEST_CASE("clip: vectors of the machine and plain C++ give the same bits") {
         slerp_rotations_scalar(from, to, u, plain);
         CHECK(std::memcmp(wide.data(), plain.data(), wide.size() * sizeof(Quat)) == 0);
         for (std::size_t i = 0; i < plain.size(); ++i) {
-            CHECK(glm::length(plain[i]) == doctest::Approx(1).epsilon(5e-7));
+            CHECK(glm::length(plain[i]) == test::near(1).epsilon(5e-7));
             if (i % 5 != 2) {  // half a turn may go either way
                 CHECK(apart(plain[i], slerp(from[i], to[i], u)) < 2e-6f);
             }
@@ -299,11 +300,11 @@ TEST_CASE("clip: a cubic rotation passes through its keys with length 1") {
     const ClipData clip{"cubic", 2, {sheet}};
     REQUIRE(check_clip(clip, 2, 0).ok());
     for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(angle_at(clip, sheet.times[i]) == doctest::Approx(angles[i]).epsilon(1e-5));
+        CHECK(angle_at(clip, sheet.times[i]) == test::near(angles[i]).epsilon(1e-5));
     }
     const float speed = (angle_at(clip, 1.001f) - angle_at(clip, 0.999f)) / 0.002f;
-    CHECK(speed == doctest::Approx(45).epsilon(0.01));
-    CHECK(glm::length(sampled(clip, make_chain(2), 0.4f).rotations[1]) == doctest::Approx(1));
+    CHECK(speed == test::near(45).epsilon(0.01));
+    CHECK(glm::length(sampled(clip, make_chain(2), 0.4f).rotations[1]) == test::near(1));
 }
 
 TEST_CASE("clip: no clip rests, one key holds") {
@@ -313,7 +314,7 @@ TEST_CASE("clip: no clip rests, one key holds") {
     CHECK(rest.translations == skeleton.rest.translations);
     const ClipData one = make_turn({0.5f}, {30}, 1);
     for (const float time : {0.0f, 0.5f, 2.0f}) {
-        CHECK(angle_at(one, time) == doctest::Approx(30).epsilon(1e-5));
+        CHECK(angle_at(one, time) == test::near(30).epsilon(1e-5));
     }
 }
 
@@ -368,10 +369,10 @@ TEST_CASE("joints: turning one moves its descendants and no other, and no bone c
             const std::size_t parent = static_cast<std::size_t>(skeleton.parents[i]);
             const float length =
                 apart(transform_point(after[i], Vec3(0)), transform_point(after[parent], Vec3(0)));
-            CHECK(length == doctest::Approx(1).epsilon(1e-5));
+            CHECK(length == test::near(1).epsilon(1e-5));
         }
         const float volume = glm::determinant(Mat3(to_mat4(after[i])));
-        CHECK(volume == doctest::Approx(1).epsilon(1e-6));
+        CHECK(volume == test::near(1).epsilon(1e-6));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/constant_angular_velocity.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -30,13 +31,13 @@ TEST_CASE("even turns: keys at 0, 10, 40 and 90 degrees are reached after 1, 4 a
     REQUIRE(turns.times.size() == 4);
     const float expected[] = {0, 1, 4, 9};
     for (std::size_t i = 0; i < 4; ++i) {
-        CHECK(turns.times[i] == doctest::Approx(expected[i]).epsilon(1e-5));
+        CHECK(turns.times[i] == test::near(expected[i]).epsilon(1e-5));
     }
     for (int i = 0; i <= 90; ++i) {
         const float time = 0.1f * static_cast<float>(i);
         const AxisAngle turned =
             axis_angle(to_same_hemisphere(Quat(1, 0, 0, 0), rotation_at(turns, time)));
-        CHECK(degrees(turned.angle) == doctest::Approx(10 * time).epsilon(1e-4));
+        CHECK(degrees(turned.angle) == test::near(10 * time).epsilon(1e-4));
     }
 }
 
@@ -54,7 +55,7 @@ TEST_CASE("even turns: between any keys the angular speed is the same") {
         const float seconds = turns.times[i + 1] - turns.times[i];
         const double found = static_cast<double>(axis_angle(way).angle / seconds);
         speed = speed < 0 ? found : speed;
-        CHECK(found == doctest::Approx(speed).epsilon(1e-3));
+        CHECK(found == test::near(speed).epsilon(1e-3));
     }
 }
 

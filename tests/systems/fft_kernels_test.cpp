@@ -2,6 +2,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
 #include "systems/water/fft_kernels.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <kissfft/kiss_fftnd.h>
@@ -159,7 +160,7 @@ TEST_CASE("fft: a column has the energy of its waves times size (Parseval)") {
             before += std::norm(from.at(i));
             after += std::norm(to.at(i));
         }
-        CHECK(after / static_cast<double>(size) == doctest::Approx(before).epsilon(1e-6));
+        CHECK(after / static_cast<double>(size) == test::near(before).epsilon(1e-6));
     }
 }
 

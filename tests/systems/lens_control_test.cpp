@@ -7,6 +7,7 @@
 #include "ecs/world.h"
 #include "systems/lens_control_system.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -50,7 +51,7 @@ TEST_CASE("lens_control: nobody's hand turns nothing") {
     Scene scene;
     scene.turn(Vec3(0));
     const auto& lens = scene.world.get<Lens>(scene.camera);
-    CHECK(lens.focus_distance == doctest::Approx(4));
+    CHECK(lens.focus_distance == test::near(4));
     CHECK(lens.f_number == Lens{}.f_number);
     CHECK(scene.world.resource<MotionBlur>().shutter == 180);
 }
@@ -70,21 +71,19 @@ TEST_CASE("lens_control: aperture and shutter open and close") {
     Scene scene;
     scene.turn({0, 1, 0.5f});
     CHECK(scene.world.get<Lens>(scene.camera).f_number < Lens{}.f_number);
-    CHECK(scene.world.get<Lens>(scene.camera).focus_distance == doctest::Approx(4));
-    CHECK(scene.world.resource<MotionBlur>().shutter == doctest::Approx(210));
+    CHECK(scene.world.get<Lens>(scene.camera).focus_distance == test::near(4));
+    CHECK(scene.world.resource<MotionBlur>().shutter == test::near(210));
     scene.turn({0, -1, -0.5f});
-    CHECK(scene.world.get<Lens>(scene.camera).f_number == doctest::Approx(Lens{}.f_number));
-    CHECK(scene.world.resource<MotionBlur>().shutter == doctest::Approx(180));
+    CHECK(scene.world.get<Lens>(scene.camera).f_number == test::near(Lens{}.f_number));
+    CHECK(scene.world.resource<MotionBlur>().shutter == test::near(180));
     scene.world.remove_resource<MotionBlur>();
     scene.turn({0, 0, 1});
 }
 
 TEST_CASE("lens_control: two half steps are one, back is where it was, and the rings have ends") {
-    CHECK(
-        adjust_focus(adjust_focus(3, 1, 0.1f), 1, 0.1f)
-        == doctest::Approx(adjust_focus(3, 1, 0.2f)));
-    CHECK(adjust_focus(adjust_focus(3, 1, 0.3f), -1, 0.3f) == doctest::Approx(3));
-    CHECK(adjust_aperture(2, 1, 2.0f / 1.5f) == doctest::Approx(1));  // two stops
+    CHECK(adjust_focus(adjust_focus(3, 1, 0.1f), 1, 0.1f) == test::near(adjust_focus(3, 1, 0.2f)));
+    CHECK(adjust_focus(adjust_focus(3, 1, 0.3f), -1, 0.3f) == test::near(3));
+    CHECK(adjust_aperture(2, 1, 2.0f / 1.5f) == test::near(1));  // two stops
     CHECK(adjust_focus(3, 1, 1e6f) == 1000);
     CHECK(adjust_focus(3, -1, 1e6f) == 0.02f);
     CHECK(adjust_aperture(2, 1, 1e6f) == 0.5f);

@@ -9,6 +9,7 @@
 #include "systems/water/ocean_spectrum.h"
 #include "systems/water/ocean_system.h"
 #include "systems/water/water_dispersion.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -279,7 +280,7 @@ TEST_CASE("ocean: a patch repeats, and a wave fits into it a whole number of tim
     }
     for (std::size_t c = 1; c < cascades.size(); ++c) {
         const double ratio = cascades[c - 1].patch / cascades[c].patch;
-        CHECK(ratio == doctest::Approx(std::pow((1 + std::sqrt(5.0)) / 2, 3)));
+        CHECK(ratio == test::near(std::pow((1 + std::sqrt(5.0)) / 2, 3)));
     }
 }
 
@@ -574,7 +575,7 @@ TEST_CASE("ocean: a world steps it, and goes on with the same bits from a snapsh
     for (int i = 0; i < 3; ++i) {
         step_world(world, schedule);
     }
-    CHECK(world.get<OceanState>(sea).time == doctest::Approx(0.05));
+    CHECK(world.get<OceanState>(sea).time == test::near(0.05));
     CHECK(largest(world.get<OceanFoam>(sea).coverage) > 0);
 
     const Result<std::vector<std::byte>> saved = save_snapshot(world);

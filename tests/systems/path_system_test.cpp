@@ -1,6 +1,7 @@
 #include "ecs/world.h"
 #include "systems/path_system.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -49,12 +50,12 @@ TEST_CASE_FIXTURE(
         step();
         const Transform& now = world.get<Transform>(entity);
         const Vec3 way = now.position - before;
-        REQUIRE(glm::length(way) == doctest::Approx(0.1).epsilon(0.02));
+        REQUIRE(glm::length(way) == test::near(0.1).epsilon(0.02));
         REQUIRE(glm::dot(now.rotation * Vec3(0, 0, 1), way) > 0.0995f);
-        REQUIRE((now.rotation * Vec3(0, 1, 0)).y == doctest::Approx(1));
+        REQUIRE((now.rotation * Vec3(0, 1, 0)).y == test::near(1));
     }
     const double distance = world.get<PathFollower>(entity).distance;
-    CHECK(distance == doctest::Approx(std::fmod(steps * 0.1, length)).epsilon(1e-3));
+    CHECK(distance == test::near(std::fmod(steps * 0.1, length)).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(Follow, "path system: offsets are to the right, up and ahead") {
@@ -80,7 +81,7 @@ TEST_CASE_FIXTURE(Follow, "path system: an open path ends, backward as well") {
     }
     CHECK(glm::distance(world.get<Transform>(there).position, Vec3(0, 5, 5)) < 1e-5f);
     CHECK(world.get<Transform>(back).position == Vec3(0));
-    CHECK((world.get<Transform>(back).rotation * Vec3(0, 1, 0)).y == doctest::Approx(1));
+    CHECK((world.get<Transform>(back).rotation * Vec3(0, 1, 0)).y == test::near(1));
     CHECK((world.get<Transform>(there).rotation * Vec3(0, 1, 0)).y < 0.8f);
 }
 

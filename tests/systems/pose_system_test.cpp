@@ -7,6 +7,7 @@
 #include "systems/animation/pose_system.h"
 #include "systems/update_world.h"
 #include "tests/ecs/allocation_count.h"
+#include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
 
 #include <doctest/doctest.h>
@@ -95,11 +96,11 @@ TEST_CASE("clip player: loops, holds at both ends and never leaves the clip") {
             ClipPlayer{.clip = {}, .time = time, .speed = speed, .loop = loop}, 2.0f, step);
     };
     CHECK(at(0.5f, 1, true, 0.25f) == 0.75f);
-    CHECK(at(1.75f, 1, true, 0.5f) == doctest::Approx(0.25));
+    CHECK(at(1.75f, 1, true, 0.5f) == test::near(0.25));
     CHECK(at(1.75f, 1, false, 0.5f) == 2.0f);
-    CHECK(at(0.25f, -1, true, 0.5f) == doctest::Approx(1.75));
+    CHECK(at(0.25f, -1, true, 0.5f) == test::near(1.75));
     CHECK(at(0.25f, -1, false, 0.5f) == 0.0f);
-    CHECK(at(0.5f, -2, true, 0.125f) == doctest::Approx(0.25));
+    CHECK(at(0.5f, -2, true, 0.125f) == test::near(0.25));
     CHECK(at(0, 100, true, 100) <= 2.0f);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();

@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/animation/rotation_track_system.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -42,13 +43,13 @@ TEST_CASE("rotation_track: by any method it is at its keys when they are due") {
             CHECK(degrees_at(track, i) == doctest::Approx(keys[i]).scale(1).epsilon(1e-4));
         }
         CHECK(degrees_at(track, -1) == doctest::Approx(0).scale(1).epsilon(1e-4));
-        CHECK(degrees_at(track, 9) == doctest::Approx(90).epsilon(1e-5));
+        CHECK(degrees_at(track, 9) == test::near(90).epsilon(1e-5));
     }
 }
 
 TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squad has no corner") {
     const RotationTrack turn = {.keys = {{0, yaw(0)}, {1, yaw(160)}}};
-    CHECK(degrees_at(turn, 0.25) == doctest::Approx(40).epsilon(1e-5));
+    CHECK(degrees_at(turn, 0.25) == test::near(40).epsilon(1e-5));
     RotationTrack straight = turn;
     straight.method = RotationMethod::Nlerp;
     // tan(angle / 4 of 160) = (u sin 80) / (1 - u + u cos 80) with half angles.
@@ -56,7 +57,7 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
     const double half = 80 * M_PI / 180;
     const double expected =
         2 * std::atan2(u * std::sin(half), 1 - u + u * std::cos(half)) * 180 / M_PI;
-    CHECK(degrees_at(straight, u) == doctest::Approx(expected).epsilon(1e-5));
+    CHECK(degrees_at(straight, u) == test::near(expected).epsilon(1e-5));
     CHECK(expected < 35);  // where slerp is at 40
 
     const auto speed = [](const RotationTrack& track, double time) {
@@ -64,7 +65,7 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
     };
     const RotationTrack corner = uneven_track(RotationMethod::Slerp);
     const RotationTrack smooth = uneven_track(RotationMethod::Squad);
-    CHECK(speed(corner, 1) - speed(corner, 0.99) == doctest::Approx(20).epsilon(0.02));
+    CHECK(speed(corner, 1) - speed(corner, 0.99) == test::near(20).epsilon(0.02));
     CHECK(std::abs(speed(smooth, 1) - speed(smooth, 0.99)) < 1.0f);
 }
 
@@ -82,7 +83,7 @@ TEST_CASE("rotation_track: Euler angles go their own way, which is no great arc"
         .method = RotationMethod::Euler};
     const Quat middle = rotation_at(track, make_rotation_track(track), 0.5);
     const Quat expected = yaw(45) * glm::angleAxis(radians(45.0f), Vec3(1, 0, 0));
-    CHECK(std::abs(glm::dot(middle, expected)) == doctest::Approx(1).epsilon(1e-5));
+    CHECK(std::abs(glm::dot(middle, expected)) == test::near(1).epsilon(1e-5));
     track.method = RotationMethod::Slerp;
     const Quat arc = rotation_at(track, make_rotation_track(track), 0.5);
     CHECK(std::abs(glm::dot(arc, expected)) < 0.99f);
@@ -90,8 +91,8 @@ TEST_CASE("rotation_track: Euler angles go their own way, which is no great arc"
 
 TEST_CASE("rotation_track: the sign of a key does not matter, the shorter way is taken") {
     RotationTrack track = {.keys = {{0, yaw(0)}, {1, -yaw(90)}, {2, yaw(200)}}};
-    CHECK(degrees_at(track, 0.5) == doctest::Approx(45).epsilon(1e-5));
-    CHECK(degrees_at(track, 1.5) == doctest::Approx(145).epsilon(1e-5));
+    CHECK(degrees_at(track, 0.5) == test::near(45).epsilon(1e-5));
+    CHECK(degrees_at(track, 1.5) == test::near(145).epsilon(1e-5));
 }
 
 TEST_CASE("rotation_track: in a world it moves the entity, follows changes and starts over") {
@@ -109,15 +110,15 @@ TEST_CASE("rotation_track: in a world it moves the entity, follows changes and s
     for (int i = 0; i < 6; ++i) {
         step_world(world, schedule);
     }
-    CHECK(turned() == doctest::Approx(25).epsilon(1e-4));  // at 1.5 s
+    CHECK(turned() == test::near(25).epsilon(1e-4));  // at 1.5 s
     for (int i = 0; i < 12; ++i) {
         step_world(world, schedule);
     }
-    CHECK(turned() == doctest::Approx(25).epsilon(1e-4));  // and 3 s later
+    CHECK(turned() == test::near(25).epsilon(1e-4));  // and 3 s later
     world.get<RotationTrack>(entity).keys[2].rotation = yaw(110);
     step_world(world, schedule);  // at 1.75 s
-    CHECK(turned() == doctest::Approx(85).epsilon(1e-4));
+    CHECK(turned() == test::near(85).epsilon(1e-4));
     CHECK(
         std::abs(glm::dot(std::as_const(world).get<Transform>(bare).rotation, yaw(33)))
-        == doctest::Approx(1));
+        == test::near(1));
 }

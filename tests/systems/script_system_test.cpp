@@ -6,6 +6,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 #include "systems/script_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -155,7 +156,7 @@ TEST_CASE("script: an impulse adds within the range, and turns rotations further
     run_step(world, 0);
     const Transform& t = world.get<const Transform>(entity);
     CHECK(t.position == Vec3(1, -3, 4));
-    CHECK(std::abs(glm::dot(t.rotation, quarter * quarter)) == doctest::Approx(1.0f));
+    CHECK(std::abs(glm::dot(t.rotation, quarter * quarter)) == test::near(1.0f));
     CHECK(world.get<const PointLight>(entity).intensity == 0.0f);  // not below its range
 }
 
@@ -217,8 +218,8 @@ TEST_CASE("script: a camera follows its path and its target, and rests when told
     world.insert_resource(FrameTime{.time = 1.0});
     world.run(update_camera_paths);
     const Transform& t = world.get<const Transform>(camera);
-    CHECK(t.position.x == doctest::Approx(2.0f));
-    CHECK((t.rotation * Vec3(0, 0, -1)).z == doctest::Approx(-1.0f));
+    CHECK(t.position.x == test::near(2.0f));
+    CHECK((t.rotation * Vec3(0, 0, -1)).z == test::near(-1.0f));
     CHECK(t.scale == Vec3(2));
     CHECK(world.get<const Transform>(resting).position == Vec3(7));
     world.destroy(path.target);

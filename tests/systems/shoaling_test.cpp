@@ -2,6 +2,7 @@
 #include "systems/update_world.h"
 #include "systems/water/shoaling_system.h"
 #include "systems/water/water_dispersion.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -40,11 +41,11 @@ TEST_CASE("shoaling: waves are as long as the depth says, shorter over the shoal
     start_world(world);
     const ShoalingState& state = std::as_const(world).get<ShoalingState>(tank);
     const double omega = 2 * M_PI / 0.7;
-    CHECK(state.frequency == doctest::Approx(omega));
+    CHECK(state.frequency == test::near(omega));
     const double deep = 2 * M_PI / wave_number(omega, 0.5);
     const double shallow = 2 * M_PI / wave_number(omega, static_cast<double>(0.06f));
-    CHECK(length_at(state, 8, 6) == doctest::Approx(deep).epsilon(0.02));
-    CHECK(length_at(state, 64, 64) == doctest::Approx(shallow).epsilon(0.05));
+    CHECK(length_at(state, 8, 6) == test::near(deep).epsilon(0.02));
+    CHECK(length_at(state, 64, 64) == test::near(shallow).epsilon(0.05));
     CHECK(shallow < 0.8 * deep);
     // A period later all heights are back.
     const std::vector<float> before = std::as_const(world).get<HeightField>(tank).height;
@@ -70,7 +71,7 @@ TEST_CASE("shoaling: behind the shoal crests bend toward its axis, alike on both
     // On the axis a wave arrives later than beside it.
     CHECK(phase(110, 64) > phase(110, 20) + 0.5f);
     for (int z = 0; z < 64; z += 7) {
-        CHECK(phase(110, 64 - z) == doctest::Approx(phase(110, 64 + z)).epsilon(1e-3));
+        CHECK(phase(110, 64 - z) == test::near(phase(110, 64 + z)).epsilon(1e-3));
     }
 }
 

@@ -3,6 +3,7 @@
 #include "ecs/base/rotation.h"
 #include "systems/animation/clip_sampling.h"
 #include "systems/animation/skin_kernels.h"
+#include "tests/near.h"
 #include "tests/systems/clip_fixture.h"
 
 #include <doctest/doctest.h>
@@ -189,12 +190,11 @@ TEST_CASE("skin: vertices of one joint keep their distances, to it and to each o
             const Vec3 bone_at_rest(0, static_cast<float>(joint), 0);
             CHECK(
                 glm::distance(puppet.moved.positions[v], bone)
-                == doctest::Approx(glm::distance(puppet.mesh.positions[v], bone_at_rest))
-                       .epsilon(1e-5));
+                == test::near(glm::distance(puppet.mesh.positions[v], bone_at_rest)).epsilon(1e-5));
             if (puppet.mesh.skin.joints[puppet.mesh.skin.first[v + 2]] == joint) {
                 CHECK(
                     glm::distance(puppet.moved.positions[v], puppet.moved.positions[v + 2])
-                    == doctest::Approx(
+                    == test::near(
                            glm::distance(puppet.mesh.positions[v], puppet.mesh.positions[v + 2]))
                            .epsilon(1e-5));
             }
@@ -213,8 +213,8 @@ TEST_CASE("skin: the mean of matrices agrees with offsets in joint space, in dou
         const glm::dvec3 exact =
             oracle::skin_by_offsets(puppet.mesh, puppet.skin, puppet.joints, v);
         CHECK(error_of(puppet.moved.positions[v], exact) < 1e-5 * 24);  // of the box
-        CHECK(glm::length(puppet.moved.normals[v]) == doctest::Approx(1).epsilon(1e-5));
-        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == doctest::Approx(1).epsilon(1e-5));
+        CHECK(glm::length(puppet.moved.normals[v]) == test::near(1).epsilon(1e-5));
+        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == test::near(1).epsilon(1e-5));
     }
 }
 
@@ -260,8 +260,8 @@ TEST_CASE("skin: matrices shrink a twisted joint by the cosine law, screw motion
             }
             puppet.dual();
             for (const Vec3& p : puppet.moved.positions) {
-                CHECK(std::hypot(p.x, p.z) == doctest::Approx(1).epsilon(1e-5));
-                CHECK(p.y == doctest::Approx(1).epsilon(1e-5));
+                CHECK(std::hypot(p.x, p.z) == test::near(1).epsilon(1e-5));
+                CHECK(p.y == test::near(1).epsilon(1e-5));
             }
         }
     }
@@ -276,7 +276,7 @@ TEST_CASE("skin: where opposite turns cancel a normal, the strongest joint turns
     for (std::size_t v = 0; v < puppet.mesh.positions.size(); ++v) {
         CHECK(std::isfinite(puppet.moved.positions[v].x));
         CHECK(puppet.moved.normals[v] == puppet.mesh.normals[v]);  // the first of two equal ones
-        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == doctest::Approx(1));
+        CHECK(glm::length(Vec3(puppet.moved.tangents[v])) == test::near(1));
     }
 }
 
@@ -523,12 +523,12 @@ TEST_CASE("skin: the largest influences are kept and sum to 1 again") {
     const SkinWeights two = limit_influences(skin, 2);
     CHECK(two.first == std::vector<std::uint32_t>{0, 2, 3});
     CHECK(two.joints == std::vector<std::uint16_t>{3, 8, 2});
-    CHECK(two.weights[0] == doctest::Approx(0.625));
-    CHECK(two.weights[1] == doctest::Approx(0.375));
+    CHECK(two.weights[0] == test::near(0.625));
+    CHECK(two.weights[1] == test::near(0.375));
     CHECK(limit_influences(skin, 1).weights == std::vector<float>{1, 1});
     const SkinWeights all = limit_influences(skin, 4);
     CHECK(all.joints == skin.joints);
     CHECK(
         all.weights[0] + all.weights[1] + all.weights[2] + all.weights[3]
-        == doctest::Approx(1).epsilon(1e-6));
+        == test::near(1).epsilon(1e-6));
 }

@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/motion_kernels.h"
 #include "systems/spin_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -21,7 +22,7 @@ TEST_CASE("spin: a turn of 2 pi in 60 steps comes back to where it began") {
     }
     CHECK(
         std::abs(glm::dot(world.get<Transform>(e).rotation, start))
-        == doctest::Approx(1.0f).epsilon(1e-6));
+        == test::near(1.0f).epsilon(1e-6));
 }
 
 TEST_CASE("spin: it turns by speed times step about its own axis, however long the axis is") {
@@ -32,9 +33,7 @@ TEST_CASE("spin: it turns by speed times step about its own axis, however long t
         world.create(Transform{.rotation = start}, Spin{.axis = {0, 5, 0}, .speed = 0.6f});
     world.run(update_spins);
     const Quat expected = start * glm::angleAxis(0.3f, Vec3(0, 1, 0));
-    CHECK(
-        glm::dot(world.get<Transform>(e).rotation, expected)
-        == doctest::Approx(1.0f).epsilon(1e-6));
+    CHECK(glm::dot(world.get<Transform>(e).rotation, expected) == test::near(1.0f).epsilon(1e-6));
 }
 
 TEST_CASE("spin: nothing turns about an axis of length 0 or in a step of length 0") {
@@ -61,7 +60,7 @@ TEST_CASE("spin: the rotation stays unit through 100,000 steps") {
         turn_rotations(spin, 1.0f / 60.0f, transform);
     }
     for (const Transform& t : transform) {
-        CHECK(glm::length(t.rotation) == doctest::Approx(1.0f).epsilon(1e-6));
+        CHECK(glm::length(t.rotation) == test::near(1.0f).epsilon(1e-6));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/motion_kernels.h"
 #include "systems/sway_system.h"
+#include "tests/near.h"
 #include "tests/systems/sway_table.h"
 
 #include <doctest/doctest.h>
@@ -44,7 +45,7 @@ TEST_CASE("sway: each axis is center + amplitude sin(frequency t + phase)") {
                              + static_cast<double>(sway.phase[axis]);
         const double expected = static_cast<double>(sway.center[axis])
                                 + static_cast<double>(sway.amplitude[axis]) * std::sin(angle);
-        CHECK(world.get<Transform>(e).position[axis] == doctest::Approx(expected).epsilon(1e-6));
+        CHECK(world.get<Transform>(e).position[axis] == test::near(expected).epsilon(1e-6));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "ecs/schedule.h"
 #include "systems/motion_kernels.h"
 #include "systems/transform_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -153,7 +154,7 @@ TEST_CASE("transform: a chain of children is the product of its links") {
     const Affine before = world_of(world, chain.back());
     world.get<Transform>(chain[0]).position.y = 5;
     schedule.run(world);
-    CHECK(world_of(world, chain.back()).row[1].w == doctest::Approx(before.row[1].w + 5));
+    CHECK(world_of(world, chain.back()).row[1].w == test::near(before.row[1].w + 5));
     CHECK(same(previous_of(world, chain.back()), before));
     schedule.run(world);
     CHECK(same(previous_of(world, chain.back()), world_of(world, chain.back())));

@@ -7,6 +7,7 @@
 #include "ecs/hierarchy.h"
 #include "ecs/snapshot.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -58,7 +59,7 @@ TEST_CASE("update_world: time is the number of steps times their length, without
         step_world(world, schedule);
         CHECK(world.resource<FrameTime>().frame == static_cast<std::uint64_t>(i));
     }
-    CHECK(world.resource<FrameTime>().time == doctest::Approx(10.0).epsilon(1e-7));
+    CHECK(world.resource<FrameTime>().time == test::near(10.0).epsilon(1e-7));
 }
 
 TEST_CASE("update_world: what was spawned is where it belongs after one step") {

@@ -2,6 +2,7 @@
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/water_noise_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -62,7 +63,7 @@ TEST_CASE("water noise: each octave is half as high, twice as fine and twice as 
         const Vec2 at = {0.37f * static_cast<float>(i), std::sin(static_cast<float>(i))};
         const double time = 0.11 * i;
         const float sum = noise_height(one, at, time) + noise_height(next, at, time);
-        CHECK(noise_height(two, at, time) == doctest::Approx(sum).epsilon(1e-5));
+        CHECK(noise_height(two, at, time) == test::near(sum).epsilon(1e-5));
     }
 }
 
@@ -76,7 +77,7 @@ TEST_CASE("water noise: heights lie between the least and the greatest, normals 
     for (std::size_t i = 0; i < field.height.size(); ++i) {
         CHECK(field.height[i] >= field.low);
         CHECK(field.height[i] <= field.low + field.range + 1e-7f);
-        CHECK(glm::length(field.normal[i]) == doctest::Approx(1));
+        CHECK(glm::length(field.normal[i]) == test::near(1));
         CHECK(field.normal[i].y > 0);
         low = std::min(low, field.height[i]);
         high = std::max(high, field.height[i]);
@@ -99,7 +100,7 @@ TEST_CASE("water noise: normals are those of the heights at the points around") 
         };
         const Vec3 normal = glm::normalize(Vec3(-slope({4.0f / 32, 0}), 1, -slope({0, 8.0f / 32})));
         const auto i = static_cast<std::size_t>(point.y * 33 + point.x);
-        CHECK(field.height[i] == doctest::Approx(noise_height(noise, at, 1)));
+        CHECK(field.height[i] == test::near(noise_height(noise, at, 1)));
         CHECK(glm::distance(field.normal[i], normal) < 1e-4f);
     }
 }

@@ -3,6 +3,7 @@
 #include "systems/water/water_query.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -109,7 +110,7 @@ TEST_CASE("water query: what it finds is on the surface, above the place asked f
         CHECK(glm::distance(point.position, drawn) < 1e-5f);
         CHECK(glm::distance(Vec2(point.position.x, point.position.z), at) < 1.2e-4f);
         CHECK(std::abs(point.error - glm::distance(Vec2(drawn.x, drawn.z), at)) < 1e-5f);
-        CHECK(glm::length(point.normal) == doctest::Approx(1));
+        CHECK(glm::length(point.normal) == test::near(1));
         evaluations += point.evaluations;
         CHECK(point.evaluations <= 12);
     }
@@ -209,7 +210,7 @@ TEST_CASE("water query: at its own points the ocean is what its grids say, and i
     }
     // Half way along an edge: the mean of its ends.
     const Vec3 middle = displace_water(sea.surface, {cell * 63.5f, 0}).offset;
-    CHECK(middle.y == doctest::Approx(0.5f * (cascade.height[63] + cascade.height[0])));
+    CHECK(middle.y == test::near(0.5f * (cascade.height[63] + cascade.height[0])));
 }
 
 TEST_CASE("water query: heights change as velocity and slope say") {
@@ -344,13 +345,13 @@ TEST_CASE("water query: a point is in the water whose surface is nearest above i
     const auto in_high = find_water(both, {1, 4.5f, 1});
     REQUIRE(in_high);
     CHECK(in_high->index == 1);
-    CHECK(in_high->depth == doctest::Approx(0.5));
+    CHECK(in_high->depth == test::near(0.5));
     CHECK(!find_water(both, {1, 3.5f, 1}));  // below the bottom of one, above the other
     CHECK(!find_water(both, {3, 4.5f, 1}));
     const auto in_low = find_water(both, {1, -100, 1});
     REQUIRE(in_low);
     CHECK(in_low->index == 0);
-    CHECK(in_low->depth == doctest::Approx(100));
+    CHECK(in_low->depth == test::near(100));
     const WaterSurface higher = {.frame = {.origin = {0, 9, 0}}, .water = {}};
     const WaterSurface three[] = {higher, low, high};
     CHECK(find_water(three, {1, 4.5f, 1})->index == 2);

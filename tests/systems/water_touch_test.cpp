@@ -7,6 +7,7 @@
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_shape.h"
 #include "systems/water/water_touch.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -85,13 +86,13 @@ TEST_CASE("water shape: below a level there is what the formula of each says") {
     // A cap of h: pi h^2 (3 r - h) / 3. Middles are at 0.3.
     for (const float h : {0.1f, 0.4f, 0.7f}) {
         const float cap = kPi * h * h * (3 * 0.4f - h) / 3;
-        CHECK(below(WallShape::Ball, Vec3(0.4f), -0.1f + h) == doctest::Approx(cap));
+        CHECK(below(WallShape::Ball, Vec3(0.4f), -0.1f + h) == test::near(cap));
     }
-    CHECK(below(WallShape::Ball, {0.4f, 0.2f, 0.3f}, 9) == doctest::Approx(4.18879 * 0.024));
-    CHECK(below(WallShape::Box, {0.4f, 0.2f, 0.3f}, 0.2f) == doctest::Approx(0.8 * 0.6 * 0.1));
-    CHECK(below(WallShape::Cylinder, {0.4f, 0.2f, 0.3f}, 0.2f) == doctest::Approx(0.037699));
+    CHECK(below(WallShape::Ball, {0.4f, 0.2f, 0.3f}, 9) == test::near(4.18879 * 0.024));
+    CHECK(below(WallShape::Box, {0.4f, 0.2f, 0.3f}, 0.2f) == test::near(0.8 * 0.6 * 0.1));
+    CHECK(below(WallShape::Cylinder, {0.4f, 0.2f, 0.3f}, 0.2f) == test::near(0.037699));
     CHECK(below(WallShape::Box, Vec3(0.2f), 0.09f) == 0);
-    CHECK(below(WallShape::Box, Vec3(0.2f), 9) == doctest::Approx(0.064));
+    CHECK(below(WallShape::Box, Vec3(0.2f), 9) == test::near(0.064));
 }
 
 TEST_CASE("water shape: it reaches as far as its farthest point") {
@@ -115,7 +116,7 @@ TEST_CASE("water shape: it reaches as far as its farthest point") {
         }
         for (int i = 0; i < 3; ++i) {
             CHECK(placed.reach[i] == doctest::Approx(farthest[i]).epsilon(2e-3).scale(0));
-            CHECK(placed.center[i] == doctest::Approx(i + 1));
+            CHECK(placed.center[i] == test::near(i + 1));
         }
     }
 }
@@ -248,8 +249,8 @@ TEST_CASE("water touch: a mesh without joints is its bounds; an open one fills i
     const TouchParts whole = make_touch_parts(mesh, nullptr);
     REQUIRE(whole.parts.size() == 1);
     CHECK(whole.parts[0].joint == -1);
-    CHECK(whole.parts[0].center.y == doctest::Approx(1));
-    CHECK(whole.fill == doctest::Approx(6 / 3.14159265));
+    CHECK(whole.parts[0].center.y == test::near(1));
+    CHECK(whole.fill == test::near(6 / 3.14159265));
     for (const bool inside_out : {false, true}) {
         MeshData bad = mesh;
         if (inside_out) {

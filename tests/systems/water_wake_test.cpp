@@ -5,6 +5,7 @@
 #include "systems/update_world.h"
 #include "systems/water/water_wake_system.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -67,7 +68,7 @@ TEST_CASE("water wake: there is a ring for each bit of way, whatever the speed")
         CHECK(static_cast<int>(sea.rings()) <= 41);
         const std::vector<WavePacket>& rings = sea.world.get<WaterWaves>(sea.water).packets;
         for (std::size_t i = 1; i < rings.size(); ++i) {
-            CHECK(glm::distance(rings[i].center, rings[i - 1].center) == doctest::Approx(0.5));
+            CHECK(glm::distance(rings[i].center, rings[i - 1].center) == test::near(0.5));
             // The older by the time that the boat took.
             const float later = rings[i - 1].age - rings[i].age;
             CHECK(std::abs(later * speed - 0.5f) < 0.02f);
@@ -128,7 +129,7 @@ TEST_CASE("water wake: it adds to the waves that are there") {
     CHECK(alone.rings() == 0);
     for (float x = -10; x < 8; x += 0.7f) {
         const Vec2 at = {x, 0.4f};
-        CHECK(rough.height(at) == doctest::Approx(calm.height(at) + alone.height(at)));
+        CHECK(rough.height(at) == test::near(calm.height(at) + alone.height(at)));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "systems/water/water_dispersion.h"
 #include "systems/water/water_wave_kernels.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -201,7 +202,7 @@ TEST_CASE("water waves: a drop's ring is a ring: nothing before its front, nothi
 TEST_CASE("water waves: drops fade, age by the step, and are taken away when they have ended") {
     const WavePacket young = {.age = 0.5f, .decay = 0.5f, .smooth = false};
     const WaveTable table = table_of(WaterWaves{.packets = {young}}, 0);
-    CHECK(table.rings[0].amplitude == doctest::Approx(0.02 * std::exp(-1.0)));
+    CHECK(table.rings[0].amplitude == test::near(0.02 * std::exp(-1.0)));
     World world;
     Schedule schedule = make_world_schedule();
     const Entity pond = world.create(
@@ -210,7 +211,7 @@ TEST_CASE("water waves: drops fade, age by the step, and are taken away when the
         step_world(world, schedule);
     }
     REQUIRE(world.get<WaterWaves>(pond).packets.size() == 1);
-    CHECK(world.get<WaterWaves>(pond).packets[0].age == doctest::Approx(0.1));
+    CHECK(world.get<WaterWaves>(pond).packets[0].age == test::near(0.1));
     CHECK(world.get<WaveTable>(pond).rings.size() == 1);
 }
 
@@ -318,7 +319,7 @@ TEST_CASE("water waves: sharp ones are trochoids: the path of a point in a rolli
         const Vec3 point = surface(table, {a * theta + length / 4, 0});
         CHECK(
             point.x - length / 4
-            == doctest::Approx(a * theta - amplitude * std::sin(theta)).epsilon(1e-4));
+            == test::near(a * theta - amplitude * std::sin(theta)).epsilon(1e-4));
         CHECK(point.y == doctest::Approx(amplitude * std::cos(theta)).epsilon(1e-4).scale(0));
     }
     // Crests are rounder than troughs by ((a + b) / (a - b))^2.
@@ -341,8 +342,8 @@ TEST_CASE(
     for (const float q : {0.0f, 1.0f, 3.0f}) {
         const WaveTable table =
             table_of(WaterWave{.amplitude = a, .length = 10, .sharpness = q}, 0);
-        CHECK(surface(table, {2.5f, 0}).y == doctest::Approx(a));
-        CHECK(surface(table, {7.5f, 0}).y == doctest::Approx(-a));
+        CHECK(surface(table, {2.5f, 0}).y == test::near(a));
+        CHECK(surface(table, {7.5f, 0}).y == test::near(-a));
         const float h = 0.01f;
         const auto gap = [&](float x) {
             return (surface(table, {x + h, 0}).x - surface(table, {x - h, 0}).x) / (2 * h);
@@ -390,9 +391,9 @@ TEST_CASE("water waves: crests lean with the wind, and stay as high") {
         return height_of(table, {phase, 0});
     };
     for (float phase = 0; phase < kTurn; phase += 0.1f) {
-        CHECK(profile(0, phase) == doctest::Approx(std::sin(phase)).epsilon(1e-4));
+        CHECK(profile(0, phase) == test::near(std::sin(phase)).epsilon(1e-4));
         if (phase > kPi) {
-            CHECK(profile(0.3f, phase) == doctest::Approx(std::sin(phase)).epsilon(1e-4));
+            CHECK(profile(0.3f, phase) == test::near(std::sin(phase)).epsilon(1e-4));
         }
     }
     CHECK(std::abs(profile(0.3f, 0)) < 1e-6f);
@@ -403,7 +404,7 @@ TEST_CASE("water waves: crests lean with the wind, and stay as high") {
         crest = kPi / 2 + 0.3f * std::sin(crest);
     }
     CHECK(crest > kPi / 2);
-    CHECK(profile(0.3f, crest) == doctest::Approx(1));
+    CHECK(profile(0.3f, crest) == test::near(1));
     // Steeper in front, on the way to pi, than behind.
     CHECK(1 / (kPi - crest) > 1.3f / crest);
     // There is one crest, up to the most that it may lean.

@@ -8,6 +8,7 @@
 #include "ecs/world.h"
 #include "systems/update_world.h"
 #include "systems/water/weather_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -81,8 +82,8 @@ TEST_CASE("weather: oceans have its wind, pools its rain, the lens its drops") {
     bay.run(8);
     const Weather weather =
         current_weather(bay.world.resource<Weather>(), bay.world.resource<WeatherState>());
-    CHECK(weather.wind_speed == doctest::Approx(4).epsilon(0.02));
-    CHECK(weather.wind_direction == doctest::Approx(1.25).epsilon(0.01));
+    CHECK(weather.wind_speed == test::near(4).epsilon(0.02));
+    CHECK(weather.wind_direction == test::near(1.25).epsilon(0.01));
     CHECK(weather.rain > 0.4f);
     CHECK(bay.world.get<Ocean>(bay.sea).wind_speed == weather.wind_speed);
     CHECK(bay.world.get<WaterRipples>(bay.pool).rain > 1);
