@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>  // compiles what follows once for every instruction set
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;

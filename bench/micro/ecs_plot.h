@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 // The SVG plot of a run: time per entity over the number of entities, for iteration and structural

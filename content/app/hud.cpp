@@ -85,7 +85,7 @@ void draw_key_cap(const char* key, float width) {
 
 }  // namespace
 
-Hud::Hud(Window& window) : window_(window) {
+Hud::Hud(Window& window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();

@@ -76,7 +76,6 @@ class Hud {
     void draw_help();
     void draw_toasts();
 
-    Window& window_;
     HudStyle style_;
     std::vector<Toast> toasts_;
 };

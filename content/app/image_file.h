@@ -2,6 +2,7 @@
 
 #include "ecs/base/result.h"
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>

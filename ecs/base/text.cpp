@@ -1,5 +1,6 @@
 #include "ecs/base/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>

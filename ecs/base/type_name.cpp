@@ -1,6 +1,7 @@
 #include "ecs/base/type_name.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace limn {

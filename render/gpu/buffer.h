@@ -3,6 +3,7 @@
 #include "render/gpu/gl_object.h"
 
 #include <span>
+#include <type_traits>
 
 namespace limn::gpu {
 

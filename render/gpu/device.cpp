@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace limn::gpu {
 
 Result<std::unique_ptr<Device>> Device::from_current_context(std::optional<Profile> profile) {

@@ -5,6 +5,8 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace limn::gpu {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <deque>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace limn::gpu {

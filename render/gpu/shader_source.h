@@ -2,6 +2,7 @@
 
 #include "ecs/base/result.h"
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

@@ -4,6 +4,7 @@
 #include "ecs/base/result.h"
 #include "render/gpu/gl_object.h"
 
+#include <algorithm>
 #include <span>
 
 namespace limn::gpu {

@@ -3,6 +3,7 @@
 #include "render/gpu/shader_library.h"
 #include "render/shaders/tone_gpu.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

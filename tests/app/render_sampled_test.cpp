@@ -80,7 +80,7 @@ TEST_CASE("exposure samples: time runs on in equal steps about the middle, alone
             CHECK(moment == test::near((i + 0.5) / count - 0.5));
             sum += moment;
         }
-        CHECK(sum == doctest::Approx(0).scale(1).epsilon(1e-9));
+        CHECK(sum == test::near(0).scale(1).epsilon(1e-9));
     }
     const ExposureSample one = exposure_sample(0, 1);
     CHECK(one.time == 0);
@@ -148,8 +148,7 @@ TEST_CASE(
     CHECK(sum(blurred) == test::near(sum(still)).epsilon(0.01));
     CHECK(red(still, static_cast<int>(middle + 0.4 * width), kHeight / 2) == test::near(1));
     CHECK(
-        red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2)
-        == doctest::Approx(0).scale(1));
+        red(still, static_cast<int>(middle + 0.7 * width), kHeight / 2) == test::near(0).scale(1));
 }
 
 TEST_CASE("render sampled: what goes less far than it is wide is a ramp at each edge") {

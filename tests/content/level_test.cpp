@@ -1,7 +1,6 @@
 #include "content/game/game.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
-#include "content/load/level_list.h"
 #include "content/load/level_load.h"
 #include "content/load/level_schema.h"
 #include "content/load/scene_load.h"
@@ -636,31 +635,6 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
         definitions->find("point_light")->find("properties")->find("intensity");
     CHECK(roll->find("minimum")->number == 0.0);
     CHECK(roll->find("maximum")->number == 1e6);
-}
-
-TEST_CASE("levels: every level of the project loads, is named and has a camera that moves") {
-    register_game_components();
-    const std::vector<LevelEntry> levels = list_levels();
-    for (const LevelEntry& entry : levels) {
-        CAPTURE(entry.name);
-        CHECK_FALSE(entry.title.empty());
-        World world;
-        const Result<LoadedScene> scene = load_scene(world, entry.name);
-        REQUIRE_MESSAGE(scene.ok(), (scene.ok() ? "" : scene.error().message));
-        CHECK(scene->name == entry.name);
-        CHECK(scene->title == entry.title);
-        const bool on_a_path =
-            world.find<CameraPath>(scene->camera) != nullptr && scene->duration > 0.0;
-        const auto* const orbit = world.find<OrbitCamera>(scene->camera);
-        const bool after_something = orbit != nullptr && world.alive(orbit->target);
-        CHECK((on_a_path || after_something));
-    }
-}
-
-TEST_CASE("levels: a name that is none names the nearest") {
-    const Result<std::string> path = find_level("galery");
-    REQUIRE_FALSE(path.ok());
-    CHECK(path.error().message.find("(did you mean gallery?)") != std::string::npos);
 }
 
 TEST_CASE("level: it binds keys to actions; actions and keys must exist") {

@@ -6,6 +6,7 @@
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "systems/update_world.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -109,7 +110,7 @@ TEST_CASE("water stones: a stone flies, falls in where it was aimed at, and sink
     float depth = 0;
     scene.world.query<const ThrownStone, const Transform>().each(
         [&](const ThrownStone&, const Transform& place) { depth = -place.position.y; });
-    CHECK(depth == doctest::Approx(2 - 0.15).epsilon(0.01).scale(0));
+    CHECK(depth == test::near(2 - 0.15).epsilon(0.01).scale(0));
 }
 
 TEST_CASE("water stones: the oldest make room") {

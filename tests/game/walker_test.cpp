@@ -113,7 +113,7 @@ TEST_CASE("walker: a wall stops it, and it slides along") {
     pool.run(3);
     CHECK(pool.feet.z == test::near(4.5f - pool.settings.radius).epsilon(0.01));
     CHECK(pool.feet.x < -1);  // its right
-    CHECK(pool.feet.y == doctest::Approx(0).scale(1).epsilon(0.001));
+    CHECK(pool.feet.y == test::near(0).scale(1).epsilon(0.001));
 }
 
 TEST_CASE("walker: swims where it cannot stand, eyes above the water, and dives when told") {

@@ -9,6 +9,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -203,6 +204,106 @@ TEST_CASE("house: every header has its pragma, every source includes its own hea
                 CHECK(line == "#include \"" + own + "\"");
                 break;
             }
+        }
+    }
+}
+
+/// What a file includes, directly or through headers of the tree; `included` maps a path to its
+/// #include lines.
+std::set<std::string> find_reachable(
+    const std::string& path, const std::map<std::string, std::vector<std::string>>& included) {
+    std::set<std::string> reachable;
+    std::vector<std::string> open = {path};
+    while (!open.empty()) {
+        const auto found = included.find(open.back());
+        open.pop_back();
+        if (found == included.end()) {
+            continue;
+        }
+        for (const std::string& header : found->second) {
+            if (reachable.insert(header).second) {
+                open.push_back(header);
+            }
+        }
+    }
+    return reachable;
+}
+
+// Precompiled headers hide a missing include, and other standard libraries do not include what
+// this one does.
+TEST_CASE("house: what a file uses of the standard library and fmt is included") {
+    const struct {
+        std::regex used;
+        std::vector<std::string> headers;  ///< one of them
+    } rules[] = {
+        {std::regex(R"(std::vector<)"), {"vector"}},
+        {std::regex(R"(std::string\b)"), {"string"}},
+        {std::regex(R"(std::string_view\b)"), {"string_view", "string"}},
+        {std::regex(R"(std::span<)"), {"span"}},
+        {std::regex(R"(std::array\b)"), {"array"}},
+        {std::regex(R"(std::optional<)"), {"optional"}},
+        {std::regex(R"(std::map<)"), {"map"}},
+        {std::regex(R"(std::unordered_map<)"), {"unordered_map"}},
+        {std::regex(R"(std::(unique_ptr|make_unique|shared_ptr|make_shared)\b)"), {"memory"}},
+        {std::regex(R"(std::function<)"), {"functional"}},
+        {std::regex(R"(std::atomic\b)"), {"atomic"}},
+        {std::regex(R"(std::numeric_limits)"), {"limits"}},
+        {std::regex(R"(std::(iota|accumulate)\b)"), {"numeric"}},
+        {std::regex(R"(std::(bit_cast|popcount|countr_zero|has_single_bit)\b)"), {"bit"}},
+        {std::regex(R"(std::mem(cpy|set|cmp|move)\b)"), {"cstring"}},
+        {std::regex(R"(std::u?int(8|16|32|64)_t\b)"), {"cstdint"}},
+        {std::regex(R"(std::(mt19937|uniform_\w+))"), {"random"}},
+        {std::regex(R"(std::(sort|min|max|clamp|any_of|all_of|find_if|fill|copy|transform)\()"),
+         {"algorithm"}},
+        {std::regex(R"(std::(sqrt|floor|ceil|pow|exp2?|log2?|sin|cos|atan2|lround)\()"), {"cmath"}},
+        {std::regex(R"(std::(move|forward|exchange|as_const|swap|pair)\b)"), {"utility"}},
+        {std::regex(R"(std::is_\w+_v|std::decay_t)"), {"type_traits", "concepts"}},
+        {std::regex(R"(\bfmt::)"), {"fmt/format.h", "fmt/core.h"}},
+    };
+    const std::vector<SourceFile> sources = own_sources();
+    std::map<std::string, std::vector<std::string>> included;
+    const std::regex include(R"(^#include ["<]([^">]+)[">])");
+    for (const SourceFile& source : sources) {
+        for (const std::string& line : source.lines) {
+            std::smatch header;
+            if (starts_with(line, "#include") && std::regex_search(line, header, include)) {
+                included[source.path].push_back(header[1]);
+            }
+        }
+    }
+    for (const SourceFile& source : sources) {
+        if (source.path == "tests/house/house_test.cpp") {
+            continue;  // these rules
+        }
+        std::string code;
+        for (const std::string& line : source.lines) {
+            if (line.find("::") != std::string::npos) {
+                code += line.substr(0, line.find("//")) + '\n';
+            }
+        }
+        const std::set<std::string> reachable = find_reachable(source.path, included);
+        for (const auto& rule : rules) {
+            bool is_included = false;
+            for (const std::string& header : rule.headers) {
+                is_included = is_included || reachable.count(header) > 0;
+            }
+            if (!is_included && std::regex_search(code, rule.used)) {
+                FAIL_CHECK(
+                    source.path << ": found a name of <" << rule.headers.front()
+                                << ">, expected its #include");
+            }
+        }
+    }
+}
+
+TEST_CASE("house: tests compare by near(), because a bare Approx passes every small number") {
+    for (const SourceFile& source : own_sources()) {
+        if (source.path == "tests/near.h" || source.path == "tests/house/house_test.cpp") {
+            continue;
+        }
+        for (std::size_t i = 0; i < source.lines.size(); ++i) {
+            INFO(source.path << ":" << i + 1 << ": " << source.lines[i]);
+            CHECK(source.lines[i].find("Approx(") == std::string::npos);
         }
     }
 }

@@ -76,14 +76,14 @@ TEST_CASE_FIXTURE(
     const float half = 2 * std::tan(0.5f * fov);  // at 2 m
     const Vec3 red = at_wall(image, {-0.5f * half, 0.5f * half});
     CHECK(red.x > 0.5f);
-    CHECK(red.y == doctest::Approx(0).scale(1));
+    CHECK(red.y == test::near(0).scale(1));
     // Seen from before the wall, the lamp's right is ours.
     const Vec3 green = at_wall(image, {0.5f * half, 0.5f * half});
     CHECK(green.y > 0.5f);
-    CHECK(green.z == doctest::Approx(0).scale(1));
+    CHECK(green.z == test::near(0).scale(1));
     const Vec3 blue = at_wall(image, {-0.5f * half, -0.5f * half});
     CHECK(blue.z > 0.5f);
-    CHECK(blue.x == doctest::Approx(0).scale(1));
+    CHECK(blue.x == test::near(0).scale(1));
     int lit = 0;
     for (int x = 0; x < 96; ++x) {
         lit += rgb_at(image, x, 40).x + rgb_at(image, x, 40).y > 0 ? 1 : 0;

@@ -1,6 +1,7 @@
 #include "render/gpu/ring_buffer.h"
 #include "tests/render/render_fixture.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <numeric>

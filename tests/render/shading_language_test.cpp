@@ -1,5 +1,6 @@
 #include "tests/render/shader_eval.h"
 
+#include <algorithm>
 #include <cmath>
 
 // Where C++ and GLSL share a formula or a layout, both have the same values (shade.vector-ops,

@@ -30,7 +30,9 @@ TEST_CASE_FIXTURE(
     for (const IVec2 p : {IVec2(0, 0), IVec2(63, 31), IVec2(40, 3), IVec2(31, 16), IVec2(5, 20)}) {
         const Vec2 ndc = 2.0f * (Vec2(p) + 0.5f) / Vec2(64, 32) - 1.0f;
         const float expected = vignette(settings, {ndc.x, -ndc.y}, view.tangent);
-        CHECK(dark.at(p.x, p.y, 1) == test::near(expected * plain.at(p.x, p.y, 1)).epsilon(1e-4));
+        CHECK(
+            dark.at(p.x, p.y, 1)
+            == test::near(expected * plain.at(p.x, p.y, 1)).epsilon(5e-4));  // half floats
     }
 }
 
@@ -38,7 +40,7 @@ TEST_CASE("vignette: closed forms on the axis, in the corners and at the limits"
     const Vec2 tangent = {2, 1};  // corners at tan = sqrt(5)
     CHECK(vignette({1, 1}, {0, 0}, tangent) == test::near(1));
     CHECK(vignette({1, 0}, {1, 1}, tangent) == test::near(1.0 / 36));
-    CHECK(vignette({0, 1}, {1, 1}, tangent) == doctest::Approx(0).scale(1));
+    CHECK(vignette({0, 1}, {1, 1}, tangent) == test::near(0).scale(1));
     // Two circles whose centers are a radius apart share 2/3 - sqrt(3)/(2 pi) of their area.
     CHECK(vignette({0, 0.5f}, {1, -1}, tangent) == test::near(0.3910).epsilon(1e-4));
     float last = 1;

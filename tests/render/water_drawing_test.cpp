@@ -12,6 +12,7 @@
 #include "systems/water/water_query.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_wave_table.h"
+#include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
@@ -306,7 +307,7 @@ TEST_CASE_FIXTURE(Lake, "water: deep water gives back a third of its backscatter
         for (int c = 0; c < 3; ++c) {
             const float glow = 0.33f * 0.54f * scattering[c] / (3 + scattering[c]);
             const float expected = cosine_one + (1 - cosine_one) * glow;
-            CHECK(seen.at(16, 16, c) == doctest::Approx(expected).epsilon(0.03).scale(0));
+            CHECK(seen.at(16, 16, c) == test::near(expected).epsilon(0.03).scale(0));
         }
         world.destroy(lake);
     }
@@ -373,7 +374,7 @@ TEST_CASE_FIXTURE(Lake, "water veil: aside of the middle the way through the wat
         const float way = 3 * glm::length(ray_through(view, pixel.x, pixel.y));
         CHECK(
             seen.at(pixel.x, pixel.y, 0)
-            == doctest::Approx(std::exp(-0.3f * way)).epsilon(0.01).scale(0));
+            == test::near(std::exp(-0.3f * way)).epsilon(0.01).scale(0));
     }
 }
 
@@ -385,7 +386,7 @@ TEST_CASE_FIXTURE(
         const Vec3 eye = {0.5f, -5, -1};
         const gpu::FloatImage seen = radiance(look(eye, eye + toward, 33, 33));
         const float way = toward.x != 0 ? 2 - toward.x * eye.x : 3 - toward.z * eye.z;
-        CHECK(seen.at(16, 16, 0) == doctest::Approx(std::exp(-0.3f * way)).epsilon(0.002).scale(0));
+        CHECK(seen.at(16, 16, 0) == test::near(std::exp(-0.3f * way)).epsilon(0.002).scale(0));
     }
 }
 

@@ -196,9 +196,7 @@ TEST_CASE_FIXTURE(Pond, "water: dark and deep, it mirrors the sky by the Fresnel
         const Vec3 ray = glm::normalize(ray_through(view, 32, y));
         if (-ray.y > 0.02f) {
             CAPTURE(y);
-            CHECK(
-                seen.at(32, y, 0)
-                == doctest::Approx(fresnel(-ray.y, 1.333f)).epsilon(0.01).scale(0));
+            CHECK(seen.at(32, y, 0) == test::near(fresnel(-ray.y, 1.333f)).epsilon(0.01).scale(0));
             ++tested;
         }
     }
@@ -214,7 +212,7 @@ TEST_CASE_FIXTURE(Pond, "water: light is lost on its way by the law of Beer and 
         const float through = 1 - fresnel(1, 1.333f);
         const float expected =
             through * Vec3(0.8f, 0.6f, 0.4f)[c] * std::exp(-1.5f * absorption[c]);
-        CHECK(seen.at(32, 32, c) == doctest::Approx(expected).epsilon(0.01).scale(0));
+        CHECK(seen.at(32, 32, c) == test::near(expected).epsilon(0.01).scale(0));
     }
 }
 
@@ -250,7 +248,7 @@ TEST_CASE_FIXTURE(Pond, "water: a bottom looks nearer than it is, by the refract
         lit += seen.at(x, 128, 0) > 0.5f ? 1 : 0;
     }
     const double half_angle = std::atan(0.5 / (1 + 1.99 / 1.333));  // of small angles
-    CHECK(lit == doctest::Approx(256 * std::tan(half_angle)).epsilon(0.05).scale(0));
+    CHECK(lit == test::near(256 * std::tan(half_angle)).epsilon(0.05).scale(0));
 }
 
 TEST_CASE_FIXTURE(
@@ -412,7 +410,7 @@ TEST_CASE_FIXTURE(Pond, "water veil: what a camera in the water sees is dimmed b
     CHECK(frame_graph(shared_renderer()).was_run("water veil"));
     for (int c = 0; c < 3; ++c) {
         const float expected = Vec3(0.8f, 0.6f, 0.4f)[c] * std::exp(-3 * absorption[c]);
-        CHECK(seen.at(32, 32, c) == doctest::Approx(expected).epsilon(0.005).scale(0));
+        CHECK(seen.at(32, 32, c) == test::near(expected).epsilon(0.005).scale(0));
     }
 }
 
@@ -443,7 +441,7 @@ TEST_CASE_FIXTURE(Pond, "water veil: endless water has one color, the darker the
         const float extinction = 0.2f + scattering.z;
         const float expected =
             0.33f * scattering.z / extinction * std::exp(-1.2f * extinction * depth);
-        CHECK(seen.at(16, 16, 2) == doctest::Approx(expected).epsilon(0.02).scale(0));
+        CHECK(seen.at(16, 16, 2) == test::near(expected).epsilon(0.02).scale(0));
         last = seen.at(16, 16, 2);
     }
 }
@@ -461,7 +459,7 @@ TEST_CASE_FIXTURE(Pond, "water veil: at the surface the line is where the water 
             REQUIRE(std::isfinite(value));
         }
         CHECK(seen.at(32, 62, 0) < 0.5f);
-        CHECK(seen.at(32, 2, 0) == doctest::Approx(1).epsilon(0.01).scale(0));
+        CHECK(seen.at(32, 2, 0) == test::near(1).epsilon(0.01).scale(0));
     }
     // Waves move the line: a crest on the camera covers it.
     WaveTable table;

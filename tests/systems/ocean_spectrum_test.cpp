@@ -70,8 +70,8 @@ double sum_of_grid(const OceanEnergy& sea, int size, double patch) {
 }  // namespace
 
 TEST_CASE("ocean_spectrum: the wind sea has the values of its formula and one maximum, at f_p") {
-    CHECK(wind_sea_energy(0.1, 0.1) == doctest::Approx(14.329646).epsilon(1e-6).scale(0));
-    CHECK(wind_sea_energy(0.2, 0.1) == doctest::Approx(1.445521).epsilon(1e-6).scale(0));
+    CHECK(wind_sea_energy(0.1, 0.1) == test::near(14.329646).epsilon(1e-6).scale(0));
+    CHECK(wind_sea_energy(0.2, 0.1) == test::near(1.445521).epsilon(1e-6).scale(0));
     CHECK(ratio(wind_sea_energy(0.05, 0.1), 3.29886e-6) < 2e-6);
     double last = 0;
     for (double f = 0.001; f <= 0.1; f += 0.001) {
@@ -100,32 +100,32 @@ TEST_CASE("ocean_spectrum: the wind sea's integral is alpha g^2 / (5 (2 pi)^4 f_
                    return wind_sea_energy(f, f_p);
                }));
     };
-    CHECK(height(0.1) == doctest::Approx(4.000615).epsilon(1e-6).scale(0));
-    CHECK(height(0.2) == doctest::Approx(1.000154).epsilon(1e-6).scale(0));
+    CHECK(height(0.1) == test::near(4.000615).epsilon(1e-6).scale(0));
+    CHECK(height(0.2) == test::near(1.000154).epsilon(1e-6).scale(0));
 }
 
 TEST_CASE("ocean_spectrum: waves at the peak run with the wind, longer and shorter ones less so") {
     CHECK(cosine_power_integral(0) == test::near(kTurn));
     CHECK(cosine_power_integral(1) == test::near(0.5 * kTurn));
-    CHECK(cosine_power_integral(2) == doctest::Approx(2.356194).epsilon(1e-6).scale(0));
-    CHECK(cosine_power_integral(9.77) == doctest::Approx(1.119705).epsilon(1e-6).scale(0));
+    CHECK(cosine_power_integral(2) == test::near(2.356194).epsilon(1e-6).scale(0));
+    CHECK(cosine_power_integral(9.77) == test::near(1.119705).epsilon(1e-6).scale(0));
     CHECK(wind_sea_spread_power(1) == test::near(9.77));
-    CHECK(wind_sea_spread_power(0.5) == doctest::Approx(0.585751).epsilon(1e-6).scale(0));
-    CHECK(wind_sea_spread_power(2) == doctest::Approx(1.929676).epsilon(1e-6).scale(0));
-    CHECK(wind_sea_spread_power(4) == doctest::Approx(0.381131).epsilon(1e-5).scale(0));
+    CHECK(wind_sea_spread_power(0.5) == test::near(0.585751).epsilon(1e-6).scale(0));
+    CHECK(wind_sea_spread_power(2) == test::near(1.929676).epsilon(1e-6).scale(0));
+    CHECK(wind_sea_spread_power(4) == test::near(0.381131).epsilon(1e-5).scale(0));
     // Far beyond where the gamma functions overflow it narrows to a bell.
     CHECK(ratio(cosine_power_integral(1e5), 2 * std::sqrt(0.5 * kTurn / 1e5)) < 1e-4);
 
     const OceanEnergy sea = wind_sea_of_peak(0.1);
     const double at_peak = directional_density(sea, sea.peak, 0);
-    CHECK(at_peak == doctest::Approx(0.893092).epsilon(1e-6).scale(0));
+    CHECK(at_peak == test::near(0.893092).epsilon(1e-6).scale(0));
     const double half = 30.3422 * kTurn / 360;
     CHECK(
         directional_density(sea, sea.peak, half)
-        == doctest::Approx(0.5 * at_peak).epsilon(1e-5).scale(0));
+        == test::near(0.5 * at_peak).epsilon(1e-5).scale(0));
     CHECK(
         directional_density(sea, sea.peak, -half)
-        == doctest::Approx(0.5 * at_peak).epsilon(1e-5).scale(0));
+        == test::near(0.5 * at_peak).epsilon(1e-5).scale(0));
 }
 
 TEST_CASE("ocean_spectrum: all shares of a frequency make 1, whatever spreads them") {
@@ -138,7 +138,7 @@ TEST_CASE("ocean_spectrum: all shares of a frequency make 1, whatever spreads th
                 CAPTURE(swell);
                 CAPTURE(x);
                 const double whole = integrate_turn(sea, x * sea.peak);
-                CHECK(whole == doctest::Approx(1).epsilon(closed ? 1e-6 : 3e-4).scale(0));
+                CHECK(whole == test::near(1).epsilon(closed ? 1e-6 : 3e-4).scale(0));
             }
         }
     }
@@ -156,7 +156,7 @@ TEST_CASE("ocean_spectrum: shares are even about the wind, and most where it blo
                 CHECK(share >= 0);
                 CHECK(directional_density(sea, x * sea.peak, -theta) == share);
                 const double turned = directional_density(sea, x * sea.peak, theta + kTurn);
-                CHECK(turned == doctest::Approx(share).epsilon(1e-9).scale(0));
+                CHECK(turned == test::near(share).epsilon(1e-9).scale(0));
             }
         }
     }
@@ -173,19 +173,18 @@ TEST_CASE("ocean_spectrum: exponents of Hasselmann and Donelan-Banner join where
     CHECK(donelan_banner_beta(0.3) == donelan_banner_beta(0.56));
     for (const double joint : {0.95, 1.6}) {
         const double before = donelan_banner_beta(joint - 1e-9);
-        CHECK(donelan_banner_beta(joint + 1e-9) == doctest::Approx(before).epsilon(3e-3).scale(0));
+        CHECK(donelan_banner_beta(joint + 1e-9) == test::near(before).epsilon(3e-3).scale(0));
     }
     CHECK(donelan_banner_beta(0.7) == test::near(2.61 * std::pow(0.7, 1.3)));
     CHECK(donelan_banner_beta(1.2) == test::near(2.28 * std::pow(1.2, -1.3)));
-    CHECK(donelan_banner_beta(100) == doctest::Approx(std::pow(10, -0.4)).epsilon(0.02).scale(0));
+    CHECK(donelan_banner_beta(100) == test::near(std::pow(10, -0.4)).epsilon(0.02).scale(0));
     // sech^2 has a closed integral: 2 tanh(pi beta) / beta.
     const OceanEnergy sea = make_ocean_energy({.spreading = OceanSpreading::DonelanBanner});
     for (const double x : {0.7, 1.2, 3.0}) {
         const double beta = donelan_banner_beta(x);
         const double closed = 0.5 * beta / std::tanh(0.5 * kTurn * beta);
         CHECK(
-            directional_density(sea, x * sea.peak, 0)
-            == doctest::Approx(closed).epsilon(1e-3).scale(0));
+            directional_density(sea, x * sea.peak, 0) == test::near(closed).epsilon(1e-3).scale(0));
     }
 }
 
@@ -194,7 +193,7 @@ TEST_CASE("ocean_spectrum: swell gathers long waves about the wind, and short on
     CHECK(swell_power(1, 1) == test::near(16 * std::tanh(1.0)));
     CHECK(swell_power(1, 0.5) == test::near(4 * std::tanh(1.0)));
     CHECK(swell_power(0.01, 1) == test::near(16));
-    CHECK(swell_power(100, 1) == doctest::Approx(0.16).epsilon(1e-3).scale(0));
+    CHECK(swell_power(100, 1) == test::near(0.16).epsilon(1e-3).scale(0));
     for (const OceanSpreading spreading : kSpreadings) {
         double last[2] = {0, 0};
         for (const float swell : {0.0f, 0.3f, 0.6f, 1.0f}) {
@@ -278,7 +277,7 @@ TEST_CASE("ocean_spectrum: a floor takes energy from long waves (TMA)") {
             const double fit = x < 1 ? 0.5 * x * x : x < 2 ? 1 - 0.5 * square(2 - x) : 1.0;
             CHECK(std::abs(factor - fit) < 0.045);
         }
-        CHECK(depth_factor(10 * unit, depth) == doctest::Approx(1).epsilon(1e-9).scale(0));
+        CHECK(depth_factor(10 * unit, depth) == test::near(1).epsilon(1e-9).scale(0));
         CHECK(ratio(depth_factor(0.01 * unit, depth), 0.5e-4) < 1e-3);
     }
     CHECK(depth_factor(0, 10) == 0);

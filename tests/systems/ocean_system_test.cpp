@@ -276,7 +276,7 @@ TEST_CASE("ocean: a patch repeats, and a wave fits into it a whole number of tim
         const double patch = cascade.patch;
         const double here = oracle::ocean_at(cascade, 1, 1.3, 2.4, 7).height;
         const double there = oracle::ocean_at(cascade, 1, 1.3 + patch, 2.4 - 2 * patch, 7).height;
-        CHECK(there == doctest::Approx(here).epsilon(1e-9).scale(0));
+        CHECK(there == test::near(here).epsilon(1e-9).scale(0));
     }
     for (std::size_t c = 1; c < cascades.size(); ++c) {
         const double ratio = cascades[c - 1].patch / cascades[c].patch;
@@ -434,7 +434,7 @@ TEST_CASE("ocean: foam fades by an e-th in its time, and grows where water is sq
     for (int i = 0; i < 120; ++i) {
         step_ocean_foam(ocean, state, kStep, foam);
     }
-    CHECK(foam.coverage[0] == doctest::Approx(0.8 * std::exp(-1.0)).epsilon(1e-4).scale(0));
+    CHECK(foam.coverage[0] == test::near(0.8 * std::exp(-1.0)).epsilon(1e-4).scale(0));
 
     // A wave so steep that its crests fold: there the shift leaves less than nothing of an area.
     OceanCascade steep = lone_wave(16, 40, 1, 0, 1000, 5.0f);
@@ -448,7 +448,7 @@ TEST_CASE("ocean: foam fades by an e-th in its time, and grows where water is sq
     CHECK(left < 0);
     const double growth = 10 * (0.5 - left);
     // Where growth and decay are equal.
-    CHECK(foam.coverage[0] == doctest::Approx(growth / (growth + 0.5)).epsilon(0.01).scale(0));
+    CHECK(foam.coverage[0] == test::near(growth / (growth + 0.5)).epsilon(0.01).scale(0));
     CHECK(foam.coverage[8] == 0);  // the trough
 }
 
@@ -557,8 +557,8 @@ TEST_CASE("ocean: it is as high after an hour, or a day, as at first") {
         }
         CHECK(all_finite(state));
     }
-    CHECK(mean[1] / mean[0] == doctest::Approx(1).epsilon(0.05).scale(0));
-    CHECK(mean[2] / mean[0] == doctest::Approx(1).epsilon(0.05).scale(0));
+    CHECK(mean[1] / mean[0] == test::near(1).epsilon(0.05).scale(0));
+    CHECK(mean[2] / mean[0] == test::near(1).epsilon(0.05).scale(0));
 }
 
 TEST_CASE("ocean: a world steps it, and goes on with the same bits from a snapshot") {

@@ -160,7 +160,7 @@ TEST_CASE(
     CHECK(near(scene.position(), {9, 0, 5}, 1e-4f));
     CHECK(
         scene.world.get<PreviousWorldTransform>(scene.camera).world.row[0].w
-        == doctest::Approx(0).scale(1));
+        == test::near(0).scale(1));
     scene.step();
     CHECK(near(scene.position(), {9.9f, 0, 5}, 1e-4f));
     CHECK(scene.world.get<PreviousWorldTransform>(scene.camera).world.row[0].w == test::near(9));

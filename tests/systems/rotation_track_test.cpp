@@ -40,9 +40,9 @@ TEST_CASE("rotation_track: by any method it is at its keys when they are due") {
         const float keys[] = {0, 10, 40, 90};
         for (int i = 0; i < 4; ++i) {
             CAPTURE(static_cast<int>(method));
-            CHECK(degrees_at(track, i) == doctest::Approx(keys[i]).scale(1).epsilon(1e-4));
+            CHECK(degrees_at(track, i) == test::near(keys[i]).scale(1).epsilon(1e-4));
         }
-        CHECK(degrees_at(track, -1) == doctest::Approx(0).scale(1).epsilon(1e-4));
+        CHECK(degrees_at(track, -1) == test::near(0).scale(1).epsilon(1e-4));
         CHECK(degrees_at(track, 9) == test::near(90).epsilon(1e-5));
     }
 }
@@ -72,7 +72,7 @@ TEST_CASE("rotation_track: slerp has an even speed between keys, nlerp lags, squ
 TEST_CASE("rotation_track: at an even speed keys are due where the turn has come to") {
     const RotationTrack track = uneven_track(RotationMethod::Slerp, RotationTiming::EvenSpeed);
     for (const double time : {0.0, 0.5, 1.0, 1.7, 2.4, 3.0}) {
-        CHECK(degrees_at(track, time) == doctest::Approx(30 * time).scale(1).epsilon(1e-4));
+        CHECK(degrees_at(track, time) == test::near(30 * time).scale(1).epsilon(1e-4));
     }
 }
 

@@ -22,34 +22,26 @@ double length_at(double depth) {
 }  // namespace
 
 TEST_CASE("water_dispersion: in deep water a wave is as fast as the root of its length") {
+    CHECK(phase_speed(number_of_length(1), kDeep) == test::near(1.249524).epsilon(1e-6).scale(0));
+    CHECK(phase_speed(number_of_length(10), kDeep) == test::near(3.951342).epsilon(1e-6).scale(0));
     CHECK(
-        phase_speed(number_of_length(1), kDeep)
-        == doctest::Approx(1.249524).epsilon(1e-6).scale(0));
-    CHECK(
-        phase_speed(number_of_length(10), kDeep)
-        == doctest::Approx(3.951342).epsilon(1e-6).scale(0));
-    CHECK(
-        phase_speed(number_of_length(100), kDeep)
-        == doctest::Approx(12.495239).epsilon(1e-6).scale(0));
+        phase_speed(number_of_length(100), kDeep) == test::near(12.495239).epsilon(1e-6).scale(0));
     const double k = number_of_length(10);
-    CHECK(k == doctest::Approx(0.628319).epsilon(1e-6).scale(0));
-    CHECK(kTwoPi / wave_frequency(k, kDeep) == doctest::Approx(2.530786).epsilon(1e-6).scale(0));
+    CHECK(k == test::near(0.628319).epsilon(1e-6).scale(0));
+    CHECK(kTwoPi / wave_frequency(k, kDeep) == test::near(2.530786).epsilon(1e-6).scale(0));
+    CHECK(group_speed(k, kDeep) == test::near(0.5 * phase_speed(k, kDeep)).epsilon(1e-12).scale(0));
     CHECK(
-        group_speed(k, kDeep)
-        == doctest::Approx(0.5 * phase_speed(k, kDeep)).epsilon(1e-12).scale(0));
-    CHECK(
-        wave_frequency(k, INFINITY)
-        == doctest::Approx(std::sqrt(kGravity * k)).epsilon(1e-14).scale(0));
+        wave_frequency(k, INFINITY) == test::near(std::sqrt(kGravity * k)).epsilon(1e-14).scale(0));
 }
 
 TEST_CASE("water_dispersion: waves of one period shorten and slow down over shoals") {
-    CHECK(length_at(1000) == doctest::Approx(39.0327).epsilon(1e-5).scale(0));
-    CHECK(length_at(1000) / 5 == doctest::Approx(7.80655).epsilon(1e-5).scale(0));
-    CHECK(length_at(20) / 5 == doctest::Approx(7.78213).epsilon(1e-5).scale(0));
-    CHECK(length_at(5) == doctest::Approx(30.3092).epsilon(1e-5).scale(0));
-    CHECK(length_at(5) / 5 == doctest::Approx(6.06185).epsilon(1e-5).scale(0));
-    CHECK(length_at(1) == doctest::Approx(15.2393).epsilon(1e-5).scale(0));
-    CHECK(length_at(1) / 5 == doctest::Approx(3.04787).epsilon(1e-5).scale(0));
+    CHECK(length_at(1000) == test::near(39.0327).epsilon(1e-5).scale(0));
+    CHECK(length_at(1000) / 5 == test::near(7.80655).epsilon(1e-5).scale(0));
+    CHECK(length_at(20) / 5 == test::near(7.78213).epsilon(1e-5).scale(0));
+    CHECK(length_at(5) == test::near(30.3092).epsilon(1e-5).scale(0));
+    CHECK(length_at(5) / 5 == test::near(6.06185).epsilon(1e-5).scale(0));
+    CHECK(length_at(1) == test::near(15.2393).epsilon(1e-5).scale(0));
+    CHECK(length_at(1) / 5 == test::near(3.04787).epsilon(1e-5).scale(0));
     double last = 0;
     for (double depth = 0.01; depth < 30; depth *= 1.1) {
         const double speed = length_at(depth) / 5;
@@ -59,16 +51,14 @@ TEST_CASE("water_dispersion: waves of one period shorten and slow down over shoa
 }
 
 TEST_CASE("water_dispersion: much shallower than a wave, all are as fast as the root of g h") {
-    CHECK(
-        phase_speed(number_of_length(10), 10) == doctest::Approx(3.951328).epsilon(1e-6).scale(0));
-    CHECK(
-        phase_speed(number_of_length(100), 1) == doctest::Approx(3.130034).epsilon(1e-6).scale(0));
+    CHECK(phase_speed(number_of_length(10), 10) == test::near(3.951328).epsilon(1e-6).scale(0));
+    CHECK(phase_speed(number_of_length(100), 1) == test::near(3.130034).epsilon(1e-6).scale(0));
     const double limit = std::sqrt(kGravity * 1.0);
-    CHECK(limit == doctest::Approx(3.132092).epsilon(1e-6).scale(0));
-    CHECK(phase_speed(number_of_length(1e5), 1) == doctest::Approx(limit).epsilon(1e-8).scale(0));
-    CHECK(group_speed(number_of_length(1e5), 1) == doctest::Approx(limit).epsilon(1e-8).scale(0));
-    CHECK(phase_speed(0, 1) == doctest::Approx(limit).epsilon(1e-12).scale(0));
-    CHECK(group_speed(0, 1) == doctest::Approx(limit).epsilon(1e-12).scale(0));
+    CHECK(limit == test::near(3.132092).epsilon(1e-6).scale(0));
+    CHECK(phase_speed(number_of_length(1e5), 1) == test::near(limit).epsilon(1e-8).scale(0));
+    CHECK(group_speed(number_of_length(1e5), 1) == test::near(limit).epsilon(1e-8).scale(0));
+    CHECK(phase_speed(0, 1) == test::near(limit).epsilon(1e-12).scale(0));
+    CHECK(group_speed(0, 1) == test::near(limit).epsilon(1e-12).scale(0));
 }
 
 TEST_CASE("water_dispersion: the wave number of a frequency has that frequency") {

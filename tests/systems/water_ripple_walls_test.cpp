@@ -7,6 +7,7 @@
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_grid.h"
 #include "systems/water/water_ripple_walls.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 
@@ -213,12 +214,12 @@ TEST_CASE("ripple walls: a crest comes back as a crest, as high, from where the 
     });
     start_pulse(state, 0, kUndamped.speed);
     run(state, kUndamped, 120);  // 3 m: 1.8 there, 1.2 back
-    CHECK(sample_ripples(state, {0.6f, 0}).height == doctest::Approx(0.1).epsilon(0.06).scale(0));
+    CHECK(sample_ripples(state, {0.6f, 0}).height == test::near(0.1).epsilon(0.06).scale(0));
     CHECK(reach(state, [](const Vec2& p) { return p.x > 2.2f; }) < 1e-6f);
     // Halfway, the wall is as high again as the crest.
     start_pulse(state, 0, kUndamped.speed);
     run(state, kUndamped, 72);
-    CHECK(sample_ripples(state, {1.78f, 0}).height == doctest::Approx(0.2).epsilon(0.06).scale(0));
+    CHECK(sample_ripples(state, {1.78f, 0}).height == test::near(0.2).epsilon(0.06).scale(0));
 }
 
 TEST_CASE("ripple walls: the thinnest keeps the water out, however it is turned") {
@@ -300,8 +301,7 @@ TEST_CASE("ripple walls: between them waves neither grow nor die") {
     const double energy = Reference(state, kUndamped).energy();
     for (int i = 0; i < 30; ++i) {
         run(state, kUndamped, 40);
-        CHECK(
-            Reference(state, kUndamped).energy() == doctest::Approx(energy).epsilon(1e-3).scale(0));
+        CHECK(Reference(state, kUndamped).energy() == test::near(energy).epsilon(1e-3).scale(0));
     }
 }
 
@@ -369,22 +369,19 @@ TEST_CASE("ripple walls: their section with the rest surface counts, whatever th
         return static_cast<double>(state.cell * state.cell) * dry;
     };
     const WaterWall wide = {.half = {0.6f, 0.5f, 0.4f}};
-    CHECK(
-        dry_area(wide, at({0.3f, 0, -0.2f}, 0.5f)) == doctest::Approx(0.96).epsilon(0.03).scale(0));
-    CHECK(dry_area(wide, at({1.9f, 0, 0})) == doctest::Approx(0.7 * 0.8).epsilon(0.03).scale(0));
+    CHECK(dry_area(wide, at({0.3f, 0, -0.2f}, 0.5f)) == test::near(0.96).epsilon(0.03).scale(0));
+    CHECK(dry_area(wide, at({1.9f, 0, 0})) == test::near(0.7 * 0.8).epsilon(0.03).scale(0));
     const WaterWall round = {.shape = WallShape::Cylinder, .half = {0.5f, 1, 0.3f}};
-    CHECK(
-        dry_area(round, at({0, 0.4f, 0})) == doctest::Approx(0.15 * 3.1416).epsilon(0.03).scale(0));
+    CHECK(dry_area(round, at({0, 0.4f, 0})) == test::near(0.15 * 3.1416).epsilon(0.03).scale(0));
     const WaterWall ball = {.shape = WallShape::Ball, .half = Vec3(0.5f)};
-    CHECK(
-        dry_area(ball, at({0, 0.3f, 0})) == doctest::Approx(0.16 * 3.1416).epsilon(0.03).scale(0));
+    CHECK(dry_area(ball, at({0, 0.3f, 0})) == test::near(0.16 * 3.1416).epsilon(0.03).scale(0));
     // On its side a cylinder is a rectangle; tilted by 45 degrees a slab is wider.
     const Affine lies = affine_from(Vec3(0), glm::angleAxis(radians(90), Vec3(1, 0, 0)), Vec3(1));
-    CHECK(dry_area(round, lies) == doctest::Approx(1.0 * 2).epsilon(0.03).scale(0));
+    CHECK(dry_area(round, lies) == test::near(1.0 * 2).epsilon(0.03).scale(0));
     const Affine leans = affine_from(Vec3(0), glm::angleAxis(radians(45), Vec3(0, 0, 1)), Vec3(1));
     CHECK(
         dry_area({.half = {0.2f, 1, 0.5f}}, leans)
-        == doctest::Approx(0.4 * 1.41421).epsilon(0.03).scale(0));
+        == test::near(0.4 * 1.41421).epsilon(0.03).scale(0));
     // A step under water is none, and so is what hangs above it.
     CHECK(dry_area(wide, at({0, -0.51f, 0})) == 0);
     CHECK(dry_area(wide, at({0, 0.51f, 0})) == 0);
@@ -398,13 +395,12 @@ TEST_CASE("ripple walls: one that comes raises the water by its volume, one that
     const double volume = 0.6 * 0.8 * 0.8;  // down to the bottom
     const auto placed = place_wall(wall, at({0.5f, 0, 0.2f}), {}, 0.8f, state.size());
     set_ripple_walls(state, {&*placed, 1}, RippleBorder::Reflecting);
-    CHECK(ripple_volume(state) == doctest::Approx(volume).epsilon(1e-5).scale(0));
+    CHECK(ripple_volume(state) == test::near(volume).epsilon(1e-5).scale(0));
     run(state, {.damping = 1}, 1200);
-    CHECK(ripple_volume(state) == doctest::Approx(volume).epsilon(1e-5).scale(0));
+    CHECK(ripple_volume(state) == test::near(volume).epsilon(1e-5).scale(0));
     const double level = volume / (12 - 0.48);
-    CHECK(state.level == doctest::Approx(level).epsilon(0.01).scale(0));
-    CHECK(
-        sample_ripples(state, {-1.5f, -1}).height == doctest::Approx(level).epsilon(0.02).scale(0));
+    CHECK(state.level == test::near(level).epsilon(0.01).scale(0));
+    CHECK(sample_ripples(state, {-1.5f, -1}).height == test::near(level).epsilon(0.02).scale(0));
     set_ripple_walls(state, {}, RippleBorder::Reflecting);
     CHECK(std::abs(ripple_volume(state)) < 1e-5);
     CHECK(state.wet == state.cells.x * state.cells.y);
@@ -432,7 +428,7 @@ TEST_CASE("ripple walls: whatever moves, the water stays as high as all that is 
         const double told = state.level * area;
         run(state, {}, 1);
         const double walls_now = static_cast<double>(standing) * walled;
-        CHECK(told == doctest::Approx(walls_now + bodies).epsilon(1e-4).scale(0));
+        CHECK(told == test::near(walls_now + bodies).epsilon(1e-4).scale(0));
         displace_ripples(state, {&body, 1});
     }
 }
@@ -442,7 +438,7 @@ TEST_CASE("ripple walls: of one that is in the water by half, half makes room") 
     run(state, {}, 1);
     const PlacedWall wall = box(state, {0.4f, 0.5f, 0.3f}, at({2, 0, 0}));
     set_ripple_walls(state, {&wall, 1}, RippleBorder::Reflecting);
-    CHECK(ripple_volume(state) == doctest::Approx(0.4 * 0.5 * 0.6).epsilon(1e-5).scale(0));
+    CHECK(ripple_volume(state) == test::near(0.4 * 0.5 * 0.6).epsilon(1e-5).scale(0));
 }
 
 TEST_CASE("ripple walls: one that steps aside in level water leaves it level") {
@@ -490,8 +486,7 @@ TEST_CASE("ripple walls: one that moves makes waves and no water, bodies beside 
         place.rotation = glm::angleAxis(0.01f * static_cast<float>(i), Vec3(0, 1, 0));
         step_world(world, schedule);
         CHECK(
-            ripple_volume(world.get<RippleState>(pool))
-            == doctest::Approx(ball).epsilon(1e-4).scale(0));
+            ripple_volume(world.get<RippleState>(pool)) == test::near(ball).epsilon(1e-4).scale(0));
     }
     const RippleState& state = world.get<RippleState>(pool);
     CHECK(reach(state, [](const Vec2&) { return true; }) > 0.01f);
@@ -499,7 +494,7 @@ TEST_CASE("ripple walls: one that moves makes waves and no water, bodies beside 
     world.destroy(stone);
     world.destroy(pier);
     step_world(world, schedule);
-    CHECK(ripple_volume(state) == doctest::Approx(-0.4 * 0.6 * 0.3).epsilon(1e-4).scale(0));
+    CHECK(ripple_volume(state) == test::near(-0.4 * 0.6 * 0.3).epsilon(1e-4).scale(0));
 }
 
 TEST_CASE("ripple walls: what walls need is made anew only when one has moved") {
@@ -608,15 +603,14 @@ TEST_CASE("ripple walls: before one the water is as high as beside it, for who a
     run(state, kUndamped, 2);
     for (const Vec2 p : {Vec2(0.5f, 0), Vec2(0.51f, 0.51f), Vec2(-0.2f, -0.5f)}) {
         const RipplePoint point = sample_ripples(state, p);
-        CHECK(point.height == doctest::Approx(0.05).epsilon(1e-3).scale(0));
+        CHECK(point.height == test::near(0.05).epsilon(1e-3).scale(0));
         CHECK(std::abs(point.slope.x) + std::abs(point.slope.y) < 1e-4f);
         CHECK(std::abs(point.velocity) < 1e-4f);
     }
     // What falls onto the wall makes no rings.
     push_ripples(state, {.center = {0, 0}, .radius = 2, .height = 0.3f});
     CHECK(
-        reach(state, [](const Vec2&) { return true; })
-        == doctest::Approx(0.05).epsilon(1e-4).scale(0));
+        reach(state, [](const Vec2&) { return true; }) == test::near(0.05).epsilon(1e-4).scale(0));
 }
 
 TEST_CASE("ripple walls: one that is nowhere, flat or not finite is none; one may be everywhere") {

@@ -4,6 +4,7 @@
 #include "systems/update_world.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_kernels.h"
+#include "tests/near.h"
 #include "tests/systems/water_ripple_pool.h"
 
 #include <doctest/doctest.h>
@@ -84,7 +85,7 @@ TEST_CASE("water ripples: what falls in makes no water and takes none, in corner
         push_ripples(state, {.center = at, .radius = 0.4f, .height = -0.1f});
         CHECK(std::abs(ripple_volume(state)) < 1e-7);
     }
-    CHECK(sample_ripples(state, {0, 0}).height == doctest::Approx(-0.1).epsilon(0.05).scale(0));
+    CHECK(sample_ripples(state, {0, 0}).height == test::near(-0.1).epsilon(0.05).scale(0));
     CHECK(reach(state) < 0.2f);
 }
 
@@ -110,17 +111,14 @@ TEST_CASE("water ripples: a standing wave swings with the period of its length a
     fill_standing_wave(state, 0.1f);
     const int half_period = 120;  // steps, at 3 m and 1.5 m/s
     run(state, ripples, half_period);
-    CHECK(
-        sample_ripples(state, {-1.4f, 0}).height
-        == doctest::Approx(-0.0994).epsilon(0.01).scale(0));
+    CHECK(sample_ripples(state, {-1.4f, 0}).height == test::near(-0.0994).epsilon(0.01).scale(0));
     run(state, ripples, half_period);
-    CHECK(
-        sample_ripples(state, {-1.4f, 0}).height == doctest::Approx(0.0994).epsilon(0.01).scale(0));
+    CHECK(sample_ripples(state, {-1.4f, 0}).height == test::near(0.0994).epsilon(0.01).scale(0));
     // A quarter later it is level, and moves fastest: A w.
     run(state, ripples, half_period / 2);
     const RipplePoint level = sample_ripples(state, {-1.4f, 0});
     CHECK(std::abs(level.height) < 0.004f);
-    CHECK(level.velocity == doctest::Approx(-0.0994 * kPi / 2).epsilon(0.02).scale(0));
+    CHECK(level.velocity == test::near(-0.0994 * kPi / 2).epsilon(0.02).scale(0));
 }
 
 TEST_CASE("water ripples: they fade as their damping says, and swing a little slower") {
@@ -136,7 +134,7 @@ TEST_CASE("water ripples: they fade as their damping says, and swing a little sl
         const float expected = start * std::exp(-0.5f * time) * swing;
         CHECK(
             sample_ripples(state, {-1.5f, 0}).height
-            == doctest::Approx(expected).epsilon(0.02).scale(0));
+            == test::near(expected).epsilon(0.02).scale(0));
     }
 }
 
@@ -155,14 +153,14 @@ TEST_CASE("water ripples: rings are round, and go at their speed") {
         const float along = sample_ripples(state, {r, 0}).height;
         const float across = sample_ripples(state, {0, r}).height;
         const float aslant = sample_ripples(state, Vec2(r) / std::sqrt(2.0f)).height;
-        CHECK(along == doctest::Approx(across).epsilon(1e-4).scale(0));
+        CHECK(along == test::near(across).epsilon(1e-4).scale(0));
         spread = std::max(spread, std::abs(along - aslant));
         if (std::abs(along) > crest) {
             crest = std::abs(along);
             crest_at = r;
         }
     }
-    CHECK(crest_at == doctest::Approx(2.0).epsilon(0.1).scale(0));
+    CHECK(crest_at == test::near(2.0).epsilon(0.1).scale(0));
     CHECK(spread < 0.05f * crest);
 }
 
@@ -196,11 +194,11 @@ TEST_CASE("water ripples: a stone on the ground raises the water by its volume o
     pond.world.create(Transform{.position = {0.5f, -1, 0.2f}}, WaterTouch{.half = Vec3(0.3f)});
     pond.run(1200);
     const double volume = 4.0 / 3.0 * 3.14159265 * 0.027;
-    CHECK(ripple_volume(pond.state()) == doctest::Approx(volume).epsilon(1e-4).scale(0));
+    CHECK(ripple_volume(pond.state()) == test::near(volume).epsilon(1e-4).scale(0));
     const float level = static_cast<float>(volume / 12);
     CHECK(
         sample_ripples(pond.state(), {-1.5f, -1}).height
-        == doctest::Approx(level).epsilon(0.1).scale(0));
+        == test::near(level).epsilon(0.1).scale(0));
 }
 
 TEST_CASE("water ripples: what leaves the water takes its room along, what ends does too") {
@@ -212,7 +210,7 @@ TEST_CASE("water ripples: what leaves the water takes its room along, what ends 
         pond.run(10);
         // Three quarters of it are under water at rest, and as much more as it has raised that.
         const double under = 0.48 * 0.3 / (1 - 0.48 / 12);
-        CHECK(ripple_volume(pond.state()) == doctest::Approx(under).epsilon(1e-4).scale(0));
+        CHECK(ripple_volume(pond.state()) == test::near(under).epsilon(1e-4).scale(0));
         if (ends) {
             pond.world.destroy(stone);
         } else {
@@ -259,8 +257,8 @@ TEST_CASE("water ripples: the water's heading and place are the body's frame") {
     const auto stride = static_cast<std::size_t>(state.stride);
     const Vec2 at =
         state.cell * (Vec2(place % stride, place / stride) - 0.5f - 0.5f * Vec2(state.cells));
-    CHECK(at.x == doctest::Approx(1.5).epsilon(0.04).scale(0));
-    CHECK(at.y == doctest::Approx(0.2).epsilon(0.2).scale(0));
+    CHECK(at.x == test::near(1.5).epsilon(0.04).scale(0));
+    CHECK(at.y == test::near(0.2).epsilon(0.2).scale(0));
 }
 
 TEST_CASE("water ripples: rain falls as often as it should, the same for every number of threads") {
@@ -304,11 +302,11 @@ TEST_CASE("water ripples: as many drops fall as it rains, everywhere, in each po
             spread += square_height * share * share;
         }
     }
-    CHECK(marks / mark == doctest::Approx(8 * 24 * 2).epsilon(0.15).scale(0));
+    CHECK(marks / mark == test::near(8 * 24 * 2).epsilon(0.15).scale(0));
     for (int axis = 0; axis < 2; ++axis) {
         CHECK(
             static_cast<double>(spread[axis]) / marks
-            == doctest::Approx(1.0 / 12).epsilon(0.15).scale(0));
+            == test::near(1.0 / 12).epsilon(0.15).scale(0));
     }
     CHECK(state.height != world.get<RippleState>(second).height);
 }
@@ -349,10 +347,10 @@ TEST_CASE("water ripples: heights, slopes and velocity are asked for anywhere") 
     }
     for (const Vec2 p : {Vec2(0, 0), Vec2(1.333f, -1.1f), Vec2(-0.777f, 0.123f)}) {
         const RipplePoint found = sample_ripples(state, p);
-        CHECK(found.height == doctest::Approx(field(p)).epsilon(1e-4).scale(0));
-        CHECK(found.velocity == doctest::Approx(0.3).epsilon(1e-3).scale(0));
-        CHECK(found.slope.x == doctest::Approx(0.02).epsilon(1e-3).scale(0));
-        CHECK(found.slope.y == doctest::Approx(-0.05).epsilon(1e-3).scale(0));
+        CHECK(found.height == test::near(field(p)).epsilon(1e-4).scale(0));
+        CHECK(found.velocity == test::near(0.3).epsilon(1e-3).scale(0));
+        CHECK(found.slope.x == test::near(0.02).epsilon(1e-3).scale(0));
+        CHECK(found.slope.y == test::near(-0.05).epsilon(1e-3).scale(0));
     }
     CHECK(sample_ripples(state, {2.1f, 0}).height == 0);
 }

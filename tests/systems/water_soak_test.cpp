@@ -7,6 +7,7 @@
 #include "systems/water/buoyancy_system.h"
 #include "systems/water/water_ripple_field.h"
 #include "systems/water/water_ripple_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -60,12 +61,12 @@ TEST_CASE("water soak: after an hour of rain a pool holds its water and what flo
         CHECK(std::abs(place.x) < 1.5f);
         CHECK(std::abs(place.z) < 1.0f);
         if (minute > 0) {
-            CHECK(volume == doctest::Approx(static_cast<double>(displaced)).epsilon(0.15).scale(0));
-            CHECK(floating.submerged == doctest::Approx(kDensity / 1000).epsilon(0.25).scale(0));
+            CHECK(volume == test::near(static_cast<double>(displaced)).epsilon(0.15).scale(0));
+            CHECK(floating.submerged == test::near(kDensity / 1000).epsilon(0.25).scale(0));
         }
     }
     CHECK(rained > 0.003);
-    CHECK(world.get<Transform>(stone).position.y == doctest::Approx(-0.9).epsilon(0.01).scale(0));
+    CHECK(world.get<Transform>(stone).position.y == test::near(-0.9).epsilon(0.01).scale(0));
 }
 
 }  // namespace limn

@@ -115,7 +115,7 @@ TEST_CASE("water shape: it reaches as far as its farthest point") {
             }
         }
         for (int i = 0; i < 3; ++i) {
-            CHECK(placed.reach[i] == doctest::Approx(farthest[i]).epsilon(2e-3).scale(0));
+            CHECK(placed.reach[i] == test::near(farthest[i]).epsilon(2e-3).scale(0));
             CHECK(placed.center[i] == test::near(i + 1));
         }
     }
@@ -134,9 +134,7 @@ TEST_CASE("water touch: a body in a small pool displaces what is below the level
     }
     // V = A (0.4 + V / pool), a box of A = 1.2 in 3 m^2.
     const double volume = 1.2 * 0.4 / (1 - 1.2 / 3);
-    CHECK(
-        ripple_volume(world.get<RippleState>(pool))
-        == doctest::Approx(volume).epsilon(1e-3).scale(0));
+    CHECK(ripple_volume(world.get<RippleState>(pool)) == test::near(volume).epsilon(1e-3).scale(0));
 }
 
 TEST_CASE("water touch: what rides a swell pushes nothing up, what stands in it does") {
@@ -166,34 +164,31 @@ TEST_CASE("water touch: what rides a swell pushes nothing up, what stands in it 
         // Half of 0.36 m^3, and as high as 0.4 above and below.
         if (rides) {
             CHECK(most - least < 0.012);  // the body is a step late
-            CHECK(least == doctest::Approx(0.18).epsilon(0.05).scale(0));
+            CHECK(least == test::near(0.18).epsilon(0.05).scale(0));
         } else {
-            CHECK(most == doctest::Approx(0.36 * 0.9).epsilon(0.05).scale(0));
-            CHECK(least == doctest::Approx(0.36 * 0.1).epsilon(0.15).scale(0));
+            CHECK(most == test::near(0.36 * 0.9).epsilon(0.05).scale(0));
+            CHECK(least == test::near(0.36 * 0.1).epsilon(0.15).scale(0));
         }
     }
 }
 
 TEST_CASE("water touch: a skinned body displaces what its mesh encloses, where its pose is") {
     Swimmer swimmer;
-    CHECK(displaced(swimmer, -2) == doctest::Approx(kTrunk + kArm).epsilon(1e-4).scale(0));
+    CHECK(displaced(swimmer, -2) == test::near(kTrunk + kArm).epsilon(1e-4).scale(0));
     CHECK(displaced(swimmer, 2) == 0);
-    CHECK(displaced(swimmer, 0) == doctest::Approx(0.5 * (kTrunk + kArm)).epsilon(1e-4).scale(0));
+    CHECK(displaced(swimmer, 0) == test::near(0.5 * (kTrunk + kArm)).epsilon(1e-4).scale(0));
     // Up to the shoulder, with the arm along the surface, down in it, and up in the air.
     const float trunk = displaced(swimmer, -0.2f) - kArm;
     for (const float turn : {-1.570796f, 1.570796f}) {
         swimmer.pose.joints[1] = at({0.5f, 0, 0}, glm::angleAxis(turn, Vec3(0, 0, 1)));
         CHECK(
             displaced(swimmer, -0.2f)
-            == doctest::Approx(turn < 0 ? trunk + kArm : trunk + 0.104f * kArm)
-                   .epsilon(1e-2)
-                   .scale(0));
+            == test::near(turn < 0 ? trunk + kArm : trunk + 0.104f * kArm).epsilon(1e-2).scale(0));
     }
     // The whole character lies down: the same pose, another place.
     swimmer.pose.joints[1] = at({0.5f, 0, 0});
     const Quat lies = glm::angleAxis(1.570796f, Vec3(1, 0, 0));
-    CHECK(
-        displaced(swimmer, -0.21f, lies) == doctest::Approx(kTrunk + kArm).epsilon(1e-3).scale(0));
+    CHECK(displaced(swimmer, -0.21f, lies) == test::near(kTrunk + kArm).epsilon(1e-3).scale(0));
 }
 
 TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where its limbs are") {
@@ -221,7 +216,7 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
         step_world(world, schedule);
     }
     const RippleState& state = world.get<RippleState>(pool);
-    CHECK(ripple_volume(state) == doctest::Approx(kTrunk + kArm).epsilon(1e-3).scale(0));
+    CHECK(ripple_volume(state) == test::near(kTrunk + kArm).epsilon(1e-3).scale(0));
     const auto raised = [&](const Vec2& place) {
         const IVec2 cell(place / state.cell + 0.5f * Vec2(state.cells));
         return state.body[state.at(cell.x, cell.y)];
@@ -240,7 +235,7 @@ TEST_CASE("water touch: in a world it wades, raises the pool, and pushes where i
         step_world(world, schedule);
     }
     CHECK(world.get<TouchParts>(body).parts.size() == 1);
-    CHECK(ripple_volume(state) == doctest::Approx(kTrunk).epsilon(1e-3).scale(0));
+    CHECK(ripple_volume(state) == test::near(kTrunk).epsilon(1e-3).scale(0));
 }
 
 TEST_CASE("water touch: a mesh without joints is its bounds; an open one fills its ellipsoid") {

@@ -85,8 +85,8 @@ TEST_CASE("water wake: rings fade and end") {
 }
 
 TEST_CASE("water wake: behind what is faster than its waves they stay within the wedge") {
-    CHECK(kKelvinAngle == doctest::Approx(std::asin(1.0 / 3)).epsilon(1e-6).scale(0));
-    CHECK(degrees(kKelvinAngle) == doctest::Approx(19.4712).epsilon(1e-5).scale(0));
+    CHECK(kKelvinAngle == test::near(std::asin(1.0 / 3)).epsilon(1e-6).scale(0));
+    CHECK(degrees(kKelvinAngle) == test::near(19.4712).epsilon(1e-5).scale(0));
     struct Case {
         float length;
         float angle;

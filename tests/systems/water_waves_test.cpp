@@ -61,11 +61,11 @@ void check_derivatives(const WaterWaves& waves, const Vec2& at, double time, dou
 TEST_CASE("water waves: one of 10 m runs at 3.95 m/s, along its direction") {
     const WaterWave wave = {.amplitude = 0.3f, .length = 10, .direction = 0.6f};
     const WaveTable start = table_of(wave, 0);
-    CHECK(glm::length(start.lines[0].k) == doctest::Approx(0.628319).epsilon(1e-5).scale(0));
+    CHECK(glm::length(start.lines[0].k) == test::near(0.628319).epsilon(1e-5).scale(0));
     const double speed = 3.951342;
     CHECK(
         start.lines[0].frequency / glm::length(start.lines[0].k)
-        == doctest::Approx(speed).epsilon(1e-5).scale(0));
+        == test::near(speed).epsilon(1e-5).scale(0));
     const Vec2 along = {std::cos(0.6f), std::sin(0.6f)};
     for (const double t : {0.5, 3.0, 1000.0}) {
         const WaveTable later = table_of(wave, t);
@@ -80,7 +80,7 @@ TEST_CASE("water waves: one of 10 m runs at 3.95 m/s, along its direction") {
     // The period is 2.530786 s; in it nothing changes.
     CHECK(
         height_of(table_of(wave, 2.530786), {1, 2})
-        == doctest::Approx(height_of(start, {1, 2})).epsilon(1e-4).scale(0));
+        == test::near(height_of(start, {1, 2})).epsilon(1e-4).scale(0));
 }
 
 TEST_CASE("water waves: long ones are faster, with the root of the length") {
@@ -88,8 +88,8 @@ TEST_CASE("water waves: long ones are faster, with the root of the length") {
         const WaveTable table = table_of(WaterWave{.length = length}, 0);
         return table.lines[0].frequency / glm::length(table.lines[0].k);
     };
-    CHECK(speed(1) == doctest::Approx(1.249524).epsilon(1e-5).scale(0));
-    CHECK(speed(100) == doctest::Approx(12.495239).epsilon(1e-5).scale(0));
+    CHECK(speed(1) == test::near(1.249524).epsilon(1e-5).scale(0));
+    CHECK(speed(100) == test::near(12.495239).epsilon(1e-5).scale(0));
 }
 
 TEST_CASE("water waves: no higher than their amplitude, periodic, in the mean level") {
@@ -103,7 +103,7 @@ TEST_CASE("water waves: no higher than their amplitude, periodic, in the mean le
         const float h = height_of(table, at);
         sum += static_cast<double>(h);
         most = std::max(most, std::abs(h));
-        CHECK(h == doctest::Approx(height_of(table, at + 4.0f * along)).epsilon(1e-3).scale(0));
+        CHECK(h == test::near(height_of(table, at + 4.0f * along)).epsilon(1e-3).scale(0));
     }
     CHECK(std::abs(sum / 400) < 1e-5);
     CHECK(most <= 0.3f);
@@ -133,9 +133,9 @@ TEST_CASE("water waves: shallow water slows them down, and deep water does not k
         const WaveTable table = table_of(WaterWave{.length = length}, 0, Water{.depth = depth});
         return table.lines[0].frequency / glm::length(table.lines[0].k);
     };
-    CHECK(speed(10, 10) == doctest::Approx(3.951328).epsilon(1e-5).scale(0));
-    CHECK(speed(100, 1) == doctest::Approx(3.130034).epsilon(1e-5).scale(0));
-    CHECK(speed(10, 0) == doctest::Approx(3.951342).epsilon(1e-5).scale(0));
+    CHECK(speed(10, 10) == test::near(3.951328).epsilon(1e-5).scale(0));
+    CHECK(speed(100, 1) == test::near(3.130034).epsilon(1e-5).scale(0));
+    CHECK(speed(10, 0) == test::near(3.951342).epsilon(1e-5).scale(0));
 }
 
 TEST_CASE("water waves: circles run outward or inward, and are the same all around") {
@@ -150,29 +150,26 @@ TEST_CASE("water waves: circles run outward or inward, and are the same all arou
         CHECK(at_radius(0, 0, 0) == 0);
         const auto speed = static_cast<float>(wave_frequency(2.0943951, 1e9) / 2.0943951);
         for (const float r : {2.0f, 5.5f}) {
-            CHECK(
-                at_radius(r, 0.3f, 1)
-                == doctest::Approx(at_radius(r, 4, 1)).epsilon(1e-4).scale(0));
+            CHECK(at_radius(r, 0.3f, 1) == test::near(at_radius(r, 4, 1)).epsilon(1e-4).scale(0));
             const float moved = r + (inward ? -speed : speed) * 0.25f;
             CHECK(
-                at_radius(moved, 1, 1.25)
-                == doctest::Approx(at_radius(r, 1, 1)).epsilon(1e-3).scale(0));
+                at_radius(moved, 1, 1.25) == test::near(at_radius(r, 1, 1)).epsilon(1e-3).scale(0));
         }
     }
     // The gradient points straight out; there is none in the middle.
     const WaveTable table = table_of(WaterWaves{.radial = {{.center = {1, -2}}}}, 0.3);
     const WavePoint point = evaluate_waves(table, {4, 2});
-    CHECK(point.by_x.y * 4 == doctest::Approx(point.by_z.y * 3).epsilon(1e-4).scale(0));
+    CHECK(point.by_x.y * 4 == test::near(point.by_z.y * 3).epsilon(1e-4).scale(0));
     CHECK(evaluate_waves(table, {1, -2}).by_x.y == 0);
 }
 
 TEST_CASE("water waves: circles fade with the root of the distance where they should") {
     const RadialWave wave = {.amplitude = 0.2f, .length = 1, .fade_radius = 2};
     const WaveTable table = table_of(WaterWaves{.radial = {wave}}, 0);
-    CHECK(height_of(table, {1.25f, 0}) == doctest::Approx(0.2).epsilon(1e-4).scale(0));
+    CHECK(height_of(table, {1.25f, 0}) == test::near(0.2).epsilon(1e-4).scale(0));
     CHECK(
         height_of(table, {8.25f, 0})
-        == doctest::Approx(0.2 * std::sqrt(2 / 8.25)).epsilon(1e-4).scale(0));
+        == test::near(0.2 * std::sqrt(2 / 8.25)).epsilon(1e-4).scale(0));
 }
 
 TEST_CASE("water waves: a drop's ring is a ring: nothing before its front, nothing behind") {
@@ -295,7 +292,7 @@ TEST_CASE("water waves: waves add up, no higher than all together, with half the
         }
     }
     CHECK(std::abs(mean) < 0.01 * std::sqrt(half_squares));
-    CHECK(squares == doctest::Approx(half_squares).epsilon(0.05).scale(0));
+    CHECK(squares == test::near(half_squares).epsilon(0.05).scale(0));
 }
 
 TEST_CASE("water waves: without sharpness water moves up and down alone") {
@@ -320,7 +317,7 @@ TEST_CASE("water waves: sharp ones are trochoids: the path of a point in a rolli
         CHECK(
             point.x - length / 4
             == test::near(a * theta - amplitude * std::sin(theta)).epsilon(1e-4));
-        CHECK(point.y == doctest::Approx(amplitude * std::cos(theta)).epsilon(1e-4).scale(0));
+        CHECK(point.y == test::near(amplitude * std::cos(theta)).epsilon(1e-4).scale(0));
     }
     // Crests are rounder than troughs by ((a + b) / (a - b))^2.
     const auto curvature = [&](float x) {
@@ -332,7 +329,7 @@ TEST_CASE("water waves: sharp ones are trochoids: the path of a point in a rolli
     };
     CHECK(
         curvature(length / 4) / curvature(3 * length / 4)
-        == doctest::Approx(square((a + amplitude) / (a - amplitude))).epsilon(0.02).scale(0));
+        == test::near(square((a + amplitude) / (a - amplitude))).epsilon(0.02).scale(0));
 }
 
 TEST_CASE(
@@ -348,11 +345,11 @@ TEST_CASE(
         const auto gap = [&](float x) {
             return (surface(table, {x + h, 0}).x - surface(table, {x - h, 0}).x) / (2 * h);
         };
-        CHECK(gap(2.5f) == doctest::Approx(1 - q * k * a).epsilon(1e-3).scale(0));
-        CHECK(gap(7.5f) == doctest::Approx(1 + q * k * a).epsilon(1e-3).scale(0));
+        CHECK(gap(2.5f) == test::near(1 - q * k * a).epsilon(1e-3).scale(0));
+        CHECK(gap(7.5f) == test::near(1 + q * k * a).epsilon(1e-3).scale(0));
         CHECK(
             1 + evaluate_waves(table, {2.5f, 0}).by_x.x
-            == doctest::Approx(1 - q * k * a).epsilon(1e-4).scale(0));
+            == test::near(1 - q * k * a).epsilon(1e-4).scale(0));
     }
 }
 
@@ -378,7 +375,7 @@ TEST_CASE("water waves: in a real wave the water goes in circles") {
     const WaterWave wave = {.amplitude = 0.4f, .length = 10, .sharpness = 1};
     for (int i = 0; i < 24; ++i) {
         const Vec3 offset = evaluate_waves(table_of(wave, 2.530786 * i / 24), {1.3f, 0.7f}).offset;
-        CHECK(glm::length(offset) == doctest::Approx(0.4).epsilon(1e-4).scale(0));
+        CHECK(glm::length(offset) == test::near(0.4).epsilon(1e-4).scale(0));
     }
     // Forward on the crest.
     CHECK(evaluate_waves(table_of(wave, 0), {2.5f, 0}).velocity.x > 0.9f);
