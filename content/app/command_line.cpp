@@ -130,6 +130,16 @@ CLI::Option* add_show(CLI::App& app, std::string& technique) {
         ->type_name("ID");
 }
 
+void add_model_view(CLI::App& app, ModelViewOptions& options) {
+    app.add_option(
+           "--backdrop", options.backdrop,
+           "of a model: studio, sky, gray, black, or an image, a panorama that lights it")
+        ->type_name("NAME|IMAGE");
+    add_number(
+        app, "--turntable", "of a model: turn it in so many seconds", options.turntable, 0.1, 3600)
+        ->type_name("SECONDS");
+}
+
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
     app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: the tour")
@@ -153,6 +163,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
            "second")
         ->type_name("auto|X");
     add_show(*app, options.show);
+    add_model_view(*app, options.model);
     add_profile(*app, options.profile);
     add_integer(
         *app, "--headless-frames", "render N frames along the camera path, without a window",
@@ -165,7 +176,7 @@ Command add_play(CLI::App& program, PlayOptions& options) {
         "Examples:\n"
         "  limn play\n"
         "  limn play gallery --size 1920x1080 --scale auto\n"
-        "  limn play model.glb --fullscreen\n"
+        "  limn play model.glb --backdrop sky\n"
         "  limn play --show water.fresnel\n"
         "  limn play gallery --headless-frames 12 -o frames");
     return {app, [&options] { return run_play(options); }};
@@ -198,6 +209,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
     add_show(*app, options.show.technique);
     app->add_flag("--off", options.show.off, "with --show: without the technique");
     add_assignments(*app, options.assignments);
+    add_model_view(*app, options.model);
     add_profile(*app, options.profile);
     app->add_option("--camera", options.camera, "name of a camera; default: the level's active one")
         ->type_name("NAME");
@@ -210,6 +222,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
                 "Examples:\n"
                 "  limn render gallery -o gallery.png --size 1920x1080 --time 2\n"
                 "  limn render helmet.glb -o helmet.exr --aov depth,normal\n"
+                "  limn render helmet.glb -o 'turn_%04d.png' --frames 0:119 --turntable 2\n"
                 "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
                 "  limn render --show water.fresnel --off -o without.png\n"
                 "  limn render gallery -o dark.png --set exposure.ev=-2 --set "

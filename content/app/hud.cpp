@@ -26,9 +26,12 @@ constexpr ImGuiWindowFlags kOverlay =
 const std::vector<KeyHelp>& program_keys() {
     static const std::vector<KeyHelp> keys = {
         {"", "Look"},
-        {"Drag", "look around, or circle the target"},
+        {"Drag", "look around, or circle the target or model"},
+        {"Right drag", "move the circling camera sideways"},
         {"Wheel", "speed when flying, distance when circling"},
+        {"Double-click", "circle what is under the pointer"},
         {"C", "camera: those of the level, fly, orbit"},
+        {"M", "clips, morph targets and cameras of a model"},
         {"Click", "select what is under the pointer, throw a stone into water"},
         {"", "Time and levels"},
         {"Space", "pause, resume"},

@@ -18,7 +18,10 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -42,17 +45,75 @@ void print_rest(std::size_t count) {
     }
 }
 
-void print_components(const World& world) {
-    std::map<std::string, std::size_t> counts;
+/// Entities of the file, without what a model gets to be looked at.
+std::vector<Entity> own_entities(const World& world, const LoadedScene& scene) {
+    std::vector<Entity> own;
     world.each_entity([&](Entity entity) {
+        if (!scene.model
+            || std::find(scene.model->added.begin(), scene.model->added.end(), entity)
+                   == scene.model->added.end()) {
+            own.push_back(entity);
+        }
+    });
+    std::sort(own.begin(), own.end(), [](Entity a, Entity b) { return a.index < b.index; });
+    return own;
+}
+
+std::string name_of(const World& world, Entity entity) {
+    const auto* const name = world.find<Name>(entity);
+    return name != nullptr ? name->text : "(no name)";
+}
+
+void print_components(const World& world, std::span<const Entity> entities) {
+    std::map<std::string, std::size_t> counts;
+    for (const Entity entity : entities) {
         for (const ComponentId id : world.components_of(entity)) {
             ++counts[component_info(id).name];
         }
-    });
-    fmt::print("{} entities\n", world.entity_count());
+    }
+    fmt::print("{} entities\n", entities.size());
     for (const auto& [name, count] : counts) {
         fmt::print("    {:>8}  {}\n", count, name);
     }
+}
+
+/// A heading and a line for each; nothing where there are none.
+void print_list(const char* what, const std::vector<std::string>& lines) {
+    if (lines.empty()) {
+        return;
+    }
+    fmt::print("{} {}\n", lines.size(), what);
+    for (std::size_t i = 0; i < std::min(lines.size(), kMaxLines); ++i) {
+        fmt::print("    {}\n", lines[i]);
+    }
+    print_rest(lines.size());
+}
+
+void print_names(const World& world, std::span<const Entity> entities) {
+    std::vector<std::string> cameras;
+    std::vector<std::string> lights;
+    std::vector<std::string> names;
+    for (const Entity entity : entities) {
+        const std::string name = name_of(world, entity);
+        if (const auto* const camera = world.find<Camera>(entity)) {
+            cameras.push_back(fmt::format("{:>6.1f} deg  {}", degrees(camera->fov_y), name));
+        }
+        if (const auto* const light = world.find<DirectionalLight>(entity)) {
+            lights.push_back(fmt::format("directional  {:>8.4g} lx  {}", light->illuminance, name));
+        }
+        if (const auto* const light = world.find<PointLight>(entity)) {
+            lights.push_back(fmt::format("point        {:>8.4g} cd  {}", light->intensity, name));
+        }
+        if (const auto* const light = world.find<SpotLight>(entity)) {
+            lights.push_back(fmt::format("spot         {:>8.4g} cd  {}", light->intensity, name));
+        }
+        if (world.has<Name>(entity)) {
+            names.push_back(name);
+        }
+    }
+    print_list("cameras", cameras);
+    print_list("lights", lights);
+    print_list("names", names);
 }
 
 /// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or
@@ -70,33 +131,35 @@ void print_path(const PathData& path) {
         joins[static_cast<std::size_t>(BezierJoin::Position)], path.name);
 }
 
-void print_assets(const Assets& assets) {
+/// `meshes` and `materials`: those of the file.
+void print_assets(
+    const Assets& assets, std::span<const MeshData> meshes, std::span<const Material> materials) {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
-    for (const MeshData& mesh : assets.meshes) {
+    for (const MeshData& mesh : meshes) {
         triangles += mesh.indices.size() / 3;
         vertices += mesh.positions.size();
     }
-    fmt::print("{} meshes, {} triangles, {} vertices\n", assets.meshes.size(), triangles, vertices);
-    for (std::size_t i = 0; i < std::min(assets.meshes.size(), kMaxLines); ++i) {
-        const MeshData& mesh = assets.meshes[i];
+    fmt::print("{} meshes, {} triangles, {} vertices\n", meshes.size(), triangles, vertices);
+    for (std::size_t i = 0; i < std::min(meshes.size(), kMaxLines); ++i) {
+        const MeshData& mesh = meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
         fmt::print(
             "    {:>8} triangles  {:.3g} x {:.3g} x {:.3g} m  {}\n", mesh.indices.size() / 3,
             size.x, size.y, size.z, mesh.name);
     }
-    print_rest(assets.meshes.size());
+    print_rest(meshes.size());
 
     static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit", "skin"};
-    fmt::print("{} materials\n", assets.materials.size());
-    for (std::size_t i = 0; i < std::min(assets.materials.size(), kMaxLines); ++i) {
-        const Material& material = assets.materials[i];
+    fmt::print("{} materials\n", materials.size());
+    for (std::size_t i = 0; i < std::min(materials.size(), kMaxLines); ++i) {
+        const Material& material = materials[i];
         fmt::print(
             "    {:<5}  metalness {:.2f}  roughness {:.2f}  {}\n",
             kShading[static_cast<std::size_t>(material.shading)], material.metalness,
             material.roughness, material.name);
     }
-    print_rest(assets.materials.size());
+    print_rest(materials.size());
 
     fmt::print("{} images\n", assets.images.size());
     for (std::size_t i = 0; i < std::min(assets.images.size(), kMaxLines); ++i) {
@@ -151,10 +214,14 @@ Status print_scene(const std::string& file) {
     if (scene->duration > 0.0) {
         fmt::print("camera path of {:.1f} s\n", scene->duration);
     }
-    print_components(world);
-    if (const Assets* assets = world.find_resource<Assets>()) {
-        print_assets(*assets);
-    }
+    const std::vector<Entity> entities = own_entities(world, *scene);
+    print_components(world, entities);
+    print_names(world, entities);
+    const Assets& assets = world.resource<Assets>();
+    const ModelView view = scene->model.value_or(ModelView{});
+    print_assets(
+        assets, std::span(assets.meshes).first(assets.meshes.size() - view.meshes),
+        std::span(assets.materials).first(assets.materials.size() - view.materials));
     print_programs(world, scene->camera);
     return Done{};
 }

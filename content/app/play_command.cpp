@@ -29,7 +29,7 @@ std::string default_scene() {
 
 Status play_headless(const PlayOptions& options, bool no_display) {
     Result<std::unique_ptr<Stage>> opened =
-        open_stage(options.scene, {.show = {.technique = options.show}});
+        open_stage(options.scene, {.show = {.technique = options.show}, .model = options.model});
     if (!opened) {
         return opened.error();
     }

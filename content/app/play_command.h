@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/load/model_view.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "render/gpu/device_caps.h"
@@ -19,6 +20,7 @@ struct PlayOptions {
     float scale = 0.0f;                   ///< rendered pixels per window pixel; 0 = automatic
     bool scale_auto = false;              ///< adapts the scale to hold 60 frames per second
     std::optional<gpu::Profile> profile;  ///< empty = by the device
+    ModelViewOptions model;               ///< of a model by itself
     int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots

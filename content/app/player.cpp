@@ -185,8 +185,9 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
 
 Status Player::load(const std::string& scene, const std::string& show) {
     draw_loading(scene);
-    std::unique_ptr<Stage> stage =
-        LIMN_TRY(open_stage(scene, {.show = {.technique = show, .off = false}, .made = &made_}));
+    std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(
+        scene,
+        {.show = {.technique = show, .off = false}, .made = &made_, .model = options_.model}));
     std::unique_ptr<Stage> off;
     if (!show.empty()) {
         off =
@@ -210,6 +211,8 @@ Status Player::load(const std::string& scene, const std::string& show) {
     paused_ = false;
     unsimulated_ = 0.0;
     shown_time_ = stage_time(*stage_);
+    model_panel_.open =
+        stage_->scene.model && ModelPanel::has_choices(stage_->world, level_cameras());
     window_->set_title(fmt::format("{} - Limn", stage_->scene.name));
     warm_up_level();
     return Done{};
@@ -256,6 +259,7 @@ void Player::load_neighbor(int offset) {
         index = levels[static_cast<std::size_t>(i)].name == stage_->scene.name ? i : index;
     }
     const LevelEntry& next = levels[static_cast<std::size_t>((index + offset + count) % count)];
+    options_.model = {};
     load_or_report(next.name);
     hud_->toast(next.title.empty() ? next.name : next.title);
 }
@@ -294,6 +298,9 @@ void Player::handle_key(const KeyPress& press) {
         break;
     case GLFW_KEY_C:
         cycle_camera();
+        break;
+    case GLFW_KEY_M:
+        model_panel_.open = stage_->scene.model && !model_panel_.open;
         break;
     case GLFW_KEY_R:
         load_or_report(options_.scene, options_.show);
@@ -362,7 +369,8 @@ void Player::undo_or_redo(bool undo) {
 Input Player::read_input(const WindowEvents& events) {
     Input input;
     const bool dragging = window_->is_button_down(GLFW_MOUSE_BUTTON_LEFT)
-                          || window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT);
+                          || window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT)
+                          || window_->is_button_down(GLFW_MOUSE_BUTTON_MIDDLE);
     const bool on_panel = hud_->wants_mouse() && !window_->is_mouse_captured();
     window_->capture_mouse(dragging && !on_panel);
     if (dragging && !on_panel) {
@@ -385,6 +393,7 @@ Input Player::read_input(const WindowEvents& events) {
             }
         }
     }
+    orbit_model(events, input, on_panel);
     const Ray ray = pointer_ray();
     input.eye = ray.origin;
     input.pointing = on_panel ? Vec3(0) : ray.direction;
@@ -400,6 +409,42 @@ Input Player::read_input(const WindowEvents& events) {
     return input;
 }
 
+void Player::orbit_model(const WindowEvents& events, Input& input, bool on_panel) {
+    const bool of_model = stage_->scene.model && camera_.mode == CameraMode::Level;
+    if (of_model && camera_.started && (input.look != Vec2(0) || input.zoom != 0)) {
+        start_orbit(camera_, camera_.pose, model_middle());
+    }
+    const bool pans = window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT)
+                      || window_->is_button_down(GLFW_MOUSE_BUTTON_MIDDLE);
+    if (camera_.mode == CameraMode::Orbit && pans && !on_panel) {
+        if (const auto middle = entity_middle(stage_->world, camera_.orbit.target)) {
+            camera_.aim = *middle;
+            camera_.orbit.target = {};
+        }
+        pan_orbit(camera_, events.mouse_motion, static_cast<float>(window_->framebuffer_size().y));
+        input.look = {0, 0};
+    }
+}
+
+Vec3 Player::model_middle() const {
+    const LoadedScene& scene = stage_->scene;
+    const Bounds& box = scene.model ? scene.model->subject : scene.bounds;
+    return is_empty(box) ? Vec3(0) : center(box);
+}
+
+void Player::focus_under_pointer() {
+    const Ray ray = pointer_ray();
+    const std::optional<Hit> hit = pick_entity(stage_->world, ray);
+    if (!hit) {
+        return;
+    }
+    if (camera_.mode != CameraMode::Orbit) {
+        start_orbit(camera_, camera_.pose, model_middle());
+    }
+    camera_.orbit.target = {};
+    camera_.aim = ray.origin + hit->distance * ray.direction;
+}
+
 void Player::cycle_camera() {
     switch (camera_.mode) {
     case CameraMode::Level:
@@ -409,12 +454,10 @@ void Player::cycle_camera() {
         start_fly(camera_, camera_.pose);
         break;
     case CameraMode::Fly: {
-        const Bounds& bounds = stage_->scene.bounds;
-        const Vec3 middle = is_empty(bounds) ? Vec3(0) : center(bounds);
         camera_.orbit.target = inspector_.selected();
         start_orbit(
             camera_, camera_.pose,
-            entity_middle(stage_->world, camera_.orbit.target).value_or(middle));
+            entity_middle(stage_->world, camera_.orbit.target).value_or(model_middle()));
         break;
     }
     case CameraMode::Orbit:
@@ -473,7 +516,9 @@ Ray Player::pointer_ray() const {
 void Player::select_under_pointer() {
     const std::optional<Hit> hit = pick_entity(stage_->world, pointer_ray());
     inspector_.select(hit ? hit->entity : Entity{});
-    camera_.orbit.target = inspector_.selected();
+    if (!stage_->scene.model) {
+        camera_.orbit.target = inspector_.selected();
+    }
 }
 
 // ---- a frame ------------------------------------------------------------------------------------
@@ -550,7 +595,7 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     }
     if (camera_.mode == CameraMode::Orbit) {
         const Vec3 target =
-            entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.focus);
+            entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.aim);
         step_orbit(camera_, camera_input(input), target, dt);
     } else {
         step_fly(camera_, camera_input(input), dt);
@@ -627,7 +672,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     FrameGraph& graph = frame_graph(*renderer_);
     device_->bind_window(window_size.x, window_size.y);
     hud_->begin_frame(dt);
-    if (inspector_.open || camera_.mode == CameraMode::Orbit) {
+    if (inspector_.open || (camera_.mode == CameraMode::Orbit && !stage_->scene.model)) {
         draw_outline(view);
     }
     const std::string weather = describe_weather(stage_->world);
@@ -656,6 +701,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
         shows_.draw_divider(hud_->style());
     }
     shows_.draw(hud_->style(), options_.show);
+    model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
@@ -697,6 +743,13 @@ Status Player::run() {
 
         if (events.left_clicked && !hud_->wants_mouse()) {
             select_under_pointer();
+        }
+        if (events.double_clicked && !hud_->wants_mouse()) {
+            focus_under_pointer();
+        }
+        if (const std::optional<std::size_t> camera = model_panel_.take_camera()) {
+            camera_.mode = CameraMode::Level;
+            activate_camera(*camera);
         }
         if (const std::optional<FoundShow> selected = shows_.take_selected()) {
             load_or_report(selected->level.path, selected->show.technique);

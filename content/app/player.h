@@ -3,6 +3,7 @@
 #include "content/app/buffer_viewer.h"
 #include "content/app/hud.h"
 #include "content/app/inspector.h"
+#include "content/app/model_panel.h"
 #include "content/app/pick.h"
 #include "content/app/play_command.h"
 #include "content/app/player_camera.h"
@@ -58,6 +59,12 @@ class Player {
     void handle_function_key(int key);
     void undo_or_redo(bool undo);
     [[nodiscard]] Input read_input(const WindowEvents& events);
+    /// Drag and wheel of an orbiting camera, or of the first camera of a model, which they take
+    /// over.
+    void orbit_model(const WindowEvents& events, Input& input, bool on_panel);
+    [[nodiscard]] Vec3 model_middle() const;
+    /// The camera circles the point under the pointer.
+    void focus_under_pointer();
     void cycle_camera();
     /// Switches to the level's next camera; false if the last one is active.
     bool next_level_camera();
@@ -102,6 +109,7 @@ class Player {
 
     Inspector inspector_;
     ProfilerPanel profiler_;
+    ModelPanel model_panel_;
     PlayerCamera camera_;
     RenderScale scale_;
     RenderView view_;  ///< of the last frame

@@ -71,11 +71,23 @@ void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {
     const Vec3 direction = normalize_or(from_target, {0, 0, 1});
     OrbitCamera& orbit = camera.orbit;
     camera.mode = CameraMode::Orbit;
+    camera.aim = target;
     camera.focus = target;
     orbit.distance = std::clamp(glm::length(from_target), kMinDistance, kMaxDistance);
     orbit.azimuth = std::atan2(direction.x, direction.z);
     orbit.elevation =
         std::clamp(std::asin(std::clamp(direction.y, -1.0f, 1.0f)), -kMaxElevation, kMaxElevation);
+}
+
+void pan_orbit(PlayerCamera& camera, const Vec2& motion, float height) {
+    const float pixel =
+        2 * camera.orbit.distance * std::tan(0.5f * camera.lens.fov_y) / std::max(height, 1.0f);
+    const Vec3 origin = position_of(camera.pose);
+    const Vec3 right = transform_point(camera.pose, {1, 0, 0}) - origin;
+    const Vec3 up = transform_point(camera.pose, {0, 1, 0}) - origin;
+    const Vec3 shift = pixel * (motion.y * up - motion.x * right);
+    camera.aim += shift;
+    camera.focus += shift;
 }
 
 void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target, float dt) {

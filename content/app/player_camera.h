@@ -29,6 +29,7 @@ struct PlayerCamera {
     OrbitCamera orbit;
     Transform place;         ///< pose while flying
     Vec3 glide = {0, 0, 0};  ///< MoveInput::move, eased in and out
+    Vec3 aim = {0, 0, 0};    ///< target of the orbit where it follows no entity [m]
     Vec3 focus = {0, 0, 0};  ///< point that the orbit looks at; follows its target with a lag [m]
 };
 
@@ -42,6 +43,10 @@ void step_fly(PlayerCamera& camera, const MoveInput& input, float dt);
 /// Rotates and zooms an orbiting camera about `target`, which it follows with `orbit.follow`
 /// (engine.camera-lag).
 void step_orbit(PlayerCamera& camera, const MoveInput& input, const Vec3& target, float dt);
+
+/// Moves an orbiting camera and its aim across the image, so that what is at its focus follows the
+/// pointer: `motion` in pixels of an image of `height` pixels.
+void pan_orbit(PlayerCamera& camera, const Vec2& motion, float height);
 
 /// Starts flying from `pose`, made upright.
 void start_fly(PlayerCamera& camera, const Affine& pose);

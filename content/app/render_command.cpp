@@ -197,7 +197,10 @@ Status run_render(const RenderOptions& options) {
                                   ? options.scene
                                   : LIMN_TRY(find_show(options.show.technique)).level.path;
     const std::unique_ptr<Stage> opened = LIMN_TRY(open_stage(
-        scene, {.seed = options.seed, .assignments = options.assignments, .show = options.show}));
+        scene, {.seed = options.seed,
+                .assignments = options.assignments,
+                .show = options.show,
+                .model = options.model}));
     Stage& stage = *opened;
     const Result<Entity> camera = choose_camera(stage, options.camera);
     if (!camera) {

@@ -3,6 +3,7 @@
 #include "content/app/command_values.h"
 #include "content/app/stage.h"
 #include "content/load/level_show.h"
+#include "content/load/model_view.h"
 #include "render/gpu/device_caps.h"
 #include "render/render_frame.h"
 
@@ -28,6 +29,7 @@ struct RenderOptions {
     std::string camera;                   ///< by name; empty = the level's
     ShowChoice show;                      ///< what to show of the level
     std::optional<gpu::Profile> profile;  ///< empty = by the device
+    ModelViewOptions model;               ///< of a model by itself
 };
 
 /// One frame at `time` as `limn play` shows it, antialiased. Draws first what it depends on: the

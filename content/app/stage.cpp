@@ -20,7 +20,8 @@ Result<std::unique_ptr<Stage>> open_stage(const std::string& scene, const StageO
     register_game_components();
     auto stage = std::make_unique<Stage>();
     Result<LoadedScene> loaded = load_scene(
-        stage->world, scene, {.seed = options.seed, .show = options.show, .made = options.made});
+        stage->world, scene,
+        {.seed = options.seed, .show = options.show, .made = options.made, .model = options.model});
     if (!loaded) {
         return loaded.error();
     }

@@ -28,6 +28,7 @@ struct StageOptions {
     std::span<const Assignment> assignments = {};  ///< applied after loading, in order
     ShowChoice show = {};
     MadeAssets* made = nullptr;  ///< what levels loaded before have generated
+    ModelViewOptions model = {};
 };
 
 /// Fails with the loader's error, or that of the first invalid assignment.

@@ -12,6 +12,7 @@ namespace limn {
 namespace {
 
 constexpr float kDragThreshold = 4.0f;  // [px] a press that moves farther is a drag, not a click
+constexpr double kDoubleClick = 0.35;   // [s] between two clicks
 
 /// GLFW's last error, for our next message; GLFW reports through a callback only.
 std::string& last_glfw_error() {
@@ -108,6 +109,9 @@ void Window::install_callbacks() {
             self.press_position_ = self.last_mouse_;
         } else if (glm::distance(self.press_position_, self.last_mouse_) <= kDragThreshold) {
             self.collecting_.left_clicked = true;
+            const double now = glfwGetTime();
+            self.collecting_.double_clicked = now - self.last_click_ < kDoubleClick;
+            self.last_click_ = self.collecting_.double_clicked ? -1.0 : now;
         }
     });
 }
@@ -119,6 +123,7 @@ const WindowEvents& Window::poll() {
     collecting_.mouse_motion = {0, 0};
     collecting_.wheel = 0.0f;
     collecting_.left_clicked = false;
+    collecting_.double_clicked = false;
     return events_;
 }
 

@@ -30,10 +30,11 @@ struct KeyPress {
 
 /// Input events between two calls of poll.
 struct WindowEvents {
-    std::vector<KeyPress> keys;  ///< in order
-    Vec2 mouse_motion = {0, 0};  ///< [pixels], x right, y down
-    float wheel = 0.0f;          ///< steps, > 0 away from the player
-    bool left_clicked = false;   ///< pressed and released without dragging
+    std::vector<KeyPress> keys;   ///< in order
+    Vec2 mouse_motion = {0, 0};   ///< [pixels], x right, y down
+    float wheel = 0.0f;           ///< steps, > 0 away from the player
+    bool left_clicked = false;    ///< pressed and released without dragging
+    bool double_clicked = false;  ///< the second click of two
 };
 
 class Window {
@@ -84,6 +85,7 @@ class Window {
     Vec2 last_mouse_ = {0, 0};
     bool mouse_known_ = false;
     Vec2 press_position_ = {0, 0};
+    double last_click_ = -1.0;  ///< [s]
     bool captured_ = false;
     IVec2 windowed_position_ = {60, 60};
     IVec2 windowed_size_ = {1280, 720};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/level_show.h"
+#include "content/load/model_view.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 #include "ecs/entity.h"
@@ -15,14 +16,14 @@ namespace limn {
 class MadeAssets;
 class World;
 
-// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a glTF file.
-// A bare glTF file gets what is needed to view it: a camera that frames it (unless it has one),
-// three lights if it has none, and the Studio environment.
+// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a glTF file,
+// which gets what is needed to look at it (model_view.h).
 
 struct SceneOptions {
     std::optional<std::uint64_t> seed = {};  ///< overrides the level's
     ShowChoice show = {};                    ///< only levels have shows
     MadeAssets* made = nullptr;              ///< what levels loaded before have generated
+    ModelViewOptions model = {};             ///< only models
 };
 
 struct LoadedScene {
@@ -33,7 +34,8 @@ struct LoadedScene {
     Entity camera;          ///< the camera to render from, never null
     double duration = 0.0;  ///< of the longest camera path [s]; 0: none
     std::vector<LevelShow> shows;
-    std::optional<LevelShow> show;  ///< the chosen one
+    std::optional<LevelShow> show;   ///< the chosen one
+    std::optional<ModelView> model;  ///< of a glTF file by itself
 };
 
 /// Fills `world`, which afterwards has the resources Assets, Environment, Rendering, Exposure,

@@ -1,4 +1,5 @@
 #include "tests/app/virtual_display.h"
+#include "tests/content/gltf_samples.h"
 
 #include <doctest/doctest.h>
 
@@ -183,6 +184,36 @@ TEST_CASE("play: a drag looks around, and the level comes back with R") {
     const ProgramRun run = session.program->wait();
     CHECK(run.exit_code == 0);
     CHECK(run.err.find("error") == std::string::npos);
+}
+
+TEST_CASE("play: a model turns with a drag, moves with a right drag, comes near with the wheel") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    const std::vector<std::byte> glb = test::square_glb();
+    test::write_text(
+        session.folder.file("square.glb"),
+        std::string(reinterpret_cast<const char*>(glb.data()), glb.size()));
+    session.DisplaySession::start({"play", "square.glb"});
+    xdotool("key F8 mousemove 320 200");
+    const Pixels framed = session.wait_until_still();
+    xdotool("mousedown 1 sleep 0.5 mousemove_relative 40 0 sleep 0.3 mousemove_relative 40 0 sleep "
+            "0.3 mouseup 1");
+    CHECK(session.changes_from(framed, 2000));
+    const Pixels turned = session.wait_until_still();
+    xdotool("mousedown 3 sleep 0.5 mousemove_relative 40 30 sleep 0.3 mousemove_relative 40 30 "
+            "sleep 0.3 mouseup 3");
+    CHECK(session.changes_from(turned, 2000));
+    const Pixels moved = session.wait_until_still();
+    xdotool("click 5 click 5 click 5");
+    CHECK(session.changes_from(moved, 2000));
+    const Pixels far = session.wait_until_still();
+    xdotool("click --repeat 2 --delay 60 1");  // what is under the pointer comes to the middle
+    CHECK(session.changes_from(far, 1000));
+    xdotool("key Escape");
+    CHECK(wait_for([&] { return !session.program->running(); }));
+    CHECK(session.program->wait().exit_code == 0);
 }
 
 TEST_CASE("play: without a display it renders the camera's way and says where the images are") {

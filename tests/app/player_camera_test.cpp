@@ -97,4 +97,21 @@ TEST_CASE("player_camera: the lag is the same at 30 and at 60 frames a second") 
     CHECK(slow.focus.x == test::near(quick.focus.x).epsilon(1e-4));
 }
 
+TEST_CASE("player_camera: what is at the focus follows the pointer when the orbit is panned") {
+    PlayerCamera camera;
+    const Vec3 target = {1, 2, 3};
+    start_orbit(camera, look_at({4, 6, 9}, target), target);
+    step_orbit(camera, {}, camera.aim, 1.0f / 60.0f);
+    const IVec2 size = {640, 360};
+    const Vec2 motion = {50, -20};
+    pan_orbit(camera, motion, static_cast<float>(size.y));
+    step_orbit(camera, {}, camera.aim, 1.0f / 60.0f);
+    const RenderView view = make_render_view(
+        camera.lens, camera.pose, camera.pose, {.width = size.x, .height = size.y});
+    const Vec4 clip = view.clip_from_world * Vec4(target, 1);
+    const Vec2 pixel = Vec2(0.5f * clip.x / clip.w, -0.5f * clip.y / clip.w) * Vec2(size);
+    CHECK(pixel.x == test::near(motion.x).epsilon(1e-3));
+    CHECK(pixel.y == test::near(motion.y).epsilon(1e-3));
+}
+
 }  // namespace limn

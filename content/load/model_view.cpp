@@ -1,0 +1,387 @@
+#include "content/load/model_view.h"
+
+#include "content/load/gltf_scene.h"
+#include "content/load/image_load.h"
+#include "content/load/scene_bounds.h"
+#include "ecs/base/log.h"
+#include "ecs/base/text.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/camera_path.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/post.h"
+#include "ecs/components/shadow.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr float kFovY = radians(35.0f);  // like a portrait lens: little distortion
+constexpr float kAspect = 16.0f / 9.0f;
+
+/// Illuminance [lx] at which exposure 0 shows white surfaces just below the shoulder of the
+/// neutral tone curve.
+constexpr float kReferenceLux = 2.4f;
+constexpr float kNoLight = 1e-6f;  // [lx]
+/// The studio around lights of kReferenceLux: weak enough that they shape the form.
+constexpr float kStudioIntensity = 0.32f;
+constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
+constexpr float kGroundRadius = 6.0f;           // of the subject's
+constexpr float kShadowDistance = 14.0f;        // of the subject's radius, from the camera
+constexpr int kShadowedLights = 4;
+
+constexpr std::array<std::string_view, 4> kBackdrops = {"studio", "sky", "gray", "black"};
+
+float luminance(const Vec3& color) {
+    return glm::dot(color, Vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+/// Illuminance at `distance` of an intensity of 1 cd; within a tenth of the subject's radius no
+/// brighter than there.
+float falloff_at(float distance, float nearest, float radius) {
+    const float d = std::max(distance, nearest);
+    const float window =
+        radius > 0 ? square(std::clamp(1 - square(square(d / radius)), 0.0f, 1.0f)) : 1;
+    return window / square(d);
+}
+
+float cone_at(const SpotLight& light, float cosine) {
+    const float outer = std::cos(light.outer_angle);
+    const float inner = std::max(std::cos(light.inner_angle), outer + 1e-4f);
+    return std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
+}
+
+/// The lights of a scene that are on, each as its illuminance at a point.
+class LightMeter {
+  public:
+    LightMeter(World& world, const Bounds& subject) : matrices_(world) {
+        const Bounds box = is_empty(subject) ? Bounds{Vec3(-0.5f), Vec3(0.5f)} : subject;
+        nearest_ = 0.1f * std::max(glm::length(half_extent(box)), 1e-6f);
+        points_.push_back(center(box));
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const float side : {-0.7f, 0.7f}) {
+                Vec3 p = center(box);
+                p[axis] += side * half_extent(box)[axis];
+                points_.push_back(p);
+            }
+        }
+        world.query<const DirectionalLight>().each([&](Entity e, const DirectionalLight& light) {
+            add(e, light.enabled, luminance(light.color) * light.illuminance);
+        });
+        world.query<const PointLight>().each([&](Entity entity, const PointLight& light) {
+            const Vec3 from = position_of(entity);
+            float sum = 0;
+            for (const Vec3& p : points_) {
+                sum += falloff_at(glm::length(p - from), nearest_, light.radius);
+            }
+            add(entity, light.enabled, luminance(light.color) * light.intensity * mean(sum));
+        });
+        world.query<const SpotLight>().each([&](Entity entity, const SpotLight& light) {
+            const Vec3 from = position_of(entity);
+            const Vec3 axis =
+                normalize_or(transform_point(matrices_.of(entity), {0, 0, -1}) - from, {0, 0, -1});
+            float sum = 0;
+            for (const Vec3& p : points_) {
+                const float cosine = glm::dot(normalize_or(p - from, axis), axis);
+                sum += cone_at(light, cosine)
+                       * falloff_at(glm::length(p - from), nearest_, light.radius);
+            }
+            add(entity, light.enabled, luminance(light.color) * light.intensity * mean(sum));
+        });
+    }
+
+    struct Reading {
+        Entity light;
+        float lux = 0;
+    };
+    /// Brightest first.
+    [[nodiscard]] std::vector<Reading> sorted() const {
+        std::vector<Reading> copy = readings_;
+        std::stable_sort(copy.begin(), copy.end(), [](const Reading& a, const Reading& b) {
+            return a.lux > b.lux;
+        });
+        return copy;
+    }
+    [[nodiscard]] float total() const {
+        float sum = 0;
+        for (const Reading& reading : readings_) {
+            sum += reading.lux;
+        }
+        return sum;
+    }
+
+  private:
+    void add(Entity light, bool enabled, float lux) {
+        if (enabled && std::isfinite(lux)) {
+            readings_.push_back({light, lux});
+        }
+    }
+    [[nodiscard]] Vec3 position_of(Entity entity) const {
+        return transform_point(matrices_.of(entity), {0, 0, 0});
+    }
+    [[nodiscard]] float mean(float sum) const { return sum / static_cast<float>(points_.size()); }
+
+    SceneMatrices matrices_;
+    std::vector<Vec3> points_;  ///< within the subject
+    float nearest_ = 0;         ///< [m]
+    std::vector<Reading> readings_;
+};
+
+Shadow shadow_for(float radius) {
+    return {
+        .filter = ShadowFilter::ContactHardening,
+        .resolution = 2048,
+        .source_size = 0.12f,
+        .cascades = 2,
+        .distance = std::clamp(kShadowDistance * radius, 0.1f, 1e5f)};
+}
+
+/// A warm key from the upper right, where the studio has its large soft box, and a rim light from
+/// behind on the left that separates the model from the backdrop; the studio itself fills.
+void add_studio_lights(World& world, const Quat& camera, float radius, ModelView& view) {
+    struct RigLight {
+        const char* name;
+        Vec3 from;  ///< camera space: right, up, toward the camera
+        Vec3 color;
+        float illuminance;
+    };
+    constexpr RigLight kRig[] = {
+        {"key light", {0.75f, 0.8f, 0.55f}, {1.0f, 0.95f, 0.88f}, kReferenceLux},
+        {"rim light", {-0.8f, 0.5f, -0.75f}, {0.88f, 0.94f, 1.0f}, 1.3f}};
+    for (const RigLight& light : kRig) {
+        Transform transform;
+        transform.rotation = look_along(camera * -light.from);
+        const Entity entity = world.create(
+            Name{light.name}, transform,
+            DirectionalLight{.color = light.color, .illuminance = light.illuminance});
+        if (light.from.z > 0) {
+            world.add(entity, shadow_for(radius));
+        }
+        view.added.push_back(entity);
+    }
+}
+
+/// One sun from the upper right of the camera.
+void add_sun(World& world, const Quat& camera, float radius, ModelView& view) {
+    Transform transform;
+    transform.rotation = look_along(camera * Vec3(-0.6f, -0.8f, -0.5f));
+    const Entity sun = world.create(
+        Name{"sun"}, transform,
+        DirectionalLight{.color = {1.0f, 0.95f, 0.88f}, .illuminance = kReferenceLux},
+        shadow_for(radius));
+    world.get<Shadow>(sun).source_size = 0.02f;
+    view.added.push_back(sun);
+}
+
+/// A disc whose vertices fade from opaque to nothing, into whatever is behind it.
+MeshData make_ground(float radius) {
+    constexpr int kSegments = 96;
+    constexpr int kRings = 24;
+    MeshData mesh;
+    mesh.name = "ground";
+    for (int ring = 0; ring <= kRings; ++ring) {
+        const float t = static_cast<float>(ring) / kRings;
+        const float opacity = square(square(1 - square(t)));
+        for (int i = 0; i < kSegments; ++i) {
+            const float angle = 2 * kPi * static_cast<float>(i) / kSegments;
+            mesh.positions.push_back(radius * t * Vec3(std::cos(angle), 0, -std::sin(angle)));
+            mesh.normals.push_back({0, 1, 0});
+            mesh.tangents.push_back({1, 0, 0, 1});
+            mesh.uvs.push_back({0, 0});
+            mesh.colors.push_back({1, 1, 1, opacity});
+        }
+    }
+    for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+        for (std::uint32_t i = 0; i < kSegments; ++i) {
+            const std::uint32_t a = ring * kSegments + i;
+            const std::uint32_t b = ring * kSegments + (i + 1) % kSegments;
+            if (ring > 0) {
+                mesh.indices.insert(mesh.indices.end(), {a, b + kSegments, b});
+            }
+            mesh.indices.insert(mesh.indices.end(), {a, a + kSegments, b + kSegments});
+        }
+    }
+    mesh.bounds = {{-radius, 0, -radius}, {radius, 0, radius}};
+    return mesh;
+}
+
+void add_ground(World& world, const Bounds& subject, ModelView& view) {
+    const float radius = glm::length(half_extent(subject));
+    auto& assets = world.resource<Assets>();
+    const MaterialId material = {static_cast<std::uint32_t>(assets.materials.size())};
+    assets.materials.push_back(
+        {.name = "ground",
+         .shading = ShadingModel::Blinn,  // opacity does not weaken reflections, so it has none
+         .alpha_mode = AlphaMode::Blend,
+         .base_color = {0.22f, 0.22f, 0.228f, 1},
+         .specular = {0, 0, 0}});
+    const MeshId mesh = {static_cast<std::uint32_t>(assets.meshes.size())};
+    assets.meshes.push_back(make_ground(kGroundRadius * radius));
+    view.meshes = 1;
+    view.materials = 1;
+    Vec3 place = center(subject);
+    place.y = subject.min.y - 1e-3f * radius;
+    view.added.push_back(world.create(
+        Name{"ground"}, Transform{.position = place},
+        MeshInstance{.mesh = mesh, .material = material}, NoShadow{}));
+}
+
+/// The framing camera, on a turning pivot if it has a turntable.
+void add_camera(World& world, double turntable, ModelView& view) {
+    Camera camera{.fov_y = kFovY};
+    const float size = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
+    camera.near = std::clamp(0.005f * size, 1e-4f, 100.0f);
+    Transform place = frame_bounds(view.subject, kFovY, kAspect);
+    if (turntable <= 0) {
+        view.camera = world.create(Name{"framing camera"}, place, camera);
+        view.added.push_back(view.camera);
+        return;
+    }
+    const Vec3 middle = is_empty(view.subject) ? Vec3(0) : center(view.subject);
+    const float speed = 2 * kPi / static_cast<float>(turntable);
+    const Entity pivot =
+        world.create(Name{"turntable"}, Transform{.position = middle}, Spin{.speed = speed});
+    place.position -= middle;
+    view.camera = world.create(Name{"framing camera"}, place, camera, Parent{pivot});
+    view.added.insert(view.added.end(), {pivot, view.camera});
+}
+
+/// Mean luminance of an equirectangular image over the sphere [cd/m^2].
+float mean_luminance(const ImageData& image) {
+    double sum = 0;
+    double weights = 0;
+    const bool full = image.format == PixelFormat::Rgba32F;
+    for (int y = 0; y < image.height; ++y) {
+        const double weight = std::sin((y + 0.5) / image.height * static_cast<double>(kPi));
+        for (int x = 0; x < image.width; ++x) {
+            const std::size_t i = 4 * (static_cast<std::size_t>(y) * image.width + x);
+            Vec3 color;
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (full) {
+                    std::memcpy(&color[static_cast<int>(c)], &image.pixels[4 * (i + c)], 4);
+                } else if (image.format == PixelFormat::Rgba16F) {
+                    std::uint16_t bits;
+                    std::memcpy(&bits, &image.pixels[2 * (i + c)], 2);
+                    color[static_cast<int>(c)] = glm::unpackHalf1x16(bits);
+                } else {
+                    color[static_cast<int>(c)] =
+                        std::pow(static_cast<float>(image.pixels[i + c]) / 255.0f, 2.2f);
+                }
+            }
+            sum += weight * static_cast<double>(luminance(color));
+            weights += weight;
+        }
+    }
+    return static_cast<float>(sum / weights);
+}
+
+/// The light of the panorama alone.
+void add_panorama(World& world, ImageData panorama) {
+    const float illuminance = kPi * mean_luminance(panorama);
+    auto& assets = world.resource<Assets>();
+    const ImageId id = {static_cast<std::uint32_t>(assets.images.size())};
+    assets.images.push_back(std::move(panorama));
+    world.insert_resource(Environment{.sky = SkyKind::Panorama, .panorama = id});
+    const float ev = illuminance > kNoLight ? std::log2(kReferenceLux / illuminance) : 0.0f;
+    world.insert_resource(
+        Exposure{.ev = std::clamp(ev, -24.0f, 24.0f), .curve = ToneCurve::Neutral});
+}
+
+/// The environment of a named backdrop around light of kReferenceLux.
+Environment backdrop_environment(std::string_view name) {
+    if (name == "sky") {
+        return {.sky = SkyKind::Gradient, .intensity = 0.8f};
+    }
+    if (name == "gray") {
+        return {.sky = SkyKind::Uniform, .zenith = Vec3(0.25f)};
+    }
+    return {.sky = SkyKind::Studio, .intensity = kStudioIntensity, .visible = name != "black"};
+}
+
+}  // namespace
+
+float find_illuminance(World& world, const Bounds& subject) {
+    return LightMeter(world, subject).total();
+}
+
+Result<Backdrop> load_backdrop(const std::string& name) {
+    if (std::find(kBackdrops.begin(), kBackdrops.end(), name) != kBackdrops.end()) {
+        return Backdrop{.name = name};
+    }
+    if (!std::filesystem::exists(name)) {
+        return fail(
+            "--backdrop: found \"{}\", expected {} or an image file", name,
+            "studio, sky, gray, black");
+    }
+    Backdrop backdrop{.name = name, .panorama = LIMN_TRY(load_image(name, true))};
+    if (const std::size_t bad = replace_non_finite(*backdrop.panorama); bad > 0) {
+        log_warn("{}: {} values are not finite; NaN became 0, infinity 65504", name, bad);
+    }
+    return backdrop;
+}
+
+ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
+    ModelView view;
+    const std::vector<Bounds> boxes = find_boxes(world, SceneMatrices(world));
+    const std::vector<bool> scenery = find_scenery(boxes);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (!scenery[i]) {
+            grow(view.subject, boxes[i]);
+        }
+    }
+    const bool has_scenery = std::find(scenery.begin(), scenery.end(), true) != scenery.end();
+    const float radius = is_empty(view.subject) ? 1.0f : glm::length(half_extent(view.subject));
+    const LightMeter meter(world, view.subject);
+    const float lux = meter.total();
+    add_camera(world, turntable, view);
+    if (backdrop.panorama) {
+        add_panorama(world, *std::move(backdrop.panorama));
+    } else {
+        Environment environment = backdrop_environment(backdrop.name);
+        float ev = 0;
+        if (lux > kNoLight) {
+            ev = std::clamp(std::log2(kReferenceLux / lux), -24.0f, 24.0f);
+            environment.intensity =
+                std::min(environment.intensity * std::exp2(-ev), kMaxStudioIntensity);
+        }
+        world.insert_resource(environment);
+        world.insert_resource(Exposure{.ev = ev, .curve = ToneCurve::Neutral});
+        const Quat rotation = frame_bounds(view.subject, kFovY, kAspect).rotation;
+        if (lux <= kNoLight && backdrop.name == "sky") {
+            add_sun(world, rotation, radius, view);
+        } else if (lux <= kNoLight) {
+            add_studio_lights(world, rotation, radius, view);
+        }
+    }
+    const std::vector<LightMeter::Reading> readings = meter.sorted();
+    for (std::size_t i = 0; i < std::min<std::size_t>(readings.size(), kShadowedLights); ++i) {
+        if (readings[i].lux > 0 && !world.has<Shadow>(readings[i].light)) {
+            Shadow shadow = shadow_for(radius);
+            const bool sun = world.has<DirectionalLight>(readings[i].light);
+            shadow.source_size = sun ? 0.01f : 0.05f * radius;
+            shadow.resolution = sun ? 2048 : 512;
+            world.add(readings[i].light, shadow);
+        }
+    }
+    if (!has_scenery && !is_empty(view.subject)) {
+        add_ground(world, view.subject, view);
+    }
+    return view;
+}
+
+}  // namespace limn

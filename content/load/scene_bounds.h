@@ -1,0 +1,42 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/entity.h"
+
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace limn {
+
+class World;
+
+// Where the parts of a scene are before its first step: from Transforms, since WorldTransforms are
+// not computed yet.
+
+/// World matrices of a scene that has been loaded.
+class SceneMatrices {
+  public:
+    explicit SceneMatrices(World& world);
+
+    /// world_from_local; the identity without a Transform.
+    [[nodiscard]] Affine of(Entity entity) const;
+
+  private:
+    const World& world_;
+    std::unordered_map<Entity, Affine> children_;  ///< of those with a parent
+};
+
+/// World-space bounds of everything drawn, a box for each mesh instance, skinned ones in the rest
+/// pose [m]. Needs the resource Assets.
+[[nodiscard]] std::vector<Bounds> find_boxes(World& world, const SceneMatrices& matrices);
+
+/// Bounds of all boxes; may be empty.
+[[nodiscard]] Bounds join_boxes(std::span<const Bounds> boxes);
+
+/// Whether a mesh reaches around or below the rest of a model without being what is looked at: a
+/// ground plane, a sky dome. Below: a flat box at the bottom, four times as wide as all smaller
+/// ones together. Around: a box thirty times as large as those, which contains their middle.
+[[nodiscard]] std::vector<bool> find_scenery(std::span<const Bounds> boxes);
+
+}  // namespace limn

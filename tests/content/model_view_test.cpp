@@ -1,0 +1,215 @@
+#include "content/load/model_view.h"
+#include "content/load/scene_bounds.h"
+#include "content/load/scene_load.h"
+#include "content/make/shapes.h"
+#include "ecs/components/all.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/environment.h"
+#include "ecs/components/light.h"
+#include "ecs/components/post.h"
+#include "ecs/components/shadow.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+#include "tests/near.h"
+#include "tests/support.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+using namespace limn;
+using test::near;
+
+namespace {
+
+/// A world with a box of 1 m on the floor, as a file would give it.
+struct Model {
+    World world;
+
+    Model() {
+        register_all_components();
+        world.insert_resource(Assets{});
+        add_box({1, 1, 1}, {0, 0.5f, 0});
+    }
+
+    Entity add_box(const Vec3& size, const Vec3& at) {
+        auto& assets = world.resource<Assets>();
+        assets.meshes.push_back(make_box({.size = size}));
+        assets.materials.push_back({});
+        return world.create(
+            Transform{.position = at},
+            MeshInstance{
+                .mesh = {static_cast<std::uint32_t>(assets.meshes.size() - 1)},
+                .material = {static_cast<std::uint32_t>(assets.materials.size() - 1)}});
+    }
+    ModelView view(const std::string& backdrop = "studio", double turntable = 0) {
+        Result<Backdrop> loaded = load_backdrop(backdrop);
+        REQUIRE_MESSAGE(loaded.ok(), (loaded ? "" : loaded.error().message));
+        return add_model_view(world, *std::move(loaded), turntable);
+    }
+};
+
+const Bounds kUnit = {Vec3(-0.5f), Vec3(0.5f)};
+
+}  // namespace
+
+TEST_CASE("model view: the illuminance of lights is that of their closed forms") {
+    register_all_components();
+    {
+        World world;
+        world.create(Transform{}, DirectionalLight{.illuminance = 6830});
+        CHECK(find_illuminance(world, kUnit) == near(6830));
+    }
+    {
+        World world;  // far away: all points have the same distance
+        world.create(
+            Transform{.position = {0, 500, 0}}, PointLight{.intensity = 1e6f, .radius = 0});
+        CHECK(find_illuminance(world, kUnit) == near(4).epsilon(1e-4));
+    }
+    {
+        World world;  // the parent moves it twice as far away
+        const Entity rig = world.create(Transform{.position = {0, 500, 0}, .scale = Vec3(2)});
+        world.create(
+            Transform{.position = {0, 250, 0}}, PointLight{.intensity = 1e6f, .radius = 0},
+            Parent{rig});
+        CHECK(find_illuminance(world, kUnit) == near(1).epsilon(1e-4));
+    }
+    {
+        World world;  // beyond its radius, and switched off
+        world.create(Transform{.position = {0, 500, 0}}, PointLight{.radius = 100});
+        world.create(Transform{}, DirectionalLight{.enabled = false});
+        CHECK(find_illuminance(world, kUnit) == 0);
+    }
+    for (const bool toward : {true, false}) {
+        World world;  // a spot light shines along -z
+        world.create(
+            Transform{.position = {0, 0, toward ? 100.0f : -100.0f}},
+            SpotLight{.intensity = 1e4f, .radius = 0});
+        CHECK(find_illuminance(world, kUnit) == near(toward ? 1 : 0).epsilon(1e-3).scale(1));
+    }
+}
+
+TEST_CASE("model view: exposure makes light of any unit equally bright") {
+    for (const float lux : {0.01f, 1.0f, 6830.0f, 120000.0f}) {
+        CAPTURE(lux);
+        Model model;
+        const Entity sun = model.world.create(Transform{}, DirectionalLight{.illuminance = lux});
+        (void)model.view();
+        const auto& exposure = model.world.resource<Exposure>();
+        CHECK(lux * std::exp2(exposure.ev) == near(2.4));
+        CHECK(model.world.get<const DirectionalLight>(sun).illuminance == lux);
+        CHECK(model.world.has<Shadow>(sun));
+        CHECK(model.world.query<const DirectionalLight>().count() == 1);
+    }
+}
+
+TEST_CASE("model view: a model that no light reaches is lit by the studio") {
+    for (const bool out_of_reach : {false, true}) {
+        Model model;
+        if (out_of_reach) {
+            model.world.create(Transform{.position = {0, 50, 0}}, PointLight{.radius = 10});
+        }
+        const ModelView view = model.view();
+        CHECK(model.world.query<const DirectionalLight>().count() == 2);
+        CHECK(model.world.resource<Exposure>().ev == 0);
+        CHECK(model.world.resource<Environment>().sky == SkyKind::Studio);
+        // What was added is listed: camera, two lights, ground.
+        CHECK(view.added.size() == 4);
+    }
+}
+
+TEST_CASE("model view: a ground plane or a sky dome of the file is not what is framed") {
+    Model plain;
+    const Bounds alone = plain.view().subject;
+    for (const bool dome : {false, true}) {
+        CAPTURE(dome);
+        Model model;
+        model.add_box({500, 0.01f, 500}, {20, -0.005f, 0});
+        if (dome) {
+            model.add_box({2000, 2000, 2000}, {0, 0, 0});
+        }
+        const ModelView view = model.view();
+        CHECK(view.subject.min == alone.min);
+        CHECK(view.subject.max == alone.max);
+        CHECK(view.meshes == 0);  // and no other ground is laid over it
+    }
+    CHECK(plain.world.resource<Assets>().meshes.size() == 2);
+}
+
+TEST_CASE("model view: a table top, a lid and a crowd are part of the model") {
+    const std::vector<Bounds> table = {
+        {{-1, 0, -1}, {1, 0.7f, 1}}, {{-1.2f, 0.7f, -1.2f}, {1.2f, 0.72f, 1.2f}}};
+    CHECK(find_scenery(table) == std::vector<bool>{false, false});
+    const std::vector<Bounds> alone = {{{-5, 0, -5}, {5, 0, 5}}};
+    CHECK(find_scenery(alone) == std::vector<bool>{false});
+    std::vector<Bounds> crowd;
+    for (int i = 0; i < 1000; ++i) {
+        const float x = static_cast<float>(i);
+        crowd.push_back({{x, 0, 0}, {x + 0.5f, 2, 1}});
+    }
+    CHECK(find_scenery(crowd) == std::vector<bool>(1000, false));
+}
+
+TEST_CASE("model view: the camera frames the subject, and its own ground lies below") {
+    Model model;
+    const ModelView view = model.view();
+    const Transform place = model.world.get<const Transform>(view.camera);
+    const Vec3 ahead = place.rotation * Vec3(0, 0, -1);
+    CHECK(glm::dot(ahead, glm::normalize(center(view.subject) - place.position)) > 0.999f);
+    const MeshData& ground = model.world.resource<Assets>().meshes.back();
+    CHECK(ground.colors.front().w == 1);
+    CHECK(ground.colors.back().w == 0);
+    for (std::size_t i = 0; i < ground.indices.size(); i += 3) {  // seen from above
+        const Vec3& a = ground.positions[ground.indices[i]];
+        const Vec3& b = ground.positions[ground.indices[i + 1]];
+        const Vec3& c = ground.positions[ground.indices[i + 2]];
+        CHECK(glm::cross(b - a, c - a).y > 0);
+    }
+    const Transform floor = model.world.get<const Transform>(view.added.back());
+    CHECK(floor.position.y < view.subject.min.y);
+    CHECK(floor.position.y > view.subject.min.y - 0.01f);
+}
+
+TEST_CASE("model view: a turntable turns the camera once in so many seconds") {
+    Model model;
+    const ModelView view = model.view("studio", 4);
+    const Entity pivot = model.world.get<const Parent>(view.camera).entity;
+    CHECK(model.world.get<const Spin>(pivot).speed * 4 == near(2.0 * static_cast<double>(kPi)));
+    const SceneMatrices matrices(model.world);
+    Model still;
+    const ModelView other = still.view();
+    const Vec3 place = transform_point(matrices.of(view.camera), {0, 0, 0});
+    CHECK(glm::distance(place, still.world.get<const Transform>(other.camera).position) < 1e-4f);
+}
+
+TEST_CASE("model view: an unknown backdrop names those that exist") {
+    const Result<Backdrop> none = load_backdrop("stduio");
+    REQUIRE_FALSE(none.ok());
+    CHECK(
+        none.error().message
+        == "--backdrop: found \"stduio\", expected studio, sky, gray, black or an image file");
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.file("a.exr")) << "not an image";
+    CHECK_FALSE(load_backdrop(folder.file("a.exr")).ok());
+}
+
+TEST_CASE("model view: formats that are not read are named, with what is") {
+    World world;
+    for (const char* const file : {"head.obj", "HEAD.FBX", "part.stl"}) {
+        const Result<LoadedScene> scene = load_scene(world, file);
+        REQUIRE_FALSE(scene.ok());
+        CHECK(scene.error().message.find("expected a level, .gltf or .glb") != std::string::npos);
+    }
+    const Result<LoadedScene> level =
+        load_scene(world, "gallery", {.model = {.backdrop = "sky", .turntable = 0}});
+    REQUIRE_FALSE(level.ok());
+    CHECK(level.error().message.find("found a level, expected a model") != std::string::npos);
+}
