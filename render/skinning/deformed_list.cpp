@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace limn {
 namespace {
@@ -328,7 +327,7 @@ void DeformedList::write_jobs(gpu::RingBuffer& ring) {
         const std::span bytes = std::as_bytes(std::span(items));
         const gpu::RingSlice slice =
             ring.allocate(std::max<std::size_t>(bytes.size(), 16), BufferTexture::alignment());
-        std::memcpy(slice.data, bytes.data(), bytes.size());
+        std::copy(bytes.begin(), bytes.end(), slice.data);  // of a list that may be empty
         return slice;
     };
     work_.jobs = push(jobs_);
