@@ -14,8 +14,8 @@ fi
 failed=0
 for level in "${levels[@]}"; do
     json=$("$limn" bench "$level" --warmup 500 --frames "$frames" --size 64x36 --json - 2>/dev/null)
-    read -r begin end < <(tr -d ' \n' <<<"$json" \
-        | sed -E 's/.*"resident_begin_mib":([0-9.]+),"resident_mib":([0-9.]+).*/\1 \2/')
+    begin=$(sed -nE 's/.*"resident_begin_mib": ([0-9.]+).*/\1/p' <<<"$json")
+    end=$(sed -nE 's/.*"resident_mib": ([0-9.]+).*/\1/p' <<<"$json")
     growth=$(awk "BEGIN {printf \"%.1f\", $end - $begin}")
     printf '%-18s %8.1f MiB  %+6.1f in %d frames\n' "$level" "$end" "$growth" "$frames"
     awk "BEGIN {exit !($growth > 2.0)}" && failed=1

@@ -4,7 +4,7 @@
 #include "content/bake/image_compare.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 

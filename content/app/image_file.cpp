@@ -1,7 +1,7 @@
 #include "content/app/image_file.h"
 
 #include "content/load/exr_file.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "ecs/base/text.h"
 #include "render/gpu/readback.h"
 #include "render/render_frame.h"

@@ -1,6 +1,6 @@
 #include "content/app/image_viewer.h"
 
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "render/gpu/readback.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "content/app/image_file.h"
 #include "content/app/outline.h"
 #include "content/app/pick.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "content/load/level_list.h"
 #include "ecs/base/log.h"
 #include "ecs/components/name.h"

@@ -5,7 +5,7 @@
 #include "content/app/image_viewer.h"
 #include "content/app/window.h"
 #include "content/game/game.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "content/load/set_value.h"
 #include "ecs/base/text.h"
 #include "ecs/world.h"

@@ -1,21 +1,21 @@
 #include "content/load/image_load.h"
 
+#include "content/codecs/image_codec.h"
 #include "content/load/atomic_file.h"
 #include "content/load/exr_file.h"
-#include "content/load/png_check.h"
+#include "content/load/png_file.h"
 #include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -53,40 +53,18 @@ std::string one_line(std::string message) {
     return message.empty() ? "unknown reason" : message;
 }
 
-template <typename T>
-T one();
-template <>
-std::uint8_t one() {
-    return 255;
-}
-template <>
-float one() {
-    return 1.0f;
-}
-/// Expands `count` pixels of `channels` interleaved values to RGBA.
-template <typename T>
-void expand_to_rgba(const T* source, std::size_t count, int channels, T* rgba) {
-    for (std::size_t i = 0; i < count; ++i, source += channels, rgba += 4) {
-        const bool gray = channels < 3;
-        rgba[0] = source[0];
-        rgba[1] = source[gray ? 0 : 1];
-        rgba[2] = source[gray ? 0 : 2];
-        rgba[3] = channels == 2 ? source[1] : channels >= 4 ? source[3] : one<T>();
-    }
-}
-
-template <typename T>
-bool read_pixels(
-    OIIO::ImageInput& input, int channels, std::vector<std::uint8_t>& pixels, OIIO::TypeDesc type) {
-    const std::size_t width = static_cast<std::size_t>(input.spec().width);
-    const std::size_t height = static_cast<std::size_t>(input.spec().height);
-    std::vector<T> source(width * height * static_cast<std::size_t>(channels));
-    if (!input.read_image(0, 0, 0, channels, type, source.data())) {
-        return false;
-    }
-    pixels.resize(width * height * 4 * sizeof(T));
-    expand_to_rgba(source.data(), width * height, channels, reinterpret_cast<T*>(pixels.data()));
-    return true;
+/// The decoder of the codec library, which is loaded when the first image needs it; nullptr, with
+/// the reason in `error`, where it cannot be.
+DecodeImage load_decoder(std::string& error) {
+    static const auto loaded = [] {
+        void* const library = dlopen(kCodecLibrary, RTLD_NOW | RTLD_LOCAL);
+        void* const symbol = library != nullptr ? dlsym(library, kDecodeImage) : nullptr;
+        const char* const reason = symbol == nullptr ? dlerror() : nullptr;
+        return std::pair(
+            reinterpret_cast<DecodeImage>(symbol), std::string(reason != nullptr ? reason : ""));
+    }();
+    error = loaded.second;
+    return loaded.first;
 }
 
 Result<ImageData> decode(
@@ -103,7 +81,9 @@ Result<ImageData> decode(
             place, bytes.size());
     }
     if (format == "png") {
-        LIMN_TRY(check_png(bytes, place));
+        ImageData image = LIMN_TRY(decode_png(bytes, place, limits));
+        image.srgb = srgb;
+        return image;
     }
     if (format == "jpeg" && is_truncated_jpeg(bytes)) {
         return fail("{}: truncated JPEG image", place);
@@ -116,45 +96,17 @@ Result<ImageData> decode(
         return to_image_data(exr, place);
     }
 
-    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-    if (input == nullptr || !input->supports("ioproxy") || !input->set_ioproxy(&memory)) {
-        OIIO::geterror();
-        return fail("{}: this OpenImageIO cannot read {} images from memory", place, format);
+    std::string error;
+    const DecodeImage decode_image = load_decoder(error);
+    if (decode_image == nullptr) {
+        return fail("{}: cannot read {} images: {}", place, format, one_line(error));
     }
-    OIIO::ImageSpec spec;
-    if (!input->open(place, spec, config)) {
-        return fail("{}: corrupt {} image: {}", place, format, one_line(input->geterror()));
-    }
-    if (spec.width <= 0 || spec.height <= 0 || spec.width > limits.max_size
-        || spec.height > limits.max_size
-        || std::int64_t{spec.width} * spec.height > limits.max_pixels) {
-        return fail(
-            "{}: found {} x {} pixels, expected at most {} along a side and {} in all", place,
-            spec.width, spec.height, limits.max_size, limits.max_pixels);
-    }
-    if (spec.depth > 1 || spec.nchannels < 1 || spec.deep) {
-        return fail("{}: found a deep or volume image, expected a flat one", place);
-    }
-
     ImageData image;
     image.name = place;
-    image.width = spec.width;
-    image.height = spec.height;
-    const int channels = std::min(spec.nchannels, 4);
-    bool complete = false;
-    if (spec.format.is_floating_point()) {
-        image.format = PixelFormat::Rgba32F;
-        complete = read_pixels<float>(*input, channels, image.pixels, OIIO::TypeFloat);
-    } else {
-        image.srgb = srgb;
-        complete = read_pixels<std::uint8_t>(*input, channels, image.pixels, OIIO::TypeUInt8);
+    if (!decode_image(bytes, format.c_str(), limits, image, error)) {
+        return fail("{}: {}", place, one_line(error));
     }
-    if (!complete || input->has_error()) {
-        return fail("{}: corrupt {} image: {}", place, format, one_line(input->geterror()));
-    }
+    image.srgb = srgb && image.format == PixelFormat::Rgba8;
     return image;
 }
 

@@ -2,6 +2,8 @@
 
 #include "ecs/base/result.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,8 +13,8 @@ namespace limn {
 
 struct ImageData;
 
-// Loads untrusted images: PNG, JPEG, BMP, WebP and Radiance HDR through OpenImageIO, EXR through
-// exr_file.h; the format is detected from the first bytes, never from the name. The header is
+// Loads untrusted images: PNG through png_file.h, EXR through exr_file.h, JPEG, BMP, WebP and
+// Radiance HDR through OpenImageIO (image_codec.h); the format is detected from the first bytes, never from the name. The header is
 // checked against limits before pixels are allocated, and a truncated file is an error. Gray
 // becomes RGB, a missing alpha is 1, alpha is not premultiplied. 8 and 16 bit integers become
 // Rgba8, half Rgba16F, all other floats Rgba32F.
@@ -32,6 +34,19 @@ load_image(const std::string& path, bool srgb, const ImageLimits& limits = {});
 [[nodiscard]] Result<ImageData> decode_image(
     std::span<const std::byte> bytes, const std::string& place, bool srgb,
     const ImageLimits& limits = {});
+
+/// Why an image of this size is refused; empty where it is not. Inline, because limn_codecs calls
+/// it and links nothing of Limn.
+[[nodiscard]] inline std::string
+image_size_error(std::int64_t width, std::int64_t height, const ImageLimits& limits) {
+    if (width > 0 && height > 0 && width <= limits.max_size && height <= limits.max_size
+        && width * height <= limits.max_pixels) {
+        return {};
+    }
+    return fmt::format(
+        "found {} x {} pixels, expected at most {} along a side and {} in all", width, height,
+        limits.max_size, limits.max_pixels);
+}
 
 /// Replaces NaN by 0 and infinities by +-65504 in a float image; returns how many there were.
 std::size_t replace_non_finite(ImageData& image);

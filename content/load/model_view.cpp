@@ -328,11 +328,11 @@ Result<Backdrop> load_backdrop(const std::string& name) {
             "--backdrop: found \"{}\", expected {} or an image file", name,
             "studio, sky, gray, black");
     }
-    Backdrop backdrop{.name = name, .panorama = LIMN_TRY(load_image(name, true))};
-    if (const std::size_t bad = replace_non_finite(*backdrop.panorama); bad > 0) {
+    ImageData panorama = LIMN_TRY(load_image(name, true));
+    if (const std::size_t bad = replace_non_finite(panorama); bad > 0) {
         log_warn("{}: {} values are not finite; NaN became 0, infinity 65504", name, bad);
     }
-    return backdrop;
+    return Backdrop{.name = name, .panorama = std::move(panorama)};
 }
 
 ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {

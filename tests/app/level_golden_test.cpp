@@ -7,7 +7,7 @@
 #include "content/app/stage.h"
 #include "content/bake/image_compare.h"
 #include "content/load/image_load.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "content/load/level_list.h"
 #include "content/load/made_assets.h"
 #include "ecs/base/log.h"
@@ -40,6 +40,12 @@ HeadlessRenderer& shared_renderer() {
         }
         return *std::move(made);
     }();
+    return shared;
+}
+
+/// Meshes and images that levels make, which the test cases share.
+MadeAssets& shared_assets() {
+    static MadeAssets shared;
     return shared;
 }
 
@@ -88,7 +94,8 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
     for (const LevelEntry& level : levels) {
         CAPTURE(level.name);
         const std::uint64_t errors_before = logged_error_count();
-        Result<std::unique_ptr<Stage>> stage = open_stage(level.path);
+        Result<std::unique_ptr<Stage>> stage =
+            open_stage(level.path, {.made = &shared_assets()});
         REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
         for (int i = 0; i < kSteps; ++i) {
             step_stage(**stage);
@@ -146,12 +153,11 @@ TEST_CASE("level: the cloister has shadows of every method, and no light is refu
 }
 
 TEST_CASE("level: the same level runs to the same state twice") {
-    MadeAssets made;
     for (const LevelEntry& level : list_levels()) {
         CAPTURE(level.name);
         std::uint64_t hashes[2] = {};
         for (std::uint64_t& hash : hashes) {
-            Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &made});
+            Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
             REQUIRE(stage.ok());
             for (int i = 0; i < 10; ++i) {
                 step_stage(**stage);

@@ -26,7 +26,7 @@ using Words = std::vector<std::string>;
 
 /// Small and quick, so that a test renders many.
 Words render_words(const Words& more) {
-    Words words = {"render", "gallery", "--size", "64x36", "--spp", "1"};
+    Words words = {"render", "lights", "--size", "64x36", "--spp", "1"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }

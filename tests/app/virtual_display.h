@@ -1,8 +1,8 @@
 #pragma once
 
+#include "tests/app/read_image.h"
 #include "tests/app/run_program.h"
 
-#include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -36,15 +36,6 @@ inline bool wait_for(const std::function<bool()>& condition, double seconds = 60
     }
     return false;
 }
-
-/// RGB, rows from top to bottom.
-struct Pixels {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> bytes;
-
-    bool operator==(const Pixels&) const = default;
-};
 
 inline std::uint32_t big_endian(const std::string& text, std::size_t word) {
     std::uint32_t value = 0;
@@ -148,21 +139,6 @@ inline bool has_program(const char* name) {
 
 inline void xdotool(const std::string& words) {
     CHECK(std::system(("xdotool " + words + " >/dev/null 2>&1").c_str()) == 0);
-}
-
-inline Pixels read_png(const std::string& path) {
-    Pixels pixels;
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
-    if (input == nullptr || input->spec().nchannels < 3) {
-        return pixels;
-    }
-    pixels.width = input->spec().width;
-    pixels.height = input->spec().height;
-    pixels.bytes.resize(static_cast<std::size_t>(pixels.width) * pixels.height * 3);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.bytes.data())) {
-        return {};
-    }
-    return pixels;
 }
 
 /// A display, and `limn` in a window that fills it.

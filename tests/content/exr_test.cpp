@@ -4,7 +4,6 @@
 #include "tests/support.h"
 
 #include <Imath/half.h>
-#include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -162,29 +161,6 @@ TEST_CASE("exr: layers, types, window and metadata survive") {
     for (const auto& entry : image.metadata) {
         CHECK(
             std::find(back->metadata.begin(), back->metadata.end(), entry) != back->metadata.end());
-    }
-}
-
-TEST_CASE("exr: OpenImageIO sees the same channels and values") {
-    const TemporaryFolder folder;
-    const ExrImage image = make_picture();
-    REQUIRE(write_exr(folder.file("a.exr"), image).ok());
-    const auto input = OIIO::ImageInput::open(folder.file("a.exr"));
-    REQUIRE(input != nullptr);
-    const OIIO::ImageSpec& spec = input->spec();
-    CHECK(spec.width == 7);
-    CHECK(spec.height == 5);
-    REQUIRE(spec.nchannels == 8);
-    CHECK(std::string(spec.get_string_attribute("compression")) == "zip");
-    std::vector<float> values(7 * 5 * 8);
-    REQUIRE(input->read_image(0, 0, 0, 8, OIIO::TypeFloat, values.data()));
-    for (int c = 0; c < 8; ++c) {
-        const ExrChannel* channel =
-            find_channel(image, spec.channelnames[static_cast<std::size_t>(c)]);
-        REQUIRE(channel != nullptr);
-        for (int i = 0; i < 35; ++i) {
-            CHECK(values[8 * i + c] == channel->values[static_cast<std::size_t>(i)]);
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 #include "content/load/atomic_file.h"
 #include "content/load/gltf_load.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "content/load/png_check.h"
 #include "tests/content/gltf_samples.h"
 #include "tests/support.h"

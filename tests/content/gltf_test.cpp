@@ -2,7 +2,7 @@
 #include "content/load/atomic_file.h"
 #include "content/load/gltf_load.h"
 #include "content/load/gltf_spawn.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "ecs/components/all.h"
 #include "ecs/components/name.h"
 #include "ecs/hierarchy.h"

@@ -1,12 +1,11 @@
 #include "content/load/atomic_file.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
-#include "content/load/image_write.h"
+#include "content/load/png_file.h"
 #include "content/load/png_check.h"
 #include "ecs/components/surface.h"
 #include "tests/support.h"
 
-#include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -85,21 +84,6 @@ TEST_CASE("image: gray and RGB become RGBA with alpha 1, gray with alpha keeps i
             CHECK(image->pixels[4 * i + 3] == (channels % 2 == 1 ? 255 : source(channels - 1)));
         }
     }
-}
-
-TEST_CASE("image: a PNG with 16 bits keeps them") {
-    const TemporaryFolder folder;
-    std::vector<std::uint16_t> ramp(256 * 3);
-    for (std::size_t i = 0; i < ramp.size(); ++i) {
-        ramp[i] = static_cast<std::uint16_t>(i * 85);
-    }
-    REQUIRE(write_png16(folder.file("ramp.png"), 256, 1, 3, ramp).ok());
-    const auto input = OIIO::ImageInput::open(folder.file("ramp.png"));
-    REQUIRE(input != nullptr);
-    CHECK(input->spec().format == OIIO::TypeUInt16);
-    std::vector<std::uint16_t> found(ramp.size());
-    REQUIRE(input->read_image(0, 0, 0, 3, OIIO::TypeUInt16, found.data()));
-    CHECK(found == ramp);
 }
 
 TEST_CASE("image: the same pixels give the same file") {

@@ -2,6 +2,7 @@
 
 #include "ecs/base/result.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,8 +10,12 @@
 
 namespace limn {
 
-// PNG files, encoded in memory by OpenImageIO and written atomically (atomic_file.h). Values are
-// display-referred: sRGB encoded, alpha not premultiplied. Equal pixels give equal files.
+struct ImageData;
+struct ImageLimits;
+
+// PNG files through libpng: encoded and decoded in memory, written atomically (atomic_file.h).
+// Values are display-referred: sRGB encoded, alpha not premultiplied. Equal pixels give equal
+// files.
 
 /// Writes `width` x `height` pixels of `channels` (1 gray, 2 gray and alpha, 3 RGB, 4 RGBA)
 /// interleaved values, rows from top to bottom.
@@ -26,5 +31,10 @@ namespace limn {
 /// The file of write_png as bytes, to embed in other files.
 [[nodiscard]] Result<std::vector<std::uint8_t>>
 png_bytes(int width, int height, int channels, std::span<const std::uint8_t> pixels);
+
+/// Reads an untrusted PNG of any kind as Rgba8; `place` is the prefix of error messages and the
+/// name of the image. Fails where the file is truncated or corrupt or exceeds the limits.
+[[nodiscard]] Result<ImageData>
+decode_png(std::span<const std::byte> bytes, const std::string& place, const ImageLimits& limits);
 
 }  // namespace limn
