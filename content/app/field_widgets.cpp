@@ -35,10 +35,6 @@ struct Context {
     FieldChange change;
 };
 
-float srgb_from_linear(float x) {
-    return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-}
-
 bool is_angle(const FieldInfo& field) {
     return std::strcmp(field.meta.unit, "rad") == 0;
 }
@@ -113,17 +109,27 @@ bool edit_floats(const FieldInfo& field, float* values, int count) {
     return changed;
 }
 
+/// A color as the file has it, linear, and beside it a swatch of it in sRGB, which opens a picker.
 bool edit_color(const FieldInfo& field, float* values, int count) {
     std::array<float, 4> shown = {0, 0, 0, 1};
     for (int i = 0; i < count; ++i) {
-        const float value = values[i];
-        shown[static_cast<std::size_t>(i)] = i < 3 ? srgb_from_linear(value) : value;
+        shown[static_cast<std::size_t>(i)] = i < 3 ? srgb_from_linear(values[i]) : values[i];
     }
-    const ImGuiColorEditFlags flags =
-        ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_AlphaPreviewHalf;
-    const bool changed = count == 4 ? ImGui::ColorEdit4("##value", shown.data(), flags)
-                                    : ImGui::ColorEdit3("##value", shown.data(), flags);
-    for (int i = 0; changed && i < count; ++i) {
+    constexpr const char* kLabel = "sRGB";
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float side = ImGui::GetFrameHeight();
+    ImGui::SetNextItemWidth(
+        ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(kLabel).x - side - 2 * gap);
+    const bool typed = edit_floats(field, values, count);
+    ImGui::SameLine(0, gap);
+    const ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR
+                                      | ImGuiColorEditFlags_AlphaPreviewHalf
+                                      | ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel;
+    const bool picked = count == 4 ? ImGui::ColorEdit4("##swatch", shown.data(), flags)
+                                   : ImGui::ColorEdit3("##swatch", shown.data(), flags);
+    ImGui::SameLine(0, gap);
+    ImGui::TextColored(kHudDim, "%s", kLabel);
+    for (int i = 0; picked && i < count; ++i) {
         const float value = shown[static_cast<std::size_t>(i)];
         const float linear = i < 3 ? linear_from_srgb(value) : value;
         if (std::isfinite(linear)) {
@@ -132,7 +138,7 @@ bool edit_color(const FieldInfo& field, float* values, int count) {
                 static_cast<float>(std::min(field.meta.max, static_cast<double>(FLT_MAX))));
         }
     }
-    return changed;
+    return typed || picked;
 }
 
 bool edit_quaternion(Quat& rotation) {

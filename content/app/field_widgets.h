@@ -11,7 +11,7 @@ class World;
 struct HudStyle;
 
 // ImGui widgets for the fields of any component, from its reflection: sliders where a range is
-// known, drags where it is not, degrees for radians, sRGB color pickers for linear colors, combos
+// known, drags where it is not, degrees for radians, linear colors with a swatch in sRGB, combos
 // for enums and assets, yaw-pitch-roll for quaternions. Values stay within their range.
 
 /// What the user did to the fields drawn.

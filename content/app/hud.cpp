@@ -5,6 +5,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
@@ -18,40 +19,11 @@ constexpr float kToastLife = 5.0f;  // [s]
 constexpr float kToastFade = 0.6f;  // [s]
 constexpr float kMargin = 14.0f;    // from the edge of the window, in units of the layout
 constexpr std::size_t kMaxToasts = 5;
+constexpr double kSlowMotion = 0.95;  // of real time; below it the status says so
 
 constexpr ImGuiWindowFlags kOverlay =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing
     | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
-
-const std::vector<KeyHelp>& program_keys() {
-    static const std::vector<KeyHelp> keys = {
-        {"", "Look"},
-        {"Drag", "look around, or circle the target or model"},
-        {"Right drag", "move the circling camera sideways"},
-        {"Wheel", "speed when flying, distance when circling"},
-        {"Double-click", "circle what is under the pointer"},
-        {"C", "camera: those of the level, fly, orbit"},
-        {"M", "clips, morph targets and cameras of a model"},
-        {"Click", "select what is under the pointer, throw a stone into water"},
-        {"", "Time and levels"},
-        {"Space", "pause, resume"},
-        {".", "one step"},
-        {"R", "restart the level"},
-        {"PgUp PgDn", "previous, next level (Tab too)"},
-        {"", "Tools"},
-        {"F1", "these keys"},
-        {"F2", "inspector: every component, with undo"},
-        {"F3", "profiler of systems and passes"},
-        {"F4", "intermediate textures of the frame"},
-        {"F5", "reload the shaders"},
-        {"F6  F7", "what the level shows; on, off, side by side"},
-        {"F9  F10", "screenshot as PNG; HDR image as EXR"},
-        {"Ctrl Z  Y", "undo, redo"},
-        {"F8  F11", "hide the status, full screen"},
-        {"Esc", "quit"},
-    };
-    return keys;
-}
 
 /// Text in the monospaced font.
 void numbers_text(const HudStyle& style, const ImVec4& color, const char* text) {
@@ -136,6 +108,19 @@ bool Hud::wants_keyboard() const {
     return ImGui::GetIO().WantTextInput;
 }
 
+bool Hud::close_popup() {
+    const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+    if (open > 0) {
+        ImGui::ClosePopupToLevel(open - 1, true);
+    }
+    return open > 0;
+}
+
+std::string_view Hud::focused_panel() const {
+    const ImGuiWindow* const window = ImGui::GetCurrentContext()->NavWindow;
+    return window != nullptr ? window->RootWindow->Name : "";
+}
+
 void Hud::toast(std::string text, ToastKind kind) {
     toasts_.push_back({std::move(text), kind});
     if (toasts_.size() > kMaxToasts) {
@@ -167,10 +152,14 @@ void Hud::draw_status(const HudStatus& status) {
             ImGui::SameLine(0, 12 * style_.scale);
             ImGui::TextColored(kHudAccent, "paused");
         }
-        const double rate = status.frame_ms > 0.0 ? 1000.0 / status.frame_ms : 0.0;
+        const double fps = status.frame_ms > 0.0 ? 1000.0 / status.frame_ms : 0.0;
         numbers_text(
             style_, kHudText,
-            format("{:.1f} fps   {:.2f} ms   {:.2f} s", rate, status.frame_ms, status.time));
+            format("{:.1f} fps   {:.2f} ms   {:.2f} s", fps, status.frame_ms, status.time));
+        if (!status.paused && status.rate < kSlowMotion) {
+            ImGui::TextColored(
+                kHudAccent, "%s", format("slow motion: time runs at {:.0f} %", 100 * status.rate));
+        }
         numbers_text(
             style_, kHudDim,
             status.render_size == status.window_size
@@ -179,6 +168,9 @@ void Hud::draw_status(const HudStatus& status) {
                     "{} x {} shown at {} x {}{}", status.render_size.x, status.render_size.y,
                     status.window_size.x, status.window_size.y,
                     status.scale_auto ? " (auto)" : ""));
+        if (*status.motion != '\0') {
+            numbers_text(style_, kHudDim, status.motion);
+        }
         if (*status.weather != '\0') {
             ImGui::TextColored(kHudText, "%s", status.weather);
         }
@@ -228,52 +220,60 @@ void Hud::draw_loading(const std::string& what, const std::string& step) {
 
 void Hud::draw_help() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float margin = 2 * kMargin * style_.scale;
+    const float key_width = 104.0f * style_.scale;
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {display.x - margin, display.y - margin});
     ImGui::SetNextWindowBgAlpha(0.94f);
-    if (ImGui::Begin("##help", nullptr, kOverlay)) {
-        const float key_width = 104.0f * style_.scale;
+    constexpr ImGuiWindowFlags kFlags =
+        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize
+        | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+    if (ImGui::Begin("Keys", &help_open, kFlags)) {
         bool first = true;
-        const auto draw_lines = [&](const std::vector<KeyHelp>& lines) {
-            for (const KeyHelp& line : lines) {
-                if (line.keys.empty()) {
-                    if (!first) {
-                        ImGui::Dummy({0, 3 * style_.scale});
-                    }
-                    ImGui::PushFont(style_.title);
-                    ImGui::TextUnformatted(line.text.c_str());
-                    ImGui::PopFont();
-                } else {
-                    draw_key_cap(line.keys.c_str(), key_width);
-                    ImGui::SameLine();
-                    ImGui::TextUnformatted(line.text.c_str());
+        for (const KeyHelp& line : help) {
+            if (line.keys.empty()) {
+                if (!first) {
+                    ImGui::Dummy({0, 3 * style_.scale});
                 }
-                first = false;
+                ImGui::PushFont(style_.title);
+                ImGui::TextUnformatted(line.text.c_str());
+                ImGui::PopFont();
+            } else {
+                draw_key_cap(line.keys.c_str(), key_width);
+                ImGui::SameLine();
+                ImGui::TextUnformatted(line.text.c_str());
             }
-        };
-        draw_lines(actions);
-        draw_lines(program_keys());
+            first = false;
+        }
     }
     ImGui::End();
 }
 
+/// In front of every panel.
 void Hud::draw_toasts() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImDrawList* const list = ImGui::GetForegroundDrawList();
+    const ImVec2 pad = ImGui::GetStyle().WindowPadding;
+    const float width = 0.9f * display.x - 2 * pad.x;
     float bottom = display.y - kMargin * style_.scale;
     for (std::size_t i = toasts_.size(); i-- > 0;) {
         const Toast& toast = toasts_[i];
-        const float left = kToastLife - toast.age;
-        const float alpha = std::clamp(left / kToastFade, 0.0f, 1.0f);
-        ImGui::SetNextWindowPos({0.5f * display.x, bottom}, ImGuiCond_Always, {0.5f, 1.0f});
-        ImGui::SetNextWindowBgAlpha(0.80f * alpha);
-        std::array<char, 16> name;
-        *fmt::format_to_n(name.data(), name.size() - 1, "##toast{}", i).out = '\0';
-        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::max(alpha, 0.01f));
-        if (ImGui::Begin(name.data(), nullptr, kOverlay)) {
-            ImGui::TextColored(toast_color(toast.kind), "%s", toast.text.c_str());
-            bottom -= ImGui::GetWindowHeight() + 6 * style_.scale;
-        }
-        ImGui::End();
-        ImGui::PopStyleVar();
+        const float alpha = std::clamp((kToastLife - toast.age) / kToastFade, 0.0f, 1.0f);
+        const char* const text = toast.text.c_str();
+        const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, width);
+        const float top = bottom - size.y - 2 * pad.y;
+        const float left = 0.5f * (display.x - size.x) - pad.x;
+        ImVec4 back = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+        back.w = 0.88f * alpha;
+        ImVec4 color = toast_color(toast.kind);
+        color.w = alpha;
+        list->AddRectFilled(
+            {left, top}, {left + size.x + 2 * pad.x, bottom}, ImGui::GetColorU32(back),
+            ImGui::GetStyle().WindowRounding);
+        list->AddText(
+            style_.text, style_.text->FontSize, {left + pad.x, top + pad.y},
+            ImGui::GetColorU32(color), text, nullptr, width);
+        bottom = top - 6 * style_.scale;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "ecs/base/math.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -19,6 +20,8 @@ struct HudStatus {
     const char* camera = "";     ///< name of the camera mode
     const char* weather = "";    ///< wind and rain, where there is any
     double time = 0.0;           ///< of the simulation [s]
+    double rate = 1.0;           ///< simulated seconds a real second; < 1: slow motion
+    const char* motion = "";     ///< of the player's camera: speed, position
     double frame_ms = 0.0;       ///< median of the last second
     IVec2 render_size = {0, 0};  ///< rendered resolution [px]
     IVec2 window_size = {0, 0};  ///< of the framebuffer [px]
@@ -62,8 +65,13 @@ class Hud {
 
     [[nodiscard]] const HudStyle& style() const { return style_; }
 
-    bool help_open = false;        ///< F1
-    std::vector<KeyHelp> actions;  ///< of the level, shown with the help
+    /// Closes the innermost popup; false where none is open.
+    bool close_popup();
+    /// Title of the panel that has the focus; empty: none.
+    [[nodiscard]] std::string_view focused_panel() const;
+
+    bool help_open = false;     ///< F1
+    std::vector<KeyHelp> help;  ///< its lines
     bool status_shown = true;
 
   private:

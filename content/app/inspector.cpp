@@ -1,8 +1,10 @@
 #include "content/app/inspector.h"
 
+#include "content/app/edit_json.h"
 #include "content/app/field_widgets.h"
 #include "content/app/hud_style.h"
 #include "ecs/archetype.h"
+#include "ecs/base/srgb.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/hierarchy.h"
@@ -33,6 +35,30 @@ bool contains(std::string_view text, std::string_view part) {
     return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
+/// Whether the component or one of its fields has `part` in its name.
+bool matches(const ComponentInfo& info, std::string_view part) {
+    return contains(info.name, part)
+           || std::any_of(info.fields.begin(), info.fields.end(), [&](const FieldInfo& field) {
+                  return contains(field.name, part);
+              });
+}
+
+/// A search field as wide as the panel.
+void draw_search(const char* hint, std::string& text) {
+    ImGui::SetNextItemWidth(-1);
+    ImGui::InputTextWithHint("##search", hint, &text);
+}
+
+/// A right click on the component's heading copies it.
+void draw_copy_menu(const World& world, const ComponentInfo& info, const void* value) {
+    if (value != nullptr && ImGui::BeginPopupContextItem("##copy")) {
+        if (ImGui::Selectable("Copy as JSON")) {
+            ImGui::SetClipboardText(component_as_json(world, info, value).c_str());
+        }
+        ImGui::EndPopup();
+    }
+}
+
 /// Has fields, and a value that can be copied.
 bool is_editable(const ComponentInfo& info) {
     return !info.fields.empty() && info.ops.construct_copy != nullptr;
@@ -49,6 +75,10 @@ void Inspector::reset() {
     dragging_.clear();
     material_ = 0;
     storage_.reset();
+}
+
+std::string Inspector::edits_as_json(const World& world) const {
+    return limn::edits_as_json(world, undo_.done());
 }
 
 void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedule) {
@@ -90,7 +120,7 @@ void Inspector::draw(const HudStyle& style, World& world, const Schedule& schedu
 void Inspector::draw_entities(const HudStyle& style, World& world) {
     const bool was_empty = search_.empty();
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputTextWithHint("##search", "search by name or component", &search_)
+    if (ImGui::InputTextWithHint("##search", "search by name, component or field", &search_)
         || was_empty != search_.empty()) {
         rows_built_at_ = -1.0;
     }
@@ -131,7 +161,7 @@ void Inspector::rebuild_rows(World& world) {
         }
         bool found = contains(entity_label(world, entity), search_);
         for (const ComponentId id : world.components_of(entity)) {
-            found = found || contains(component_info(id).name, search_);
+            found = found || matches(component_info(id), search_);
         }
         if (found) {
             rows_.push_back({.entity = entity});
@@ -196,6 +226,13 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::PopFont();
     ImGui::SameLine();
     ImGui::TextColored(kHudDim, "%u v%u", selected_.index, selected_.generation);
+    if (ImGui::SmallButton("Focus (F)")) {
+        focus_ = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Copy JSON")) {
+        ImGui::SetClipboardText(entity_as_json(world, selected_).c_str());
+    }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);
     for (const ComponentId id : world.components_of(selected_)) {
@@ -248,6 +285,7 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         Edit edit;
         edit.entity = selected_;
         const AnyComponent value = AnyComponent::read(world, selected_, info);
+        draw_copy_menu(world, info, value.data());
         const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
         edit_copy(style, world, std::move(edit), info, value.data(), place);
     }
@@ -286,13 +324,18 @@ void Inspector::edit_copy(
 }
 
 void Inspector::draw_resources(const HudStyle& style, World& world) {
+    draw_search("search by name or field", resource_search_);
     ImGui::BeginChild("##resources");
     for (const ComponentId id : world.resources()) {
         const ComponentInfo& info = component_info(id);
+        if (!matches(info, resource_search_)) {
+            continue;
+        }
         ImGui::PushID(static_cast<int>(id));
         if (!is_editable(info)) {
             ImGui::CollapsingHeader(info.name.c_str(), kNoFields);
         } else if (ImGui::CollapsingHeader(info.name.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            draw_copy_menu(world, info, std::as_const(world).find_resource(id));
             Edit edit;
             edit.kind = EditKind::Resource;
             edit_copy(
@@ -312,13 +355,17 @@ void Inspector::draw_materials(const HudStyle& style, World& world) {
     }
     const std::uint32_t count = static_cast<std::uint32_t>(assets->materials.size());
     material_ = std::min(material_, count - 1);
+    draw_search("search by name", material_search_);
     ImGui::BeginChild("##list", {0, 0.32f * ImGui::GetContentRegionAvail().y});
     for (std::uint32_t i = 0; i < count; ++i) {
         const Material& material = assets->materials[i];
+        if (!contains(material.name, material_search_)) {
+            continue;
+        }
         ImGui::PushID(static_cast<int>(i));
         const ImVec4 swatch = {
-            std::sqrt(material.base_color.x), std::sqrt(material.base_color.y),
-            std::sqrt(material.base_color.z), 1.0f};
+            srgb_from_linear(material.base_color.x), srgb_from_linear(material.base_color.y),
+            srgb_from_linear(material.base_color.z), 1.0f};
         const float side = ImGui::GetTextLineHeight();
         ImGui::ColorButton("##swatch", swatch, ImGuiColorEditFlags_NoTooltip, {side, side});
         ImGui::SameLine();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -32,6 +33,12 @@ class Inspector {
     }
     [[nodiscard]] Entity selected() const { return selected_; }
     [[nodiscard]] UndoStack& undo_stack() { return undo_; }
+    /// Edits that leaving the level would lose.
+    [[nodiscard]] std::size_t edit_count() const { return undo_.undo_count(); }
+    /// What they changed, as a patch of the level (edit_json.h).
+    [[nodiscard]] std::string edits_as_json(const World& world) const;
+    /// Whether "Focus" was pressed since the last call.
+    [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
     /// For a new world: clears the selection and the undo stack.
     void reset();
 
@@ -64,6 +71,9 @@ class Inspector {
     UndoStack undo_;
     Entity selected_;
     std::string search_;
+    std::string resource_search_;
+    std::string material_search_;
+    bool focus_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
     double rows_built_at_ = -1.0;  // [s]

@@ -3,6 +3,7 @@
 #include "content/load/model_view.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
+#include "ecs/components/rendering.h"
 #include "render/gpu/device_caps.h"
 
 #include <optional>
@@ -19,6 +20,7 @@ struct PlayOptions {
     bool fullscreen = false;
     float scale = 0.0f;                   ///< rendered pixels per window pixel; 0 = automatic
     bool scale_auto = false;              ///< adapts the scale to hold 60 frames per second
+    Antialiasing antialiasing = Antialiasing::Auto;  ///< Auto: the level's, temporal if it has none
     std::optional<gpu::Profile> profile;  ///< empty = by the device
     ModelViewOptions model;               ///< of a model by itself
     int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window

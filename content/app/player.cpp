@@ -1,12 +1,14 @@
 #include "content/app/player.h"
 
+#include "content/app/gamepad.h"
 #include "content/app/image_file.h"
 #include "content/app/outline.h"
 #include "content/app/pick.h"
-#include "content/load/png_file.h"
 #include "content/load/level_list.h"
+#include "content/load/png_file.h"
 #include "ecs/base/log.h"
 #include "ecs/components/name.h"
+#include "ecs/components/rendering.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
@@ -31,6 +33,7 @@ namespace {
 constexpr int kMaxSteps = 4;            // per frame; beyond that, simulation time slows down
 constexpr double kMaxFrameTime = 0.25;  // [s] longer frames are clamped
 constexpr int kExrSamples = 16;
+constexpr double kPickInterval = 0.15;   // [s] between measurements of the distance ahead
 constexpr double kShaderInterval = 0.5;  // [s] between checks of the shader files
 
 double seconds_between(
@@ -84,37 +87,6 @@ bool is_down(const Window& window, std::string_view name) {
                || (has_right && window.is_key_down(key + GLFW_KEY_RIGHT_ALT - GLFW_KEY_LEFT_ALT)));
 }
 
-/// Help for the actions of a group; neighbors with the same meaning share a line.
-void add_help(const ActionGroup& group, const Bindings* bindings, std::vector<KeyHelp>& lines) {
-    lines.push_back({"", group.title});
-    const ActionInfo* last = nullptr;
-    for (const ActionInfo& action : group.actions) {
-        const std::span<const std::string> keys = keys_of(action, bindings);
-        if (keys.empty()) {
-            continue;
-        }
-        if (last != nullptr && last->doc == action.doc) {
-            lines.back().keys += " " + keys.front();
-        } else {
-            lines.push_back({keys.front(), action.doc});
-        }
-        last = &action;
-    }
-}
-
-/// "drive: W S accelerate, brake; A D steer ..."
-std::string describe_group(const ActionGroup& group, const Bindings* bindings) {
-    std::vector<KeyHelp> lines;
-    add_help(group, bindings, lines);
-    std::string text;
-    for (const KeyHelp& line : lines) {
-        text += line.keys.empty()
-                    ? line.text + ":"
-                    : (text.ends_with(':') ? " " : "; ") + line.keys + ' ' + line.text;
-    }
-    return text;
-}
-
 /// "wind 7.0 m/s from SW, rain 30 %"; nothing where a level has no weather. -z is north.
 std::string describe_weather(const World& world) {
     const auto* settings = world.find_resource<Weather>();
@@ -133,6 +105,19 @@ std::string describe_weather(const World& world) {
         line += fmt::format(", rain {:.0f} %", 100 * weather.rain);
     }
     return line;
+}
+
+/// Played frames are antialiased unless the player or the level says how.
+void set_antialiasing(World& world, Antialiasing wanted) {
+    if (world.find_resource<Rendering>() == nullptr) {
+        world.insert_resource(Rendering{});
+    }
+    Rendering& rendering = world.resource<Rendering>();
+    if (wanted != Antialiasing::Auto) {
+        rendering.antialiasing = wanted;
+    } else if (rendering.antialiasing == Antialiasing::Auto) {
+        rendering.antialiasing = Antialiasing::Temporal;
+    }
 }
 
 }  // namespace
@@ -205,10 +190,16 @@ Status Player::load(const std::string& scene, const std::string& show) {
     camera_ = {};
     const Bounds& bounds = stage_->scene.bounds;
     if (!is_empty(bounds)) {
-        // Across the scene in some ten seconds.
-        camera_.fly.speed = std::clamp(0.2f * glm::length(half_extent(bounds)), 0.2f, 50.0f);
+        camera_.reach = std::clamp(0.3f * glm::length(half_extent(bounds)), 0.5f, 50.0f);
     }
     paused_ = false;
+    rate_ = 1.0;
+    real_seconds_ = simulated_seconds_ = 0.0;
+    for (Stage* const played : {stage_.get(), off_stage_.get()}) {
+        if (played != nullptr) {
+            set_antialiasing(played->world, options_.antialiasing);
+        }
+    }
     unsimulated_ = 0.0;
     shown_time_ = stage_time(*stage_);
     model_panel_.open =
@@ -264,12 +255,33 @@ void Player::load_neighbor(int offset) {
     hud_->toast(next.title.empty() ? next.name : next.title);
 }
 
+void Player::leave_level(std::function<void()> action) {
+    if (inspector_.edit_count() == 0) {
+        action();
+        return;
+    }
+    leave_.ask(fmt::format("Leave {}?", stage_->scene.name), "Leave", std::move(action));
+}
+
+void Player::ask_to_quit() {
+    leave_.ask("Quit Limn?", "Quit", [this] { window_->request_close(); });
+}
+
 // ---- input --------------------------------------------------------------------------------------
 
 void Player::handle_key(const KeyPress& press) {
+    if (leave_.is_open()) {
+        if (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER
+            || press.key == GLFW_KEY_Y) {
+            leave_.accept();
+        } else if (press.key == GLFW_KEY_ESCAPE || press.key == GLFW_KEY_N) {
+            leave_.stay();
+        }
+        return;
+    }
     if (press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F12) {
         if (!press.repeated) {
-            handle_function_key(press.key);
+            handle_function_key(press.key, (press.modifiers & GLFW_MOD_SHIFT) != 0);
         }
         return;
     }
@@ -291,7 +303,15 @@ void Player::handle_key(const KeyPress& press) {
     }
     switch (press.key) {
     case GLFW_KEY_ESCAPE:
-        window_->request_close();
+        if (!close_one()) {
+            ask_to_quit();
+        }
+        break;
+    case GLFW_KEY_HOME:
+        go_home();
+        break;
+    case GLFW_KEY_F:
+        focus_selection();
         break;
     case GLFW_KEY_SPACE:
         paused_ = !paused_;
@@ -303,21 +323,41 @@ void Player::handle_key(const KeyPress& press) {
         model_panel_.open = stage_->scene.model && !model_panel_.open;
         break;
     case GLFW_KEY_R:
-        load_or_report(options_.scene, options_.show);
+        leave_level([this] { load_or_report(options_.scene, options_.show); });
         break;
     case GLFW_KEY_TAB:
     case GLFW_KEY_PAGE_DOWN:
-        load_neighbor(1);
+        leave_level([this] { load_neighbor(1); });
         break;
     case GLFW_KEY_PAGE_UP:
-        load_neighbor(-1);
+        leave_level([this] { load_neighbor(-1); });
         break;
     default:
         break;
     }
 }
 
-void Player::handle_function_key(int key) {
+bool Player::close_one() {
+    if (hud_->close_popup()) {
+        return true;
+    }
+    const std::pair<std::string_view, bool*> panels[] = {
+        {"Keys", &hud_->help_open},      {"Shows", &shows_.open},
+        {"Inspector", &inspector_.open}, {"Profiler", &profiler_.open},
+        {"Buffers", &buffers_->open},    {"Model", &model_panel_.open}};
+    bool* last = nullptr;
+    for (const auto& [title, open] : panels) {
+        if (*open && (last == nullptr || title == hud_->focused_panel())) {
+            last = open;
+        }
+    }
+    if (last != nullptr) {
+        *last = false;
+    }
+    return last != nullptr;
+}
+
+void Player::handle_function_key(int key, bool shift) {
     switch (key) {
     case GLFW_KEY_F1:
         hud_->help_open = !hud_->help_open;
@@ -346,6 +386,7 @@ void Player::handle_function_key(int key) {
         break;
     case GLFW_KEY_F9:
         screenshot_wanted_ = true;
+        screenshot_with_hud_ = shift;
         break;
     case GLFW_KEY_F10:
         exr_wanted_ = true;
@@ -366,7 +407,7 @@ void Player::undo_or_redo(bool undo) {
         label.empty() ? fmt::format("nothing to {}", word) : fmt::format("{}: {}", word, label));
 }
 
-Input Player::read_input(const WindowEvents& events) {
+Input Player::read_input(const WindowEvents& events, float dt) {
     Input input;
     const bool dragging = window_->is_button_down(GLFW_MOUSE_BUTTON_LEFT)
                           || window_->is_button_down(GLFW_MOUSE_BUTTON_RIGHT)
@@ -393,11 +434,15 @@ Input Player::read_input(const WindowEvents& events) {
             }
         }
     }
+    const GamepadInput gamepad = poll_gamepad();
+    add_gamepad(gamepad, dt, input);
+    const bool gamepad_clicked = gamepad.click && !gamepad_click_;
+    gamepad_click_ = gamepad.click;
     orbit_model(events, input, on_panel);
     const Ray ray = pointer_ray();
     input.eye = ray.origin;
     input.pointing = on_panel ? Vec3(0) : ray.direction;
-    input.click = events.left_clicked && !on_panel;
+    input.click = (events.left_clicked && !on_panel) || gamepad_clicked;
     // Moving or looking around takes over from the level's camera.
     const ActionGroup* const driver = driving_group(stage_->world, stage_->scene.camera);
     const bool turns = driver != nullptr && driver->turns;
@@ -445,6 +490,27 @@ void Player::focus_under_pointer() {
     camera_.aim = ray.origin + hit->distance * ray.direction;
 }
 
+void Player::focus_selection() {
+    const Entity selected = inspector_.selected();
+    const std::optional<Vec3> middle = entity_middle(stage_->world, selected);
+    if (!middle) {
+        hud_->toast("nothing is selected: click an object, or choose one in the inspector (F2)");
+        return;
+    }
+    start_orbit(camera_, camera_.pose, *middle);
+    camera_.orbit.target = selected;
+    const Bounds box = entity_bounds(stage_->world, selected);
+    if (!is_empty(box)) {
+        camera_.orbit.distance = framing_distance(camera_.lens, glm::length(half_extent(box)));
+    }
+}
+
+void Player::go_home() {
+    camera_.mode = CameraMode::Level;
+    activate_camera(0);
+    hud_->toast(camera_mode_name(camera_.mode));
+}
+
 void Player::cycle_camera() {
     switch (camera_.mode) {
     case CameraMode::Level:
@@ -461,9 +527,8 @@ void Player::cycle_camera() {
         break;
     }
     case CameraMode::Orbit:
-        camera_.mode = CameraMode::Level;
-        activate_camera(0);
-        break;
+        go_home();
+        return;
     }
     hud_->toast(camera_mode_name(camera_.mode));
 }
@@ -541,6 +606,7 @@ void Player::simulate(float dt, const Input& input) {
         unsimulated_ = 0.0;
     }
     step_once_ = false;
+    simulated_seconds_ += steps * step;
     for (int i = 0; i < steps; ++i) {
         step_stage(*stage_);
         if (off_stage_ != nullptr) {
@@ -598,11 +664,55 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
             entity_middle(stage_->world, camera_.orbit.target).value_or(camera_.aim);
         step_orbit(camera_, camera_input(input), target, dt);
     } else {
-        step_fly(camera_, camera_input(input), dt);
+        fly(dt, input);
     }
     RenderView view = make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
     view.lens = lens_view(stage_->world, level_camera);
     return view;
+}
+
+void Player::fly(float dt, const Input& input) {
+    const MoveInput move = camera_input(input);
+    const World& world = stage_->world;
+    until_pick_ -= static_cast<double>(dt);
+    if (until_pick_ <= 0.0) {
+        until_pick_ = kPickInterval;
+        const std::optional<Hit> hit = pick_entity(world, ray_through(view_, {0.5f, 0.5f}));
+        ahead_ = hit ? hit->distance : INFINITY;
+    }
+    const Bounds& bounds = stage_->scene.bounds;
+    const float radius = is_empty(bounds) ? 10.0f : glm::length(half_extent(bounds));
+    follow_reach(camera_, ahead_, radius, dt);
+    step_fly(camera_, move, dt);
+    const Vec3 before = transform_point(camera_.previous, {0, 0, 0});
+    if (move.move.y >= 0 && camera_.place.position.y < before.y) {
+        const std::optional<Hit> floor = pick_entity(world, {before, {0, -1, 0}});
+        stop_at_floor(camera_, floor ? std::optional(floor->distance) : std::nullopt);
+    }
+}
+
+/// "3.2 m/s  at 1.2, 0.5, -3.4"
+std::string Player::describe_motion() const {
+    const Vec3 place = transform_point(camera_.pose, {0, 0, 0});
+    std::string text = fmt::format("at {:.1f}, {:.1f}, {:.1f} m", place.x, place.y, place.z);
+    if (camera_.mode == CameraMode::Fly) {
+        text += fmt::format("   flies {:.2g} m/s", camera_.fly.speed);
+    } else if (camera_.mode == CameraMode::Orbit) {
+        text += fmt::format("   {:.2g} m from the target", camera_.orbit.distance);
+    }
+    return text;
+}
+
+HelpState Player::help_state() const {
+    return {
+        .camera = camera_.mode,
+        .level_camera = stage_->scene.camera,
+        .drives = driving_group(stage_->world, stage_->scene.camera) != nullptr,
+        .model = stage_->scene.model.has_value(),
+        .show = off_stage_ != nullptr,
+        .inspector = inspector_.open,
+        .panel = inspector_.open || profiler_.open || buffers_->open || shows_.open
+                 || model_panel_.open};
 }
 
 void Player::draw_frame(float dt, const Input& input) {
@@ -623,6 +733,10 @@ void Player::draw_frame(float dt, const Input& input) {
     }
     draw_stages(window_size);
     cost_.render_ms = seconds_between(begin, Clock::now()) * 1e3;
+    if (screenshot_wanted_ && !screenshot_with_hud_) {
+        screenshot_wanted_ = false;
+        save_screenshot(window_size);
+    }
     draw_hud(view_, window_size, dt);
 }
 
@@ -676,11 +790,14 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
         draw_outline(view);
     }
     const std::string weather = describe_weather(stage_->world);
+    const std::string motion = describe_motion();
     hud_->draw_status(
         {.level = stage_->scene.name.c_str(),
          .camera = camera_mode_name(camera_.mode),
          .weather = weather.c_str(),
          .time = shown_time_,
+         .rate = rate_,
+         .motion = motion.c_str(),
          .frame_ms = profiler_.median_frame_ms(),
          .render_size = {view.width, view.height},
          .window_size = window_size,
@@ -689,13 +806,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .paused = paused_,
          .error = shader_error_.c_str()});
     if (hud_->help_open) {
-        const World& world = stage_->world;
-        hud_->actions.clear();
-        for (const ActionGroup& group : action_groups()) {
-            if (group.is_used(world, stage_->scene.camera)) {
-                add_help(group, world.find_resource<Bindings>(), hud_->actions);
-            }
-        }
+        hud_->help = player_help(stage_->world, help_state());
     }
     if (off_stage_ != nullptr && shows_.side == ShowSide::Both) {
         shows_.draw_divider(hud_->style());
@@ -705,6 +816,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
+    leave_.draw(hud_->style(), inspector_, stage_->world);
     hud_->end_frame();
     device_->invalidate_state();
 }
@@ -726,7 +838,8 @@ void Player::draw_outline(const RenderView& view) const {
 
 Status Player::run() {
     Clock::time_point last = Clock::now();
-    while (!window_->wants_to_close()) {
+    bool quits = false;
+    while (!quits) {
         const WindowEvents& events = window_->poll();
         for (const KeyPress& press : events.keys) {
             handle_key(press);
@@ -741,6 +854,25 @@ Status Player::run() {
         const float dt = static_cast<float>(std::min(real, kMaxFrameTime));
         last = now;
 
+        if (window_->wants_to_close()) {  // by its button
+            quits = inspector_.edit_count() == 0;
+            window_->request_close(false);
+            if (!quits) {
+                ask_to_quit();
+            }
+        }
+        if (const std::function<void()> accepted = leave_.take_accepted()) {
+            accepted();
+            quits = window_->wants_to_close();
+        }
+        if (inspector_.take_focus()) {
+            focus_selection();
+        }
+        real_seconds_ += real;
+        if (real_seconds_ >= 1.0) {
+            rate_ = paused_ ? 1.0 : simulated_seconds_ / real_seconds_;
+            real_seconds_ = simulated_seconds_ = 0.0;
+        }
         if (events.left_clicked && !hud_->wants_mouse()) {
             select_under_pointer();
         }
@@ -752,9 +884,11 @@ Status Player::run() {
             activate_camera(*camera);
         }
         if (const std::optional<FoundShow> selected = shows_.take_selected()) {
-            load_or_report(selected->level.path, selected->show.technique);
+            leave_level([this, found = *selected] {
+                load_or_report(found.level.path, found.show.technique);
+            });
         }
-        const Input input = read_input(events);
+        const Input input = read_input(events, dt);
         until_shader_check_ -= dt;
         if (until_shader_check_ <= 0.0) {
             until_shader_check_ = kShaderInterval;

@@ -3,10 +3,12 @@
 #include "content/app/buffer_viewer.h"
 #include "content/app/hud.h"
 #include "content/app/inspector.h"
+#include "content/app/leave_dialog.h"
 #include "content/app/model_panel.h"
 #include "content/app/pick.h"
 #include "content/app/play_command.h"
 #include "content/app/player_camera.h"
+#include "content/app/player_help.h"
 #include "content/app/profiler_panel.h"
 #include "content/app/render_scale.h"
 #include "content/app/shows_panel.h"
@@ -19,6 +21,8 @@
 #include "render/render_view.h"
 
 #include <chrono>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,15 +58,23 @@ class Player {
     void warm_up_level();
     void load_or_report(const std::string& scene, const std::string& show = {});
     void load_neighbor(int offset);
+    /// Runs the action, or asks first where edits would be lost.
+    void leave_level(std::function<void()> action);
+    void ask_to_quit();
 
     void handle_key(const KeyPress& press);
-    void handle_function_key(int key);
+    void handle_function_key(int key, bool shift);
+    /// Closes what Esc closes first: a popup, the panel in use, any panel. False: nothing is open.
+    bool close_one();
     void undo_or_redo(bool undo);
-    [[nodiscard]] Input read_input(const WindowEvents& events);
+    [[nodiscard]] Input read_input(const WindowEvents& events, float dt);
     /// Drag and wheel of an orbiting camera, or of the first camera of a model, which they take
     /// over.
     void orbit_model(const WindowEvents& events, Input& input, bool on_panel);
     [[nodiscard]] Vec3 model_middle() const;
+    /// The camera circles the selection, and frames it.
+    void focus_selection();
+    void go_home();
     /// The camera circles the point under the pointer.
     void focus_under_pointer();
     void cycle_camera();
@@ -82,6 +94,9 @@ class Player {
     void draw_off_stage(const IVec2& window_size, int columns);
     void draw_hud(const RenderView& view, const IVec2& window_size, float dt);
     void draw_outline(const RenderView& view) const;
+    void fly(float dt, const Input& input);
+    [[nodiscard]] std::string describe_motion() const;
+    [[nodiscard]] HelpState help_state() const;
 
     void reload_shaders(bool all);
     void save_screenshot(const IVec2& size);
@@ -110,6 +125,7 @@ class Player {
     Inspector inspector_;
     ProfilerPanel profiler_;
     ModelPanel model_panel_;
+    LeaveDialog leave_;
     PlayerCamera camera_;
     RenderScale scale_;
     RenderView view_;  ///< of the last frame
@@ -121,9 +137,16 @@ class Player {
     double unsimulated_ = 0.0;         ///< real time not yet simulated [s]
     double shown_time_ = 0.0;          ///< simulation time of the last frame [s]
     double until_shader_check_ = 0.0;  ///< [s]
+    double until_pick_ = 0.0;          ///< [s] until the distance ahead is measured again
+    float ahead_ = INFINITY;           ///< distance to what the camera looks at [m]
+    double real_seconds_ = 0.0;        ///< of the window in which rate_ is measured
+    double simulated_seconds_ = 0.0;   ///< likewise
+    double rate_ = 1.0;                ///< simulated seconds a real second
+    bool gamepad_click_ = false;       ///< A was down in the last frame
     bool paused_ = false;
     bool step_once_ = false;
     bool screenshot_wanted_ = false;
+    bool screenshot_with_hud_ = false;
     bool exr_wanted_ = false;
     int files_saved_ = 0;
 };

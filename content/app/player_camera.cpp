@@ -19,6 +19,8 @@ constexpr float kStill = 1e-3f;                  // fraction of full speed treat
 constexpr float kSpeedStep = 1.2f;               // of one wheel step
 constexpr float kZoomStep = 0.88f;               // of one wheel step
 constexpr float kZoomKeys = 8.0f;                // wheel steps a second of W and S
+constexpr float kMinSpeed = 0.1f;                // [m/s], so that walls do not hold the camera
+constexpr float kReachTime = 0.4f;               // [s] time constant of PlayerCamera::reach
 constexpr float kMinDistance = 0.02f;            // [m]
 constexpr float kMaxDistance = 10000.0f;         // [m]
 
@@ -53,8 +55,8 @@ void start_fly(PlayerCamera& camera, const Affine& pose) {
 }
 
 void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
-    camera.fly.speed =
-        std::clamp(camera.fly.speed * std::pow(kSpeedStep, input.zoom), 0.01f, 1000.0f);
+    camera.pace = std::clamp(camera.pace * std::pow(kSpeedStep, input.zoom), 0.02f, 20.0f);
+    camera.fly.speed = std::clamp(camera.pace * camera.reach, kMinSpeed, 1000.0f);
     const Vec3 wanted = input.move / std::max(glm::length(input.move), 1.0f);
     camera.glide += (wanted - camera.glide) * (1.0f - std::exp(-dt / kEaseTime));
     if (input.move == Vec3(0) && glm::length(camera.glide) < kStill) {
@@ -64,6 +66,25 @@ void step_fly(PlayerCamera& camera, const MoveInput& input, float dt) {
     eased.move = camera.glide;
     step_fly_camera(camera.place, camera.fly, eased, dt);
     camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+}
+
+void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float dt) {
+    const float wanted = std::clamp(std::min(ahead, scene_radius), kMinDistance, kMaxDistance);
+    const float share = 1.0f - std::exp(-dt / kReachTime);
+    camera.reach *= std::pow(wanted / camera.reach, share);  // far and near in equal times
+}
+
+void stop_at_floor(PlayerCamera& camera, std::optional<float> floor) {
+    const float before = position_of(camera.previous).y;
+    if (!floor || *floor < kEyeHeight || camera.place.position.y >= before) {
+        return;
+    }
+    camera.place.position.y = std::max(camera.place.position.y, before - *floor + kEyeHeight);
+    camera.pose = affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+}
+
+float framing_distance(const Camera& lens, float radius) {
+    return 1.15f * std::max(radius, kMinDistance) / std::sin(0.5f * lens.fov_y);
 }
 
 void start_orbit(PlayerCamera& camera, const Affine& pose, const Vec3& target) {

@@ -6,6 +6,8 @@
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
 
+#include <optional>
+
 namespace limn {
 
 // The user-controlled camera. It is not an entity: it moves while the simulation is paused and
@@ -29,16 +31,32 @@ struct PlayerCamera {
     OrbitCamera orbit;
     Transform place;         ///< pose while flying
     Vec3 glide = {0, 0, 0};  ///< MoveInput::move, eased in and out
+    float reach = 5.0f;      ///< distance to what a flying camera looks at, smoothed [m]
+    float pace = 0.6f;       ///< speed of flying as fractions of `reach` [1/s]
     Vec3 aim = {0, 0, 0};    ///< target of the orbit where it follows no entity [m]
     Vec3 focus = {0, 0, 0};  ///< point that the orbit looks at; follows its target with a lag [m]
 };
 
+inline constexpr float kEyeHeight = 0.15f;  ///< [m] of a flying camera above the floor, at least
+
 /// The name of the mode for the HUD.
 [[nodiscard]] const char* camera_mode_name(CameraMode mode);
 
-/// Moves a flying camera by `input` for `dt` real seconds. Speed eases in and out within a tenth of
-/// a second; the wheel changes `fly.speed`.
+/// Moves a flying camera by `input` for `dt` real seconds, as fast as the distance to what it looks
+/// at asks for: `pace` of `reach` a second, which the wheel changes. Speed eases in and out within
+/// a tenth of a second.
 void step_fly(PlayerCamera& camera, const MoveInput& input, float dt);
+
+/// Lets `reach` follow the distance ahead [m] within some tenths of a second; where nothing is
+/// ahead, that is the scene's own radius.
+void follow_reach(PlayerCamera& camera, float ahead, float scene_radius, float dt);
+
+/// Keeps a flying camera that sinks without being told to above the floor: no nearer than
+/// kEyeHeight where `floor`, the distance [m] from its `previous` position straight down, is known.
+void stop_at_floor(PlayerCamera& camera, std::optional<float> floor);
+
+/// The distance at which a box of `radius` fills most of the image of `lens`.
+[[nodiscard]] float framing_distance(const Camera& lens, float radius);
 
 /// Rotates and zooms an orbiting camera about `target`, which it follows with `orbit.follow`
 /// (engine.camera-lag).

@@ -22,7 +22,9 @@ RenderScale make_render_scale(float wanted, bool automatic, bool software_gl, co
         scale.scale = wanted;
     } else if (software_gl) {
         scale.scale = std::min(software, 1.0f);
+        scale.automatic = true;
     }
+    scale.target_ms = software_gl ? kSoftwareFrameMs : scale.target_ms;
     return scale;
 }
 

@@ -4,8 +4,9 @@
 
 namespace limn {
 
-// Render resolution for a window. Software OpenGL (llvmpipe) gets 640 x 360, a GPU the full
-// resolution; automatic scaling adapts it to recent frame times, to hold 60 frames per second.
+// Render resolution for a window. A GPU gets the full resolution. Software OpenGL (llvmpipe) begins
+// with 640 x 360 and adapts, so that every level can be steered. Automatic scaling adapts to recent
+// frame times: to hold 60 frames per second on a GPU, 16 on a processor.
 
 struct RenderScale {
     float scale = 1.0f;        ///< rendered pixels per window pixel, along each side
@@ -14,11 +15,12 @@ struct RenderScale {
     float target_ms = 16.67f;  ///< frame time to hold [ms]
 };
 
-inline constexpr int kSoftwareHeight = 360;  ///< render height with software OpenGL [px]
+inline constexpr int kSoftwareHeight = 360;       ///< render height with software OpenGL [px]
+inline constexpr float kSoftwareFrameMs = 60.0f;  ///< target of automatic scaling there [ms]
 inline constexpr float kMinScale = 0.2f;
 inline constexpr float kMaxAutoScale = 1.0f;
 
-/// `wanted`: the scale the user requested, 0 = choose by the device.
+/// `wanted`: the scale the user requested, 0 = choose by the device, which adapts on a processor.
 [[nodiscard]] RenderScale
 make_render_scale(float wanted, bool automatic, bool software_gl, const IVec2& window);
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,8 @@ class UndoStack {
     std::string redo(World& world);
 
     [[nodiscard]] std::size_t undo_count() const { return done_; }
+    /// Those that can be undone, oldest first.
+    [[nodiscard]] std::span<const Edit> done() const { return {edits_.data(), done_}; }
     [[nodiscard]] std::size_t redo_count() const { return edits_.size() - done_; }
     void clear();
 

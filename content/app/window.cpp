@@ -6,6 +6,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace limn {
@@ -27,6 +30,31 @@ bool start_glfw() {
         return glfwInit() == GLFW_TRUE;
     }();
     return started;
+}
+
+/// A sun over water, drawn by hand: 64 x 64 pixels, antialiased by distance.
+void set_icon(GLFWwindow* window) {
+    constexpr int kSide = 64;
+    std::vector<unsigned char> pixels;
+    pixels.reserve(std::size_t{4} * kSide * kSide);
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            const Vec2 p = Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f - 32.0f;
+            const Vec2 corner = glm::max(glm::abs(p) - 22.0f, Vec2(0));
+            const float inside = std::clamp(9.5f - glm::length(corner), 0.0f, 1.0f);
+            const float sun = std::clamp(14.5f - glm::length(p + Vec2(0, 2)), 0.0f, 1.0f);
+            const float wave = 6.0f + 2.5f * std::sin(0.25f * p.x);
+            const float water = std::clamp(p.y - wave + 0.5f, 0.0f, 1.0f);
+            Vec3 color = glm::mix(Vec3(28, 32, 44), Vec3(246, 184, 84), sun);
+            color = glm::mix(color, Vec3(40, 104, 138) * (1.0f - 0.012f * (p.y - wave)), water);
+            for (int c = 0; c < 3; ++c) {
+                pixels.push_back(static_cast<unsigned char>(color[c]));
+            }
+            pixels.push_back(static_cast<unsigned char>(255.0f * inside));
+        }
+    }
+    const GLFWimage icon = {kSide, kSide, pixels.data()};
+    glfwSetWindowIcon(window, 1, &icon);
 }
 
 Window& window_of(GLFWwindow* window) {
@@ -54,6 +82,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
     glfwWindowHint(GLFW_ALPHA_BITS, 0);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);  // high-DPI displays get more pixels
 
     GLFWmonitor* monitor = options.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
     IVec2 size = options.size;
@@ -72,6 +101,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
     glfwSwapInterval(options.vsync ? 1 : 0);
     glfwSetWindowUserPointer(window->window_, window.get());
     window->install_callbacks();
+    set_icon(window->window_);
     return window;
 }
 
@@ -156,8 +186,8 @@ bool Window::wants_to_close() const {
     return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
 
-void Window::request_close() {
-    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+void Window::request_close(bool close) {
+    glfwSetWindowShouldClose(window_, close ? GLFW_TRUE : GLFW_FALSE);
 }
 
 IVec2 Window::framebuffer_size() const {
@@ -193,9 +223,12 @@ void Window::capture_mouse(bool captured) {
         return;
     }
     captured_ = captured;
-    // The pointer jumps when its mode changes; that must not count as motion.
-    mouse_known_ = false;
     glfwSetInputMode(window_, GLFW_CURSOR, captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    // The pointer may jump when its mode changes; that must not count as motion.
+    double x = 0;
+    double y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    last_mouse_ = {static_cast<float>(x), static_cast<float>(y)};
 }
 
 void Window::set_title(const std::string& title) {

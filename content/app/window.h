@@ -57,7 +57,8 @@ class Window {
     void swap();
 
     [[nodiscard]] bool wants_to_close() const;
-    void request_close();
+    /// Makes wants_to_close() true; or false again, where somebody would rather stay.
+    void request_close(bool close = true);
 
     [[nodiscard]] IVec2 framebuffer_size() const;  ///< [pixels]; 0 x 0 while minimized
     [[nodiscard]] Vec2 mouse_position() const;  ///< [pixels of the framebuffer], from the top left

@@ -9,4 +9,9 @@ namespace limn {
     return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
 }
 
+/// The inverse, also for values above 1; negative ones stay on the line through 0.
+[[nodiscard]] inline float srgb_from_linear(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
 }  // namespace limn

@@ -113,10 +113,10 @@ std::span<const std::string> keys_of(const ActionInfo& action, const Bindings* l
 
 const std::vector<std::string_view>& key_names() {
     static const std::vector<std::string_view> names = {
-        "A", "B", "D", "E", "F",    "G",     "H",  "I",    "J",     "K",   "L",     "M",        "N",
-        "O", "P", "Q", "S", "T",    "U",     "V",  "W",    "X",     "Y",   "Z",     "0",        "1",
-        "2", "3", "4", "5", "6",    "7",     "8",  "9",    "-",     "=",   "[",     "]",        ";",
-        "'", ",", "/", "`", "Left", "Right", "Up", "Down", "Shift", "Alt", "Enter", "Backspace"};
+        "A", "B", "D",    "E",     "G",  "H",    "I",     "J",   "K",     "L",        "N", "O", "P",
+        "Q", "S", "T",    "U",     "V",  "W",    "X",     "Y",   "Z",     "0",        "1", "2", "3",
+        "4", "5", "6",    "7",     "8",  "9",    "-",     "=",   "[",     "]",        ";", "'", ",",
+        "/", "`", "Left", "Right", "Up", "Down", "Shift", "Alt", "Enter", "Backspace"};
     return names;
 }
 

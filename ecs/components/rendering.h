@@ -26,6 +26,7 @@ enum class ShadingRate : std::uint8_t {
 
 /// Antialiasing method.
 enum class Antialiasing : std::uint8_t {
+    Auto,  ///< temporal where it is played; `limn render` averages samples instead
     None,
     Temporal,  ///< accumulates reprojected previous frames (TAA)
 };
@@ -34,7 +35,7 @@ enum class Antialiasing : std::uint8_t {
 struct Rendering {
     LightMethod lights = LightMethod::Clustered;
     ShadingRate shading = ShadingRate::Pixel;
-    Antialiasing antialiasing = Antialiasing::None;
+    Antialiasing antialiasing = Antialiasing::Auto;
     bool infinite_viewer = false;  ///< shading uses one view direction for the whole image
 };
 
@@ -43,7 +44,10 @@ LIMN_FIELDS(Rendering) {
         lights, .doc = "lighting algorithm; all give the same image",
         .values = "clustered full_screen volumes object_major light_major");
     LIMN_FIELD(shading, .doc = "shading per pixel or per vertex", .values = "pixel vertex");
-    LIMN_FIELD(antialiasing, .doc = "antialiasing method", .values = "none temporal");
+    LIMN_FIELD(
+        antialiasing,
+        .doc = "antialiasing method; auto: temporal when played, samples when rendered",
+        .values = "auto none temporal");
     LIMN_FIELD(infinite_viewer, "highlights use one view direction, as if infinitely far away");
 }
 

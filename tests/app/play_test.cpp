@@ -67,9 +67,19 @@ constexpr const char* kShow = R"({
 struct PlaySession : test::DisplaySession {
     void start(const char* level = kLevel, const std::vector<std::string>& options = {}) {
         test::write_text(folder.file("toy.level.json"), level);
-        std::vector<std::string> arguments = {"play", "toy.level.json"};
+        std::vector<std::string> arguments = {"play", "toy.level.json", "--scale",
+                                              "0.9",  "--antialiasing", "none"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         DisplaySession::start(arguments);
+    }
+    /// Esc until it asks, then yes.
+    void quit() {
+        CHECK(wait_for([&] {
+            if (program->running()) {
+                xdotool("key Escape sleep 0.3 key Return sleep 0.3");
+            }
+            return !program->running();
+        }));
     }
 };
 
@@ -99,21 +109,73 @@ TEST_CASE("play: keys move the camera and open the inspector, and F9 saves what 
     xdotool("keydown w sleep 0.5 keyup w");
     CHECK(session.changes_from(paused, 2000));
     const Pixels moved = session.wait_until_still();
+    // Home brings the level's camera back.
+    xdotool("key Home");
+    CHECK(session.changes_from(moved, 2000));
+    sleep_ms(6000);  // until its message is gone
+    CHECK(count_different(session.wait_until_still(), paused) == 0);
 
     // The inspector covers the right side.
     xdotool("key F2");
-    CHECK(session.changes_from(moved, 20000));
+    CHECK(session.changes_from(paused, 20000));
     const Pixels inspected = session.wait_until_still();
 
-    xdotool("key F9");
+    xdotool("key shift+F9");
     REQUIRE(wait_for([&] { return !first_line(session.folder).empty(); }));
-    const Pixels saved = read_png(session.folder.file(first_line(session.folder)));
+    const std::string first_file = first_line(session.folder);
+    const Pixels saved = read_png(session.folder.file(first_file));
     CHECK(saved.width == test::kDisplayWidth);
     CHECK(saved.height == test::kDisplayHeight);
     CHECK(count_different(saved, inspected) == 0);
+    // Without Shift, without the panels.
+    xdotool("key F9");
+    const std::string second_file = "limn-toy-0002.png";
+    REQUIRE(first_file == "limn-toy-0001.png");
+    REQUIRE(wait_for(
+        [&] { return count_different(read_png(session.folder.file(second_file)), paused) == 0; }));
 
+    session.quit();
+    CHECK(session.program->wait().exit_code == 0);
+}
+
+TEST_CASE("play: Esc closes panel after panel, then asks; leaving with edits asks until undone") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    session.start();
+    xdotool("key F8 key space");
+    const Pixels level = session.wait_until_still();
+    xdotool("key F1");
+    REQUIRE(session.changes_from(level, 20000));
+    const Pixels help = session.wait_until_still();
+    xdotool("mousemove 320 200 click 5 click 5 click 5");  // it is longer than the window
+    CHECK(session.changes_from(help, 2000));
     xdotool("key Escape");
-    CHECK(wait_for([&] { return !session.program->running(); }));
+    CHECK(count_different(session.wait_until_still(), level) == 0);
+    xdotool("key Escape");
+    CHECK(session.changes_from(level, 20000));  // Quit?
+    xdotool("key Escape");
+    CHECK(count_different(session.wait_until_still(), level) == 0);
+
+    // Select the box and drag the last number of its scale.
+    xdotool("key F2 mousemove 260 190 sleep 0.3 click 1");
+    const Pixels selected = session.wait_until_still();
+    xdotool("mousemove 560 330 sleep 0.3 mousedown 1 sleep 0.3 mousemove_relative 30 0 sleep 0.3 "
+            "mouseup 1");
+    CHECK(session.changes_from(selected, 50));
+    xdotool("mousemove 20 20 key F2");
+    const Pixels edited = session.wait_until_still();
+    for (const char* key : {"Next", "Prior", "Tab", "r"}) {
+        CAPTURE(key);
+        xdotool(std::string("key ") + key);
+        CHECK(session.changes_from(edited, 20000));  // Leave?
+        xdotool("key Escape");
+        CHECK(count_different(session.wait_until_still(), edited) == 0);
+    }
+    xdotool("key ctrl+z key r sleep 3");  // nothing to lose: the level restarts, and time passes
+    CHECK(session.changes_from(session.display.grab(), 500));
+    session.quit();
     CHECK(session.program->wait().exit_code == 0);
 }
 
@@ -131,8 +193,7 @@ TEST_CASE("play: who drives does not fly: the keys move the car, and not the cam
     // C hands the keys to the camera.
     xdotool("key c keydown w sleep 0.5 keyup w");
     CHECK(session.changes_from(start, 2000));
-    xdotool("key Escape");
-    CHECK(wait_for([&] { return !session.program->running(); }));
+    session.quit();
 }
 
 TEST_CASE("play: F7 shows a technique with, without and side by side, F6 lists them all") {
@@ -160,8 +221,7 @@ TEST_CASE("play: F7 shows a technique with, without and side by side, F6 lists t
     CHECK(is_red(both, right, middle));
     xdotool("key F6");
     CHECK(session.changes_from(both, 20000));
-    xdotool("key Escape");
-    CHECK(wait_for([&] { return !session.program->running(); }));
+    session.quit();
     CHECK(session.program->wait().exit_code == 0);
 }
 
@@ -179,8 +239,8 @@ TEST_CASE("play: a drag looks around, and the level comes back with R") {
     CHECK(session.changes_from(start, 5000));
     xdotool("key F3");  // the profiler opens without harm
     sleep_ms(500);
-    xdotool("key F3 key r key Escape");
-    CHECK(wait_for([&] { return !session.program->running(); }));
+    xdotool("key F3 key r");
+    session.quit();
     const ProgramRun run = session.program->wait();
     CHECK(run.exit_code == 0);
     CHECK(run.err.find("error") == std::string::npos);
@@ -195,7 +255,8 @@ TEST_CASE("play: a model turns with a drag, moves with a right drag, comes near 
     test::write_text(
         session.folder.file("square.glb"),
         std::string(reinterpret_cast<const char*>(glb.data()), glb.size()));
-    session.DisplaySession::start({"play", "square.glb"});
+    session.DisplaySession::start(
+        {"play", "square.glb", "--scale", "0.9", "--antialiasing", "none"});
     xdotool("key F8 mousemove 320 200");
     const Pixels framed = session.wait_until_still();
     xdotool("mousedown 1 sleep 0.5 mousemove_relative 40 0 sleep 0.3 mousemove_relative 40 0 sleep "
@@ -211,8 +272,7 @@ TEST_CASE("play: a model turns with a drag, moves with a right drag, comes near 
     const Pixels far = session.wait_until_still();
     xdotool("click --repeat 2 --delay 60 1");  // what is under the pointer comes to the middle
     CHECK(session.changes_from(far, 1000));
-    xdotool("key Escape");
-    CHECK(wait_for([&] { return !session.program->running(); }));
+    session.quit();
     CHECK(session.program->wait().exit_code == 0);
 }
 

@@ -33,10 +33,12 @@ TEST_CASE("player_camera: flying takes over exactly where the camera stood") {
     check_near(forward_of(camera.pose), forward_of(pose));
 }
 
-TEST_CASE("player_camera: W flies forward at the set speed, five times as fast with Shift") {
+TEST_CASE("player_camera: W flies forward at its pace of the distance ahead, with Shift five times "
+          "as fast") {
     for (const bool fast : {false, true}) {
         PlayerCamera camera;
-        camera.fly.speed = 2.0f;
+        camera.pace = 0.5f;
+        camera.reach = 4.0f;
         start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
         for (int i = 0; i < 60; ++i) {  // until it has got up speed
             step_fly(camera, {.move = {0, 0, 1}, .fast = fast}, 1.0f / 60.0f);
@@ -47,6 +49,52 @@ TEST_CASE("player_camera: W flies forward at the set speed, five times as fast w
         }
         CHECK(camera.place.position.z - before == test::near(fast ? -10.0f : -2.0f).epsilon(1e-3));
     }
+}
+
+TEST_CASE(
+    "player_camera: the speed of flying follows the distance ahead, up to the scene's radius") {
+    PlayerCamera camera;
+    start_fly(camera, look_at({0, 0, 0}, {0, 0, -1}));
+    const auto speed_before = [&](float ahead) {
+        for (int i = 0; i < 300; ++i) {
+            follow_reach(camera, ahead, 40.0f, 1.0f / 60.0f);
+        }
+        step_fly(camera, {}, 1.0f / 60.0f);
+        return camera.fly.speed;
+    };
+    CHECK(speed_before(10.0f) == test::near(6.0).epsilon(1e-3));
+    CHECK(speed_before(1.0f) == test::near(0.6).epsilon(1e-3));
+    CHECK(speed_before(INFINITY) == test::near(24.0).epsilon(1e-3));
+    CHECK(speed_before(0.0f) == test::near(0.1).epsilon(1e-3));  // no wall stops it
+    step_fly(camera, {.zoom = 2}, 1.0f / 60.0f);
+    CHECK(camera.pace == test::near(0.6 * 1.2 * 1.2).epsilon(1e-5));
+}
+
+TEST_CASE("player_camera: what sinks stays above the floor, what is told to sink does not") {
+    PlayerCamera camera;
+    start_fly(camera, look_at({0, 1, 0}, {0, 0, -1}));
+    for (int i = 0; i < 300; ++i) {
+        camera.previous = camera.pose =
+            affine_from(camera.place.position, camera.place.rotation, Vec3(1));
+        step_fly(camera, {.move = {0, 0, 1}}, 1.0f / 60.0f);
+        stop_at_floor(camera, position_of(camera.previous).y);
+    }
+    CHECK(camera.place.position.y == test::near(kEyeHeight).epsilon(1e-3));
+    CHECK(camera.place.position.z < -5.0f);  // it glides along
+    stop_at_floor(camera, std::nullopt);
+    CHECK(camera.place.position.y == test::near(kEyeHeight).epsilon(1e-3));
+    camera.previous = affine_from({0, 0.1f, 0}, camera.place.rotation, Vec3(1));  // already below
+    camera.place.position.y = 0.05f;
+    stop_at_floor(camera, 0.1f);
+    CHECK(camera.place.position.y == 0.05f);
+}
+
+TEST_CASE("player_camera: a framed box fills most of the image's height") {
+    const Camera lens;
+    const float distance = framing_distance(lens, 2.0f);
+    const float share = std::asin(2.0f / distance) / (0.5f * lens.fov_y);
+    CHECK(share > 0.8f);
+    CHECK(share < 1.0f);
 }
 
 TEST_CASE("player_camera: two keys at once are no faster than one") {

@@ -17,6 +17,20 @@ TEST_CASE("render_scale: a processor draws 640 x 360 of a 16:9 window, a GPU all
     CHECK(render_size(make_render_scale(0, false, true, small), small) == small);
 }
 
+TEST_CASE("render_scale: a processor adapts to 16 frames a second, unless a scale is asked for") {
+    RenderScale scale = make_render_scale(0, false, true, {1280, 720});
+    CHECK(scale.automatic);
+    float frame = 0.0f;
+    for (int i = 0; i < 400; ++i) {
+        frame = 20.0f + 800.0f * scale.scale * scale.scale;  // a level that is slow at 640 x 360
+        update_render_scale(scale, frame, frame, frame * 1e-3f);
+    }
+    CHECK(frame <= 1.1f * 60.0f);
+    CHECK(frame >= 0.6f * 60.0f);
+    CHECK_FALSE(make_render_scale(0.5f, false, true, {1280, 720}).automatic);
+    CHECK_FALSE(make_render_scale(0, false, false, {1280, 720}).automatic);
+}
+
 TEST_CASE("render_scale: what the user asks for is what is drawn") {
     const IVec2 window = {1280, 720};
     CHECK(render_size(make_render_scale(0.5f, false, false, window), window) == IVec2(640, 360));

@@ -173,7 +173,7 @@ struct DisplaySession {
         Pixels last = display.grab();
         int same = 0;
         CHECK(wait_for([&] {
-            sleep_ms(250);
+            sleep_ms(120);
             Pixels now = display.grab();
             same = now == last ? same + 1 : 0;
             last = std::move(now);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace limn {
+
+class Inspector;
+class World;
+struct HudStyle;
+
+// The question before something is lost: to quit, or to leave a level whose edits are saved
+// nowhere. Enter or Y accepts, Esc or N stays.
+
+class LeaveDialog {
+  public:
+    /// Asks `question`; `action` is what the button `accept` stands for.
+    void ask(std::string question, std::string accept, std::function<void()> action);
+    [[nodiscard]] bool is_open() const { return action_ != nullptr; }
+    void accept();
+    void stay();
+    /// The action that was accepted since the last call; run it between frames.
+    [[nodiscard]] std::function<void()> take_accepted();
+
+    /// Draws the question with the number of edits and a button that copies them as JSON.
+    void draw(const HudStyle& style, const Inspector& inspector, const World& world);
+
+  private:
+    std::string question_;
+    std::string accept_;
+    std::function<void()> action_;    // empty: nothing is asked
+    std::function<void()> accepted_;  // to be taken
+};
+
+}  // namespace limn

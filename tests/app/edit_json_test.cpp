@@ -1,0 +1,103 @@
+#include "content/app/edit_json.h"
+#include "content/app/stage.h"
+#include "content/load/json_document.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/post.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "tests/app/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr const char* kLevel = R"({
+  "title": "A lamp",
+  "resources": {"exposure": {"ev": 1}},
+  "materials": {"red": {"base_color": [0.8, 0.1, 0.05]}},
+  "meshes": {"box": {"make": "box"}},
+  "entities": [
+    {"name": "lamp", "transform": {"position": [1, 2, 3]}, "point_light": {"intensity": 5}},
+    {"name": "box", "mesh_instance": {"mesh": "box", "material": "red"}},
+    {"name": "eye", "camera": {}}
+  ]
+})";
+
+struct Level {
+    test::TemporaryFolder folder;
+    std::unique_ptr<Stage> stage;
+
+    explicit Level(const std::string& text = kLevel) {
+        test::write_text(folder.file("a.level.json"), text);
+        Result<std::unique_ptr<Stage>> opened = open_stage(folder.file("a.level.json"));
+        REQUIRE_MESSAGE(opened.ok(), (opened ? std::string() : opened.error().message));
+        stage = *std::move(opened);
+    }
+    World& world() { return stage->world; }
+    Entity find(const std::string& name) {
+        Entity found;
+        world().query<const Name>().each(
+            [&](Entity entity, const Name& one) { found = one.text == name ? entity : found; });
+        return found;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity") {
+    Level level;
+    const std::string text = entity_as_json(level.world(), level.find("lamp"));
+    const std::string pasted = std::string(R"({"title": "B", "entities": [)") + text
+                               + R"(, {"name": "eye", "camera": {}}]})";
+    Level other(pasted);
+    const Entity lamp = other.find("lamp");
+    REQUIRE(other.world().alive(lamp));
+    CHECK(other.world().get<const PointLight>(lamp).intensity == 5.0f);
+    CHECK(other.world().get<const Transform>(lamp).position == Vec3(1, 2, 3));
+    CHECK(entity_as_json(other.world(), lamp) == text);
+}
+
+TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {
+    Level level;
+    World& world = level.world();
+    const Entity lamp = level.find("lamp");
+    UndoStack undo;
+    const auto edit = [&](EditKind kind, Entity entity, AnyComponent before, AnyComponent after) {
+        Edit change;
+        change.kind = kind;
+        change.entity = entity;
+        change.before = std::move(before);
+        change.after = std::move(after);
+        REQUIRE(apply_edit_value(world, change, change.after));
+        undo.record(std::move(change));
+    };
+    const ComponentInfo& light = component_info<PointLight>();
+    PointLight brighter = world.get<const PointLight>(lamp);
+    for (const float intensity : {20.0f, 30.0f}) {
+        const AnyComponent before = AnyComponent::read(world, lamp, light);
+        brighter.intensity = intensity;
+        edit(EditKind::Component, lamp, before, AnyComponent(light, &brighter));
+    }
+    Exposure exposure = world.resource<Exposure>();
+    const AnyComponent before(component_info<Exposure>(), &exposure);
+    exposure.ev = -2;
+    edit(EditKind::Resource, {}, before, AnyComponent(component_info<Exposure>(), &exposure));
+    edit(
+        EditKind::Component, level.find("box"),
+        AnyComponent::read(world, level.find("box"), component_info<MeshInstance>()), {});
+    const Result<JsonValue> patch = parse_json(edits_as_json(world, undo.done()), "patch");
+    REQUIRE(patch.ok());
+    const JsonValue& entities = (*patch)["entities"];
+    CHECK(entities["lamp"]["point_light"]["intensity"].number == 30.0);
+    CHECK(entities["box"].members.size() == 1);
+    CHECK(entities["box"]["mesh_instance"].kind == JsonKind::Null);
+    CHECK((*patch)["resources"]["exposure"]["ev"].number == -2.0);
+}
+
+}  // namespace limn
