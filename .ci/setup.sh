@@ -67,6 +67,12 @@ build_preset() {
     shift
     local log=build/$preset/configure.log
     mkdir -p "build/$preset"
+    local cache=build/$preset/CMakeCache.txt home=""
+    [ -f "$cache" ] && home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$cache")
+    if [ -n "$home" ] && [ "$home" != "$PWD" ]; then
+        say "build/$preset was made for $home, and this is $PWD: configuring it anew"
+        rm -rf "$cache" "build/$preset/CMakeFiles"
+    fi
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         tail -n 15 "$log" >&2
         die "cmake could not configure '$preset'; full log: $log"

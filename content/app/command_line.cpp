@@ -1,6 +1,7 @@
 #include "content/app/command_line.h"
 
 #include "content/app/bench_command.h"
+#include "content/app/check_command.h"
 #include "content/app/command_values.h"
 #include "content/app/compare_command.h"
 #include "content/app/hash_command.h"
@@ -369,6 +370,16 @@ Command add_hash(CLI::App& program, HashOptions& options) {
     return {app, [&options] { return run_hash(options); }};
 }
 
+Command add_check(CLI::App& program, std::string& scene) {
+    CLI::App* app = program.add_subcommand("check", "Check a level: load, step, draw, warn");
+    app->add_option("scene", scene, kSceneDoc)->type_name("SCENE")->required();
+    app->footer(
+        "Prints what is wrong or has no effect, and ends with 1 where there is an error.\n\n"
+        "Example:\n"
+        "  limn check my.level.json");
+    return {app, [&scene] { return run_check(scene); }};
+}
+
 Command add_quality(CLI::App& program) {
     CLI::App* app = program.add_subcommand("quality", "Compare the effects with their oracles");
     app->set_help_flag();  // everything behind the name is for the other program, --help as well
@@ -423,14 +434,15 @@ Command add_shows(CLI::App& program, std::string& id) {
     return {app, [&id] { return run_shows(id); }};
 }
 
-Command add_components(CLI::App& program, bool& schema) {
+Command add_components(CLI::App& program, bool& schema, bool& all) {
     CLI::App* app = program.add_subcommand(
         "components", "List the components with fields, units, ranges and defaults");
     app->add_flag("--schema", schema, "print the JSON Schema of a level file instead");
+    app->add_flag("--all", all, "with those that systems keep for themselves");
     app->footer("Examples:\n"
                 "  limn components\n"
                 "  limn components --schema > level.schema.json");
-    return {app, [&schema] { return run_components(schema); }};
+    return {app, [&schema, &all] { return run_components(schema, all); }};
 }
 
 /// The options of all commands, at their defaults.
@@ -443,7 +455,9 @@ struct AllOptions {
     CompareOptions compare;
     std::string info_file;
     std::string show;
+    std::string checked;
     bool schema = false;
+    bool all_components = false;
 };
 
 std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
@@ -452,13 +466,14 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_render(program, options.render),
         add_view(program, options.view),
         add_bench(program, options.bench),
+        add_check(program, options.checked),
         add_hash(program, options.hash),
         add_quality(program),
         add_compare(program, options.compare),
         add_info(program, options.info_file),
         add_levels(program),
         add_shows(program, options.show),
-        add_components(program, options.schema)};
+        add_components(program, options.schema, options.all_components)};
 }
 
 /// "limn render" for a parsed subcommand, else "limn".

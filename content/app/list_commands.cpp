@@ -10,7 +10,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
@@ -90,6 +93,31 @@ void print_show(const FoundShow& found) {
         show.technique);
 }
 
+/// What systems keep for themselves: nothing that a level's author writes.
+bool is_internal(const ComponentInfo& info) {
+    constexpr std::string_view kInternal[] = {
+        "pose",
+        "previous_world_transform",
+        "world_transform",
+        "frame_time",
+        "input",
+        "sibling_order",
+        "thrown_stone"};
+    return info.name.ends_with("_state")
+           || std::find(std::begin(kInternal), std::end(kInternal), info.name)
+                  != std::end(kInternal);
+}
+
+void print_components(
+    const char* heading, const std::vector<const ComponentInfo*>& components, bool internal) {
+    fmt::print("{}\n\n", heading);
+    for (const ComponentInfo* const info : components) {
+        if (is_internal(*info) == internal) {
+            print_component(*info);
+        }
+    }
+}
+
 }  // namespace
 
 Status run_levels() {
@@ -124,18 +152,19 @@ Status run_shows(const std::string& id) {
     return Done{};
 }
 
-Status run_components(bool schema) {
+Status run_components(bool schema, bool all) {
     register_game_components();
     if (schema) {
         fmt::print("{}\n", write_json(level_schema()));
         return Done{};
     }
-    for (const ComponentInfo* info : all_components()) {
-        print_component(*info);
-    }
-    fmt::print("Resources, one of a kind:\n\n");
-    for (const ComponentInfo* info : all_resources()) {
-        print_component(*info);
+    const std::vector<const ComponentInfo*> components = all_components();
+    const std::vector<const ComponentInfo*> resources = all_resources();
+    print_components("==== Components: of an entity", components, false);
+    print_components("==== Resources: one of a kind, under \"resources\"", resources, false);
+    if (all) {
+        print_components("==== Internal components: systems write them", components, true);
+        print_components("==== Internal resources", resources, true);
     }
     return Done{};
 }

@@ -13,8 +13,9 @@ namespace limn {
 /// `id` lists them all.
 [[nodiscard]] Status run_shows(const std::string& id);
 
-/// `limn components`: every component with its fields, units, ranges and defaults; with `schema`
-/// the JSON Schema of a level file.
-[[nodiscard]] Status run_components(bool schema);
+/// `limn components`: components and resources with their fields, units, ranges and defaults; with
+/// `all` those, too, that systems keep for themselves; with `schema` the JSON Schema of a level
+/// file instead.
+[[nodiscard]] Status run_components(bool schema, bool all);
 
 }  // namespace limn

@@ -18,11 +18,11 @@ struct PlayOptions {
     std::string show;   ///< technique, an id of TECHNIQUES.md; empty: none
     IVec2 size = {1280, 720};
     bool fullscreen = false;
-    float scale = 0.0f;                   ///< rendered pixels per window pixel; 0 = automatic
-    bool scale_auto = false;              ///< adapts the scale to hold 60 frames per second
+    float scale = 0.0f;       ///< rendered pixels per window pixel; 0 = automatic
+    bool scale_auto = false;  ///< adapts the scale to hold 60 frames per second
     Antialiasing antialiasing = Antialiasing::Auto;  ///< Auto: the level's, temporal if it has none
-    std::optional<gpu::Profile> profile;  ///< empty = by the device
-    ModelViewOptions model;               ///< of a model by itself
+    std::optional<gpu::Profile> profile;             ///< empty = by the device
+    ModelViewOptions model;                          ///< of a model by itself
     int headless_frames = 0;  ///< > 0: renders so many frames along the camera path, no window
     std::string out;  ///< folder of frames and screenshots; empty = limn-<level> for frames, the
                       ///< current one for screenshots

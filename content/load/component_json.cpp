@@ -26,29 +26,67 @@ std::vector<std::string_view> names_of(const std::vector<FieldInfo>& fields) {
     return names;
 }
 
-bool is_angle(const FieldInfo& info) {
-    return std::string_view(info.meta.unit).starts_with("rad");
-}
-
 /// "a number 0 .. 10 m".
 std::string expected_number(const FieldInfo& info, std::string_view noun) {
     const std::string range = range_text(info.meta);
     return range.empty() ? std::string(noun) : fmt::format("{} {}", noun, range);
 }
 
-/// "45deg" in radians; nullopt for other strings.
-std::optional<double> angle_from_text(std::string_view text) {
-    if (!text.ends_with("deg")) {
-        return std::nullopt;
-    }
-    text.remove_suffix(3);
-    double degrees_read = 0.0;
+/// A unit that people write, in a field's own: "45deg" of a field in radians.
+struct WrittenUnit {
+    std::string_view field;
+    std::string_view written;
+    double factor;
+};
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr WrittenUnit kWrittenUnits[] = {
+    {"rad", "deg", kDegree},
+    {"rad", "rad", 1},
+    {"rad/s", "deg/s", kDegree},
+    {"rad/s", "rad/s", 1},
+    {"rad/s", "rpm", 6 * kDegree},
+    {"m", "km", 1000},
+    {"m", "cm", 0.01},
+    {"m", "mm", 0.001},
+    {"m", "m", 1},
+    {"m/s", "km/h", 1 / 3.6},
+    {"m/s", "kn", 1852.0 / 3600},
+    {"m/s", "m/s", 1},
+    {"s", "ms", 0.001},
+    {"s", "min", 60},
+    {"s", "s", 1},
+    {"lx", "klx", 1000},
+    {"lx", "lx", 1},
+    {"cd", "cd", 1},
+    {"EV", "EV", 1}};
+
+/// "45deg" or "2 m" in the field's unit; nullopt for other strings.
+std::optional<double> number_with_unit(std::string_view text, std::string_view field_unit) {
+    double number = 0.0;
     const char* const end = text.data() + text.size();
-    const std::from_chars_result parsed = std::from_chars(text.data(), end, degrees_read);
-    if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(degrees_read)) {
+    const std::from_chars_result parsed = std::from_chars(text.data(), end, number);
+    if (parsed.ec != std::errc() || !std::isfinite(number)) {
         return std::nullopt;
     }
-    return degrees_read * (3.14159265358979323846 / 180.0);
+    std::string_view unit(parsed.ptr, static_cast<std::size_t>(end - parsed.ptr));
+    unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+    for (const WrittenUnit& known : kWrittenUnits) {
+        if (known.field == field_unit && known.written == unit) {
+            return number * known.factor;
+        }
+    }
+    return std::nullopt;
+}
+
+/// ` or a string like "2cm"`; empty where the field's unit has no other way to be written.
+std::string or_with_unit(std::string_view field_unit) {
+    for (const WrittenUnit& known : kWrittenUnits) {
+        if (known.field == field_unit) {
+            return fmt::format(
+                " or a string like \"{}{}\"", known.factor < 1 ? 45 : 2, known.written);
+        }
+    }
+    return "";
 }
 
 struct Reader {
@@ -149,16 +187,22 @@ struct Reader {
   private:
     Status read_scalar(
         const JsonValue& json, const FieldInfo& info, const JsonPlace& at, double& number) const {
-        const std::optional<double> angle = json.kind == JsonKind::String && is_angle(info)
-                                                ? angle_from_text(json.text)
-                                                : std::nullopt;
-        if (json.kind != JsonKind::Number && !angle) {
-            const std::string or_degrees = is_angle(info) ? " or a string like \"45deg\"" : "";
-            return unexpected(json, at, expected_number(info, "a number") + or_degrees);
+        const std::string_view unit = info.meta.unit;
+        const std::optional<double> with_unit =
+            json.kind == JsonKind::String ? number_with_unit(json.text, unit) : std::nullopt;
+        if (json.kind != JsonKind::Number && !with_unit) {
+            return unexpected(json, at, expected_number(info, "a number") + or_with_unit(unit));
         }
-        const double read = angle.value_or(json.number);
+        const double read = with_unit.value_or(json.number);
         if (!(read >= info.meta.min && read <= info.meta.max)) {
-            return unexpected(json, at, expected_number(info, "a number"));
+            const double as_degrees = read * kDegree;
+            const bool seems_degrees = !with_unit && unit == "rad" && as_degrees >= info.meta.min
+                                       && as_degrees <= info.meta.max;
+            return unexpected(
+                json, at,
+                expected_number(info, "a number")
+                    + (seems_degrees ? fmt::format(" (for degrees write \"{}deg\")", json.text)
+                                     : std::string()));
         }
         number = read;
         return Done{};
@@ -510,6 +554,16 @@ Status read_field(
     const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const NameResolver& names) {
     return Reader{names}.read_shape(json, info, field, place);
+}
+
+std::vector<std::string_view> written_units(std::string_view field_unit) {
+    std::vector<std::string_view> units;
+    for (const WrittenUnit& known : kWrittenUnits) {
+        if (known.field == field_unit) {
+            units.push_back(known.written);
+        }
+    }
+    return units;
 }
 
 JsonValue

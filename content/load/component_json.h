@@ -18,7 +18,8 @@ namespace limn {
 // Converts JSON to components and back, for every type that has LIMN_FIELDS. Used by level files,
 // extras.limn of glTF, the inspector and --set.
 //
-//     number         a number within the field's range; for an angle also "45deg"
+//     number         a number within the field's range, in its unit, or with a unit as people
+//                    write it: "45deg", "30rpm", "2cm", "36km/h", "8kn", "200ms", "5min", "10klx"
 //     bool           true, false
 //     enum           the enumerator's name: "inverse_square"
 //     vector         an array of its length
@@ -110,6 +111,9 @@ read_struct(const JsonValue& json, T& object, const JsonPlace& place, const Name
 write_component(const ComponentInfo& info, const void* object, const NameProvider& names);
 [[nodiscard]] JsonValue
 write_field(const FieldInfo& info, const void* field, const NameProvider& names);
+
+/// The units in which a number of a field in `field_unit` may be written, as in "45deg".
+[[nodiscard]] std::vector<std::string_view> written_units(std::string_view field_unit);
 
 /// Calls `visit` with the kind and index of every asset id in `object`.
 void for_each_asset(

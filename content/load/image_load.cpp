@@ -7,10 +7,9 @@
 #include "ecs/base/text.h"
 #include "ecs/components/surface.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cstring>
+#include <dlfcn.h>
 #include <exception>
 #include <filesystem>
 #include <string_view>

@@ -29,7 +29,9 @@ constexpr LevelKey kLevelKeys[] = {
     {"materials", JsonKind::Object}, {"paths", JsonKind::Object},
     {"meshes", JsonKind::Object},    {"prefabs", JsonKind::Object},
     {"entities", JsonKind::Array},   {"events", JsonKind::Array},
-    {"bindings", JsonKind::Object},  {"shows", JsonKind::Array}};
+    {"bindings", JsonKind::Object},  {"shows", JsonKind::Array},
+    {"$schema", JsonKind::String},  // for editors
+};
 constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm"};
 
 using Names = std::unordered_map<std::string, std::uint32_t>;

@@ -106,9 +106,10 @@ JsonValue schema_of_number(const FieldInfo& field) {
     if (std::isfinite(field.meta.max)) {
         schema.members.push_back(member("maximum", number(field.meta.max)));
     }
-    if (!is_whole && std::string_view(field.meta.unit).starts_with("rad")) {
-        return any_of(
-            {std::move(schema), of_type("string", {member("pattern", text("^-?[0-9.]+deg$"))})});
+    const std::vector<std::string_view> units = written_units(field.meta.unit);
+    if (!is_whole && !units.empty()) {
+        const std::string pattern = fmt::format("^-?[0-9.]+ ?({})$", fmt::join(units, "|"));
+        return any_of({std::move(schema), of_type("string", {member("pattern", text(pattern))})});
     }
     return schema;
 }
@@ -302,9 +303,9 @@ JsonValue definitions() {
 
 JsonValue level_schema() {
     JsonValue schema = closed_object(
-        {member("title", of_type("string")), member("description", of_type("string")),
-         member("resources", schema_of_resources()), member("images", schema_of_images()),
-         member("materials", schema_of_materials()),
+        {member("$schema", of_type("string")), member("title", of_type("string")),
+         member("description", of_type("string")), member("resources", schema_of_resources()),
+         member("images", schema_of_images()), member("materials", schema_of_materials()),
          member("paths", map_of(schema_of_fields(component_info<PathShape>().fields))),
          member("meshes", map_of(any_of(schemas_of_kinds(mesh_kinds())))),
          member("prefabs", map_of(reference("node"))),

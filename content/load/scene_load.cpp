@@ -5,6 +5,8 @@
 #include "content/load/level_list.h"
 #include "content/load/level_load.h"
 #include "content/load/scene_bounds.h"
+#include "content/load/scene_warnings.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
@@ -109,6 +111,9 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
     scene.show = std::move(level.show);
     (void)spawn_level(world, std::move(level));
     complete_scene(world, options, scene);
+    for (const std::string& warning : find_scene_warnings(world)) {
+        log_warn("{}: {}", path, warning);
+    }
     scene.camera = find_camera(world);
     if (scene.camera.is_null()) {
         scene.camera = add_camera(world, scene.bounds);

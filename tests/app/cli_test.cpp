@@ -167,11 +167,48 @@ TEST_CASE("cli: levels lists the gallery, components their fields with units") {
     CHECK(components.out.find("intensity") != std::string::npos);
     CHECK(components.out.find("1000000 cd") != std::string::npos);
     CHECK(components.out.find("[0, 0, 0]  m ") != std::string::npos);  // a unit without limits
+    CHECK(components.out.find("\nocean\n") != std::string::npos);
+    CHECK(components.out.find("\nocean_state\n") == std::string::npos);  // internal
+    const ProgramRun all = run_limn(folder, {"components", "--all"});
+    CHECK(all.out.find("ocean_state\n") > all.out.find("==== Internal components"));
 
     const ProgramRun schema = run_limn(folder, {"components", "--schema"});
     CHECK(schema.exit_code == 0);
     CHECK(schema.out.find("\"$schema\"") != std::string::npos);
     CHECK(schema.out.find("\"point_light\"") != std::string::npos);
+}
+
+TEST_CASE("cli: check draws a level that is right, and warns of what has no effect") {
+    const TemporaryFolder folder;
+    const ProgramRun good = run_limn(folder, {"check", "lights"});
+    CAPTURE(good.err);
+    CHECK(good.exit_code == 0);
+    CHECK(good.err.empty());
+    CHECK(good.out.find("drew a frame; no warnings") != std::string::npos);
+    test::write_text(folder.file("a.level.json"), R"({
+      "$schema": "level.schema.json", "title": "Nothing has an effect",
+      "entities": [
+        {"name": "eye", "camera": {}},
+        {"name": "other eye", "camera": {}},
+        {"name": "lamp", "shadow": {}, "light_pulse": {}},
+        {"name": "sea", "ocean": {}},
+        {"name": "lens", "lens": {}, "autofocus": {}},
+        {"name": "cart", "path_follower": {}}
+      ]})");
+    const ProgramRun bad = run_limn(folder, {"check", "a.level.json"});
+    CHECK(bad.exit_code == 0);
+    for (const char* says :
+         {"entity \"lamp\": shadow has no effect without point_light or spot_light or "
+          "directional_light",
+          "entity \"lamp\": light_pulse has", "entity \"sea\": ocean has no effect without water",
+          "entity \"lens\": lens has no effect without camera", "autofocus has no effect",
+          "entity \"cart\": path_follower has no effect without a path", "2 active cameras"}) {
+        CAPTURE(says);
+        CHECK(bad.err.find(says) != std::string::npos);
+    }
+    CHECK(count_lines(bad.err) == 7);
+    CHECK(bad.out.find("7 warnings") != std::string::npos);
+    CHECK(run_limn(folder, {"check", "none.level.json"}).exit_code == 1);
 }
 
 TEST_CASE("cli: the state hash is the same on one thread, on two, and again") {

@@ -7,9 +7,9 @@
 #include "content/app/stage.h"
 #include "content/bake/image_compare.h"
 #include "content/load/image_load.h"
-#include "content/load/png_file.h"
 #include "content/load/level_list.h"
 #include "content/load/made_assets.h"
+#include "content/load/png_file.h"
 #include "ecs/base/log.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
@@ -94,8 +94,7 @@ TEST_CASE("level: every level runs for a second without an error and looks as ag
     for (const LevelEntry& level : levels) {
         CAPTURE(level.name);
         const std::uint64_t errors_before = logged_error_count();
-        Result<std::unique_ptr<Stage>> stage =
-            open_stage(level.path, {.made = &shared_assets()});
+        Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
         REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
         for (int i = 0; i < kSteps; ++i) {
             step_stage(**stage);
@@ -157,7 +156,8 @@ TEST_CASE("level: the same level runs to the same state twice") {
         CAPTURE(level.name);
         std::uint64_t hashes[2] = {};
         for (std::uint64_t& hash : hashes) {
-            Result<std::unique_ptr<Stage>> stage = open_stage(level.path, {.made = &shared_assets()});
+            Result<std::unique_ptr<Stage>> stage =
+                open_stage(level.path, {.made = &shared_assets()});
             REQUIRE(stage.ok());
             for (int i = 0; i < 10; ++i) {
                 step_stage(**stage);

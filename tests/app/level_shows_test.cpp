@@ -41,8 +41,8 @@ HeadlessRenderer& shared_renderer() {
     return shared;
 }
 
-/// Takes the environment probes away, whose six faces are half the work of an image, where a show is
-/// not about them.
+/// Takes the environment probes away, whose six faces are half the work of an image, where a show
+/// is not about them.
 void remove_probes(World& world, const LevelShow& show) {
     if ((write_json(show.set) + write_json(show.off)).find("env_probe") != std::string::npos) {
         return;

@@ -96,6 +96,28 @@ void visit_fields(Renamed& value, Visitor&& visit) {
     visit("mood", value.mood, {.values = "calm busy wild", .renamed = "temper lazy=calm mad=wild"});
 }
 
+/// A field of each unit that can be written in other ways.
+struct Measures {
+    float angle = 0;
+    float turn = 0;
+    float length = 0;
+    Vec3 place = {0, 0, 0};
+    float speed = 0;
+    float time = 0;
+    float plain = 0;
+};
+
+template <typename Visitor>
+void visit_fields(Measures& value, Visitor&& visit) {
+    visit("angle", value.angle, {.unit = "rad", .min = -3.2, .max = 3.2});
+    visit("turn", value.turn, {.unit = "rad/s"});
+    visit("length", value.length, {.unit = "m", .min = 0});
+    visit("place", value.place, {.unit = "m"});
+    visit("speed", value.speed, {.unit = "m/s"});
+    visit("time", value.time, {.unit = "s"});
+    visit("plain", value.plain);
+}
+
 NameResolver some_names() {
     NameResolver names;
     names.asset = [](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
@@ -268,7 +290,8 @@ TEST_CASE("component json: what is wrong is named with its place, expectation an
         == "t.json:2:21: thing.knob.clicks: found the number 10, expected an integer 0 .. 9");
     CHECK(
         error_of<Everything>(R"({"knob": {"turn": -11}})")
-        == "t.json:1:19: thing.knob.turn: found the number -11, expected a number -10 .. 10 rad");
+        == "t.json:1:19: thing.knob.turn: found the number -11, expected a number -10 .. 10 rad "
+           "(for degrees write \"-11deg\")");
     CHECK(
         error_of<Everything>(R"({"mood": "calmm"})")
         == "t.json:1:10: thing.mood: found the string \"calmm\", expected one of calm busy wild "
@@ -429,4 +452,28 @@ TEST_CASE("component_json: old names of fields and enumerators are read, with on
             "temper is renamed to mood; the next version rejects the old name",
             "mad is renamed to wild; the next version rejects the old name",
             "lazy is renamed to calm; the next version rejects the old name"});
+}
+
+TEST_CASE("component_json: numbers with units as people write them, in the unit of the field") {
+    CHECK(read<Measures>(R"({"angle": "45deg"})").angle == test::near(0.78539816));
+    CHECK(read<Measures>(R"({"angle": "-1rad"})").angle == -1.0f);
+    CHECK(read<Measures>(R"({"turn": "30rpm"})").turn == test::near(3.14159265));
+    CHECK(read<Measures>(R"({"length": "30cm"})").length == test::near(0.3));
+    CHECK(read<Measures>(R"({"length": "2 m"})").length == 2.0f);
+    CHECK(read<Measures>(R"({"place": [1, "1mm", "1km"]})").place == Vec3(1, 0.001f, 1000));
+    CHECK(read<Measures>(R"({"speed": "36km/h"})").speed == test::near(10));
+    CHECK(read<Measures>(R"({"time": "2min"})").time == 120.0f);
+    for (const char* text :
+         {R"({"length": "2deg"})", R"({"length": "m"})", R"({"length": "2"})",
+          R"({"angle": "45 degrees"})", R"({"plain": "2m"})", R"({"length": "1e999m"})"}) {
+        CAPTURE(text);
+        CHECK(error_of<Measures>(text).find("found the string") != std::string::npos);
+    }
+}
+
+TEST_CASE("component_json: degrees where radians are expected are told how to be written") {
+    const std::string error = error_of<Measures>(R"({"angle": 45})");
+    CHECK(error.ends_with("(for degrees write \"45deg\")"));
+    CHECK(error_of<Measures>(R"({"angle": 1000})").find("degrees") == std::string::npos);
+    CHECK(error_of<Measures>(R"({"length": -45})").find("degrees") == std::string::npos);
 }

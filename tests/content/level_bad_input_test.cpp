@@ -70,7 +70,8 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
         error_of(R"({"entites": []})")
         == "t.level.json:1:2: found the key \"entites\", expected one of title description "
            "resources "
-           "images materials paths meshes prefabs entities events bindings shows (did you mean "
+           "images materials paths meshes prefabs entities events bindings shows $schema (did you "
+           "mean "
            "entities?)");
     const std::string component =
         error_of("{\"entities\": [\n  {\"name\": \"lamp\", \"point_ligth\": {}}]}");

@@ -629,10 +629,12 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
             CHECK(definition->find("properties")->find(field.name) != nullptr);
         }
     }
-    const JsonValue* const roll =
-        definitions->find("point_light")->find("properties")->find("intensity");
-    CHECK(roll->find("minimum")->number == 0.0);
-    CHECK(roll->find("maximum")->number == 1e6);
+    const JsonValue* const intensity =
+        definitions->find("point_light")->find("properties")->find("intensity")->find("anyOf");
+    REQUIRE(intensity != nullptr);
+    CHECK(intensity->items[0].find("minimum")->number == 0.0);
+    CHECK(intensity->items[0].find("maximum")->number == 1e6);
+    CHECK(intensity->items[1].find("pattern")->text == "^-?[0-9.]+ ?(cd)$");
 }
 
 TEST_CASE("level: it binds keys to actions; actions and keys must exist") {
