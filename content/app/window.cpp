@@ -7,8 +7,10 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <thread>
 #include <utility>
 
 namespace limn {
@@ -99,6 +101,11 @@ Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
     }
     glfwMakeContextCurrent(window->window_);
     glfwSwapInterval(options.vsync ? 1 : 0);
+    if (options.vsync) {
+        const GLFWvidmode* const mode = glfwGetVideoMode(glfwGetPrimaryMonitor());
+        window->refresh_ =
+            1.0 / (mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : 60);
+    }
     glfwSetWindowUserPointer(window->window_, window.get());
     window->install_callbacks();
     set_icon(window->window_);
@@ -180,6 +187,12 @@ void Window::toggle_fullscreen() {
 
 void Window::swap() {
     glfwSwapBuffers(window_);
+    // Much less than a refresh has passed only where the driver does not wait.
+    const double elapsed = glfwGetTime() - last_swap_;
+    if (elapsed < 0.8 * refresh_) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(refresh_ - elapsed));
+    }
+    last_swap_ = glfwGetTime();
 }
 
 bool Window::wants_to_close() const {

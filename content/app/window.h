@@ -53,7 +53,8 @@ class Window {
     const WindowEvents& poll();
     /// Sleeps until an event arrives, at most `seconds`; poll returns it.
     void wait_events(double seconds);
-    /// Presents the back buffer; waits for the display if vsync is on.
+    /// Presents the back buffer; if vsync is on it waits for the display, or where the driver
+    /// cannot (software OpenGL, remote displays), as long as the display would.
     void swap();
 
     [[nodiscard]] bool wants_to_close() const;
@@ -87,6 +88,8 @@ class Window {
     bool mouse_known_ = false;
     Vec2 press_position_ = {0, 0};
     double last_click_ = -1.0;  ///< [s]
+    double refresh_ = 0.0;      ///< [s] of the display; 0 without vsync
+    double last_swap_ = 0.0;    ///< [s]
     bool captured_ = false;
     IVec2 windowed_position_ = {60, 60};
     IVec2 windowed_size_ = {1280, 720};
