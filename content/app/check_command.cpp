@@ -62,7 +62,9 @@ Status run_check(const std::string& scene) {
     fmt::print(
         "{}: {} entities, simulated a second, {}; {}\n", stage->scene.path,
         stage->world.entity_count(), drawn,
-        warnings == 0 ? std::string("no warnings") : fmt::format("{} warnings", warnings));
+        warnings == 0   ? std::string("no warnings")
+        : warnings == 1 ? std::string("1 warning")
+                        : fmt::format("{} warnings", warnings));
     return Done{};
 }
 

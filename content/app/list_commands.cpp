@@ -1,6 +1,7 @@
 #include "content/app/list_commands.h"
 
 #include "content/game/game.h"
+#include "content/load/level_hints.h"
 #include "content/load/level_list.h"
 #include "content/load/level_schema.h"
 #include "content/load/level_show.h"
@@ -91,21 +92,6 @@ void print_show(const FoundShow& found) {
         "\nlimn play --show {0}\nlimn render --show {0} -o on.png\n"
         "limn render --show {0} --off -o off.png\n",
         show.technique);
-}
-
-/// What systems keep for themselves: nothing that a level's author writes.
-bool is_internal(const ComponentInfo& info) {
-    constexpr std::string_view kInternal[] = {
-        "pose",
-        "previous_world_transform",
-        "world_transform",
-        "frame_time",
-        "input",
-        "sibling_order",
-        "thrown_stone"};
-    return info.name.ends_with("_state")
-           || std::find(std::begin(kInternal), std::end(kInternal), info.name)
-                  != std::end(kInternal);
 }
 
 void print_components(

@@ -1,5 +1,6 @@
 #include "content/load/component_json.h"
 
+#include "content/load/level_hints.h"
 #include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
 #include "ecs/components/environment.h"
@@ -103,7 +104,7 @@ struct Reader {
                 return error_at(
                     at, member.at, "the field " + in_quotes(member.key),
                     (known.empty() ? "none" : fmt::format("one of {}", fmt::join(known, " ")))
-                        + did_you_mean(member.key, known));
+                        + where_it_belongs(member.key, did_you_mean(member.key, known)));
             }
             LIMN_TRY(read_shape(
                 member.value, *field, field_ptr(object, *field), place_in(at, member.key)));
@@ -359,7 +360,7 @@ struct Reader {
         } else {
             std::optional<std::uint32_t> index = std::numeric_limits<std::uint32_t>::max();
             if (json.kind == JsonKind::String) {
-                index = names.asset ? names.asset(kind, json.text) : std::nullopt;
+                index = names.asset ? names.asset(kind, json.text, json.at) : std::nullopt;
             }
             found = index.has_value();
             const std::uint32_t value = index.value_or(0);

@@ -39,9 +39,11 @@ namespace limn {
 
 /// Resolves names of assets and entities. An empty function resolves none.
 struct NameResolver {
+    // `at` is the position of the name, for the error of a resolver that defers the lookup.
     /// Index of the asset `name` of `kind`: "mesh", "image", "material".
-    std::function<std::optional<std::uint32_t>(std::string_view kind, std::string_view name)> asset;
-    /// `at` is the position of the name, for the error of a resolver that defers the lookup.
+    std::function<std::optional<std::uint32_t>(
+        std::string_view kind, std::string_view name, SourcePosition at)>
+        asset;
     std::function<std::optional<Entity>(std::string_view name, SourcePosition at)> entity;
     /// All names of a kind ("entity" is one), for "did you mean".
     std::function<std::vector<std::string_view>(std::string_view kind)> all;

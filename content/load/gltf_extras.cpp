@@ -28,7 +28,7 @@ class ExtrasReader {
             return found == by_name_.end() ? std::nullopt
                                            : std::optional(gltf_node_entity(found->second));
         };
-        names_.asset = [this](std::string_view kind, std::string_view name) {
+        names_.asset = [this](std::string_view kind, std::string_view name, SourcePosition) {
             return find_asset(list_assets(scene_), kind, name);
         };
         names_.all = [this](std::string_view kind) {

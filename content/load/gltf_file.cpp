@@ -236,7 +236,7 @@ Result<std::vector<std::byte>> fetch_uri(
     const std::filesystem::path base = std::filesystem::canonical(folder, error);
     const std::filesystem::path path = std::filesystem::canonical(base / *relative, error);
     if (error) {
-        return fail("{}: {}: no such file", place, in_quotes(uri));
+        return fail("{}: {}: no such file in {}", place, in_quotes(uri), base.string());
     }
     if (!is_under(path, base)) {
         return fail(

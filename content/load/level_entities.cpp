@@ -1,5 +1,7 @@
 #include "content/load/level_entities.h"
 
+#include "content/load/level_hints.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/component_bytes.h"
 #include "ecs/components/animation.h"
@@ -325,8 +327,12 @@ Status LevelEntities::read_layer(
             continue;
         }
         const ComponentInfo* const info = find_component(member.key);
-        const bool is_ours = info == &component_info<Parent>();  // implied by "children"
-        if (info == nullptr || is_ours || info->ops.construct_default == nullptr
+        if (info == &component_info<Parent>()) {
+            return refuse(
+                node.path, member.at, "the key \"parent\"",
+                "the entity in the list \"children\" of its parent");
+        }
+        if (info == nullptr || info->ops.construct_default == nullptr
             || info->ops.construct_copy == nullptr) {
             std::vector<std::string_view> known = kNodeKeys;
             const std::vector<const ComponentInfo*> all = all_components();
@@ -336,7 +342,12 @@ Status LevelEntities::read_layer(
             return refuse(
                 node.path, member.at, "the component " + in_quotes(member.key),
                 "one of `limn components`, or one of name prefab gltf repeat children"
-                    + did_you_mean(member.key, known));
+                    + where_it_belongs(member.key, did_you_mean(member.key, known)));
+        }
+        if (is_internal(*info)) {
+            log_warn(
+                "{}:{}:{}: {}: systems keep {} and overwrite what is written here", file_,
+                member.at.line, member.at.column, node.path, member.key);
         }
         AnyComponent* component = find_in(components, info->id);
         if (member.value.kind == JsonKind::Null) {

@@ -1,10 +1,12 @@
 #include "content/load/level_events.h"
 
+#include "content/load/level_hints.h"
 #include "ecs/base/text.h"
 #include "ecs/field_access.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +17,12 @@ namespace {
 constexpr std::string_view kKeys[] = {"at",      "every", "times",  "set", "set_resources",
                                       "impulse", "spawn", "destroy"};
 constexpr double kMaxTime = 1e6;  // [s]
+
+std::string event_hint(std::string_view name, const std::string& did_you_mean) {
+    return find_resource(name) != nullptr
+               ? fmt::format(" ({} is a resource: use \"set_resources\")", in_quotes(name))
+               : where_it_belongs(name, did_you_mean);
+}
 
 struct EventReader {
     const JsonPlace& place;
@@ -107,7 +115,7 @@ struct EventReader {
             const char* const noun = action.is_resource ? "resource" : "component";
             return error_at(
                 at, member.at, fmt::format("the {} {}", noun, in_quotes(member.key)),
-                "one of `limn components`" + hint);
+                "one of `limn components`" + event_hint(member.key, hint));
         }
         action.value = AnyComponent(*info);
         LIMN_TRY(read_edits(member.value, info->fields, 0, place_in(at, member.key), action));
@@ -120,7 +128,7 @@ struct EventReader {
         if (!entity) {
             return error_at(
                 here, at, "the entity " + in_quotes(name),
-                "one of the level" + did_you_mean(name, names.all("entity")));
+                "one of the level" + event_hint(name, did_you_mean(name, names.all("entity"))));
         }
         return *entity;
     }
@@ -185,6 +193,20 @@ struct EventReader {
 Result<ScriptEvent> read_event(
     const JsonValue& json, const JsonPlace& place, const NameResolver& names,
     const ReadPrefab& read_prefab) {
+    const auto time =
+        std::find_if(json.members.begin(), json.members.end(), [](const JsonMember& member) {
+            return member.key == "time" || member.key == "t" || member.key == "when";
+        });
+    if (time != json.members.end()) {
+        return error_at(
+            place, time->at, "the key " + in_quotes(time->key),
+            "\"at\": seconds since the start of the level");
+    }
+    if (const JsonValue* const set = json.find("set"); set != nullptr) {
+        LIMN_TRY(expect(
+            *set, JsonKind::Object, place_in(place, "set"),
+            R"({"entity": {"component": {"field": value}}})"));
+    }
     LIMN_TRY(expect_keys(json, place, kKeys));
     EventReader reader{place, names, read_prefab, {}};
     LIMN_TRY(reader.read_times(json));

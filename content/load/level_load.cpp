@@ -3,6 +3,7 @@
 #include "content/load/component_json.h"
 #include "content/load/gltf_file.h"
 #include "content/load/level_events.h"
+#include "content/load/level_hints.h"
 #include "content/load/level_names.h"
 #include "ecs/base/log.h"
 #include "ecs/components/camera_path.h"
@@ -87,7 +88,15 @@ class LevelParser {
         for (const LevelKey& key : kLevelKeys) {
             names.push_back(key.name);
         }
-        LIMN_TRY(expect_keys(json_, place(""), names, "a level (an object)"));
+        LIMN_TRY(expect(json_, JsonKind::Object, place(""), "a level (an object)"));
+        for (const JsonMember& member : json_.members) {
+            if (std::find(names.begin(), names.end(), member.key) == names.end()) {
+                return error_at(
+                    place(""), member.at, "the key " + in_quotes(member.key),
+                    fmt::format("one of {}", fmt::join(names, " "))
+                        + where_it_belongs(member.key, did_you_mean(member.key, names)));
+            }
+        }
         for (const auto& [name, kind] : kLevelKeys) {
             if (const JsonValue* const value = json_.find(name)) {
                 LIMN_TRY(expect(
@@ -113,7 +122,13 @@ class LevelParser {
         if (info == nullptr || info->ops.construct_default == nullptr) {
             return error_at(
                 at, member.at, "the resource " + in_quotes(member.key),
-                "one of `limn components`" + resource_suggestion(member.key));
+                "one of `limn components`"
+                    + where_it_belongs(member.key, resource_suggestion(member.key)));
+        }
+        if (is_internal(*info)) {
+            log_warn(
+                "{}:{}:{}: {}: systems keep this resource and overwrite what is written here",
+                level_.file, member.at.line, member.at.column, at.path);
         }
         level_.resources.push_back(
             LIMN_TRY(read_component(member.value, *info, at, asset_names())));
@@ -173,7 +188,8 @@ class LevelParser {
                 make->kind == JsonKind::String ? find_kind(pattern_kinds(), make->text) : nullptr;
             if (image.pattern == nullptr) {
                 return unexpected(
-                    *make, at, "a kind of pattern" + kind_suggestion(pattern_kinds(), make->text));
+                    *make, at,
+                    kind_names(pattern_kinds()) + kind_suggestion(pattern_kinds(), make->text));
             }
             image.parameters = LIMN_TRY(
                 read_component(without(json, {"make"}), *image.pattern->parameters, at, {}));
@@ -264,14 +280,15 @@ class LevelParser {
     Status read_mesh(const JsonMember& member, const JsonPlace& at) {
         const JsonValue* const make = member.value.find("make");
         if (make == nullptr) {
-            return unexpected(member.value, at, "an object with the key \"make\"");
+            return unexpected(
+                member.value, at, "an object with the key \"make\": " + kind_names(mesh_kinds()));
         }
         LevelMesh mesh;
         mesh.name = member.key;
         mesh.kind = make->kind == JsonKind::String ? find_kind(mesh_kinds(), make->text) : nullptr;
         if (mesh.kind == nullptr) {
             return unexpected(
-                *make, at, "a kind of mesh" + kind_suggestion(mesh_kinds(), make->text));
+                *make, at, kind_names(mesh_kinds()) + kind_suggestion(mesh_kinds(), make->text));
         }
         mesh.parameters = LIMN_TRY(read_component(
             without(member.value, {"make"}), *mesh.kind->parameters, at, asset_names()));
@@ -347,11 +364,11 @@ class LevelParser {
         };
         NameResolver names;
         names.asset = [this, names_of_kind](
-                          std::string_view kind,
-                          std::string_view name) -> std::optional<std::uint32_t> {
+                          std::string_view kind, std::string_view name,
+                          SourcePosition at) -> std::optional<std::uint32_t> {
             const Names* const all = names_of_kind(kind);
             if (all == nullptr) {  // defined by files that are not read yet
-                level_.deferred_names.emplace_back(name);
+                level_.deferred_names.push_back({std::string(name), at});
                 return static_cast<std::uint32_t>(level_.deferred_names.size() - 1);
             }
             const auto found = all->find(std::string(name));

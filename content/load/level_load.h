@@ -85,6 +85,12 @@ struct LevelLimits {
     GltfLimits gltf = {};
 };
 
+/// A name that is resolved when all files are read.
+struct DeferredName {
+    std::string name;
+    SourcePosition at;
+};
+
 /// A mesh to generate.
 struct LevelMesh {
     std::string name;
@@ -121,7 +127,7 @@ struct Level {
 
     /// Names of skeletons, skins and clips; components hold indices into this list until
     /// load_level_assets has read the files that define them.
-    std::vector<std::string> deferred_names;
+    std::vector<DeferredName> deferred_names;
 
     Assets assets;  ///< materials after parse_level, the rest after load_level_assets
     std::vector<GltfScene> scenes;  ///< one for each of `gltfs`, after load_level_assets

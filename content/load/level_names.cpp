@@ -111,7 +111,7 @@ class DeferredNames {
                 if (lists == lists_.end() || index == kNoAsset || !result) {
                     return;
                 }
-                const std::string& name = level_.deferred_names[index];
+                const auto& [name, at] = level_.deferred_names[index];
                 const std::optional<std::uint32_t> found = find(lists->second, name, own);
                 if (found) {
                     index = *found;
@@ -122,8 +122,10 @@ class DeferredNames {
                     known.insert(known.end(), list.names.begin(), list.names.end());
                 }
                 result = fail(
-                    "{}: {}: found the {} {}, expected one of a glTF file or a generated mesh{}",
-                    level_.file, place, kind, in_quotes(name), did_you_mean(name, known));
+                    "{}:{}:{}: {}: found the {} {}, expected one of a glTF file or a generated "
+                    "mesh{}",
+                    level_.file, at.line, at.column, place, kind, in_quotes(name),
+                    did_you_mean(name, known));
             });
         return result;
     }

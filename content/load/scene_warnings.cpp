@@ -1,8 +1,14 @@
 #include "content/load/scene_warnings.h"
 
 #include "ecs/components/camera.h"
+#include "ecs/components/camera_path.h"
+#include "ecs/components/env_probe.h"
 #include "ecs/components/name.h"
+#include "ecs/components/ocean.h"
 #include "ecs/components/path.h"
+#include "ecs/components/rotation_track.h"
+#include "ecs/components/script.h"
+#include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
 
@@ -11,6 +17,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <string_view>
 
 namespace limn {
@@ -90,6 +98,66 @@ void check_cameras(const World& world, std::vector<std::string>& warnings) {
     }
 }
 
+/// Keyframes whose times do not increase.
+template <typename Track>
+void check_key_order(
+    const World& world, std::string_view component, std::vector<std::string>& warnings) {
+    world.query<const Track>().each([&](Entity entity, const Track& track) {
+        for (std::size_t i = 1; i < track.keys.size(); ++i) {
+            if (!(track.keys[i].time > track.keys[i - 1].time)) {
+                warnings.push_back(fmt::format(
+                    "{}: {}.keys[{}].time is {} s, not after the key before it ({} s)",
+                    label_of(world, entity), component, i, track.keys[i].time,
+                    track.keys[i - 1].time));
+                return;
+            }
+        }
+    });
+}
+
+/// Sizes that the renderer and the simulation round to a power of two.
+void check_resolutions(const World& world, std::vector<std::string>& warnings) {
+    const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
+        if (static_cast<unsigned>(asked) != used) {
+            warnings.push_back(fmt::format(
+                "{}: {} {} is rounded to the power of two {}", label_of(world, entity), field,
+                asked, used));
+        }
+    };
+    world.query<const Shadow>().each([&](Entity entity, const Shadow& shadow) {
+        const auto asked = static_cast<unsigned>(std::max(shadow.resolution, 1));
+        check(entity, "shadow.resolution", shadow.resolution, std::bit_ceil(asked));
+    });
+    world.query<const Ocean>().each([&](Entity entity, const Ocean& ocean) {
+        const auto asked = static_cast<unsigned>(std::max(ocean.resolution, 1));
+        check(entity, "ocean.resolution", ocean.resolution, std::bit_floor(asked));
+    });
+    world.query<const EnvProbe>().each([&](Entity entity, const EnvProbe& probe) {
+        const auto asked = static_cast<unsigned>(std::max(probe.resolution, 1));
+        check(entity, "env_probe.resolution", probe.resolution, std::bit_floor(asked));
+    });
+}
+
+/// Events that change a component which their entity does not have.
+void check_events(const World& world, std::vector<std::string>& warnings) {
+    const auto* const list = world.find_resource<EventList>();
+    for (std::size_t i = 0; list != nullptr && i < list->events.size(); ++i) {
+        for (const ScriptAction& action : list->events[i].actions) {
+            const bool is_edit =
+                action.action == EventAction::Set || action.action == EventAction::Impulse;
+            if (!is_edit || action.is_resource || !world.alive(action.entity)
+                || world.has(action.entity, action.value.info().id)) {
+                continue;
+            }
+            warnings.push_back(fmt::format(
+                "events[{}]: {} has no {}{}", i, label_of(world, action.entity),
+                action.value.info().name,
+                action.action == EventAction::Set ? "; the event adds it, with defaults"
+                                                  : "; the event does nothing"));
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> find_scene_warnings(const World& world) {
@@ -97,6 +165,10 @@ std::vector<std::string> find_scene_warnings(const World& world) {
     world.each_entity([&](Entity entity) { check_needs(world, entity, warnings); });
     check_followers(world, warnings);
     check_cameras(world, warnings);
+    check_key_order<CameraPath>(world, "camera_path", warnings);
+    check_key_order<RotationTrack>(world, "rotation_track", warnings);
+    check_resolutions(world, warnings);
+    check_events(world, warnings);
     return warnings;
 }
 

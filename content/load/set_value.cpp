@@ -179,7 +179,7 @@ Status set_value(World& world, std::string_view path, std::string_view value) {
 
 NameResolver make_name_resolver(const World& world) {
     NameResolver names;
-    names.asset = [&world](std::string_view kind, std::string_view name) {
+    names.asset = [&world](std::string_view kind, std::string_view name, SourcePosition) {
         const Assets* const assets = world.find_resource<Assets>();
         return assets != nullptr ? find_asset(*assets, kind, name) : std::nullopt;
     };

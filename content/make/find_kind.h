@@ -19,6 +19,16 @@ template <typename Kinds>
     return nullptr;
 }
 
+/// "one of box sphere teapot", to say what is expected where a kind is unknown.
+template <typename Kinds>
+[[nodiscard]] std::string kind_names(const Kinds& kinds) {
+    std::string names = "one of";
+    for (const auto& kind : kinds) {
+        names.append(" ").append(kind.name);
+    }
+    return names;
+}
+
 /// "" or " (did you mean teapot?)", to end a message about an unknown kind.
 template <typename Kinds>
 [[nodiscard]] std::string kind_suggestion(const Kinds& kinds, std::string_view name) {

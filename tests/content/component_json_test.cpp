@@ -120,7 +120,8 @@ void visit_fields(Measures& value, Visitor&& visit) {
 
 NameResolver some_names() {
     NameResolver names;
-    names.asset = [](std::string_view kind, std::string_view name) -> std::optional<std::uint32_t> {
+    names.asset = [](std::string_view kind, std::string_view name,
+                     SourcePosition) -> std::optional<std::uint32_t> {
         return kind == "mesh" && name == "teapot" ? std::optional<std::uint32_t>(7) : std::nullopt;
     };
     names.entity = [](std::string_view name, SourcePosition) -> std::optional<Entity> {

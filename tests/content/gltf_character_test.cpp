@@ -253,8 +253,8 @@ TEST_CASE("gltf character: --set and the names of a world know skeletons, skins 
     REQUIRE_MESSAGE(set.ok(), set.error().message);
     CHECK(world.get<const ClipPlayer>(puppet).clip.index == 1);
     const NameResolver names = make_name_resolver(world);
-    CHECK(names.asset("skeleton", "puppet") == std::optional<std::uint32_t>(0));
-    CHECK(names.asset("skin", "cloth") == std::optional<std::uint32_t>(0));
+    CHECK(names.asset("skeleton", "puppet", {}) == std::optional<std::uint32_t>(0));
+    CHECK(names.asset("skin", "cloth", {}) == std::optional<std::uint32_t>(0));
     CHECK(make_name_provider(world).asset("clip", 1) == "grin");
     CHECK_FALSE(set_value(world, "puppet.clip_player.clip", "grim").ok());
 }

@@ -49,6 +49,51 @@ bool has(const std::string& text, std::string_view part) {
 
 }  // namespace
 
+TEST_CASE("bad level: what is in the wrong place or by another name is told where it belongs") {
+    const struct {
+        const char* level;
+        const char* message;
+    } kCases[] = {
+        {R"({"environment": {}})", R"("environment" is a resource: it belongs in "resources")"},
+        {R"({"spot_light": {}})", R"("spot_light" is a component: it belongs on an entity)"},
+        {R"({"resources": {"spin": {}}})", R"("spin" is a component: it belongs on an entity)"},
+        {R"({"entities": [{"glow": {}}]})", R"("glow" is a resource: it belongs in "resources")"},
+        {R"({"entities": [{"point_light": {"transform": {}}}]})",
+         R"("transform" is a component: it belongs on an entity, beside its other components)"},
+        {R"({"entities": [{"name": "a", "parent": "b"}]})",
+         R"(found the key "parent", expected the entity in the list "children" of its parent)"},
+        {R"({"entities": [{"name": "a", "repeat": {"count": [2, 1, 2], "spaceing": [1, 1, 1]}}]})",
+         "(did you mean spacing?)"},
+        {R"({"meshes": {"m": {"make": "bxo"}}})", "expected one of arch bar boat box"},
+        {R"({"meshes": {"m": {}}})", R"("make": one of arch bar boat box)"},
+        {R"({"images": {"i": {"make": "wod"}}})", "expected one of "},
+        {R"({"events": [{"time": 1}]})",
+         R"(found the key "time", expected "at": seconds since the start of the level)"},
+        {R"({"events": [{"at": 1, "set": "a.spin"}]})",
+         R"(expected {"entity": {"component": {"field": value}}})"},
+        {R"({"events": [{"at": 1, "set": {"glow": {"amount": 1}}}]})",
+         R"("glow" is a resource: use "set_resources")"},
+        {R"({"events": [{"at": 1, "set_resources": {"spin": {"speed": 1}}}]})",
+         R"("spin" is a component: it belongs on an entity)"},
+        {R"({"paths": {"way": {"knots": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}]}},
+             "entities": [{"path_follower": {"path": "wya"}}]})",
+         "2:54: entities[0]: path_follower.path: found the path \"wya\", expected an existing name "
+         "(did you mean way?)"},
+    };
+    for (const auto& [level, message] : kCases) {
+        const std::string error = error_of(level);
+        CHECK_MESSAGE(has(error, message), error);
+    }
+    // Names that files define are resolved when all files are read.
+    const test::TemporaryFolder folder;
+    CHECK(
+        has(scene_error_of(folder, "{\"entities\": [\n{\"clip_player\": {\"clip\": \"Run\"}}]}"),
+            "t.level.json:2:26: entity 0: clip_player: found the clip \"Run\""));
+    CHECK(
+        has(scene_error_of(folder, R"({"entities": [{"gltf": "no.glb"}]})"),
+            "\"no.glb\": no such file in " + std::filesystem::canonical(folder.path()).string()));
+}
+
 TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error") {
     const test::TemporaryFolder folder;
     World world;

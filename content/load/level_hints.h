@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace limn {
+
+struct ComponentInfo;
+
+/// Whether the component or resource is state that systems keep: nothing that a level's author
+/// writes.
+[[nodiscard]] bool is_internal(const ComponentInfo& info);
+
+/// To end a message about an unknown name in a level: ` ("environment" is a resource: it belongs in
+/// "resources")`; `did_you_mean` for names of neither components nor resources.
+[[nodiscard]] std::string where_it_belongs(std::string_view name, const std::string& did_you_mean);
+
+}  // namespace limn
