@@ -78,6 +78,17 @@ JsonValue constant(std::string_view word) {
     return json_object({member("const", text(word))});
 }
 
+/// The schema with what an editor shows of it.
+JsonValue described(JsonValue schema, std::string_view words) {
+    schema.members.push_back(member("description", text(words)));
+    return schema;
+}
+
+JsonValue described(JsonValue schema, std::string_view words, JsonValue by_default) {
+    schema.members.push_back(member("default", std::move(by_default)));
+    return described(std::move(schema), words);
+}
+
 /// An object with these properties and no others.
 JsonValue closed_object(Members properties, std::vector<JsonValue> required = {}) {
     JsonValue schema = of_type(
@@ -114,9 +125,10 @@ JsonValue schema_of_number(const FieldInfo& field) {
     return schema;
 }
 
-JsonValue schema_of_fields(const std::vector<FieldInfo>& fields);
+/// `defaults` is a struct with these fields, or null where there is none.
+JsonValue schema_of_fields(const std::vector<FieldInfo>& fields, const void* defaults);
 
-JsonValue schema_of_element(const FieldInfo& field) {
+JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
     switch (field.type) {
     case FieldType::Bool:
         return of_type("boolean");
@@ -128,7 +140,7 @@ JsonValue schema_of_element(const FieldInfo& field) {
     case FieldType::Asset:
         return json_object({member("type", json_array({text("string"), text("null")}))});
     case FieldType::Struct:
-        return schema_of_fields(field.fields);
+        return schema_of_fields(field.fields, defaults);
     case FieldType::Quat:
         return array_of(of_type("number"), 3, 4);
     default:
@@ -148,33 +160,44 @@ JsonValue schema_of_element(const FieldInfo& field) {
     return numbers;
 }
 
-JsonValue schema_of_field(const FieldInfo& field) {
-    JsonValue schema = schema_of_element(field);
+JsonValue schema_of_field(const FieldInfo& field, const void* defaults) {
+    const void* const value =
+        defaults != nullptr ? static_cast<const std::byte*>(defaults) + field.offset : nullptr;
+    const bool is_struct = field.type == FieldType::Struct;
+    JsonValue schema = schema_of_element(field, field.shape == FieldShape::One ? value : nullptr);
     if (field.shape == FieldShape::Array) {
         schema = array_of(std::move(schema), field.count, field.count);
     } else if (field.shape == FieldShape::List) {
         schema = array_of(std::move(schema));
+    }
+    if (value != nullptr && !(is_struct && field.shape == FieldShape::One)) {
+        schema.members.push_back(member("default", write_field(field, value, {})));
     }
     std::string description = field.meta.doc;
     if (*field.meta.unit != '\0') {
         description += fmt::format(" [{}]", field.meta.unit);
     }
     if (!description.empty()) {
-        schema.members.push_back(member("description", text(description)));
+        return described(std::move(schema), description);
     }
     return schema;
 }
 
-Members properties_of(const std::vector<FieldInfo>& fields) {
+Members properties_of(const std::vector<FieldInfo>& fields, const void* defaults) {
     Members properties;
     for (const FieldInfo& field : fields) {
-        properties.push_back(member(field.name, schema_of_field(field)));
+        properties.push_back(member(field.name, schema_of_field(field, defaults)));
     }
     return properties;
 }
 
-JsonValue schema_of_fields(const std::vector<FieldInfo>& fields) {
-    return closed_object(properties_of(fields));
+JsonValue schema_of_fields(const std::vector<FieldInfo>& fields, const void* defaults) {
+    return closed_object(properties_of(fields, defaults));
+}
+
+template <typename T>
+Members properties_of() {
+    return properties_of(component_info<T>().fields, component_info<T>().defaults);
 }
 
 /// {"make": kind, parameters ...} for every kind of a list.
@@ -183,7 +206,8 @@ std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
     std::vector<JsonValue> schemas;
     for (const auto& kind : kinds) {
         Members properties = {member("make", constant(kind.name))};
-        for (JsonMember& field : properties_of(kind.parameters->fields)) {
+        for (JsonMember& field :
+             properties_of(kind.parameters->fields, kind.parameters->defaults)) {
             properties.push_back(std::move(field));
         }
         JsonValue schema = closed_object(std::move(properties), {text("make")});
@@ -196,32 +220,59 @@ std::vector<JsonValue> schemas_of_kinds(const Kinds& kinds) {
 JsonValue schema_of_images() {
     std::vector<JsonValue> schemas = schemas_of_kinds(pattern_kinds());
     schemas.push_back(closed_object(
-        {member("file", of_type("string")), member("srgb", of_type("boolean"))}, {text("file")}));
+        {member("file", described(of_type("string"), "a PNG, JPEG, EXR, HDR ... beside the level")),
+         member(
+             "srgb", described(
+                         of_type("boolean"), "whether it holds colors; false for normals and masks",
+                         json_of(true)))},
+        {text("file")}));
     return map_of(any_of(std::move(schemas)));
 }
 
 JsonValue schema_of_materials() {
     Members properties = {
-        member("like", of_type("string")), member("pattern", of_type("string")),
-        member("tiling", array_of(of_type("number"), 2, 2))};
-    for (JsonMember& field : properties_of(component_info<Material>().fields)) {
+        member("like", described(of_type("string"), "an earlier material, to start from")),
+        member(
+            "pattern",
+            described(of_type("string"), "a generated image: base color, normals, roughness")),
+        member(
+            "tiling",
+            described(array_of(of_type("number"), 2, 2), "repetitions of all maps along u and v"))};
+    for (JsonMember& field : properties_of<Material>()) {
         properties.push_back(std::move(field));
     }
     return map_of(closed_object(std::move(properties)));
 }
 
 JsonValue schema_of_repeat() {
-    Members properties = properties_of(component_info<RepeatGrid>().fields);
+    Members properties = properties_of<RepeatGrid>();
     JsonValue variation = closed_object(
-        {member("by", one_of_words({"random", "x", "y", "z", "radius", "angle", "index"})),
-         member("from", json_object()), member("to", json_object()),
-         member("pick", of_type("array", {member("minItems", count(1))})),
+        {member(
+             "by", described(
+                       one_of_words({"random", "x", "y", "z", "radius", "angle", "index"}),
+                       "what of a copy decides", text("random"))),
+         member("from", described(json_object(), "value of the first copy, or smallest value")),
+         member("to", described(json_object(), "value of the last copy, or largest value")),
+         member(
+             "pick", described(
+                         of_type("array", {member("minItems", count(1))}),
+                         "one of these values for each copy, instead of from and to")),
          member(
              "noise",
-             of_type("number", {member("minimum", number(0)), member("maximum", number(1))})),
-         member("times", of_type("number", {member("exclusiveMinimum", number(0))}))});
-    properties.push_back(member("vary", map_of(std::move(variation))));
-    return closed_object(std::move(properties));
+             described(
+                 of_type("number", {member("minimum", number(0)), member("maximum", number(1))}),
+                 "width of a random number that is added to the place between from and to",
+                 number(0))),
+         member(
+             "times", described(
+                          of_type("number", {member("exclusiveMinimum", number(0))}),
+                          "repetitions of the whole range", number(1)))});
+    properties.push_back(member(
+        "vary", described(
+                    map_of(std::move(variation)),
+                    "fields that differ from copy to copy, by component.field: \"sway.phase\"")));
+    return described(
+        closed_object(std::move(properties)), "copies of the node in a grid or a ring");
 }
 
 /// The components of an entity, each at most once; `more` are further properties.
@@ -240,10 +291,22 @@ JsonValue schema_of_components(Members more, bool may_be_null) {
 
 JsonValue schema_of_node() {
     return schema_of_components(
-        {member("name", of_type("string", {member("pattern", text("^[^.]+$"))})),
-         member("prefab", of_type("string")), member("gltf", of_type("string")),
+        {member(
+             "name", described(
+                         of_type("string", {member("pattern", text("^[^.]+$"))}),
+                         "by which events, targets and --set find it; without dots, unique among "
+                         "siblings")),
+         member(
+             "prefab",
+             described(
+                 of_type("string"), "a node of \"prefabs\", whose fields this one overrides")),
+         member(
+             "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
          member("repeat", any_of({reference("repeat of a node"), of_type("null")})),
-         member("children", array_of(reference("node")))},
+         member(
+             "children",
+             described(
+                 array_of(reference("node")), "nodes that move along, placed relative to it"))},
         true);
 }
 
@@ -256,17 +319,37 @@ JsonValue schema_of_resources() {
 }
 
 JsonValue schema_of_event() {
-    const auto time = [] {
-        return of_type("number", {member("minimum", number(0)), member("maximum", number(1e6))});
+    const auto time = [](std::string_view words) {
+        return described(
+            of_type("number", {member("minimum", number(0)), member("maximum", number(1e6))}),
+            words);
     };
     return closed_object(
-        {member("at", time()), member("every", time()),
-         member("times", of_type("integer", {member("minimum", number(1))})),
-         member("set", map_of(schema_of_components({}, false))),
-         member("set_resources", schema_of_resources()),
-         member("impulse", map_of(map_of(of_type("object")))),
-         member("spawn", array_of(reference("node"))),
-         member("destroy", array_of(of_type("string")))},
+        {member("at", time("since the start of the level [s]")),
+         member("every", time("period of repetitions [s]; without, it occurs once")),
+         member(
+             "times", described(
+                          of_type("integer", {member("minimum", number(1))}),
+                          "how often it occurs, with \"every\"; without, for ever")),
+         member(
+             "set", described(
+                        map_of(schema_of_components({}, false)),
+                        "new values of fields, by entity, component and field")),
+         member(
+             "set_resources",
+             described(schema_of_resources(), "new values of fields, by resource and field")),
+         member(
+             "impulse", described(
+                            map_of(map_of(of_type("object"))),
+                            "what is added to fields, by entity, component and field")),
+         member(
+             "spawn", described(
+                          array_of(reference("node")),
+                          "nodes that appear, of prefabs or with the level's meshes")),
+         member(
+             "destroy", described(
+                            array_of(of_type("string")),
+                            "entities that vanish, with their children, by name"))},
         {text("at")});
 }
 
@@ -275,15 +358,21 @@ JsonValue schema_of_show() {
         return of_type("object", {member("description", text("JSON merge patch of the level"))});
     };
     return closed_object(
-        {member("technique", of_type("string")), member("text", of_type("string")),
+        {member("technique", described(of_type("string"), "its id, for --show")),
+         member("text", described(of_type("string"), "a sentence: what to look at")),
          member("set", patch()), member("off", patch()),
          member(
              "time",
-             of_type("number", {member("minimum", number(0)), member("maximum", number(3600))})),
+             described(
+                 of_type("number", {member("minimum", number(0)), member("maximum", number(3600))}),
+                 "when it is seen best [s]")),
          member(
-             "camera",
-             any_of({of_type("string"), schema_of_fields(component_info<ShowCamera>().fields)})),
-         member("equal", of_type("boolean"))},
+             "camera", described(
+                           any_of({of_type("string"), closed_object(properties_of<ShowCamera>())}),
+                           "an entity by name, or where the camera stands")),
+         member(
+             "equal",
+             described(of_type("boolean"), "with and without must look the same", json_of(false)))},
         {text("technique"), text("text")});
 }
 
@@ -293,7 +382,7 @@ JsonValue definitions() {
         member("event", schema_of_event())};
     for (const std::vector<const ComponentInfo*>& infos : {all_components(), all_resources()}) {
         for (const ComponentInfo* const info : infos) {
-            all.push_back(member(info->name, schema_of_fields(info->fields)));
+            all.push_back(member(info->name, schema_of_fields(info->fields, info->defaults)));
         }
     }
     return json_object(std::move(all));
@@ -303,16 +392,31 @@ JsonValue definitions() {
 
 JsonValue level_schema() {
     JsonValue schema = closed_object(
-        {member("$schema", of_type("string")), member("title", of_type("string")),
-         member("description", of_type("string")), member("resources", schema_of_resources()),
-         member("images", schema_of_images()), member("materials", schema_of_materials()),
-         member("paths", map_of(schema_of_fields(component_info<PathShape>().fields))),
-         member("meshes", map_of(any_of(schemas_of_kinds(mesh_kinds())))),
-         member("prefabs", map_of(reference("node"))),
-         member("entities", array_of(reference("node"))),
-         member("events", array_of(reference("event"))),
-         member("shows", array_of(schema_of_show())),
-         member("bindings", map_of(array_of(one_of_words(key_names()))))});
+        {member("$schema", described(of_type("string"), "for editors: where this schema lies")),
+         member("title", described(of_type("string"), "shown in the window and by limn levels")),
+         member("description", described(of_type("string"), "what it is, in a few sentences")),
+         member(
+             "resources",
+             described(schema_of_resources(), "what the level has one of: sky, exposure, weather")),
+         member("images", described(schema_of_images(), "files and generated patterns, by name")),
+         member("materials", described(schema_of_materials(), "by name, in order of use")),
+         member(
+             "paths", described(
+                          map_of(closed_object(properties_of<PathShape>())),
+                          "curves for path_follower, racer and sweeps, by name")),
+         member(
+             "meshes",
+             described(
+                 map_of(any_of(schemas_of_kinds(mesh_kinds()))), "generated shapes, by name")),
+         member(
+             "prefabs", described(map_of(reference("node")), "nodes to use many times, by name")),
+         member("entities", described(array_of(reference("node")), "what is there from the start")),
+         member("events", described(array_of(reference("event")), "what happens later")),
+         member("shows", described(array_of(schema_of_show()), "the techniques it shows")),
+         member(
+             "bindings",
+             described(
+                 map_of(array_of(one_of_words(key_names()))), "keys of actions, by action"))});
     schema.members.insert(
         schema.members.begin(),
         {member("$schema", text("https://json-schema.org/draft/2020-12/schema")),

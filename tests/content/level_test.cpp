@@ -626,15 +626,30 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
         const JsonValue* const definition = definitions->find(info->name);
         REQUIRE(definition != nullptr);
         for (const FieldInfo& field : info->fields) {
-            CHECK(definition->find("properties")->find(field.name) != nullptr);
+            const JsonValue* const property = definition->find("properties")->find(field.name);
+            REQUIRE(property != nullptr);
+            CHECK(property->find("description") != nullptr);
+            const bool has_fields =
+                field.type == FieldType::Struct && field.shape == FieldShape::One;
+            CHECK((property->find("default") != nullptr) != has_fields);
         }
     }
     const JsonValue* const intensity =
         definitions->find("point_light")->find("properties")->find("intensity")->find("anyOf");
     REQUIRE(intensity != nullptr);
+    CHECK(schema["$defs"]["point_light"]["properties"]["intensity"]["default"].number == 10.0);
     CHECK(intensity->items[0].find("minimum")->number == 0.0);
     CHECK(intensity->items[0].find("maximum")->number == 1e6);
     CHECK(intensity->items[1].find("pattern")->text == "^-?[0-9.]+ ?(cd)$");
+    for (const char* part : {"event", "node", "repeat of a node"}) {
+        for (const JsonMember& property : schema["$defs"][part]["properties"].members) {
+            CAPTURE(property.key);
+            CHECK(
+                (property.value.find("description") != nullptr
+                 || property.value.find("$ref") != nullptr
+                 || property.value.find("anyOf") != nullptr));
+        }
+    }
 }
 
 TEST_CASE("level: it binds keys to actions; actions and keys must exist") {
