@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Runs every command that the documents, the help and the comments of levels show, as they stand there but smaller:
+# few frames, small images. Fails where one fails.
+#
+#     tests/commands.sh build/release/limn
+set -uo pipefail
+limn=$(realpath "$1")
+cd "$(dirname "$0")/.."
+
+# Commands, without their comments.
+found() {
+    cat README.md ./*/README.md ./*/*/README.md | sed -n '/^```sh/,/^```/p' | grep -E '(^|/)limn ' | sed 's|^build/release/||; s/ *# .*//'
+    grep -ohE '`limn [^`]*`' README.md TECHNIQUES.md ./*/README.md ./*/*/README.md content/levels/*.json | tr -d '`'
+    for command in $("$limn" --help | awk '/^Subcommands/ {on = 1; next} /^$/ {on = 0} on {print $1}'); do
+        "$limn" "$command" --help | sed -nE 's/^  (limn .*)/\1/p'
+    done
+}
+
+# The same, quickly; nothing for what is no whole command.
+quick() {
+    case $1 in
+    *SCENE* | *LEVEL* | *FILE* | *ID* | *COMMAND* | 'limn play' | 'limn quality' | 'limn info' | 'limn check' | 'limn hash') return ;;
+    esac
+    local command=$1
+    command=$(sed -E 's/--size [0-9x]+//; s/--spp [0-9]+/--spp 2/; s/--frames [0-9]+:[0-9]+/--frames 0:1/; s/--frames [0-9]+( |$)/ /; s/--warmup [0-9]+//' <<<"$command")
+    case $command in
+    'limn play'*--headless-frames*) command=$(sed -E 's/--headless-frames [0-9]+/--headless-frames 2/' <<<"$command --size 64x36") ;;
+    'limn play'*) command="$command --headless-frames 2 --size 64x36" ;;
+    'limn render'*) command="$command --size 64x36" ;;
+    'limn view'*' -o '*) ;;
+    'limn view'*) command="$command -o viewed.png" ;;
+    'limn bench'*) command="$command --size 64x36 --frames 2 --warmup 1" ;;
+    'limn hash'*) command="$command --frames 20" ;;
+    'limn quality --html'*) command=${command/quality/quality surfaces} ;;
+    esac
+    echo "$command"
+}
+
+# What the examples call theirs.
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+sed -n '/^```json/,/^```/p' content/levels/README.md | sed '1d;/^```/,$d' >"$folder/my.level.json"
+for name in model.glb helmet.glb; do cp content/levels/lagoon_lantern.gltf "$folder/$name"; done
+for name in a.png b.png before.png after.png model.exr memorial.exr museum.exr; do
+    "$limn" render "$folder/model.glb" -o "$folder/$name" --size 64x36 >/dev/null || exit 1
+done
+
+mapfile -t commands < <(found | tr -s ' ' | sort -u | while read -r command; do quick "$command"; done | tr -s ' ' | sort -u)
+failed=0
+export DISPLAY=''
+for command in "${commands[@]}"; do
+    if output=$(cd "$folder" && eval "\"$limn\" ${command#limn }" 2>&1); then
+        echo "ok      $command"
+    else
+        echo "FAILED  $command"
+        tail -n 3 <<<"$output"
+        failed=1
+    fi
+done
+echo "${#commands[@]} commands"
+exit $failed
