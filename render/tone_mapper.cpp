@@ -36,7 +36,8 @@ TextureId add_tone_map(
             const gpu::Program& program =
                 *tone_mapper.programs[static_cast<std::size_t>(exposure.curve)];
             context.device().use(gpu::Pipeline{&program, gpu::kFullscreenState});
-            program.set("exposure", std::exp2(exposure.ev));
+            const bool manual = exposure.metering == Metering::Manual;
+            program.set("exposure", std::exp2(exposure.ev + (manual ? exposure.manual_ev : 0.0f)));
             program.set("defog", exposure.defog);
             program.set("inverse_white", exposure.white > 0.0f ? 1.0f / exposure.white : 0.0f);
             program.set("contrast", exposure.contrast);
@@ -72,7 +73,7 @@ Result<ToneMapper> create_tone_mapper(gpu::Device& device) {
 
 TextureId apply_tone_mapper(
     FrameGraph& graph, ToneMapper& tone_mapper, const Exposure& exposure,
-    std::optional<float> seconds, TextureId radiance) {
+    std::optional<float> seconds, TextureId radiance, TextureId depth) {
     BufferId measure;
     const bool metered = exposure.metering != Metering::Manual;
     const bool adapts = exposure.metering == Metering::Auto;
@@ -82,9 +83,9 @@ TextureId apply_tone_mapper(
             graph, tone_mapper.statistics, radiance,
             {.key = metered ? exposure.key : 0.0f,
              .blend = follows ? adaptation_blend(exposure.adaptation, *seconds) : 1.0f,
-             .adaptation_range = {
-                 exposure.min_luminance,
-                 std::max(exposure.min_luminance, exposure.max_luminance)}});
+             .adaptation_range =
+                 {exposure.min_luminance, std::max(exposure.min_luminance, exposure.max_luminance)},
+             .depth = exposure.meter_surfaces ? depth : TextureId{}});
     }
     tone_mapper.adapting = adapts;
     std::optional<LocalLuminance> local;
@@ -102,7 +103,7 @@ void ToneMapEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& vi
     const auto* exposure = frame.world->find_resource<Exposure>();
     view.display = apply_tone_mapper(
         graph, tone_mapper, exposure != nullptr ? *exposure : Exposure{}, frame.since_last,
-        view.radiance);
+        view.radiance, view.gbuffer.depth);
 }
 
 }  // namespace limn

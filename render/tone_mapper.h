@@ -32,10 +32,10 @@ struct ToneMapper {
 
 /// Adds the passes to this frame; returns the display image, RGBA8. `seconds` since the previous
 /// frame drive the eye adaptation of Metering::Auto; nullopt means a cut, after which it adapts at
-/// once.
+/// once. `depth`, if valid, tells surfaces from the background for Exposure::meter_surfaces.
 [[nodiscard]] TextureId apply_tone_mapper(
     FrameGraph& graph, ToneMapper& tone_mapper, const Exposure& exposure,
-    std::optional<float> seconds, TextureId radiance);
+    std::optional<float> seconds, TextureId radiance, TextureId depth = {});
 
 /// Ends the views that are displayed, with the Exposure of the world.
 struct ToneMapEffect {

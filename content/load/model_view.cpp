@@ -38,6 +38,7 @@ constexpr float kAspect = 16.0f / 9.0f;
 /// neutral tone curve.
 constexpr float kReferenceLux = 2.4f;
 constexpr float kNoLight = 1e-6f;  // [lx]
+constexpr float kLeastReflectance = 0.08f;
 /// The studio around lights of kReferenceLux: weak enough that they shape the form.
 constexpr float kStudioIntensity = 0.32f;
 constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
@@ -290,6 +291,18 @@ float mean_luminance(const ImageData& image) {
     return static_cast<float>(sum / weights);
 }
 
+/// For light of 2^-manual_ev times kReferenceLux. Metered, the subject is taken to reflect no less
+/// than kLeastReflectance: metal before a black backdrop would be burnt.
+Exposure model_exposure(float manual_ev) {
+    manual_ev = std::clamp(manual_ev, -24.0f, 24.0f);
+    const float lux = kReferenceLux * std::exp2(-manual_ev);
+    return {
+        .curve = ToneCurve::Neutral,
+        .manual_ev = manual_ev,
+        .meter_surfaces = true,
+        .min_luminance = std::clamp(kLeastReflectance * lux / kPi, 1e-6f, 65504.0f)};
+}
+
 /// The light of the panorama alone.
 void add_panorama(World& world, ImageData panorama) {
     const float illuminance = kPi * mean_luminance(panorama);
@@ -298,8 +311,7 @@ void add_panorama(World& world, ImageData panorama) {
     assets.images.push_back(std::move(panorama));
     world.insert_resource(Environment{.sky = SkyKind::Panorama, .panorama = id});
     const float ev = illuminance > kNoLight ? std::log2(kReferenceLux / illuminance) : 0.0f;
-    world.insert_resource(
-        Exposure{.ev = std::clamp(ev, -24.0f, 24.0f), .curve = ToneCurve::Neutral});
+    world.insert_resource(model_exposure(ev));
 }
 
 /// The environment of a named backdrop around light of kReferenceLux.
@@ -360,7 +372,7 @@ ModelView add_model_view(World& world, Backdrop backdrop, double turntable) {
                 std::min(environment.intensity * std::exp2(-ev), kMaxStudioIntensity);
         }
         world.insert_resource(environment);
-        world.insert_resource(Exposure{.ev = ev, .curve = ToneCurve::Neutral});
+        world.insert_resource(model_exposure(ev));
         const Quat rotation = frame_bounds(view.subject, kFovY, kAspect).rotation;
         if (lux <= kNoLight && backdrop.name == "sky") {
             add_sun(world, rotation, radius, view);

@@ -40,6 +40,8 @@ struct Exposure {
     float ev = 0.0f;
     ToneCurve curve = ToneCurve::Aces;
     Metering metering = Metering::Manual;
+    float manual_ev = 0.0f;
+    bool meter_surfaces = false;
     float key = 0.18f;
     float adaptation = 0.5f;
     float min_luminance = 1e-4f;
@@ -55,9 +57,12 @@ struct Exposure {
 };
 
 LIMN_FIELDS(Exposure) {
-    LIMN_FIELD(ev, "exposure: radiance is multiplied by 2^ev", "EV", -24, 24);
+    LIMN_FIELD(
+        ev, "exposure, on top of the metered or manual one: radiance times 2^ev", "EV", -24, 24);
     LIMN_FIELD(curve, .doc = "tone curve", .values = "neutral aces linear reinhard local knee");
     LIMN_FIELD(metering, .doc = "how the exposure is determined", .values = "manual key auto");
+    LIMN_FIELD(manual_ev, "exposure of manual metering, to which ev is added", "EV", -24, 24);
+    LIMN_FIELD(meter_surfaces, "metering all but ignores pixels without a surface: sky, backdrop");
     LIMN_FIELD(key, "log-average luminance after metering", "", 1e-3, 10);
     LIMN_FIELD(adaptation, "time constant of eye adaptation with auto; 0 = immediate", "s", 0, 60);
     LIMN_FIELD(

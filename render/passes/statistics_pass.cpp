@@ -4,7 +4,9 @@
 #include "render/shaders/tone_gpu.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -13,6 +15,7 @@ namespace {
 constexpr unsigned kPartsBinding = 0;
 constexpr unsigned kHistogramBinding = 1;
 constexpr unsigned kMeasureBinding = 2;
+constexpr unsigned kDepthUnit = 1;
 
 }  // namespace
 
@@ -28,6 +31,8 @@ Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
         pass.join[histogram] =
             LIMN_TRY(device.shaders().load({.compute = "image_measure.comp", .defines = defines}));
     }
+    pass.surfaces = LIMN_TRY(
+        device.shaders().load({.compute = "image_statistics.comp", .defines = {{"SURFACES"}}}));
     const layout::ImageStatistics initial{};
     pass.measure =
         gpu::Buffer("image statistics", sizeof(initial), gpu::BufferUse::GpuOnly, &initial);
@@ -56,10 +61,16 @@ BufferId measure_image(
     const BufferId histogram = graph.import("luminance histogram", pass.histogram);
     const BufferId measure = graph.import("image statistics", pass.measure);
 
+    std::vector<Use> reads = {sampled(radiance, 0)};
+    if (request.depth.valid()) {
+        reads.push_back(sampled(request.depth, kDepthUnit));
+    }
+    const std::array<Use, 2> writes = {parts, histogram};
     graph.add_pass(
-        "statistics", {sampled(radiance, 0)}, {parts, histogram},
+        "statistics", std::span(reads), std::span(writes),
         [&pass, request, parts, histogram, groups](PassContext& context) {
-            context.device().use(*pass.parts[request.histogram ? 1 : 0]);
+            context.device().use(
+                request.depth.valid() ? *pass.surfaces : *pass.parts[request.histogram ? 1 : 0]);
             context.bind_storage(kPartsBinding, parts);
             context.bind_storage(kHistogramBinding, histogram);
             context.device().dispatch(groups.x, groups.y);

@@ -13,7 +13,7 @@ struct Exposure;
 // color, log-average luminance, range; and the auto exposure that follows from them
 // (hdr.key-scale), with eye adaptation. All of it stays on the GPU.
 //
-// Reads    radiance
+// Reads    radiance; for MeasureRequest::depth the reversed depth of the G-buffer
 // Writes   a ImageStatistics (tone_gpu.h), which the tone map reads in the same frame
 // Order    before the tone map
 // Shaders  image_statistics.comp, image_measure.comp
@@ -22,7 +22,8 @@ struct Exposure;
 // Sums have a fixed order: equal images give equal bits.
 
 struct StatisticsPass {
-    const gpu::Program* parts[2] = {};  ///< without and with a histogram
+    const gpu::Program* parts[2] = {};       ///< without and with a histogram
+    const gpu::Program* surfaces = nullptr;  ///< weighted by depth
     const gpu::Program* join[2] = {};
     gpu::Buffer measure;    ///< ImageStatistics of the last frame, and the adaptation state
     gpu::Buffer histogram;  ///< all 0 between frames
@@ -36,6 +37,9 @@ struct MeasureRequest {
     Vec2 adaptation_range = {1e-4f, 65504.0f};  ///< luminance range of the adaptation
     bool histogram = false;        ///< for the clipped range; costs more than the rest together
     float clipped_share = 0.001f;  ///< of the pixels, at either end
+    /// If valid, pixels with depth 0 (background) weigh 1 / kSurfaceWeight of others; without
+    /// histogram. As large as the image.
+    TextureId depth = {};
 };
 
 /// Adaptation blend factor for time constant `adaptation` [s] over `seconds`: 1 - exp(-dt / tau).

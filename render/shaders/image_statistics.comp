@@ -1,5 +1,6 @@
 // Stage 1 of image statistics: every invocation sums up 64 pixels in a fixed order, neighboring invocations read
 // neighboring pixels. Needs no barrier, which is expensive on a software OpenGL.
+//   SURFACES   pixels without a surface hardly count; yet where there are no others, they do
 //   HISTOGRAM  also counts luminances, in integers, which do not depend on the order
 #version 450
 #include "lib/tone.glsl"
@@ -8,6 +9,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform sampler2D image;
+#ifdef SURFACES
+layout(binding = 1) uniform sampler2D depth;
+#endif
 layout(std430, binding = 0) writeonly buffer Parts {
     StatisticsPart parts[];
 };
@@ -37,10 +41,15 @@ void main() {
             }
             light = clamp(light, 0.0, kMaxHalf);
             float l = luminance(light);
-            part.sum += vec4(light, log2(kLogDelta + l));
+#ifdef SURFACES
+            uint weight = texelFetch(depth, ivec2(x, y), 0).r > 0.0 ? kSurfaceWeight : 1u;
+#else
+            const uint weight = 1u;
+#endif
+            part.sum += float(weight) * vec4(light, log2(kLogDelta + l));
             part.largest = max(part.largest, l);
             part.least = l > 0.0 ? min(part.least, l) : part.least;
-            ++part.finite;
+            part.finite += weight;
 #ifdef HISTOGRAM
             if (l > 0.0) {
                 count(l);

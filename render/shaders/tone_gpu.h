@@ -35,6 +35,7 @@ const float kMaxHalf = 65504.0;    // the largest half; brighter light is clampe
 const int kHistogramBins = 1024;     // of log2 luminance, from the smallest half to 2^16
 const float kHistogramLow = -24.0;
 const float kBinsPerStop = 25.6f;
+const uint kSurfaceWeight = 256u;    // of a pixel with a surface, where one without counts 1
 const int kStatisticsTile = 64;      // side of the tile that one work group of stage 1 sums up [px]
 const int kStatisticsGroup = 8;      // side of that group [invocations]
 

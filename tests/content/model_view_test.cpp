@@ -104,7 +104,10 @@ TEST_CASE("model view: exposure makes light of any unit equally bright") {
         const Entity sun = model.world.create(Transform{}, DirectionalLight{.illuminance = lux});
         (void)model.view();
         const auto& exposure = model.world.resource<Exposure>();
-        CHECK(lux * std::exp2(exposure.ev) == near(2.4));
+        CHECK(lux * std::exp2(exposure.manual_ev) == near(2.4));
+        CHECK(exposure.ev == 0);
+        CHECK(exposure.meter_surfaces);
+        CHECK(exposure.min_luminance == near(0.08 * lux / 3.14159265));
         CHECK(model.world.get<const DirectionalLight>(sun).illuminance == lux);
         CHECK(model.world.has<Shadow>(sun));
         CHECK(model.world.query<const DirectionalLight>().count() == 1);
@@ -119,7 +122,7 @@ TEST_CASE("model view: a model that no light reaches is lit by the studio") {
         }
         const ModelView view = model.view();
         CHECK(model.world.query<const DirectionalLight>().count() == 2);
-        CHECK(model.world.resource<Exposure>().ev == 0);
+        CHECK(model.world.resource<Exposure>().manual_ev == 0);
         CHECK(model.world.resource<Environment>().sky == SkyKind::Studio);
         // What was added is listed: camera, two lights, ground.
         CHECK(view.added.size() == 4);

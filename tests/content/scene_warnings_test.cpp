@@ -87,5 +87,5 @@ TEST_CASE("scene warnings: state that systems keep, written by hand") {
     CHECK(
         logged[0]
         == "t.level.json:1:29: entity \"a\": systems keep world_transform and overwrite "
-                    "what is written here");
+           "what is written here");
 }

@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/render_fixture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -33,6 +34,22 @@ struct Statistics : RenderTest {
         picture.upload<Vec3>(pixels, GL_RGB, GL_FLOAT);
         graph.begin_frame();
         static_cast<void>(measure_image(graph, pass, graph.import("picture", picture), request));
+        graph.execute();
+        return pass.measure.read_value<layout::ImageStatistics>(0);
+    }
+    /// Rows of `width`; the first `surfaces` pixels show a surface.
+    layout::ImageStatistics
+    measure_surfaces(const std::vector<Vec3>& pixels, std::size_t surfaces) {
+        std::vector<float> depths(pixels.size());
+        std::fill_n(depths.begin(), surfaces, 0.01f);
+        gpu::Texture depth("depth", {.format = GL_R32F, .width = 8, .height = 8});
+        depth.upload<float>(depths, GL_RED, GL_FLOAT);
+        gpu::Texture picture("picture", {.format = GL_RGBA32F, .width = 8, .height = 8});
+        picture.upload<Vec3>(pixels, GL_RGB, GL_FLOAT);
+        graph.begin_frame();
+        static_cast<void>(measure_image(
+            graph, pass, graph.import("picture", picture),
+            {.depth = graph.import("depth", depth)}));
         graph.execute();
         return pass.measure.read_value<layout::ImageStatistics>(0);
     }
@@ -68,6 +85,21 @@ double ratio(float a, float b) {
 }
 
 }  // namespace
+
+TEST_CASE("picture statistics: metered for surfaces, the background hardly counts") {
+    Statistics statistics;
+    std::vector<Vec3> pixels(64, Vec3(900));
+    std::fill_n(pixels.begin(), 16, Vec3(0.18f));
+    const auto log_of = [](double light) { return std::log2(light + 1e-4); };
+    const double expected =
+        std::exp2((16 * 256 * log_of(0.18) + 48 * log_of(900)) / (16 * 256 + 48));
+    CHECK(statistics.measure_surfaces(pixels, 16).luminance.x == near(expected));
+    CHECK(expected < 0.2);
+    // Where there is nothing else, it is what is metered.
+    const double whole = std::exp2((16 * log_of(0.18) + 48 * log_of(900)) / 64);
+    CHECK(statistics.measure_surfaces(pixels, 0).luminance.x == near(whole));
+    CHECK(statistics.measure_surfaces(pixels, 64).luminance.x == near(whole));
+}
 
 TEST_CASE_FIXTURE(
     Statistics, "hdr: statistics on the GPU are those of the oracle to a thousandth") {

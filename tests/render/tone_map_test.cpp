@@ -239,6 +239,12 @@ TEST_CASE_FIXTURE(ToneScene, "hdr: defog takes a share of the mean off, in any c
 
 TEST_CASE_FIXTURE(ToneScene, "hdr: metering shows a scene alike in any unit of light") {
     const Exposure metered = {.metering = Metering::Key};
+    CHECK(
+        shown_light(Vec3(7), {.metering = Metering::Key, .manual_ev = -12})
+        == shown_light(Vec3(7), metered));
+    CHECK(
+        shown_light(Vec3(7), {.ev = 1, .manual_ev = -5})
+        == shown_light(Vec3(7), {.ev = -5, .manual_ev = 1}));
     const Vec3 dim = shown({0.02f, 0.03f, 0.01f}, metered);
     const Vec3 bright = shown({20, 30, 10}, metered);
     for (int c = 0; c < 3; ++c) {
