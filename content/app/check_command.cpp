@@ -31,7 +31,7 @@ void count_message(LogLevel level, std::string_view message) {
         stderr, "{}: {}\n",
         level == LogLevel::Warn    ? "warning"
         : level == LogLevel::Error ? "error"
-                                   : "info",
+                                   : "note",
         message);
 }
 
@@ -40,6 +40,7 @@ void count_message(LogLevel level, std::string_view message) {
 Status run_check(const std::string& scene) {
     const std::uint64_t errors_before = logged_error_count();
     set_log_sink(count_message);
+    set_log_level(LogLevel::Debug);
     const std::unique_ptr<Stage> stage = LIMN_TRY(open_stage(scene));
     for (int i = 0; i < kSteps; ++i) {
         step_stage(*stage);

@@ -4,6 +4,7 @@
 #include "content/make/surface_grid.h"
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"
+#include "ecs/base/log.h"
 
 #include <cmath>
 #include <vector>
@@ -66,13 +67,12 @@ float risen(const TerrainShape& shape, float x, float z) {
 
 /// `level` is clearing_height(); ignored without a clearing.
 float height_at(const TerrainShape& shape, float level, float x, float z) {
-    const float share = shape.shore > 0 ? risen(shape, x, z) : 1.0f;
-    if (shape.clearing <= 0) {
-        return share * landscape(shape, x, z);
-    }
     const float wild =
-        glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z));
-    return share * (wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level);
+        shape.clearing > 0
+            ? glm::smoothstep(shape.clearing, 2.0f * shape.clearing, std::sqrt(x * x + z * z))
+            : 1.0f;
+    const float land = wild > 0 ? glm::mix(level, landscape(shape, x, z), wild) : level;
+    return shape.shore > 0 ? glm::mix(-kSeabed * shape.height, land, risen(shape, x, z)) : land;
 }
 
 /// Ground color at a position; `level` is the y of the normal, 1 = flat.
@@ -107,6 +107,10 @@ MeshData make_terrain(const TerrainShape& shape) {
     LIMN_CHECK(shape.divisions >= 1 && shape.octaves >= 1);
 
     const float level = shape.clearing > 0 ? clearing_height(shape) : 0.0f;
+    if (shape.clearing > 0) {
+        log_debug(
+            "the clearing of the terrain with seed {} lies at y = {} m", shape.seed, level);
+    }
 
     // One row and column more on each side, for the normals at the rim.
     const int n = shape.divisions;

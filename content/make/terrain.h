@@ -15,6 +15,8 @@ namespace limn {
 // regions; both are domain-warped by low-frequency noise. No hydraulic erosion: valleys need not
 // drain anywhere.
 
+inline constexpr float kSeabed = 0.05f;
+
 struct TerrainShape {
     Vec2 size = {100, 100};
     int divisions = 192;
@@ -39,13 +41,17 @@ LIMN_FIELDS(TerrainShape) {
     LIMN_FIELD(ridges, "share of the land that is mountains, not hills", "", 0, 1);
     LIMN_FIELD(erosion, "how much slopes lose detail", "", 0, 4);
     LIMN_FIELD(warp, "domain warp in feature sizes", "", 0, 2);
-    LIMN_FIELD(clearing, "radius of a flat area in the center; 0 = none", "m", 0, 1e5);
-    LIMN_FIELD(shore, "island: width of the slope to 0 at its coast; 0 = none", "m", 0, 1e5);
+    LIMN_FIELD(
+        clearing, "radius of a flat area in the center, whose height limn check prints; 0 = none",
+        "m", 0, 1e5);
+    LIMN_FIELD(shore, "island: width of the slope to the seabed around it; 0 = none", "m", 0, 1e5);
     LIMN_FIELD(colors, "vertex colors of rock, scrub and sand");
     LIMN_FIELD(seed, "random seed", "", 0, 2147483647);
 }
 
-/// Height above y = 0 [m], between 0 and `height` to within a tenth.
+/// Height above y = 0 [m], between 0 and `height` to within a tenth. An island meets the sea at 0
+/// and goes down to a seabed at -kSeabed of its height, so that its rim does not show through
+/// water.
 [[nodiscard]] float terrain_height(const TerrainShape& shape, float x, float z);
 
 /// A grid centered at the origin; the texture covers it once, its top at -z. Normals are central
