@@ -3,6 +3,7 @@
 #include "content/app/gamepad.h"
 #include "content/app/image_file.h"
 #include "content/app/outline.h"
+#include "content/app/path_overlay.h"
 #include "content/app/pick.h"
 #include "content/load/level_list.h"
 #include "content/load/png_file.h"
@@ -393,6 +394,9 @@ void Player::handle_function_key(int key, bool shift) {
         break;
     case GLFW_KEY_F11:
         window_->toggle_fullscreen();
+        break;
+    case GLFW_KEY_F12:
+        paths_shown_ = !paths_shown_;
         break;
     default:
         break;
@@ -788,6 +792,9 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     hud_->begin_frame(dt);
     if (inspector_.open || (camera_.mode == CameraMode::Orbit && !stage_->scene.model)) {
         draw_outline(view);
+    }
+    if (paths_shown_) {
+        draw_path_overlay(view, stage_->world);
     }
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();

@@ -145,6 +145,7 @@ class Player {
     bool gamepad_click_ = false;       ///< A was down in the last frame
     bool paused_ = false;
     bool step_once_ = false;
+    bool paths_shown_ = false;
     bool screenshot_wanted_ = false;
     bool screenshot_with_hud_ = false;
     bool exr_wanted_ = false;

@@ -1,7 +1,9 @@
 #include "content/app/player_help.h"
 
 #include "content/game/stones.h"
+#include "ecs/components/camera_path.h"
 #include "ecs/components/input.h"
+#include "ecs/components/surface.h"
 #include "ecs/world.h"
 
 #include <span>
@@ -73,6 +75,10 @@ std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
     lines.push_back({"F3", "profiler of systems and passes"});
     lines.push_back({"F4", "intermediate textures of the frame"});
     lines.push_back({"F6", "techniques that levels show"});
+    const auto* assets = world.find_resource<Assets>();
+    if ((assets != nullptr && !assets->paths.empty()) || !world.query<const CameraPath>().empty()) {
+        lines.push_back({"F12", "paths with their knots, cameras' with their times"});
+    }
     if (state.show) {
         lines.push_back({"F7", "the technique on, off, side by side"});
     }

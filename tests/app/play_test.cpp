@@ -190,6 +190,11 @@ TEST_CASE("play: who drives does not fly: the keys move the car, and not the cam
     // While time stands, nothing moves; a camera would fly.
     xdotool("keydown w sleep 0.5 keyup w");
     CHECK(count_different(session.wait_until_still(), start) == 0);
+    // F12 draws the track and its knots.
+    xdotool("key F12");
+    CHECK(session.changes_from(start, 500));
+    xdotool("key F12");
+    CHECK(count_different(session.wait_until_still(), start) == 0);
     // C hands the keys to the camera.
     xdotool("key c keydown w sleep 0.5 keyup w");
     CHECK(session.changes_from(start, 2000));

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "ecs/base/math.h"
+
+#include <cstdint>
+#include <string>
+
+namespace limn {
+
+struct RenderView;
+
+/// Draws lines and points of the world behind the HUD's panels, clipped at the near plane; nothing
+/// hides them.
+class WorldLines {
+  public:
+    /// `color` is sRGB, 0 .. 1.
+    WorldLines(const RenderView& view, const Vec3& color);
+
+    void draw_line(const Vec3& from, const Vec3& to, float width = 1.5f);
+    /// A dot with an optional label beside it.
+    void draw_point(const Vec3& at, float radius = 3.5f, const std::string& label = {});
+
+  private:
+    const RenderView& view_;
+    std::uint32_t color_;
+};
+
+}  // namespace limn
