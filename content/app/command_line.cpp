@@ -318,7 +318,7 @@ Command add_view(CLI::App& program, ViewOptions& options) {
     };
     // Fields of the resource exposure, with its ranges and defaults but for the curve.
     constexpr Field kFields[] = {
-        {"curve", "neutral, aces, linear, reinhard, local or knee; default: knee"},
+        {"curve", "neutral, aces, linear, reinhard, local or knee; default: the image's, or knee"},
         {"metering", "manual, or key: from the log-average luminance"},
         {"ev", "exposure compensation [stops]"},
         {"key", "log-average luminance after metering; default: 0.18"},
@@ -333,15 +333,18 @@ Command add_view(CLI::App& program, ViewOptions& options) {
         app->add_option_function<std::string>(
                name,
                [&options, field, name](const std::string& value) {
-                   const Status status = set_exposure(options.exposure, field.name, value);
+                   Exposure checked;
+                   const Status status = set_exposure(checked, field.name, value);
                    if (!status) {
                        throw CLI::ValidationError(name, status.error().message);
                    }
+                   options.settings.emplace_back(field.name, value);
                },
                field.doc)
             ->type_name("X");
     }
     app->footer(
+        "An EXR of `limn render` is shown with the exposure of its scene, as the PNG would be.\n"
         "Prints log-average luminance, mean color and dynamic range. Pixels with NaN or infinity\n"
         "are counted, left out of the statistics and shown black or white.\n"
         "Knee is 0.3333 (ln(contrast c + 1) / contrast)^(1 / gamma) with c = 2^ev (light - "

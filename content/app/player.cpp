@@ -2,6 +2,7 @@
 
 #include "content/app/gamepad.h"
 #include "content/app/image_file.h"
+#include "content/app/image_notes.h"
 #include "content/app/outline.h"
 #include "content/app/path_overlay.h"
 #include "content/app/pick.h"
@@ -962,7 +963,7 @@ void Player::save_exr(const RenderView& view) {
     }
     const FrameOutput frame =
         render_accumulated(*renderer_, stage_->world, view, kExrSamples, request);
-    report_saved(path, write_image_file(path, frame, {{"limn.scene", stage_->scene.name}}));
+    report_saved(path, write_image_file(path, frame, image_notes(*stage_, shown_time_)));
 }
 
 void Player::report_saved(const std::string& path, const Status& status) {

@@ -3,6 +3,7 @@
 #include "content/app/exposure_samples.h"
 #include "content/app/headless.h"
 #include "content/app/image_file.h"
+#include "content/app/image_notes.h"
 #include "content/app/progress.h"
 #include "content/app/stage.h"
 #include "ecs/base/text.h"
@@ -135,8 +136,7 @@ int previous_frames(const World& world) {
 
 Status
 write_frame(const FrameOutput& frame, const Stage& stage, double time, const std::string& path) {
-    return write_image_file(
-        path, frame, {{"limn.scene", stage.scene.name}, {"limn.time", fmt::format("{}", time)}});
+    return write_image_file(path, frame, image_notes(stage, time));
 }
 
 }  // namespace

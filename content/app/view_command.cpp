@@ -2,9 +2,12 @@
 
 #include "content/app/hdr_image.h"
 #include "content/app/headless.h"
+#include "content/app/image_notes.h"
 #include "content/app/image_viewer.h"
 #include "content/app/window.h"
 #include "content/game/game.h"
+#include "content/load/component_json.h"
+#include "content/load/exr_file.h"
 #include "content/load/png_file.h"
 #include "content/load/set_value.h"
 #include "ecs/base/text.h"
@@ -15,6 +18,15 @@
 
 namespace limn {
 namespace {
+
+/// The settings were checked when they were parsed.
+Exposure shown_exposure(const ViewOptions& options) {
+    Exposure exposure = exposure_of_file(options.file);
+    for (const auto& [field, value] : options.settings) {
+        static_cast<void>(set_exposure(exposure, field, value));
+    }
+    return exposure;
+}
 
 Status view_headless(const ViewOptions& options) {
     const Result<std::unique_ptr<gpu::Context>> context = gpu::create_headless_context();
@@ -30,7 +42,7 @@ Status view_headless(const ViewOptions& options) {
         return hdr.error();
     }
     fmt::print("{}", describe(**hdr));
-    const gpu::Texture& display = (*hdr)->show(options.exposure);
+    const gpu::Texture& display = (*hdr)->show(shown_exposure(options));
     fmt::print("clipped {:.2f} % of the pixels\n", 100.0 * clipped_share(display));
     if (options.out.empty()) {
         return Done{};
@@ -56,6 +68,21 @@ Status set_exposure(Exposure& exposure, std::string_view field, std::string_view
     return Done{};
 }
 
+Exposure exposure_of_file(const std::string& path) {
+    Exposure exposure;
+    for (const auto& [name, text] : read_exr_metadata(path)) {
+        if (name != kExposureNote) {
+            continue;
+        }
+        const Result<JsonValue> json = parse_json(text, path);
+        if (json
+            && read_component(*json, component_info<Exposure>(), &exposure, {path, name}, {})) {
+            return exposure;
+        }
+    }
+    return {.curve = ToneCurve::Knee};
+}
+
 Status run_view(const ViewOptions& options) {
     if (!options.out.empty()) {
         return view_headless(options);
@@ -65,7 +92,7 @@ Status run_view(const ViewOptions& options) {
         return view_headless(options);
     }
     Result<std::unique_ptr<ImageViewer>> viewer =
-        ImageViewer::open(options.file, options.exposure, options.size);
+        ImageViewer::open(options.file, shown_exposure(options), options.size);
     return viewer ? (*viewer)->run() : Status(viewer.error());
 }
 

@@ -6,6 +6,8 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace limn {
 
@@ -14,8 +16,12 @@ struct ViewOptions {
     std::string file;          ///< .exr or .hdr
     std::string out;           ///< .png; not empty: no window
     IVec2 size = {1280, 720};  ///< of the window
-    Exposure exposure = {.curve = ToneCurve::Knee};
+    /// Fields of the Exposure and their values, on top of the one that exposure_of_file() finds.
+    std::vector<std::pair<std::string, std::string>> settings;
 };
+
+/// With which an EXR of `limn render` was displayed; knee for other files.
+[[nodiscard]] Exposure exposure_of_file(const std::string& path);
 
 /// Sets one field of an Exposure as a level would; fails with what was found and expected.
 [[nodiscard]] Status

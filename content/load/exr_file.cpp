@@ -126,6 +126,16 @@ Status check_header(const Imf::Header& header, const std::string& place, const E
     return Done{};
 }
 
+std::vector<std::pair<std::string, std::string>> metadata_of(const Imf::Header& header) {
+    std::vector<std::pair<std::string, std::string>> metadata;
+    for (auto it = header.begin(); it != header.end(); ++it) {
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
+            metadata.emplace_back(it.name(), text->value());
+        }
+    }
+    return metadata;
+}
+
 Result<ExrImage>
 decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits) {
     LIMN_TRY(check_kind(bytes, place));
@@ -153,11 +163,7 @@ decode(std::span<const std::byte> bytes, const std::string& place, const ExrLimi
     }
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
-    for (auto it = header.begin(); it != header.end(); ++it) {
-        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
-            image.metadata.emplace_back(it.name(), text->value());
-        }
-    }
+    image.metadata = metadata_of(header);
     return image;
 }
 
@@ -233,6 +239,14 @@ decode_exr(std::span<const std::byte> bytes, const std::string& place, const Exr
         return decode(bytes, place, limits);
     } catch (const std::exception& exception) {
         return fail("{}: corrupt OpenEXR file: {}", place, one_line(exception.what()));
+    }
+}
+
+std::vector<std::pair<std::string, std::string>> read_exr_metadata(const std::string& path) {
+    try {
+        return metadata_of(Imf::InputFile(path.c_str()).header());
+    } catch (const std::exception&) {
+        return {};
     }
 }
 

@@ -48,7 +48,11 @@ struct ExrLimits {
 /// Reads the file `path`. Fails with "path: found X, expected Y".
 [[nodiscard]] Result<ExrImage> read_exr(const std::string& path, const ExrLimits& limits = {});
 
-/// The same from memory; `place` is the prefix of error messages.
+/// Text attributes of a file by name; none if it cannot be read.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>>
+read_exr_metadata(const std::string& path);
+
+/// The same as read_exr from memory; `place` is the prefix of error messages.
 [[nodiscard]] Result<ExrImage> decode_exr(
     std::span<const std::byte> bytes, const std::string& place, const ExrLimits& limits = {});
 

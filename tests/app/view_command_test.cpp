@@ -67,6 +67,25 @@ double clipped(const test::Pixels& picture) {
 
 }  // namespace
 
+TEST_CASE(
+    "view: an EXR of limn render is shown as the PNG would be, unless options say otherwise") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("ball.level.json"), R"({
+        "resources": {"environment": {"sky": "gradient"}, "exposure": {"ev": -1.5, "curve": "neutral"}},
+        "meshes": {"ball": {"make": "sphere", "segments": 24, "rings": 12}},
+        "entities": [{"mesh_instance": {"mesh": "ball"}}]})");
+    for (const char* file : {"a.exr", "direct.png"}) {
+        const ProgramRun run =
+            run_limn(folder, {"render", "ball.level.json", "-o", file, "--size", "64x36"});
+        CAPTURE(run.err);
+        REQUIRE(run.exit_code == 0);
+    }
+    const test::Pixels direct = test::read_png(folder.file("direct.png"));
+    CHECK(shown(folder, {}) == direct);
+    CHECK_FALSE(shown(folder, {"--curve", "knee"}) == direct);
+    CHECK_FALSE(shown(folder, {"--ev", "0"}) == direct);
+}
+
 TEST_CASE("view: every pixel of the PNG is the formula's to one code") {
     const TemporaryFolder folder;
     const std::vector<glm::vec3> pixels = make_ramp();
