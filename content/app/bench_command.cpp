@@ -161,6 +161,7 @@ Status run_bench(const BenchOptions& options) {
     warm_up_world(*headless, stage.world, stage.scene.camera, options.size);
     report.compile_ms = ms_between(begin, Clock::now());
     report.resident_begin_mib = resident_memory_mib();
+    report.heap_begin_mib = heap_memory_mib();
     {
         Progress progress("frame", options.warmup + options.frames);
         for (int i = 0; i < options.warmup + options.frames; ++i) {
@@ -171,12 +172,14 @@ Status run_bench(const BenchOptions& options) {
                 touch_samples(report);
                 report.compiled = 0;
                 report.resident_begin_mib = resident_memory_mib();
+                report.heap_begin_mib = heap_memory_mib();
             }
             progress.update(i + 1);
         }
     }
     report.entities = static_cast<std::int64_t>(stage.world.entity_count());
     report.resident_mib = resident_memory_mib();
+    report.heap_mib = heap_memory_mib();
     report.gpu_mib =
         static_cast<double>(frame_graph(*headless->renderer).stats().pool_bytes) / (1 << 20);
     return write_results(options, bench_table(report), bench_json(report), bench_csv(report));

@@ -97,6 +97,8 @@ std::string bench_json(const BenchReport& report) {
         {"memory",
          {{"resident_begin_mib", report.resident_begin_mib},
           {"resident_mib", report.resident_mib},
+          {"heap_begin_mib", report.heap_begin_mib},
+          {"heap_mib", report.heap_mib},
           {"gpu_mib", report.gpu_mib}}},
         {"counts",
          {{"entities", report.entities},

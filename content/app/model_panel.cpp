@@ -55,11 +55,40 @@ void draw_clips(World& world, Entity character) {
     ImGui::Checkbox("loop", &player.loop);
 }
 
+/// Of the weights of `character`, by the meshes that they deform; empty where there is none.
+std::vector<std::string> morph_names(const World& world, Entity character, std::size_t count) {
+    const Assets& assets = world.resource<Assets>();
+    std::vector<std::string> names(count);
+    world.query<const MeshInstance, const Deformed>().each(
+        [&](const MeshInstance& instance, const Deformed& deformed) {
+            if (deformed.character != character || instance.mesh.index >= assets.meshes.size()) {
+                return;
+            }
+            const std::vector<MorphTarget>& targets = assets.meshes[instance.mesh.index].morphs;
+            for (std::size_t i = 0; i < targets.size() && deformed.first_morph + i < count; ++i) {
+                names[deformed.first_morph + i] = targets[i].name;
+            }
+        });
+    return names;
+}
+
+/// The format of a slider: name and weight.
+std::string weight_format(std::string name, std::size_t i) {
+    if (name.empty()) {
+        name = fmt::format("target {}", i);
+    }
+    for (std::size_t at = 0; (at = name.find('%', at)) != std::string::npos; at += 2) {
+        name.insert(at, 1, '%');
+    }
+    return name + ": %.2f";
+}
+
 void draw_morphs(World& world, Entity character) {
     std::vector<float>& weights = world.get<MorphWeights>(character).weights;
+    const std::vector<std::string> names = morph_names(world, character, weights.size());
     for (std::size_t i = 0; i < weights.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        ImGui::SliderFloat("##weight", &weights[i], 0, 1, fmt::format("{}: %.2f", i).c_str());
+        ImGui::SliderFloat("##weight", &weights[i], 0, 1, weight_format(names[i], i).c_str());
         ImGui::PopID();
     }
     if (ImGui::Button("All 0")) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdio>
 #include <initializer_list>
+#include <malloc.h>
 #include <string_view>
 #include <unistd.h>
 
@@ -81,6 +82,11 @@ double resident_memory_mib() {
     return read == 2 ? static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE))
                            / (1 << 20)
                      : 0.0;
+}
+
+double heap_memory_mib() {
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd) / (1024.0 * 1024.0);
 }
 
 void ProfilerPanel::add_frame(const FrameCost& cost) {

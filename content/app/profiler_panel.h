@@ -57,4 +57,7 @@ class ProfilerPanel {
 /// Memory of this process that is in RAM [MiB]; 0 if the system does not say.
 [[nodiscard]] double resident_memory_mib();
 
+/// What the process has allocated and not freed [MiB]: of malloc, all threads.
+[[nodiscard]] double heap_memory_mib();
+
 }  // namespace limn
