@@ -108,8 +108,7 @@ MeshData make_terrain(const TerrainShape& shape) {
 
     const float level = shape.clearing > 0 ? clearing_height(shape) : 0.0f;
     if (shape.clearing > 0) {
-        log_debug(
-            "the clearing of the terrain with seed {} lies at y = {} m", shape.seed, level);
+        log_debug("the clearing of the terrain with seed {} lies at y = {} m", shape.seed, level);
     }
 
     // One row and column more on each side, for the normals at the rim.
