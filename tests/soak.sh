@@ -12,9 +12,11 @@ levels=("$@")
 if [ ${#levels[@]} -eq 0 ]; then
     mapfile -t levels < <("$limn" levels | awk 'NF {print $1}')
 fi
+levels_folder=$(dirname "$0")/../content/levels
 failed=0
 for level in "${levels[@]}"; do
-    json=$("$limn" bench "$level" --warmup 3700 --frames $((frames - 3700)) --size 64x36 --json - 2>/dev/null)
+    # As a file: `bench lights` would be the table of the methods.
+    json=$("$limn" bench "$levels_folder/$level.level.json" --warmup 3700 --frames $((frames - 3700)) --size 64x36 --json - 2>/dev/null)
     value() { sed -nE "s/.*\"$1\": ([0-9.]+).*/\1/p" <<<"$json"; }
     grown() { awk "BEGIN {printf \"%.1f\", $(value "$2") - $(value "$1")}"; }
     growth=$(grown heap_begin_mib heap_mib)

@@ -20,19 +20,11 @@ constexpr unsigned kDepthUnit = 1;
 }  // namespace
 
 Result<StatisticsPass> create_statistics_pass(gpu::Device& device) {
-    StatisticsPass pass;
-    for (int histogram = 0; histogram < 2; ++histogram) {
-        std::vector<gpu::ShaderDefine> defines;
-        if (histogram == 1) {
-            defines.push_back({"HISTOGRAM"});
-        }
-        pass.parts[histogram] = LIMN_TRY(
-            device.shaders().load({.compute = "image_statistics.comp", .defines = defines}));
-        pass.join[histogram] =
-            LIMN_TRY(device.shaders().load({.compute = "image_measure.comp", .defines = defines}));
-    }
-    pass.surfaces = LIMN_TRY(
-        device.shaders().load({.compute = "image_statistics.comp", .defines = {{"SURFACES"}}}));
+    StatisticsPass pass = {
+        ProgramVariants(device, {.compute = "image_statistics.comp"}),
+        ProgramVariants(device, {.compute = "image_measure.comp"})};
+    LIMN_TRY(pass.parts.load());
+    LIMN_TRY(pass.join.load());
     const layout::ImageStatistics initial{};
     pass.measure =
         gpu::Buffer("image statistics", sizeof(initial), gpu::BufferUse::GpuOnly, &initial);
@@ -48,8 +40,13 @@ float adaptation_blend(float adaptation, float seconds) {
 }
 
 BufferId measure_image(
-    FrameGraph& graph, const StatisticsPass& pass, TextureId radiance,
-    const MeasureRequest& request) {
+    FrameGraph& graph, StatisticsPass& pass, TextureId radiance, const MeasureRequest& request) {
+    Variant variant;
+    variant.add_if(request.histogram, "HISTOGRAM");
+    const gpu::Program* const join = pass.join.get(variant);
+    variant.add_if(request.depth.valid(), "SURFACES");
+    const gpu::Program* const sum = pass.parts.get(variant);
+
     const TextureSpec source = graph.spec(radiance);
     const auto tiles = [](int size) {
         return (size + layout::kStatisticsTile - 1) / layout::kStatisticsTile;
@@ -68,17 +65,22 @@ BufferId measure_image(
     const std::array<Use, 2> writes = {parts, histogram};
     graph.add_pass(
         "statistics", std::span(reads), std::span(writes),
-        [&pass, request, parts, histogram, groups](PassContext& context) {
-            context.device().use(
-                request.depth.valid() ? *pass.surfaces : *pass.parts[request.histogram ? 1 : 0]);
+        [sum, parts, histogram, groups](PassContext& context) {
+            if (sum == nullptr) {
+                return;
+            }
+            context.device().use(*sum);
             context.bind_storage(kPartsBinding, parts);
             context.bind_storage(kHistogramBinding, histogram);
             context.device().dispatch(groups.x, groups.y);
         });
     graph.add_pass(
         "statistics, joined", {parts}, {histogram, measure},
-        [&pass, request, parts, histogram, measure, count](PassContext& context) {
-            const gpu::Program& program = *pass.join[request.histogram ? 1 : 0];
+        [join, request, parts, histogram, measure, count](PassContext& context) {
+            if (join == nullptr) {
+                return;
+            }
+            const gpu::Program& program = *join;
             context.device().use(program);
             program.set("part_count", count);
             program.set("key", request.key);

@@ -4,6 +4,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/program.h"
 #include "render/graph/frame_graph.h"
+#include "render/variant.h"
 
 namespace limn {
 
@@ -22,11 +23,10 @@ struct Exposure;
 // Sums have a fixed order: equal images give equal bits.
 
 struct StatisticsPass {
-    const gpu::Program* parts[2] = {};       ///< without and with a histogram
-    const gpu::Program* surfaces = nullptr;  ///< weighted by depth
-    const gpu::Program* join[2] = {};
-    gpu::Buffer measure;    ///< ImageStatistics of the last frame, and the adaptation state
-    gpu::Buffer histogram;  ///< all 0 between frames
+    ProgramVariants parts;       ///< HISTOGRAM, SURFACES
+    ProgramVariants join;        ///< HISTOGRAM
+    gpu::Buffer measure = {};    ///< ImageStatistics of the last frame, and the adaptation state
+    gpu::Buffer histogram = {};  ///< all 0 between frames
 };
 
 [[nodiscard]] Result<StatisticsPass> create_statistics_pass(gpu::Device& device);
@@ -37,8 +37,8 @@ struct MeasureRequest {
     Vec2 adaptation_range = {1e-4f, 65504.0f};  ///< luminance range of the adaptation
     bool histogram = false;        ///< for the clipped range; costs more than the rest together
     float clipped_share = 0.001f;  ///< of the pixels, at either end
-    /// If valid, pixels with depth 0 (background) weigh 1 / kSurfaceWeight of others; without
-    /// histogram. As large as the image.
+    /// If valid, pixels with depth 0 (background) weigh 1 / kSurfaceWeight of others. As large as
+    /// the image.
     TextureId depth = {};
 };
 
@@ -47,7 +47,6 @@ struct MeasureRequest {
 
 /// Adds the passes to this frame.
 [[nodiscard]] BufferId measure_image(
-    FrameGraph& graph, const StatisticsPass& pass, TextureId radiance,
-    const MeasureRequest& request);
+    FrameGraph& graph, StatisticsPass& pass, TextureId radiance, const MeasureRequest& request);
 
 }  // namespace limn
