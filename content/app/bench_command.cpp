@@ -21,8 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kLightsScene = "lights";  ///< measured by light count and method
-constexpr const char* kLensName = "lens";       ///< not a scene: the lens effects, one by one
+constexpr const char* kLightsScene =
+    "lights";  ///< by name, not by file: measured by light count and method
+constexpr const char* kLensName = "lens";  ///< not a scene: the lens effects, one by one
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -145,7 +146,7 @@ Status run_bench(const BenchOptions& options) {
     if (!headless) {
         return headless.error();
     }
-    if (stage.scene.name == kLightsScene) {
+    if (options.scene == kLightsScene) {
         const Result<LightsBench> bench = measure_lights(stage, *headless, options);
         if (!bench) {
             return bench.error();
