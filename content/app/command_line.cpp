@@ -143,7 +143,7 @@ void add_model_view(CLI::App& app, ModelViewOptions& options) {
 
 Command add_play(CLI::App& program, PlayOptions& options) {
     CLI::App* app = program.add_subcommand("play", "Play a level in a window");
-    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: the tour")
+    app->add_option("scene", options.scene, std::string(kSceneDoc) + "; default: gallery")
         ->type_name("SCENE");
     add_size(*app, options.size)->description("of the window");
     app->add_flag("--fullscreen", options.fullscreen, "full screen");

@@ -1,12 +1,15 @@
 #include "content/app/edit_json.h"
 
 #include "content/load/json_document.h"
+#include "content/load/level_hints.h"
 #include "content/load/set_value.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
+#include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,6 +36,39 @@ const Name* name_of(const World& world, Entity entity) {
     return name != nullptr && !name->text.empty() ? name : nullptr;
 }
 
+/// `object` without the members that are equal in `base`.
+JsonValue without_equal(JsonValue object, const JsonValue& base) {
+    std::erase_if(object.members, [&](const JsonMember& m) {
+        const JsonValue* const other = base.find(m.key);
+        return other != nullptr && write_json(*other) == write_json(m.value);
+    });
+    return object;
+}
+
+/// The member of an array of entities with this name, added where it has none.
+JsonValue& named(JsonValue& entities, std::string_view name) {
+    for (JsonValue& entity : entities.items) {
+        if (entity["name"].text == name) {
+            return entity;
+        }
+    }
+    JsonValue& added = entities.items.emplace_back(json_object());
+    set_member(added, "name", json_of(name));
+    return added;
+}
+
+/// What the value was before the first of its edits.
+const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
+    const auto same = [&](const Edit& other) {
+        const auto info = [](const Edit& e) {
+            return &(e.before.is_empty() ? e.after.info() : e.before.info());
+        };
+        return other.kind == edit.kind && other.entity == edit.entity
+               && other.material == edit.material && info(other) == info(edit);
+    };
+    return *std::find_if(edits.begin(), edits.end(), same);
+}
+
 }  // namespace
 
 std::string component_as_json(const World& world, const ComponentInfo& info, const void* value) {
@@ -47,49 +83,59 @@ std::string entity_as_json(const World& world, Entity entity) {
     }
     for (const ComponentId id : world.components_of(entity)) {
         const ComponentInfo& info = component_info(id);
-        if (!info.is_registered || !info.saved || info.fields.empty() || id == component_id<Name>) {
+        if (!info.is_registered || !info.saved || is_internal(info)
+            || id == component_id<Name> || id == component_id<Parent>) {
             continue;
         }
         const AnyComponent value = AnyComponent::read(world, entity, info);
-        set_member(
-            object, info.name, write_component(info, value.data(), make_name_provider(world)));
+        JsonValue json = write_component(info, value.data(), make_name_provider(world));
+        if (info.defaults != nullptr) {
+            json = without_equal(std::move(json), write_component(info, info.defaults, {}));
+        }
+        set_member(object, info.name, std::move(json));
     }
     return write_json(object);
 }
 
 std::string edits_as_json(const World& world, std::span<const Edit> edits) {
     JsonValue patch = json_object();
+    JsonValue entities = json_array();
     const NameProvider names = make_name_provider(world);
     for (const Edit& edit : edits) {
         const ComponentInfo& info = edit.before.is_empty() ? edit.after.info() : edit.before.info();
+        const AnyComponent& first = first_edit_of(edits, edit).before;
+        const JsonValue before =
+            first.is_empty() ? json_object() : write_component(info, first.data(), names);
+        const auto edited = [&](const void* now) {
+            return without_equal(write_component(info, now, names), before);
+        };
         switch (edit.kind) {
         case EditKind::Component:
             if (const Name* const name = name_of(world, edit.entity)) {
                 JsonValue value;
                 if (world.has(edit.entity, info.id)) {
-                    const AnyComponent now = AnyComponent::read(world, edit.entity, info);
-                    value = write_component(info, now.data(), names);
+                    value = edited(AnyComponent::read(world, edit.entity, info).data());
                 }
-                set_member(
-                    member(member(patch, "entities"), name->text), info.name, std::move(value));
+                set_member(named(entities, name->text), info.name, std::move(value));
             }
             break;
         case EditKind::Resource:
             if (const void* const now = world.find_resource(info.id)) {
-                set_member(
-                    member(patch, "resources"), info.name, write_component(info, now, names));
+                set_member(member(patch, "resources"), info.name, edited(now));
             }
             break;
         case EditKind::Material: {
             const auto* const assets = world.find_resource<Assets>();
             if (assets != nullptr && edit.material < assets->materials.size()) {
                 const Material& now = assets->materials[edit.material];
-                set_member(
-                    member(patch, "materials"), now.name, write_component(info, &now, names));
+                set_member(member(patch, "materials"), now.name, edited(&now));
             }
             break;
         }
         }
+    }
+    if (!entities.items.empty()) {
+        set_member(patch, "entities", std::move(entities));
     }
     return write_json(patch);
 }

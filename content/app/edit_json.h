@@ -17,11 +17,13 @@ class World;
 [[nodiscard]] std::string
 component_as_json(const World& world, const ComponentInfo& info, const void* value);
 
-/// The entity as a level has it: its name and every component that levels may set.
+/// The entity as a level has it: its name and the fields of its components that differ from their
+/// defaults, without what systems keep. Of a glTF file's entities the file is not known.
 [[nodiscard]] std::string entity_as_json(const World& world, Entity entity);
 
-/// The edited components, resources and materials with their present values: what a level's file
-/// has to be changed to. Nameless entities are left out; removed components are null.
+/// The edited fields of components, resources and materials with their present values, as a level
+/// has them: what its file has to be changed to. Nameless entities are left out; removed components
+/// are null.
 [[nodiscard]] std::string edits_as_json(const World& world, std::span<const Edit> edits);
 
 }  // namespace limn

@@ -224,14 +224,17 @@ void Inspector::draw_selected(const HudStyle& style, World& world) {
     ImGui::PushFont(style.title);
     ImGui::TextUnformatted(entity_label(world, selected_).c_str());
     ImGui::PopFont();
-    ImGui::SameLine();
-    ImGui::TextColored(kHudDim, "%u v%u", selected_.index, selected_.generation);
     if (ImGui::SmallButton("Focus (F)")) {
         focus_ = true;
     }
     ImGui::SameLine();
     if (ImGui::SmallButton("Copy JSON")) {
         ImGui::SetClipboardText(entity_as_json(world, selected_).c_str());
+        copied_ = selected_;
+    }
+    if (copied_ == selected_) {
+        ImGui::SameLine();
+        ImGui::TextColored(kHudDim, "copied");
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 92 * style.scale);
     draw_add_button(world);

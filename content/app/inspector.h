@@ -70,6 +70,7 @@ class Inspector {
 
     UndoStack undo_;
     Entity selected_;
+    Entity copied_;  ///< whose JSON was copied last
     std::string search_;
     std::string resource_search_;
     std::string material_search_;

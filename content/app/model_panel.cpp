@@ -50,8 +50,8 @@ void draw_clips(World& world, Entity character) {
     ImGui::SetNextItemWidth(-1);
     ImGui::SliderFloat(
         "##time", &player.time, 0, assets.clips[player.clip.index].duration, "%.2f s");
-    ImGui::SliderFloat("speed", &player.speed, -2, 2, "%.2f");
-    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1);
+    ImGui::SliderFloat("##speed", &player.speed, -2, 2, "speed %.2f");
     ImGui::Checkbox("loop", &player.loop);
 }
 

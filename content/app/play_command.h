@@ -14,7 +14,7 @@ namespace limn {
 /// `limn play`: plays a level in a window or, without a display, renders frames along its camera
 /// path.
 struct PlayOptions {
-    std::string scene;  ///< empty: the first level with the show, or the tour
+    std::string scene;  ///< empty: the first level with the show, or gallery
     std::string show;   ///< technique, an id of TECHNIQUES.md; empty: none
     IVec2 size = {1280, 720};
     bool fullscreen = false;

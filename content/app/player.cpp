@@ -16,6 +16,7 @@
 #include "ecs/components/weather.h"
 #include "render/gpu/shader_library.h"
 #include "render/graph/frame_graph.h"
+#include "systems/transform_system.h"
 
 #include <fmt/format.h>
 
@@ -161,9 +162,11 @@ Result<std::unique_ptr<Player>> Player::create(const PlayOptions& options) {
     if (player->device_->caps().software) {
         const IVec2 window_size = player->window_->framebuffer_size();
         const IVec2 size = render_size(player->scale_, window_size);
-        log_info(
-            "{} renders on the CPU: {} x {} pixels, shown at {} x {}",
-            player->device_->caps().renderer, size.x, size.y, window_size.x, window_size.y);
+        const std::string resolution =
+            player->scale_.automatic
+                ? std::string("at a resolution that keeps it playable; --scale 1 for the full one")
+                : fmt::format("{} x {} pixels", size.x, size.y);
+        log_info("{} renders on the CPU, {}", player->device_->caps().renderer, resolution);
     }
     return player;
 }
@@ -257,12 +260,12 @@ void Player::load_neighbor(int offset) {
     hud_->toast(next.title.empty() ? next.name : next.title);
 }
 
-void Player::leave_level(std::function<void()> action) {
+void Player::leave_level(std::function<void()> action, const char* verb) {
     if (inspector_.edit_count() == 0) {
         action();
         return;
     }
-    leave_.ask(fmt::format("Leave {}?", stage_->scene.name), "Leave", std::move(action));
+    leave_.ask(fmt::format("{} {}?", verb, stage_->scene.name), verb, std::move(action));
 }
 
 void Player::ask_to_quit() {
@@ -325,7 +328,7 @@ void Player::handle_key(const KeyPress& press) {
         model_panel_.open = stage_->scene.model && !model_panel_.open;
         break;
     case GLFW_KEY_R:
-        leave_level([this] { load_or_report(options_.scene, options_.show); });
+        leave_level([this] { load_or_report(options_.scene, options_.show); }, "Reload");
         break;
     case GLFW_KEY_TAB:
     case GLFW_KEY_PAGE_DOWN:
@@ -701,9 +704,9 @@ std::string Player::describe_motion() const {
     const Vec3 place = transform_point(camera_.pose, {0, 0, 0});
     std::string text = fmt::format("at {:.1f}, {:.1f}, {:.1f} m", place.x, place.y, place.z);
     if (camera_.mode == CameraMode::Fly) {
-        text += fmt::format("   flies {:.2g} m/s", camera_.fly.speed);
+        text += fmt::format("   flies {:.1f} m/s", camera_.fly.speed);
     } else if (camera_.mode == CameraMode::Orbit) {
-        text += fmt::format("   {:.2g} m from the target", camera_.orbit.distance);
+        text += fmt::format("   {:.1f} m from the target", camera_.orbit.distance);
     }
     return text;
 }
@@ -822,6 +825,12 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     shows_.draw(hud_->style(), options_.show);
     model_panel_.draw(hud_->style(), stage_->world, level_cameras(), stage_->scene.camera);
     inspector_.draw(hud_->style(), stage_->world, stage_->schedule);
+    const std::uint64_t revision = inspector_.undo_stack().revision();
+    if (std::exchange(shown_revision_, revision) != revision && paused_) {
+        // What was moved is shown where it is now. Twice: it has not moved since the last frame.
+        stage_->world.run(update_transforms);
+        stage_->world.run(update_transforms);
+    }
     profiler_.draw(hud_->style(), stage_->world, stage_->schedule, graph);
     buffers_->draw(hud_->style(), graph);
     leave_.draw(hud_->style(), inspector_, stage_->world);

@@ -22,6 +22,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -59,7 +60,7 @@ class Player {
     void load_or_report(const std::string& scene, const std::string& show = {});
     void load_neighbor(int offset);
     /// Runs the action, or asks first where edits would be lost.
-    void leave_level(std::function<void()> action);
+    void leave_level(std::function<void()> action, const char* verb = "Leave");
     void ask_to_quit();
 
     void handle_key(const KeyPress& press);
@@ -146,6 +147,7 @@ class Player {
     bool paused_ = false;
     bool step_once_ = false;
     bool paths_shown_ = false;
+    std::uint64_t shown_revision_ = 0;  ///< of the edits (UndoStack::revision)
     bool screenshot_wanted_ = false;
     bool screenshot_with_hud_ = false;
     bool exr_wanted_ = false;

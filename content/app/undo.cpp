@@ -66,6 +66,7 @@ bool apply_edit_value(World& world, const Edit& edit, const AnyComponent& value)
 }
 
 void UndoStack::record(Edit edit) {
+    ++revision_;
     edits_.resize(done_);
     edits_.push_back(std::move(edit));
     if (edits_.size() > kMaxEdits) {
@@ -75,11 +76,13 @@ void UndoStack::record(Edit edit) {
 }
 
 void UndoStack::extend(AnyComponent after) {
+    ++revision_;
     LIMN_CHECK(done_ > 0 && done_ == edits_.size());
     edits_.back().after = std::move(after);
 }
 
 std::string UndoStack::undo(World& world) {
+    ++revision_;
     while (done_ > 0) {
         const Edit& edit = edits_[done_ - 1];
         if (apply_edit_value(world, edit, edit.before)) {
@@ -93,6 +96,7 @@ std::string UndoStack::undo(World& world) {
 }
 
 std::string UndoStack::redo(World& world) {
+    ++revision_;
     while (done_ < edits_.size()) {
         const Edit& edit = edits_[done_];
         if (apply_edit_value(world, edit, edit.after)) {
@@ -105,6 +109,7 @@ std::string UndoStack::redo(World& world) {
 }
 
 void UndoStack::clear() {
+    ++revision_;
     edits_.clear();
     done_ = 0;
 }

@@ -47,11 +47,14 @@ class UndoStack {
     /// Those that can be undone, oldest first.
     [[nodiscard]] std::span<const Edit> done() const { return {edits_.data(), done_}; }
     [[nodiscard]] std::size_t redo_count() const { return edits_.size() - done_; }
+    /// Changes whenever the world may have been edited.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
     void clear();
 
   private:
     std::vector<Edit> edits_;  // the first done_ are done, the others undone
     std::size_t done_ = 0;
+    std::uint64_t revision_ = 0;
 };
 
 /// Sets the edit's target to the value, or removes the component if the value is empty. Returns

@@ -1,5 +1,6 @@
 #include "content/load/level_schema.h"
 
+#include "content/load/level_hints.h"
 #include "content/load/level_repeat.h"
 #include "content/load/level_show.h"
 #include "content/make/make_mesh.h"
@@ -278,8 +279,8 @@ JsonValue schema_of_repeat() {
 /// The components of an entity, each at most once; `more` are further properties.
 JsonValue schema_of_components(Members more, bool may_be_null) {
     for (const ComponentInfo* const info : all_components()) {
-        if (info->name == "name" || info->name == "parent") {
-            continue;  // covered by the keys "name" and "children"
+        if (info->name == "name" || info->name == "parent" || is_internal(*info)) {
+            continue;  // the keys "name" and "children" cover the first two
         }
         JsonValue schema = reference(info->name);
         more.push_back(member(
@@ -313,6 +314,9 @@ JsonValue schema_of_node() {
 JsonValue schema_of_resources() {
     Members properties;
     for (const ComponentInfo* const info : all_resources()) {
+        if (is_internal(*info)) {
+            continue;
+        }
         properties.push_back(member(info->name, reference(info->name)));
     }
     return closed_object(std::move(properties));

@@ -40,6 +40,8 @@ constexpr Need kNeeds[] = {
     {"water_detail", {"water", "", ""}},
     {"lens", {"camera", "", ""}},
     {"autofocus", {"camera", "", ""}},
+    {"autofocus", {"lens", "", ""}},
+    {"camera_path", {"camera", "", ""}},
     {"speed_view", {"camera", "", ""}},
     {"inflate", {"mesh_instance", "", ""}},
     {"no_shadow", {"mesh_instance", "", ""}},

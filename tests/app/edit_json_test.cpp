@@ -94,9 +94,15 @@ TEST_CASE("edit_json: edits are a patch with the present values; removed compone
     const Result<JsonValue> patch = parse_json(edits_as_json(world, undo.done()), "patch");
     REQUIRE(patch.ok());
     const JsonValue& entities = (*patch)["entities"];
-    CHECK(entities["lamp"]["point_light"]["intensity"].number == 30.0);
-    CHECK(entities["box"].members.size() == 1);
-    CHECK(entities["box"]["mesh_instance"].kind == JsonKind::Null);
+    REQUIRE(entities.items.size() == 2);
+    CHECK(
+        write_json(entities.items[0]["point_light"])
+        == write_json(*parse_json(R"({"intensity": 30})", "")));
+    CHECK(entities.items[0]["name"].text == "lamp");
+    CHECK(entities.items[1]["name"].text == "box");
+    CHECK(entities.items[1].members.size() == 2);
+    CHECK(entities.items[1]["mesh_instance"].kind == JsonKind::Null);
+    CHECK((*patch)["resources"]["exposure"].members.size() == 1);
     CHECK((*patch)["resources"]["exposure"]["ev"].number == -2.0);
 }
 

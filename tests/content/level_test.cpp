@@ -641,6 +641,8 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
     CHECK(intensity->items[0].find("minimum")->number == 0.0);
     CHECK(intensity->items[0].find("maximum")->number == 1e6);
     CHECK(intensity->items[1].find("pattern")->text == "^-?[0-9.]+ ?(cd)$");
+    CHECK(schema["$defs"]["node"]["properties"].find("spin") != nullptr);
+    CHECK(schema["$defs"]["node"]["properties"].find("world_transform") == nullptr);
     for (const char* part : {"event", "node", "repeat of a node"}) {
         for (const JsonMember& property : schema["$defs"][part]["properties"].members) {
             CAPTURE(property.key);

@@ -47,6 +47,15 @@ TEST_CASE("scene warnings: keyframes whose times do not increase") {
                     "it (1 s)"});
 }
 
+TEST_CASE("scene warnings: components that do nothing without another") {
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "eye", "camera": {}, "autofocus": {}}]})")
+        == Warnings{"entity \"eye\": autofocus has no effect without lens"});
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "eye", "camera_path": {"keys": [{}]}}]})")
+        == Warnings{"entity \"eye\": camera_path has no effect without camera"});
+}
+
 TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {},
