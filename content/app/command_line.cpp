@@ -238,7 +238,7 @@ Command add_render(CLI::App& program, RenderOptions& options) {
                 "  limn render gallery -o 'frame_%04d.png' --frames 0:99 --fps 30\n"
                 "  limn render --show water.fresnel --off -o without.png\n"
                 "  limn render gallery -o dark.png --set exposure.ev=-2 --set "
-                "materials.gold.roughness=0.4");
+                "materials.gilt.roughness=0.4");
     app->callback([&options] {
         if (const Status status = check_render_options(options); !status) {
             throw CLI::ValidationError(status.error().message);
