@@ -38,7 +38,7 @@ constexpr float kAspect = 16.0f / 9.0f;
 /// neutral tone curve.
 constexpr float kReferenceLux = 2.4f;
 constexpr float kNoLight = 1e-6f;  // [lx]
-constexpr float kLeastReflectance = 0.08f;
+constexpr float kMinReflectance = 0.08f;
 /// The studio around lights of kReferenceLux: weak enough that they shape the form.
 constexpr float kStudioIntensity = 0.32f;
 constexpr float kMaxStudioIntensity = 2000.0f;  // its lamps stay within half floats
@@ -292,7 +292,7 @@ float mean_luminance(const ImageData& image) {
 }
 
 /// For light of 2^-manual_ev times kReferenceLux. Metered, the subject is taken to reflect no less
-/// than kLeastReflectance: metal before a black backdrop would be burnt.
+/// than kMinReflectance: metal before a black backdrop would be burnt.
 Exposure model_exposure(float manual_ev) {
     manual_ev = std::clamp(manual_ev, -24.0f, 24.0f);
     const float lux = kReferenceLux * std::exp2(-manual_ev);
@@ -300,7 +300,7 @@ Exposure model_exposure(float manual_ev) {
         .curve = ToneCurve::Neutral,
         .manual_ev = manual_ev,
         .meter_surfaces = true,
-        .min_luminance = std::clamp(kLeastReflectance * lux / kPi, 1e-6f, 65504.0f)};
+        .min_luminance = std::clamp(kMinReflectance * lux / kPi, 1e-6f, 65504.0f)};
 }
 
 /// The light of the panorama alone.
