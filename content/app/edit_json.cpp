@@ -3,6 +3,7 @@
 #include "content/load/json_document.h"
 #include "content/load/level_hints.h"
 #include "content/load/set_value.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
 #include "ecs/hierarchy.h"
@@ -80,6 +81,9 @@ std::string entity_as_json(const World& world, Entity entity) {
     JsonValue object = json_object();
     if (const Name* const name = name_of(world, entity)) {
         set_member(object, "name", json_of(std::string_view(name->text)));
+    }
+    if (const auto* const source = world.find<GltfSource>(entity)) {
+        set_member(object, "gltf", json_of(std::string_view(source->file)));
     }
     for (const ComponentId id : world.components_of(entity)) {
         const ComponentInfo& info = component_info(id);

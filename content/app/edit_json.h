@@ -18,7 +18,7 @@ class World;
 component_as_json(const World& world, const ComponentInfo& info, const void* value);
 
 /// The entity as a level has it: its name and the fields of its components that differ from their
-/// defaults, without what systems keep. Of a glTF file's entities the file is not known.
+/// defaults, without what systems keep.
 [[nodiscard]] std::string entity_as_json(const World& world, Entity entity);
 
 /// The edited fields of components, resources and materials with their present values, as a level

@@ -42,15 +42,6 @@ bool is_angular_speed(const FieldInfo& field) {
     return std::strcmp(field.meta.unit, "rad/s") == 0;
 }
 
-/// [yaw, pitch, roll] in degrees of R = Ry Rx Rz, the inverse of rotation_from_degrees.
-Vec3 degrees_from_rotation(const Quat& q) {
-    const Mat3 r = glm::mat3_cast(q);  // r[column][row]
-    const float pitch = std::asin(std::clamp(-r[2][1], -1.0f, 1.0f));
-    const float yaw = std::atan2(r[2][0], r[2][2]);
-    const float roll = std::atan2(r[0][1], r[1][1]);
-    return Vec3(yaw, pitch, roll) * kDegrees + Vec3(0.0f);  // -0 becomes 0
-}
-
 /// Finite limits in the widget's unit; `scale` converts from the field's unit.
 struct WidgetRange {
     float min = -FLT_MAX;

@@ -19,6 +19,8 @@ constexpr float kToastLife = 5.0f;  // [s]
 constexpr float kToastFade = 0.6f;  // [s]
 constexpr float kMargin = 14.0f;    // from the edge of the window, in units of the layout
 constexpr std::size_t kMaxToasts = 5;
+constexpr float kTwoColumns =
+    1050.0f;  // width of the window from which help may have them, in units of the layout
 constexpr double kSlowMotion = 0.95;  // of real time; below it the status says so
 
 constexpr ImGuiWindowFlags kOverlay =
@@ -60,7 +62,7 @@ void draw_key_cap(const char* key, float width) {
 
 }  // namespace
 
-Hud::Hud(Window& window) {
+Hud::Hud(Window& window) : window_(&window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -84,11 +86,27 @@ Hud::~Hud() {
 void Hud::begin_frame(float dt) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hold_short_presses();
     ImGui::NewFrame();
     for (Toast& toast : toasts_) {
         toast.age += dt;
     }
     std::erase_if(toasts_, [](const Toast& toast) { return toast.age > kToastLife; });
+}
+
+/// ImGui looks at the keys once a frame: one that went down and up since the last frame stays down
+/// for one.
+void Hud::hold_short_presses() {
+    auto& down = ImGui::GetIO().KeysDown;
+    for (const int key : std::exchange(held_keys_, {})) {
+        down[key] = window_->is_key_down(key);
+    }
+    for (const KeyPress& press : window_->events().keys) {
+        if (press.key >= 0 && press.key < IM_ARRAYSIZE(down) && !down[press.key]) {
+            down[press.key] = true;
+            held_keys_.push_back(press.key);
+        }
+    }
 }
 
 void Hud::end_frame() {
@@ -228,23 +246,36 @@ void Hud::draw_help() {
     constexpr ImGuiWindowFlags kFlags =
         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize
         | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;
+    // Two columns where one is too high, from a heading on.
+    auto second = help.end();
+    const float line_height = ImGui::GetFrameHeightWithSpacing();
+    const float height = static_cast<float>(help.size()) * line_height;
+    if (height > display.y - 2 * margin && display.x > kTwoColumns * style_.scale) {
+        const auto half = help.begin() + static_cast<std::ptrdiff_t>(help.size() / 2);
+        second = std::find_if(half, help.end(), [](const KeyHelp& l) { return l.keys.empty(); });
+    }
     if (ImGui::Begin("Keys", &help_open, kFlags)) {
-        bool first = true;
-        for (const KeyHelp& line : help) {
-            if (line.keys.empty()) {
-                if (!first) {
+        ImGui::BeginGroup();
+        for (auto line = help.begin(); line != help.end(); ++line) {
+            if (line == second) {
+                ImGui::EndGroup();
+                ImGui::SameLine(0, margin);
+                ImGui::BeginGroup();
+            }
+            if (line->keys.empty()) {
+                if (line != help.begin() && line != second) {
                     ImGui::Dummy({0, 3 * style_.scale});
                 }
                 ImGui::PushFont(style_.title);
-                ImGui::TextUnformatted(line.text.c_str());
+                ImGui::TextUnformatted(line->text.c_str());
                 ImGui::PopFont();
             } else {
-                draw_key_cap(line.keys.c_str(), key_width);
+                draw_key_cap(line->keys.c_str(), key_width);
                 ImGui::SameLine();
-                ImGui::TextUnformatted(line.text.c_str());
+                ImGui::TextUnformatted(line->text.c_str());
             }
-            first = false;
         }
+        ImGui::EndGroup();
     }
     ImGui::End();
 }

@@ -3,6 +3,7 @@
 #include "content/app/edit_json.h"
 #include "content/app/field_widgets.h"
 #include "content/app/hud_style.h"
+#include "content/load/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/name.h"
@@ -152,12 +153,17 @@ void Inspector::add_rows(const Hierarchy& tree, Entity entity, int depth) {
 void Inspector::rebuild_rows(World& world) {
     rows_.clear();
     const Hierarchy& tree = hierarchy(world);
-    world.each_entity([&](Entity entity) {
+    std::vector<Entity> entities;
+    world.each_entity([&](Entity entity) { entities.push_back(entity); });
+    // As in the level's file, which was spawned in order.
+    std::sort(
+        entities.begin(), entities.end(), [](Entity a, Entity b) { return a.index < b.index; });
+    for (const Entity entity : entities) {
         if (search_.empty()) {
             if (parent_of(world, entity).is_null()) {
                 add_rows(tree, entity, 0);
             }
-            return;
+            continue;
         }
         bool found = contains(entity_label(world, entity), search_);
         for (const ComponentId id : world.components_of(entity)) {
@@ -166,7 +172,7 @@ void Inspector::rebuild_rows(World& world) {
         if (found) {
             rows_.push_back({.entity = entity});
         }
-    });
+    }
 }
 
 void Inspector::draw_tree(const HudStyle& style, World& world) {
@@ -254,7 +260,8 @@ void Inspector::draw_add_button(World& world) {
         return;
     }
     for (const ComponentInfo* info : all_components()) {
-        if (world.has(selected_, info->id) || info->ops.construct_default == nullptr) {
+        if (world.has(selected_, info->id) || info->ops.construct_default == nullptr
+            || is_internal(*info)) {
             continue;
         }
         if (ImGui::Selectable(info->name.c_str())) {
@@ -273,6 +280,7 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
     ImGui::PushID(static_cast<int>(info.id));
     bool keep = true;
     const bool editable = is_editable(info);
+    bool* const removable = is_internal(info) ? nullptr : &keep;
     const ImGuiTreeNodeFlags flags =
         info.is_registered && editable ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
     if (info.storage == Storage::Toggle) {
@@ -283,8 +291,8 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         ImGui::SameLine();
     }
     if (info.is_tag || !editable) {
-        ImGui::CollapsingHeader(info.name.c_str(), &keep, flags | kNoFields);
-    } else if (ImGui::CollapsingHeader(info.name.c_str(), &keep, flags)) {
+        ImGui::CollapsingHeader(info.name.c_str(), removable, flags | kNoFields);
+    } else if (ImGui::CollapsingHeader(info.name.c_str(), removable, flags)) {
         Edit edit;
         edit.entity = selected_;
         const AnyComponent value = AnyComponent::read(world, selected_, info);

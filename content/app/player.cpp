@@ -803,7 +803,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
     const std::string weather = describe_weather(stage_->world);
     const std::string motion = describe_motion();
     hud_->draw_status(
-        {.level = stage_->scene.name.c_str(),
+        {.level = (stage_->scene.title.empty() ? stage_->scene.name : stage_->scene.title).c_str(),
          .camera = camera_mode_name(camera_.mode),
          .weather = weather.c_str(),
          .time = shown_time_,

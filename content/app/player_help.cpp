@@ -74,7 +74,7 @@ std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
     lines.push_back({"F2", "inspector: every entity and component"});
     lines.push_back({"F3", "profiler of systems and passes"});
     lines.push_back({"F4", "intermediate textures of the frame"});
-    lines.push_back({"F6", "techniques that levels show"});
+    lines.push_back({"F6", "techniques that levels show, each with and without"});
     const auto* assets = world.find_resource<Assets>();
     if ((assets != nullptr && !assets->paths.empty()) || !world.query<const CameraPath>().empty()) {
         lines.push_back({"F12", "paths with their knots, cameras' with their times"});

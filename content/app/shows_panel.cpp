@@ -11,6 +11,7 @@
 namespace limn {
 namespace {
 
+constexpr float kTextColumn = 230.0f;  // of the list, in units of the layout
 constexpr std::array kSides = {ShowSide::On, ShowSide::Off, ShowSide::Both};
 
 }  // namespace
@@ -70,7 +71,7 @@ void ShowsPanel::draw(const HudStyle& style, const std::string& shown) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const float margin = 14.0f * style.scale;
     const ImVec2 size = {
-        std::min(430.0f * style.scale, 0.4f * display.x), display.y - 2.0f * margin};
+        std::min(620.0f * style.scale, 0.48f * display.x), display.y - 2.0f * margin};
     ImGui::SetNextWindowPos(
         {display.x - margin, margin}, ImGuiCond_FirstUseEver, ImVec2(1.0f, 0.0f));
     ImGui::SetNextWindowSize(size, ImGuiCond_FirstUseEver);
@@ -139,7 +140,10 @@ void ShowsPanel::draw_list(const HudStyle& style, const std::string& shown) {
             selected_ = found;
         }
         ImGui::PopFont();
-        if (ImGui::IsItemHovered()) {
+        const bool hovered = ImGui::IsItemHovered();
+        ImGui::SameLine(kTextColumn * style.scale);
+        ImGui::TextColored(kHudDim, "%s", found.show.text.c_str());
+        if (hovered) {
             ImGui::SetTooltip("%s", found.show.text.c_str());
         }
     }

@@ -53,6 +53,8 @@ class Window {
     const WindowEvents& poll();
     /// Sleeps until an event arrives, at most `seconds`; poll returns it.
     void wait_events(double seconds);
+    /// What the last poll took.
+    [[nodiscard]] const WindowEvents& events() const { return events_; }
     /// Presents the back buffer; if vsync is on it waits for the display, or where the driver
     /// cannot (software OpenGL, remote displays), as long as the display would.
     void swap();

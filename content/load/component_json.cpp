@@ -455,6 +455,11 @@ JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider
     }
     case FieldType::Quat: {
         const Quat& q = *static_cast<const Quat*>(field);
+        // As people write it, where that gives the same bits.
+        const Vec3 angles = glm::round(degrees_from_rotation(q) * 1e3f) / 1e3f;
+        if (rotation_from_degrees(angles) == q) {
+            return json_array({json_of(angles.x), json_of(angles.y), json_of(angles.z)});
+        }
         return json_array({json_of(q.x), json_of(q.y), json_of(q.z), json_of(q.w)});
     }
     case FieldType::String:
@@ -625,6 +630,14 @@ Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {
                          * about(static_cast<double>(yaw_pitch_roll.y), 0)
                          * about(static_cast<double>(yaw_pitch_roll.z), 2);
     return Quat(glm::normalize(q));
+}
+
+Vec3 degrees_from_rotation(const Quat& q) {
+    const Mat3 r = glm::mat3_cast(q);  // r[column][row]
+    const float pitch = std::asin(std::clamp(-r[2][1], -1.0f, 1.0f));
+    const float yaw = std::atan2(r[2][0], r[2][2]);
+    const float roll = std::atan2(r[0][1], r[1][1]);
+    return glm::degrees(Vec3(yaw, pitch, roll)) + Vec3(0.0f);  // -0 becomes 0
 }
 
 }  // namespace limn

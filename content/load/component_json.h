@@ -132,5 +132,7 @@ template <typename T>
 
 /// Rotation of [yaw, pitch, roll] in degrees: about y, then x, then z of the rotated frame.
 [[nodiscard]] Quat rotation_from_degrees(const Vec3& yaw_pitch_roll);
+/// Its inverse; of several equal rotations the one with |pitch| <= 90.
+[[nodiscard]] Vec3 degrees_from_rotation(const Quat& q);
 
 }  // namespace limn

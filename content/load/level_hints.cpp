@@ -11,8 +11,13 @@ namespace limn {
 
 bool is_internal(const ComponentInfo& info) {
     constexpr std::string_view kInternal[] = {
-        "pose",        "previous_world_transform", "world_transform", "input", "sibling_order",
-        "thrown_stone"};
+        "pose",
+        "previous_world_transform",
+        "world_transform",
+        "input",
+        "sibling_order",
+        "thrown_stone",
+        "gltf_source"};
     return info.name.ends_with("_state")
            || std::find(std::begin(kInternal), std::end(kInternal), info.name)
                   != std::end(kInternal);

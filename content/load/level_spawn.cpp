@@ -4,6 +4,7 @@
 #include "ecs/command_buffer.h"
 #include "ecs/commands.h"
 #include "ecs/component_bytes.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
@@ -84,6 +85,9 @@ void change_character(Prefab& prefab, Entity from, Entity to) {
 void spawn_scene(
     World& world, Assets& assets, GltfScene scene, const GltfUse& use,
     const std::vector<Entity>& entities) {
+    for (const std::uint32_t index : use.entities) {
+        world.add(entities[index], GltfSource{use.file});
+    }
     const Entity first = entities[use.entities.front()];
     const SpawnedGltf spawned = spawn_gltf(world, assets, std::move(scene), first);
     std::vector<Prefab> prefabs;

@@ -20,7 +20,7 @@ namespace limn {
 namespace {
 
 constexpr float kFlat = 0.02f;        // thickness of a ground, of its width
-constexpr float kGroundWidth = 4.0f;  // of what stands on it
+constexpr float kGroundWidth = 2.5f;  // of what stands on it
 constexpr float kDomeSize = 30.0f;    // of what is inside
 
 Affine local_matrix(const World& world, Entity entity) {
@@ -28,33 +28,68 @@ Affine local_matrix(const World& world, Entity entity) {
     return t == nullptr ? Affine{} : affine_from(t->position, t->rotation, t->scale);
 }
 
-/// Bounds of meshes, skinned ones in the rest pose.
+/// Bounds of meshes with their initial morph weights, skinned ones in the rest pose.
 class RestBounds {
   public:
     RestBounds(const World& world, const Assets& assets) : world_(world), assets_(assets) {}
 
-    const Bounds& of(Entity entity, const MeshInstance& instance) {
+    Bounds of(Entity entity, const MeshInstance& instance) {
         const MeshData& mesh = assets_.meshes[instance.mesh.index];
         const Deformed* const deformed = world_.find<Deformed>(entity);
-        const Skeleton* const character = deformed != nullptr && world_.alive(deformed->character)
-                                              ? world_.find<Skeleton>(deformed->character)
-                                              : nullptr;
-        if (character == nullptr || deformed->skin.index >= assets_.skins.size()
-            || character->skeleton.index >= assets_.skeletons.size()) {
+        if (deformed == nullptr || !world_.alive(deformed->character)) {
             return mesh.bounds;
         }
-        const SkinData& skin = assets_.skins[deformed->skin.index];
+        const MorphWeights* const weights = world_.find<MorphWeights>(deformed->character);
+        if (weights != nullptr && deformed->first_morph < weights->weights.size()) {
+            const auto own = std::span(weights->weights).subspan(deformed->first_morph);
+            if (std::any_of(own.begin(), own.end(), [](float w) { return w != 0; })) {
+                return posed(morph(mesh, own), *deformed);
+            }
+        }
+        const Skeleton* const character = world_.find<Skeleton>(deformed->character);
+        if (character == nullptr) {
+            return mesh.bounds;
+        }
         const std::array key = {
             instance.mesh.index, deformed->skin.index, character->skeleton.index};
-        const auto [found, is_new] = known_.try_emplace(key, mesh.bounds);
-        if (is_new && fits(mesh, skin, assets_.skeletons[character->skeleton.index])) {
-            found->second = posed_bounds(
-                mesh, skin, find_rest_joints(assets_.skeletons[character->skeleton.index]));
+        const auto [found, is_new] = known_.try_emplace(key);
+        if (is_new) {
+            found->second = posed(mesh, *deformed);
         }
         return found->second;
     }
 
   private:
+    /// In the rest pose, if it has a skeleton.
+    Bounds posed(const MeshData& mesh, const Deformed& deformed) const {
+        const Skeleton* const character = world_.find<Skeleton>(deformed.character);
+        if (character == nullptr || deformed.skin.index >= assets_.skins.size()
+            || character->skeleton.index >= assets_.skeletons.size()) {
+            return mesh.bounds;
+        }
+        const SkinData& skin = assets_.skins[deformed.skin.index];
+        const SkeletonData& skeleton = assets_.skeletons[character->skeleton.index];
+        return fits(mesh, skin, skeleton) ? posed_bounds(mesh, skin, find_rest_joints(skeleton))
+                                          : mesh.bounds;
+    }
+
+    /// Positions, skin and bounds with morph weights.
+    static MeshData morph(const MeshData& mesh, std::span<const float> weights) {
+        MeshData morphed;
+        morphed.positions = mesh.positions;
+        morphed.skin = mesh.skin;
+        for (std::size_t t = 0; t < std::min(mesh.morphs.size(), weights.size()); ++t) {
+            const MorphTarget& target = mesh.morphs[t];
+            for (std::size_t i = 0; i < target.vertices.size(); ++i) {
+                morphed.positions[target.vertices[i]] += weights[t] * target.positions[i];
+            }
+        }
+        for (const Vec3& position : morphed.positions) {
+            grow(morphed.bounds, position);
+        }
+        return morphed;
+    }
+
     /// Whether all joint indices are valid; a level may combine unrelated assets.
     static bool fits(const MeshData& mesh, const SkinData& skin, const SkeletonData& skeleton) {
         const auto below = [](const std::vector<std::uint16_t>& joints, std::size_t count) {

@@ -35,7 +35,7 @@ class SceneMatrices {
 [[nodiscard]] Bounds join_boxes(std::span<const Bounds> boxes);
 
 /// Whether a mesh reaches around or below the rest of a model without being what is looked at: a
-/// ground plane, a sky dome. Below: a flat box at the bottom, four times as wide as all smaller
+/// ground plane, a sky dome. Below: a flat box at the bottom, 2.5 times as wide as all smaller
 /// ones together. Around: a box thirty times as large as those, which contains their middle.
 [[nodiscard]] std::vector<bool> find_scenery(std::span<const Bounds> boxes);
 

@@ -10,6 +10,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/input.h"
 #include "ecs/components/light.h"
 #include "ecs/components/mesh_levels.h"
@@ -48,6 +49,7 @@ namespace limn {
 
 void register_all_components() {
     register_component<Name>();
+    register_component<GltfSource>();
     register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();

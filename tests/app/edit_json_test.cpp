@@ -7,6 +7,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "tests/app/run_program.h"
+#include "tests/content/gltf_samples.h"
 
 #include <doctest/doctest.h>
 
@@ -35,6 +36,10 @@ struct Level {
 
     explicit Level(const std::string& text = kLevel) {
         test::write_text(folder.file("a.level.json"), text);
+        const std::vector<std::byte> lantern = test::square_glb();
+        test::write_text(
+            folder.file("lantern.glb"),
+            {reinterpret_cast<const char*>(lantern.data()), lantern.size()});
         Result<std::unique_ptr<Stage>> opened = open_stage(folder.file("a.level.json"));
         REQUIRE_MESSAGE(opened.ok(), (opened ? std::string() : opened.error().message));
         stage = *std::move(opened);
@@ -61,6 +66,27 @@ TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity")
     CHECK(other.world().get<const PointLight>(lamp).intensity == 5.0f);
     CHECK(other.world().get<const Transform>(lamp).position == Vec3(1, 2, 3));
     CHECK(entity_as_json(other.world(), lamp) == text);
+}
+
+TEST_CASE("edit_json: a copy names its glTF file, and turns as people write it") {
+    Level level(R"({
+      "title": "A lantern",
+      "entities": [
+        {"name": "lantern", "gltf": "lantern.glb", "transform": {"rotation": [30, -20, 45]}},
+        {"name": "eye", "camera": {}}
+      ]
+    })");
+    const Entity lantern = level.find("lantern");
+    const std::string text = entity_as_json(level.world(), lantern);
+    const Result<JsonValue> json = parse_json(text, "copy");
+    REQUIRE(json.ok());
+    CHECK((*json)["gltf"].text == "lantern.glb");
+    CHECK(write_json((*json)["transform"]["rotation"]) == "[30, -20, 45]");
+    CHECK(json->find("gltf_source") == nullptr);
+    // No angles of three decimals give these bits.
+    level.world().get<Transform>(lantern).rotation = glm::normalize(Quat(0.9f, 0.1f, 0.2f, 0.3f));
+    const Result<JsonValue> other = parse_json(entity_as_json(level.world(), lantern), "copy");
+    CHECK((*other)["transform"]["rotation"].items.size() == 4);
 }
 
 TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {

@@ -3,6 +3,7 @@
 #include "content/load/scene_load.h"
 #include "content/make/shapes.h"
 #include "ecs/components/all.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
@@ -132,10 +133,11 @@ TEST_CASE("model view: a model that no light reaches is lit by the studio") {
 TEST_CASE("model view: a ground plane or a sky dome of the file is not what is framed") {
     Model plain;
     const Bounds alone = plain.view().subject;
-    for (const bool dome : {false, true}) {
-        CAPTURE(dome);
+    for (const float width : {3.0f, 500.0f}) {
+        const bool dome = width > 100;
+        CAPTURE(width);
         Model model;
-        model.add_box({500, 0.01f, 500}, {20, -0.005f, 0});
+        model.add_box({width, 0.01f, width}, {0.02f * width, -0.005f, 0});
         if (dome) {
             model.add_box({2000, 2000, 2000}, {0, 0, 0});
         }
@@ -145,6 +147,23 @@ TEST_CASE("model view: a ground plane or a sky dome of the file is not what is f
         CHECK(view.meshes == 0);  // and no other ground is laid over it
     }
     CHECK(plain.world.resource<Assets>().meshes.size() == 2);
+}
+
+TEST_CASE("model view: what is framed has the file's morph weights, not those of the rest pose") {
+    Model model;
+    for (const Vec3& offset : {Vec3(9, 0, 0), Vec3(0, 4, 0)}) {
+        MorphTarget target;
+        target.vertices = {0};
+        target.positions = {offset};
+        model.world.resource<Assets>().meshes[0].morphs.push_back(target);
+    }
+    const Entity box = model.world.query<const MeshInstance>().single_entity();
+    model.world.add(box, MorphWeights{.weights = {7, 0, 0.5f}, .previous = {}});
+    model.world.add(box, Deformed{.character = box, .skin = {}, .first_morph = 1});
+    const Vec3 corner = model.world.resource<Assets>().meshes[0].positions[0];
+    const Bounds framed = model.view().subject;
+    CHECK(framed.max.y == doctest::Approx(std::max(1.0f, corner.y + 0.5f + 2.0f)));
+    CHECK(framed.max.x == doctest::Approx(0.5f));
 }
 
 TEST_CASE("model view: a table top, a lid and a crowd are part of the model") {
