@@ -33,7 +33,8 @@ struct BenchReport {
     std::string gl_version = {};
     double resident_begin_mib = 0.0;  ///< memory of the process before the measured frames
     double resident_mib = 0.0;        ///< and after them
-    double heap_begin_mib = 0.0;      ///< of it, what is allocated and not freed
+    double heap_begin_mib =
+        0.0;  ///< of it, what is allocated and not freed: the least of some frames
     double heap_mib = 0.0;
     double gpu_mib = 0.0;  ///< textures and buffers in the frame graph's pool
     std::int64_t entities = 0;

@@ -48,6 +48,15 @@ void add_camera(const HelpState& state, std::vector<KeyHelp>& lines) {
 
 }  // namespace
 
+const ActionGroup* driving_group(const World& world, Entity camera) {
+    for (const ActionGroup& group : action_groups()) {
+        if (group.drives && group.is_used(world, camera)) {
+            return &group;
+        }
+    }
+    return nullptr;
+}
+
 std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
     std::vector<KeyHelp> lines;
     const auto* bindings = world.find_resource<Bindings>();

@@ -25,6 +25,9 @@ struct HelpState {
     bool panel = false;      ///< some panel is open
 };
 
+/// The group of actions that moves something else than the player's own camera; nullptr: none.
+[[nodiscard]] const ActionGroup* driving_group(const World& world, Entity camera);
+
 /// Headings and lines, in reading order.
 [[nodiscard]] std::vector<KeyHelp> player_help(const World& world, const HelpState& state);
 

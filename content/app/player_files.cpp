@@ -1,0 +1,96 @@
+// What `limn play` reads and writes while it runs: shaders, screenshots, EXR images.
+
+#include "content/app/image_file.h"
+#include "content/app/image_notes.h"
+#include "content/app/player.h"
+#include "content/load/png_file.h"
+#include "ecs/base/log.h"
+#include "render/gpu/shader_library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+
+namespace limn {
+namespace {
+
+constexpr int kExrSamples = 16;
+
+/// The window's pixels, rows from top to bottom, RGB.
+std::vector<std::uint8_t> read_window(const IVec2& size) {
+    const std::size_t row = static_cast<std::size_t>(size.x) * 3;
+    std::vector<std::uint8_t> pixels(row * size.y);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glReadBuffer(GL_BACK);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    for (int y = 0; y < size.y / 2; ++y) {
+        std::swap_ranges(
+            pixels.begin() + static_cast<std::ptrdiff_t>(row) * y,
+            pixels.begin() + static_cast<std::ptrdiff_t>(row) * (y + 1),
+            pixels.end() - static_cast<std::ptrdiff_t>(row) * (y + 1));
+    }
+    return pixels;
+}
+
+}  // namespace
+
+void Player::reload_shaders(bool all) {
+    gpu::ShaderLibrary& shaders = device_->shaders();
+    const gpu::ReloadReport report = all ? shaders.reload_all() : shaders.reload_changed();
+    if (report.reloaded == 0 && report.errors.empty()) {
+        return;
+    }
+    shader_error_ = report.errors.empty() ? "" : report.errors.front();
+    for (const std::string& error : report.errors) {
+        log_error("{}", error);
+    }
+    if (report.errors.empty()) {
+        hud_->toast(fmt::format("{} shader programs reloaded", report.reloaded), ToastKind::Good);
+    }
+}
+
+std::string Player::next_file(const char* ending) {
+    const std::filesystem::path folder = options_.out.empty() ? "." : options_.out;
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::path path;
+    do {
+        path = folder / fmt::format("limn-{}-{:04}{}", stage_->scene.name, ++files_saved_, ending);
+    } while (std::filesystem::exists(path, ignored));
+    return path.lexically_normal().string();
+}
+
+void Player::save_screenshot(const IVec2& size) {
+    const std::string path = next_file(".png");
+    const Status status = write_png(path, size.x, size.y, 3, read_window(size));
+    device_->invalidate_state();
+    report_saved(path, status);
+}
+
+void Player::save_exr(const RenderView& view) {
+    const std::string path = next_file(".exr");
+    FrameRequest request;
+    for (const std::string_view name : aov_names()) {
+        request.aovs.emplace_back(name);
+    }
+    const FrameOutput frame =
+        render_accumulated(*renderer_, stage_->world, view, kExrSamples, request);
+    report_saved(path, write_image_file(path, frame, image_notes(*stage_, shown_time_)));
+}
+
+void Player::report_saved(const std::string& path, const Status& status) {
+    if (!status) {
+        log_error("{}", status.error().message);
+        hud_->toast(status.error().message, ToastKind::Bad);
+        return;
+    }
+    fmt::print("{}\n", path);
+    std::fflush(stdout);
+    hud_->toast("saved " + path, ToastKind::Good);
+}
+
+}  // namespace limn
