@@ -13,6 +13,7 @@
 #include "systems/lens_control_system.h"
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
+#include "systems/particles/particle_system.h"
 #include "systems/path_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
@@ -86,6 +87,11 @@ void add_water_systems(SystemList& systems) {
     systems.add<update_water_ripples>(Follow);  // uses current positions of bodies
 }
 
+void add_particle_systems(SystemList& systems) {
+    systems.add<add_particle_pools>(Create, Both);
+    systems.add<update_particles>(Follow);  // after everything that moves emitters
+}
+
 void add_camera_systems(SystemList& systems) {
     systems.add<update_camera_paths>(Move, Both);
     systems.add<update_fly_cameras>(Move);
@@ -100,7 +106,8 @@ namespace {
 SystemList list_systems(AddSystems more) {
     SystemList systems;
     for (const AddSystems add :
-         {add_object_systems, add_animation_systems, add_water_systems, add_camera_systems, more}) {
+         {add_object_systems, add_animation_systems, add_water_systems, add_particle_systems,
+          add_camera_systems, more}) {
         if (add != nullptr) {
             add(systems);
         }

@@ -58,6 +58,7 @@ using AddSystems = void (*)(SystemList&);
 void add_object_systems(SystemList& systems);
 void add_animation_systems(SystemList& systems);
 void add_water_systems(SystemList& systems);
+void add_particle_systems(SystemList& systems);
 void add_camera_systems(SystemList& systems);
 
 /// All systems of the engine, then those of `more`.

@@ -18,6 +18,7 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
@@ -50,6 +51,10 @@ namespace limn {
 void register_all_components() {
     register_component<Name>();
     register_component<GltfSource>();
+    register_component<ParticleEmitter>();
+    register_component<ParticleMotion>();
+    register_component<ParticleLook>();
+    register_component<ParticlePool>();
     register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();

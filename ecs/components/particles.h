@@ -1,0 +1,233 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/surface.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// Particles: many short-lived points that an entity emits (Reeves 1983). What an artist sets is
+// split by question:
+//
+//     ParticleEmitter   when and where particles are born, and with what
+//     ParticleMotion    what moves them
+//     ParticleLook      how they are drawn
+//     ParticlePool      the living ones, kept by the systems: one array per scalar
+//
+// "x, give or take s" means a value drawn evenly from [x - s, x + s], once per particle.
+
+/// Where particles are born, in the emitter's local space. `size` scales the unit shape.
+enum class EmitterShape : std::uint8_t {
+    Point,
+    Ball,    ///< evenly within an ellipsoid
+    Sphere,  ///< on its surface
+    Disc,    ///< within an ellipse in the xz plane
+    Circle,  ///< on its edge
+    Box,
+};
+
+/// Where they fly at first.
+enum class EmitterDirection : std::uint8_t {
+    Cone,    ///< within `cone` of local +y, evenly by solid angle
+    Radial,  ///< away from the emitter's origin
+};
+
+/// Particles born at one instant.
+struct ParticleBurst {
+    float time = 0;
+    float count = 100;
+    float spread = 0;
+    float interval = 1;
+    std::uint32_t repeats = 0;
+};
+
+LIMN_FIELDS(ParticleBurst) {
+    LIMN_FIELD(time, "of the first one, after the emitter starts", "s", 0, 1e6);
+    LIMN_FIELD(count, "number of particles", "", 0, 1e6);
+    LIMN_FIELD(spread, "give or take", "", 0, 1e6);
+    LIMN_FIELD(interval, "until the next one", "s", 0.001, 1e6);
+    LIMN_FIELD(repeats, "how often it comes again");
+}
+
+struct ParticleEmitter {
+    bool active = true;
+    float rate = 50;
+    float rate_spread = 0;
+    std::vector<ParticleBurst> bursts;
+    float duration = 0;
+    bool loop = true;
+    std::uint32_t capacity = 4096;
+    std::uint32_t seed = 0;
+    EmitterShape shape = EmitterShape::Point;
+    Vec3 size = {0.1f, 0.1f, 0.1f};
+    EmitterDirection direction = EmitterDirection::Cone;
+    float cone = 0.3f;
+    float speed = 1;
+    float speed_spread = 0.2f;
+    float inherit = 0;
+    float life = 2;
+    float life_spread = 0.5f;
+};
+
+LIMN_FIELDS(ParticleEmitter) {
+    LIMN_FIELD(active, "whether particles are born; the living ones go on");
+    LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
+    LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);
+    LIMN_FIELD(bursts, "many births at one instant");
+    LIMN_FIELD(duration, "how long it emits; 0: forever", "s", 0, 1e6);
+    LIMN_FIELD(loop, "starts again after the duration, bursts included");
+    LIMN_FIELD(
+        capacity, "living particles at most; further births are dropped and counted", "", 0,
+        4194304);
+    LIMN_FIELD(seed, "random seed; 0: of its own for each entity");
+    LIMN_FIELD(
+        shape, .doc = "where particles are born", .values = "point ball sphere disc circle box");
+    LIMN_FIELD(size, "half extents of the shape along the local axes", "m", 0, 1e5);
+    LIMN_FIELD(
+        direction, .doc = "initial direction: about local +y, or outward", .values = "cone radial");
+    LIMN_FIELD(cone, "half angle of the cone of directions", "rad", 0, 3.1416);
+    LIMN_FIELD(speed, "initial speed", "m/s", -1e4, 1e4);
+    LIMN_FIELD(speed_spread, "give or take", "m/s", 0, 1e4);
+    LIMN_FIELD(inherit, "share of the emitter's own velocity that is added", "", -10, 10);
+    LIMN_FIELD(life, "lifetime", "s", 0, 1e5);
+    LIMN_FIELD(life_spread, "give or take", "s", 0, 1e5);
+}
+
+struct ParticleMotion {
+    float gravity = 1;
+    float drag = 0;
+    Vec3 wind = {0, 0, 0};
+    float weather = 0;
+    float turbulence = 0;
+    float turbulence_size = 1;
+    float turbulence_speed = 0.5f;
+    float vortex = 0;
+    float attraction = 0;
+};
+
+LIMN_FIELDS(ParticleMotion) {
+    LIMN_FIELD(gravity, "factor on 9.81 m/s^2 downwards; negative: rises", "", -100, 100);
+    LIMN_FIELD(drag, "decay of the velocity relative to the air", "1/s", 0, 1000);
+    LIMN_FIELD(wind, "velocity of the air, in world space; needs drag", "m/s", -1000, 1000);
+    LIMN_FIELD(weather, "share of the wind of the resource weather that is added", "", 0, 10);
+    LIMN_FIELD(turbulence, "acceleration by curl noise: whirls without sources", "m/s^2", 0, 1e4);
+    LIMN_FIELD(turbulence_size, "extent of a whirl", "m", 0.001, 1e4);
+    LIMN_FIELD(turbulence_speed, "whirls that come and go in a second", "1/s", 0, 100);
+    LIMN_FIELD(vortex, "acceleration around the emitter's y axis", "m/s^2", -1e4, 1e4);
+    LIMN_FIELD(attraction, "acceleration toward the emitter's y axis", "m/s^2", -1e4, 1e4);
+}
+
+/// A value at a share of the life, straight between keys.
+struct CurveKey {
+    float at = 0;
+    float value = 1;
+};
+
+LIMN_FIELDS(CurveKey) {
+    LIMN_FIELD(at, "share of the life", "", 0, 1);
+    LIMN_FIELD(value, "factor", "", 0, 1000);
+}
+
+struct ColorKey {
+    float at = 0;
+    Vec3 color = {1, 1, 1};
+    float opacity = 1;
+};
+
+LIMN_FIELDS(ColorKey) {
+    LIMN_FIELD(at, "share of the life", "", 0, 1);
+    LIMN_FIELD(color, .doc = "linear RGB", .min = 0, .max = 1000);
+    LIMN_FIELD(opacity, "0 transparent, 1 opaque in the middle", "", 0, 1);
+}
+
+enum class ParticleFacing : std::uint8_t {
+    Camera,    ///< a disc toward the camera
+    Velocity,  ///< along the flight, as far as it goes in `stretch`
+    Ground,    ///< flat on the world's xz plane
+};
+
+struct ParticleLook {
+    ImageId image;
+    std::uint32_t columns = 1;
+    std::uint32_t rows = 1;
+    float frame_rate = 0;
+    float size = 0.1f;
+    float size_spread = 0;
+    std::vector<CurveKey> size_curve;
+    std::vector<ColorKey> colors;
+    float emission = 0;
+    float lit = 1;
+    float cover = 1;
+    float forward = 0;
+    ParticleFacing facing = ParticleFacing::Camera;
+    float stretch = 0.02f;
+    float turn_spread = 3.1416f;
+    float spin = 0;
+    float spin_spread = 0;
+    float softness = 0.2f;
+};
+
+LIMN_FIELDS(ParticleLook) {
+    LIMN_FIELD(image, "an image of the level with opacity; none: a soft disc");
+    LIMN_FIELD(columns, "of a flipbook: frames side by side in the image", "", 1, 64);
+    LIMN_FIELD(rows, "of a flipbook, the first at the top", "", 1, 64);
+    LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
+    LIMN_FIELD(size, "diameter", "m", 0, 1e4);
+    LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
+    LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");
+    LIMN_FIELD(colors, "color and opacity over the life, at most 8 keys; none: white");
+    LIMN_FIELD(emission, .doc = "radiance of a white particle by itself", .min = 0, .max = 1e6);
+    LIMN_FIELD(lit, .doc = "factor on the light that it scatters; 0: unlit", .min = 0, .max = 10);
+    LIMN_FIELD(cover, "1: hides what is behind by its opacity, 0: only adds light", "", 0, 1);
+    LIMN_FIELD(
+        forward,
+        "light from behind: 0 evenly, toward 1 ever more forward (Henyey and Greenstein 1941)", "",
+        -0.95, 0.95);
+    LIMN_FIELD(facing, .doc = "how the quad is turned", .values = "camera velocity ground");
+    LIMN_FIELD(stretch, "length of a streak: the way of so much time; facing velocity", "s", 0, 10);
+    LIMN_FIELD(turn_spread, "initial angle, give or take", "rad", 0, 3.1416);
+    LIMN_FIELD(spin, "rotation", "rad/s", -1000, 1000);
+    LIMN_FIELD(spin_spread, "give or take", "rad/s", 0, 1000);
+    LIMN_FIELD(softness, "depth over which it fades where it meets a surface", "m", 0, 100);
+}
+
+/// The particles of an emitter, oldest first; kept by the systems. World space.
+struct ParticlePool {
+    std::vector<float> x, y, z;       ///< position [m]
+    std::vector<float> vx, vy, vz;    ///< velocity [m/s]
+    std::vector<float> age, life;     ///< [s]; dead at age >= life
+    std::vector<std::uint32_t> look;  ///< random bits: size, angle, spin
+    std::uint64_t born = 0;           ///< of all time; numbers of the random sequences
+    std::uint64_t dropped = 0;        ///< births for which there was no room
+    double time = 0;                  ///< the emitter's own [s]
+    double carry = 0;                 ///< a share of a birth that is due
+
+    [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
+LIMN_FIELDS(ParticlePool) {
+    LIMN_FIELD(x, "positions", "m");
+    LIMN_FIELD(y, "positions", "m");
+    LIMN_FIELD(z, "positions", "m");
+    LIMN_FIELD(vx, "velocities", "m/s");
+    LIMN_FIELD(vy, "velocities", "m/s");
+    LIMN_FIELD(vz, "velocities", "m/s");
+    LIMN_FIELD(age, "ages", "s");
+    LIMN_FIELD(life, "ages at death", "s");
+    LIMN_FIELD(look, "random bits of each");
+    LIMN_FIELD(born, "births of all time");
+    LIMN_FIELD(dropped, "births over capacity");
+    LIMN_FIELD(time, "of the emitter", "s");
+    LIMN_FIELD(carry, "share of a birth that is due");
+}
+
+/// Copies of a prefab start without particles.
+template <>
+struct ComponentTraits<ParticlePool> : DefaultTraits {
+    static constexpr bool in_prefabs = false;
+};
+
+}  // namespace limn

@@ -1,0 +1,200 @@
+#include "systems/particles/particle_births.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr double kSlack =
+    1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
+constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
+
+float spread(float mean, float width, Random& random) {
+    return mean + width * random.uniform(-1.0f, 1.0f);
+}
+
+/// Matrices a step apart differ little: their elements are mixed.
+Affine between(const Affine& a, const Affine& b, float t) {
+    Affine mixed = a;
+    for (int i = 0; i < 3; ++i) {
+        mixed.row[i] += (b.row[i] - a.row[i]) * t;
+    }
+    return mixed;
+}
+
+/// Once for all particles that it may hold: what is not used yet costs address space alone.
+void reserve(ParticlePool& pool, std::size_t count) {
+    for (auto* column :
+         {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.age, &pool.life}) {
+        column->reserve(count);
+    }
+    pool.look.reserve(count);
+}
+
+/// One piece of a step, without a restart of the emitter within it.
+struct Piece {
+    double begin;  ///< of the emitter's time [s]
+    double length;
+    double offset;  ///< from the beginning of the step [s]
+};
+
+class Births {
+  public:
+    Births(float dt, std::size_t room, ParticlePool& pool, std::vector<float>& births)
+        : dt_(dt), room_(room), pool_(pool), births_(births) {}
+
+    void add_rate(const Piece& piece, double rate) {
+        if (rate <= 0) {
+            return;
+        }
+        const double due = pool_.carry + rate * piece.length;
+        const double whole = std::floor(due + kSlack);
+        for (double i = 1; i <= whole && births_.size() < room_; ++i) {
+            add(piece.offset + (i - pool_.carry) / rate);
+        }
+        drop(whole);
+        pool_.carry = std::max(due - whole, 0.0);
+    }
+
+    void add_burst(const Piece& piece, const ParticleBurst& burst, Random& random) {
+        const double interval = std::max(static_cast<double>(burst.interval), 1e-3);
+        const double first = std::ceil((piece.begin - static_cast<double>(burst.time)) / interval);
+        for (double k = std::max(first, 0.0); k <= burst.repeats; ++k) {
+            const double at = static_cast<double>(burst.time) + k * interval - piece.begin;
+            if (at >= piece.length) {
+                break;
+            }
+            asked_ = births_.size();
+            const double count =
+                std::round(static_cast<double>(spread(burst.count, burst.spread, random)));
+            for (double i = 0; i < count && births_.size() < room_; ++i) {
+                add(piece.offset + at);
+            }
+            drop(count);
+        }
+    }
+
+    void begin() { asked_ = births_.size(); }
+
+  private:
+    void add(double at) { births_.push_back(std::clamp(static_cast<float>(at) / dt_, 0.0f, 1.0f)); }
+    /// Of the `wanted` births since begin(), those that were not added.
+    void drop(double wanted) {
+        const auto added = static_cast<double>(births_.size() - asked_);
+        pool_.dropped += wanted > added ? static_cast<std::uint64_t>(wanted - added) : 0;
+    }
+
+    float dt_;
+    std::size_t room_;
+    std::size_t asked_ = 0;
+    ParticlePool& pool_;
+    std::vector<float>& births_;
+};
+
+}  // namespace
+
+void find_births(
+    const ParticleEmitter& emitter, float dt, std::size_t room, Random& random, ParticlePool& pool,
+    std::vector<float>& births) {
+    const float rate =
+        spread(finite_or(emitter.rate, 0), finite_or(emitter.rate_spread, 0), random);
+    const double asked = static_cast<double>(finite_or(emitter.duration, 0));
+    const double duration = asked > 0 ? std::max(asked, kMinDuration) : 0;
+    Births found(dt, room, pool, births);
+    double left = static_cast<double>(dt);
+    while (left > 0) {
+        const double rest = duration > 0 ? duration - pool.time : left;
+        if (rest <= 0 && !emitter.loop) {
+            pool.carry = 0;
+            break;
+        }
+        const Piece piece = {
+            pool.time, std::min(left, std::max(rest, 0.0)), static_cast<double>(dt) - left};
+        if (emitter.active) {
+            found.begin();
+            found.add_rate(piece, static_cast<double>(rate));
+            for (const ParticleBurst& burst : emitter.bursts) {
+                found.add_burst(piece, burst, random);
+            }
+        }
+        left -= piece.length;
+        pool.time =
+            duration > 0 && rest <= piece.length && emitter.loop ? 0.0 : pool.time + piece.length;
+    }
+}
+
+Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {
+    switch (shape) {
+    case EmitterShape::Point:
+        break;
+    case EmitterShape::Ball:
+        return size * (random.direction() * std::cbrt(random.uniform()));
+    case EmitterShape::Sphere:
+        return size * random.direction();
+    case EmitterShape::Disc: {
+        const Vec2 p = random.in_disc();
+        return size * Vec3(p.x, 0, p.y);
+    }
+    case EmitterShape::Circle: {
+        const float angle = 2.0f * kPi * random.uniform();
+        return size * Vec3(std::cos(angle), 0, std::sin(angle));
+    }
+    case EmitterShape::Box: {
+        const float x = random.uniform(-1.0f, 1.0f);
+        const float y = random.uniform(-1.0f, 1.0f);
+        return size * Vec3(x, y, random.uniform(-1.0f, 1.0f));
+    }
+    }
+    return Vec3(0);
+}
+
+Vec3 sample_cone(float cone, Random& random) {
+    const float lowest = std::cos(std::clamp(finite_or(cone, 0), 0.0f, kPi));
+    const float y = 1.0f - random.uniform() * (1.0f - lowest);
+    const float angle = 2.0f * kPi * random.uniform();
+    const float radius = std::sqrt(std::max(1.0f - y * y, 0.0f));
+    return {radius * std::cos(angle), y, radius * std::sin(angle)};
+}
+
+void add_particles(
+    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
+    std::uint64_t subject, const std::vector<float>& births, ParticlePool& pool) {
+    const auto origin = [](const Affine& world) { return transform_point(world, Vec3(0)); };
+    const Vec3 moved = (origin(place.now) - origin(place.before)) / dt;
+    const Vec3 inherited = moved * finite_or(emitter.inherit, 0);
+    const std::size_t size = pool.size() + births.size();
+    if (pool.x.capacity() < size) {
+        reserve(pool, std::max<std::size_t>(emitter.capacity, size));
+    }
+    for (const float at : births) {
+        Random random(seed, subject, name_hash("particles"), pool.born++);
+        const Affine world = between(place.before, place.now, at);
+        const Vec3 local = sample_shape(emitter.shape, emitter.size, random);
+        const bool radial =
+            emitter.direction == EmitterDirection::Radial && glm::dot(local, local) > 0;
+        const float cone = emitter.direction == EmitterDirection::Radial ? kPi : emitter.cone;
+        const Vec3 direction = radial ? glm::normalize(local) : sample_cone(cone, random);
+        const Vec3 aim = normalize_or(transform_vector(world, direction), Vec3(0, 1, 0));
+        const float speed = spread(emitter.speed, emitter.speed_spread, random);
+        const Vec3 velocity = aim * speed + inherited;
+        const Vec3 position = transform_point(world, local) - velocity * (at * dt);
+        const float life = spread(emitter.life, emitter.life_spread, random);
+        if (!std::isfinite(position.x + position.y + position.z + life)) {
+            continue;
+        }
+        pool.x.push_back(position.x);
+        pool.y.push_back(position.y);
+        pool.z.push_back(position.z);
+        pool.vx.push_back(velocity.x);
+        pool.vy.push_back(velocity.y);
+        pool.vz.push_back(velocity.z);
+        pool.age.push_back(-at * dt);
+        pool.life.push_back(life);
+        pool.look.push_back(random.word());
+    }
+}
+
+}  // namespace limn

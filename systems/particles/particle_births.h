@@ -1,0 +1,45 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/rng.h"
+#include "ecs/components/particles.h"
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// When and where particles are born. All random numbers are keyed by the emitter and the number of
+// the birth, so they depend neither on the frame rate nor on what else is born.
+
+/// Of a value that scripts may have set to anything.
+[[nodiscard]] inline float finite_or(float value, float otherwise) {
+    return std::isfinite(value) ? value : otherwise;
+}
+
+/// The instants of births in a step, as shares 0 .. 1 of it: those of the rate in equal intervals
+/// that go on across steps, then those of bursts. Advances the pool's time and carry. `random`
+/// decides the spreads. At most `room` births; the others are added to `pool.dropped`.
+void find_births(
+    const ParticleEmitter& emitter, float dt, std::size_t room, Random& random, ParticlePool& pool,
+    std::vector<float>& births);
+
+/// A point of the emitter's shape in local space (particle.generation-shape).
+[[nodiscard]] Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random);
+/// Unit: a direction within `cone` [rad] of +y, even by solid angle.
+[[nodiscard]] Vec3 sample_cone(float cone, Random& random);
+
+/// An emitter's place at the ends of a step.
+struct EmitterPlace {
+    Affine before;
+    Affine now;
+};
+
+/// Adds a particle for every birth, at the emitter's place of that instant, as far back on its way
+/// as a whole step will bring it forward.
+void add_particles(
+    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
+    std::uint64_t subject, const std::vector<float>& births, ParticlePool& pool);
+
+}  // namespace limn

@@ -1,0 +1,162 @@
+#include "systems/particles/particle_system.h"
+
+#include "ecs/base/jobs.h"
+#include "ecs/base/rng.h"
+#include "systems/particles/particle_births.h"
+#include "systems/particles/particle_kernels.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr std::size_t kBlock = 1024;         // particles that move as one piece of work
+constexpr std::size_t kBlockGrain = 4;       // blocks of one job
+constexpr float kGravity = 9.81f;            // [m/s^2]
+const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
+const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
+
+/// An emitter in this step.
+struct Work {
+    Entity entity;
+    const ParticleEmitter* emitter = nullptr;
+    ParticlePool* pool = nullptr;
+    EmitterPlace place;
+    ParticleStep step = {};
+    Turbulence turbulence = {};
+    Vortex vortex = {};
+};
+
+/// A part of the particles of an emitter.
+struct Block {
+    std::uint32_t work = 0;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    std::uint32_t dead = 0;
+};
+
+Work make_work(
+    Entity entity, const ParticleMotion& asked, const EmitterPlace& place, const Vec3& weather,
+    float dt, const FrameTime& time) {
+    ParticleMotion motion = asked;
+    for (float* const field :
+         {&motion.gravity, &motion.drag, &motion.wind.x, &motion.wind.y, &motion.wind.z,
+          &motion.weather, &motion.turbulence, &motion.turbulence_size, &motion.turbulence_speed,
+          &motion.vortex, &motion.attraction}) {
+        *field = finite_or(*field, 0);
+    }
+    Work work{.entity = entity, .place = place};
+    work.step = {
+        .gravity = {0, -kGravity * motion.gravity, 0},
+        .air = motion.wind + motion.weather * weather,
+        .keep = std::exp(-std::max(motion.drag, 0.0f) * dt),
+        .dt = dt};
+    // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
+    // whirls.
+    const auto turns = static_cast<float>(
+        std::fmod(static_cast<double>(motion.turbulence_speed) * time.time, 4096.0));
+    work.turbulence = {
+        .strength = motion.turbulence,
+        .size = std::max(motion.turbulence_size, 1e-3f),
+        .drift_a = kDriftA * turns,
+        .drift_b = kDriftB * turns};
+    work.vortex = {
+        .origin = transform_point(place.now, Vec3(0)),
+        .axis = normalize_or(transform_vector(place.now, Vec3(0, 1, 0)), Vec3(0, 1, 0)),
+        .around = motion.vortex,
+        .toward = motion.attraction};
+    return work;
+}
+
+void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
+    const ParticleEmitter& emitter = *work.emitter;
+    ParticlePool& pool = *work.pool;
+    const std::uint64_t subject = emitter.seed != 0 ? emitter.seed : work.entity.bits();
+    Random random(seed, subject, name_hash("particle births"), time.frame);
+    const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+    std::vector<float> births;
+    find_births(emitter, work.step.dt, room, random, pool, births);
+    add_particles(emitter, work.place, work.step.dt, seed, subject, births, pool);
+}
+
+std::uint32_t move(const Work& work, const ParticleBlock& block) {
+    if (work.turbulence.strength != 0) {
+        stir_particles(block, work.turbulence, work.step.dt);
+    }
+    if (work.vortex.around != 0 || work.vortex.toward != 0) {
+        whirl_particles(block, work.vortex, work.step.dt);
+    }
+    return static_cast<std::uint32_t>(move_particles(block, work.step));
+}
+
+}  // namespace
+
+void add_particle_pools(
+    Query<const ParticleEmitter, Without<ParticlePool>> emitters, Commands commands) {
+    emitters.each(
+        [&](Entity entity, const ParticleEmitter&) { commands.add(entity, ParticlePool{}); });
+}
+
+void update_particles(
+    Query<
+        const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
+        const PreviousWorldTransform, ParticlePool>
+        emitters,
+    Res<const WeatherState> gusts, OptionalRes<const Weather> weather, Res<const RandomSeed> seed,
+    Res<const FrameTime> time) {
+    const float dt = std::min(time->step, kMaxParticleStep);
+    const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
+    std::vector<Work> works;
+    emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
+                      const WorldTransform& now, const PreviousWorldTransform& previous,
+                      ParticlePool& pool) {
+        const Vec4& row = previous.world.row[0];
+        const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
+        const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
+        static const ParticleMotion kStill;
+        Work work = make_work(entity, motion != nullptr ? *motion : kStill, place, wind, dt, *time);
+        work.emitter = &emitter;
+        work.pool = &pool;
+        works.push_back(work);
+    });
+
+    parallel_for(works.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            emit(works[i], seed->seed, *time);
+        }
+    });
+
+    std::vector<Block> blocks;
+    for (std::uint32_t w = 0; w < works.size(); ++w) {
+        const auto size = static_cast<std::uint32_t>(works[w].pool->size());
+        for (std::uint32_t first = 0; first < size; first += kBlock) {
+            blocks.push_back({w, first, std::min<std::uint32_t>(size - first, kBlock)});
+        }
+    }
+    parallel_for(blocks.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Block& block = blocks[i];
+            const Work& work = works[block.work];
+            block.dead = move(work, particle_block(*work.pool, block.first, block.count));
+        }
+    });
+
+    // Those before the first block with a dead one stay where they are.
+    std::vector<Block> firsts;
+    for (const Block& block : blocks) {
+        if (block.dead > 0 && (firsts.empty() || firsts.back().work != block.work)) {
+            firsts.push_back(block);
+        }
+    }
+    parallel_for(firsts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            remove_dead(*works[firsts[i].work].pool, firsts[i].first);
+        }
+    });
+}
+
+}  // namespace limn

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/weather.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+#include <cstdint>
+
+namespace limn {
+
+// Births, motion and deaths of particles (particle.system), in Reeves' order: new ones are born and
+// get their attributes, all move, those whose time is up go. Bits do not depend on the number of
+// threads: blocks of 1,024 particles move, pools lose their dead.
+//
+// Particles are neither entities nor rows of archetypes but arrays of a component of their emitter:
+// nothing refers to one particle, so handles and change versions would only cost memory and time;
+// and a pool is saved, hashed, copied and freed with its emitter.
+
+/// Longest step that is simulated [s]; in a longer one particles move so much only.
+inline constexpr float kMaxParticleStep = 0.1f;
+
+/// Adds a ParticlePool to every ParticleEmitter that lacks one. Before update_particles, with a
+/// sync point in between.
+void add_particle_pools(
+    Query<const ParticleEmitter, Without<ParticlePool>> emitters, Commands commands);
+
+/// A step of all particles. After update_transforms.
+void update_particles(
+    Query<
+        const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
+        const PreviousWorldTransform, ParticlePool>
+        emitters,
+    Res<const WeatherState> gusts, OptionalRes<const Weather> weather, Res<const RandomSeed> seed,
+    Res<const FrameTime> time);
+
+}  // namespace limn

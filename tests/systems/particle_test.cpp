@@ -1,0 +1,569 @@
+#include "ecs/base/jobs.h"
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/weather.h"
+#include "ecs/snapshot.h"
+#include "ecs/world.h"
+#include "systems/particles/particle_births.h"
+#include "systems/particles/particle_kernels.h"
+#include "systems/particles/particle_system.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+constexpr float kStep = 1.0f / 60.0f;
+
+/// A world with emitters at rest.
+struct Emitters {
+    World world;
+    std::vector<Entity> entities;
+
+    explicit Emitters(float step = kStep) {
+        register_all_components();
+        world.insert_resource(FrameTime{.step = step});
+        world.insert_resource(RandomSeed{});
+        world.insert_resource(WeatherState{});
+    }
+    Entity add(const ParticleEmitter& emitter, const ParticleMotion& motion = {}) {
+        entities.push_back(
+            world.create(emitter, motion, WorldTransform{}, PreviousWorldTransform{Affine{}}));
+        world.run(add_particle_pools);
+        return entities.back();
+    }
+    void run(int steps = 1) {
+        for (int i = 0; i < steps; ++i) {
+            FrameTime& time = world.resource<FrameTime>();
+            time.time += static_cast<double>(time.step);
+            ++time.frame;
+            world.run(update_particles);
+        }
+    }
+    const ParticlePool& pool(std::size_t i = 0) {
+        return world.get<const ParticlePool>(entities[i]);
+    }
+};
+
+/// Births at a point, straight up, that do not end.
+ParticleEmitter steady(float rate) {
+    ParticleEmitter emitter;
+    emitter.rate = rate;
+    emitter.cone = 0;
+    emitter.speed = 1;
+    emitter.speed_spread = 0;
+    emitter.life = 1000;
+    emitter.life_spread = 0;
+    emitter.capacity = 1000000;
+    return emitter;
+}
+
+ParticleEmitter burst(float count) {
+    ParticleEmitter emitter = steady(0);
+    emitter.bursts = {{.time = 0, .count = count}};
+    return emitter;
+}
+
+ParticleMotion falling(float gravity = 1) {
+    ParticleMotion motion;
+    motion.gravity = gravity;
+    return motion;
+}
+
+/// A pool of particles anywhere, some of them dead.
+ParticlePool random_pool(std::size_t count) {
+    ParticlePool pool;
+    Random random(3, 4, 5, 6);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
+            column->push_back(random.uniform(-20.0f, 20.0f));
+        }
+        pool.age.push_back(random.uniform(0.0f, 2.0f));
+        pool.life.push_back(random.uniform(1.0f, 3.0f));
+        pool.look.push_back(random.word());
+    }
+    return pool;
+}
+
+bool same_bits(const ParticlePool& a, const ParticlePool& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.vx == b.vx && a.vy == b.vy && a.vz == b.vz
+           && a.age == b.age && a.life == b.life && a.look == b.look && a.born == b.born;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "particles: ten a step are ten, 2.5 a step are 250 in a hundred, none for a negative rate") {
+    Emitters scene;
+    scene.add(steady(10 / kStep));
+    scene.add(steady(2.5f / kStep));
+    scene.add(steady(-50));
+    for (int i = 1; i <= 100; ++i) {
+        scene.run();
+        CHECK(scene.pool(0).size() == static_cast<std::size_t>(10 * i));
+    }
+    CHECK(scene.pool(1).size() == 250);
+    CHECK(scene.pool(2).size() == 0);
+}
+
+TEST_CASE("particles: births that vary by half have the mean rate, whatever the step") {
+    for (const float step : {1.0f / 200, 1.0f / 30}) {
+        CAPTURE(step);
+        Emitters scene(step);
+        ParticleEmitter emitter = steady(300);
+        emitter.rate_spread = 150;
+        emitter.life = 0.01f;
+        scene.add(emitter);
+        const int steps = static_cast<int>(100 / step);
+        scene.run(steps);
+        CHECK(std::abs(static_cast<double>(scene.pool().born) / 30000 - 1) < 0.01);
+    }
+}
+
+TEST_CASE("particles: births are evenly spaced in time, across steps too") {
+    Emitters scene;
+    scene.add(steady(7 / kStep), falling(0));
+    scene.run(5);
+    const ParticlePool& pool = scene.pool();
+    REQUIRE(pool.size() == 35);
+    for (std::size_t i = 1; i < pool.size(); ++i) {
+        CHECK(pool.age[i - 1] - pool.age[i] == doctest::Approx(kStep / 7).epsilon(1e-3));
+        CHECK(pool.y[i - 1] - pool.y[i] == doctest::Approx(kStep / 7).epsilon(1e-3));  // 1 m/s
+    }
+    CHECK(pool.age.back() >= 0);
+    CHECK(pool.age.front() <= 5 * kStep);
+}
+
+TEST_CASE("particles: as many are alive as are born in a lifetime, and go when it is over") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(200);
+    emitter.life = 1.5f;
+    const Entity entity = scene.add(emitter);
+    scene.run(300);
+    for (int i = 0; i < 60; ++i) {
+        scene.run();
+        CHECK(std::abs(static_cast<int>(scene.pool().size()) - 300) <= 4);  // those of a step
+        const ParticlePool& pool = scene.pool();
+        CHECK(std::is_sorted(pool.age.rbegin(), pool.age.rend()));  // oldest first
+        for (std::size_t p = 0; p < pool.size(); ++p) {
+            REQUIRE(pool.age[p] < pool.life[p]);
+        }
+    }
+    scene.world.get<ParticleEmitter>(entity).active = false;
+    scene.run(91);
+    CHECK(scene.pool().size() == 0);
+}
+
+TEST_CASE("particles: a full pool drops births and counts them") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(90);
+    emitter.rate = 60;
+    emitter.capacity = 100;
+    scene.add(emitter);
+    scene.run(60);
+    CHECK(scene.pool().size() == 100);
+    CHECK(scene.pool().born == 100);
+    CHECK(scene.pool().dropped == 50);  // 90 + 60 - 100
+}
+
+TEST_CASE("particles: bursts come at their time and again, and with the duration anew") {
+    Emitters scene(0.1f);
+    ParticleEmitter emitter = steady(0);
+    emitter.bursts = {{.time = 0.25f, .count = 5, .spread = 0, .interval = 0.5f, .repeats = 2}};
+    scene.add(emitter);
+    emitter.duration = 0.65f;
+    scene.add(emitter);
+    emitter.loop = false;
+    scene.add(emitter);
+    std::vector<int> once;
+    std::vector<int> looped;
+    std::vector<int> ended;
+    for (int i = 0; i < 20; ++i) {
+        scene.run();
+        once.push_back(static_cast<int>(scene.pool(0).born));
+        looped.push_back(static_cast<int>(scene.pool(1).born));
+        ended.push_back(static_cast<int>(scene.pool(2).born));
+    }
+    // At 0.25, 0.75 and 1.25 s.
+    CHECK(once[1] == 0);
+    CHECK(once[2] == 5);
+    CHECK(once[7] == 10);
+    CHECK(once[12] == 15);
+    CHECK(once.back() == 15);
+    // Only the first is within 0.65 s: at 0.25, 0.9 and 1.55 s.
+    CHECK(looped[2] == 5);
+    CHECK(looped[7] == 5);
+    CHECK(looped[9] == 10);
+    CHECK(looped[15] == 15);
+    CHECK(looped.back() == 15);
+    CHECK(ended.back() == 5);
+}
+
+TEST_CASE("particles: attributes are within their spread, and reach its ends") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(5000);
+    emitter.speed = 3;
+    emitter.speed_spread = 1;
+    emitter.life = 2;
+    emitter.life_spread = 0.5f;
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    const auto [slow, fast] = std::minmax_element(pool.vy.begin(), pool.vy.end());
+    CHECK(*slow >= 2.0f);
+    CHECK(*slow < 2.01f);
+    CHECK(*fast <= 4.0f);
+    CHECK(*fast > 3.99f);
+    const auto [early, late] = std::minmax_element(pool.life.begin(), pool.life.end());
+    CHECK(*early >= 1.5f);
+    CHECK(*late <= 2.5f);
+    CHECK(*late - *early > 0.99f);
+}
+
+TEST_CASE("particles: shapes are filled evenly") {
+    Random random(1, 2, 3, 4);
+    constexpr int kCount = 100000;
+    struct Case {
+        EmitterShape shape;
+        double half_share;  // of the points, within half the radius
+        int axes;           // that have an extent
+    };
+    for (const Case& one :
+         {Case{EmitterShape::Ball, 0.125, 3}, Case{EmitterShape::Disc, 0.25, 2},
+          Case{EmitterShape::Sphere, 0, 3}, Case{EmitterShape::Circle, 0, 2}}) {
+        CAPTURE(static_cast<int>(one.shape));
+        const Vec3 size = {2, 3, 4};
+        int near = 0;
+        glm::dvec3 sum(0);
+        for (int i = 0; i < kCount; ++i) {
+            const Vec3 p = sample_shape(one.shape, size, random) / size;
+            const float radius = glm::length(p);
+            REQUIRE(radius <= 1.00001f);
+            REQUIRE((one.half_share > 0 || radius >= 0.99999f));
+            REQUIRE((one.axes == 3 || p.y == 0.0f));
+            near += radius < 0.5f ? 1 : 0;
+            sum += glm::dvec3(p);
+        }
+        CHECK(near / double{kCount} == doctest::Approx(one.half_share).scale(1).epsilon(0.005));
+        CHECK(glm::length(sum) / kCount < 0.01);
+    }
+    Vec3 high(0);
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 p = sample_shape(EmitterShape::Box, {1, 2, 3}, random);
+        high = glm::max(high, glm::abs(p));
+        REQUIRE(glm::all(glm::lessThanEqual(glm::abs(p), Vec3(1, 2, 3))));
+    }
+    CHECK(glm::length(high - Vec3(1, 2, 3)) < 0.01f);
+    CHECK(sample_shape(EmitterShape::Point, {1, 2, 3}, random) == Vec3(0));
+}
+
+TEST_CASE("particles: directions are unit, within the cone, even over its cap") {
+    Random random(1, 2, 3, 4);
+    constexpr int kCount = 50000;
+    const float cone = 0.7f;
+    const float middle = 0.5f * (1 + std::cos(cone));  // halves the cap's area
+    int inner = 0;
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 v = sample_cone(cone, random);
+        REQUIRE(std::abs(glm::length(v) - 1) < 1e-5f);
+        REQUIRE(v.y >= std::cos(cone) - 1e-6f);
+        inner += v.y > middle ? 1 : 0;
+    }
+    CHECK(inner / double{kCount} == doctest::Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
+    for (const int steps : {10, 100}) {
+        CAPTURE(steps);
+        const float dt = 1.0f / static_cast<float>(steps);
+        ParticlePool pool = random_pool(40);
+        const ParticlePool start = pool;
+        for (int i = 0; i < steps; ++i) {
+            move_particles(
+                particle_block(pool, 0, pool.size()), {.gravity = {0, -9.81f, 0}, .dt = dt});
+        }
+        for (std::size_t i = 0; i < pool.size(); ++i) {
+            CHECK(pool.y[i] - start.y[i] - start.vy[i] == doctest::Approx(-4.905f).epsilon(2e-5));
+            CHECK(pool.vy[i] - start.vy[i] == doctest::Approx(-9.81f).epsilon(1e-5));
+            CHECK(pool.x[i] - start.x[i] == doctest::Approx(start.vx[i]).scale(20).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("particles: one thrown upward turns at v / g, v^2 / 2 g high") {
+    Emitters scene(1.0f / 500);
+    ParticleEmitter emitter = burst(1);
+    emitter.speed = 7;
+    scene.add(emitter, falling());
+    float highest = 0;
+    float when = 0;
+    for (int i = 0; i < 500; ++i) {
+        scene.run();
+        if (scene.pool().y[0] > highest) {
+            highest = scene.pool().y[0];
+            when = scene.pool().age[0];
+        }
+    }
+    CHECK(highest == doctest::Approx(49 / (2 * 9.81)).epsilon(1e-4));
+    CHECK(when == doctest::Approx(7 / 9.81).epsilon(0.004));
+}
+
+TEST_CASE("particles: drag leads to the air's velocity and to the terminal speed") {
+    Emitters scene;
+    ParticleMotion motion = falling();
+    motion.drag = 2;
+    motion.wind = {3, 0, -1};
+    scene.add(burst(20), motion);
+    scene.run(600);
+    for (std::size_t i = 0; i < scene.pool().size(); ++i) {
+        CHECK(scene.pool().vx[i] == doctest::Approx(3).epsilon(1e-4));
+        CHECK(scene.pool().vz[i] == doctest::Approx(-1).epsilon(1e-4));
+        CHECK(scene.pool().vy[i] == doctest::Approx(-9.81 / 2).epsilon(0.02));  // of the step
+    }
+}
+
+TEST_CASE("particles: opposite forces cancel") {
+    Emitters scene;
+    ParticleEmitter still = burst(1);
+    still.speed = 0;
+    ParticleMotion motion = falling(0);
+    motion.turbulence = 0;
+    scene.add(still, motion);
+    scene.run(100);
+    CHECK(scene.pool().y[0] == 0.0f);
+    ParticlePool pool = random_pool(100);
+    const ParticlePool before = pool;
+    const ParticleBlock block = particle_block(pool, 0, pool.size());
+    whirl_particles(block, {.around = 3, .toward = 2}, 0.1f);
+    whirl_particles(block, {.around = -3, .toward = -2}, 0.1f);
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        CHECK(pool.vx[i] == doctest::Approx(before.vx[i]).scale(1).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("particles: a vortex turns about its axis and pulls toward it, by unit vectors") {
+    ParticlePool pool = random_pool(3);
+    pool.x = {2, 0, 5};
+    pool.y = {9, 1, 2};
+    pool.z = {0, -3, 0};
+    const ParticlePool before = pool;
+    whirl_particles(
+        particle_block(pool, 0, 3),
+        {.origin = {5, 0, 0}, .axis = {0, 1, 0}, .around = 4, .toward = 6}, 0.5f);
+    // The first is at -x of the axis: around it is +z, toward it +x.
+    CHECK(pool.vx[0] - before.vx[0] == doctest::Approx(3));
+    CHECK(pool.vz[0] - before.vz[0] == doctest::Approx(2));
+    CHECK(pool.vy[0] == before.vy[0]);
+    CHECK(pool.vx[2] == before.vx[2]);  // on the axis
+    CHECK(pool.vz[2] == before.vz[2]);
+}
+
+TEST_CASE("particles: curl noise has no sources and the strength that it is asked for") {
+    const Turbulence noise = {
+        .strength = 2, .size = 1.5f, .drift_a = {5, 1, 2}, .drift_b = {-4, 2, 8}, .seed = 9};
+    Random random(5, 6, 7, 8);
+    double square = 0;
+    constexpr int kCount = 4000;
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 at = {random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50)};
+        square += static_cast<double>(glm::dot(curl_noise(at, noise), curl_noise(at, noise)));
+        constexpr float h = 0.02f;
+        double divergence = 0;
+        double change = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 step(0);
+            step[axis] = h;
+            const Vec3 slope =
+                (curl_noise(at + step, noise) - curl_noise(at - step, noise)) / (2 * h);
+            divergence += static_cast<double>(slope[axis]);
+            change += static_cast<double>(glm::length(slope));
+        }
+        REQUIRE(std::abs(divergence) < 0.02 * change + 0.02);
+    }
+    CHECK(std::sqrt(square / kCount) == doctest::Approx(2).epsilon(0.15));
+}
+
+TEST_CASE("particles: gradients of the noise are those of differences, and continue across cells") {
+    // An integral over a closed way is 0 for a gradient.
+    Random random(5, 6, 7, 8);
+    for (int i = 0; i < 50; ++i) {
+        const Vec3 center = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
+        double around = 0;
+        double length = 0;
+        constexpr int kSides = 400;
+        for (int s = 0; s < kSides; ++s) {
+            const auto at = [&](double t) {
+                const double angle = 2 * 3.14159265358979 * t / kSides;
+                return center + Vec3(std::cos(angle), 0.5 * std::sin(2 * angle), std::sin(angle));
+            };
+            const Vec3 way = at(s + 1) - at(s);
+            const Vec3 slope = noise_gradient(at(s + 0.5), 77);
+            around += static_cast<double>(glm::dot(slope, way));
+            length += static_cast<double>(glm::length(slope) * glm::length(way));
+        }
+        CHECK(std::abs(around) < 1e-3 * length);
+    }
+}
+
+TEST_CASE("particles: vectors give the bits of the plain loops, for any number") {
+    for (const std::size_t count : {1u, 7u, 16u, 33u, 1000u}) {
+        CAPTURE(count);
+        ParticlePool a = random_pool(count);
+        ParticlePool b = a;
+        const Turbulence noise = {
+            .strength = 3, .size = 0.7f, .drift_a = {1, 2, 3}, .drift_b = {4, 5, 6}, .seed = 8};
+        const ParticleStep step = {
+            .gravity = {0.1f, -9.8f, 0.3f}, .air = {2, 1, -1}, .keep = 0.93f, .dt = 0.017f};
+        stir_particles(particle_block(a, 0, count), noise, 0.02f);
+        stir_particles_scalar(particle_block(b, 0, count), noise, 0.02f);
+        CHECK(same_bits(a, b));
+        const std::size_t dead = move_particles(particle_block(a, 0, count), step);
+        CHECK(dead == move_particles_scalar(particle_block(b, 0, count), step));
+        CHECK(same_bits(a, b));
+        CHECK(remove_dead(a, 0) == count - dead);
+        CHECK(remove_dead_scalar(b, 0) == count - dead);
+        CHECK(same_bits(a, b));
+        CHECK(a.size() == count - dead);
+    }
+}
+
+TEST_CASE("particles: the dead leave in place, the others keep their order") {
+    ParticlePool pool = random_pool(500);
+    std::vector<std::uint32_t> expected(pool.look.begin(), pool.look.begin() + 100);
+    for (std::size_t i = 100; i < 500; ++i) {
+        if (pool.age[i] < pool.life[i]) {
+            expected.push_back(pool.look[i]);
+        }
+    }
+    REQUIRE(expected.size() < 450);
+    remove_dead(pool, 100);
+    CHECK(pool.look == expected);
+    CHECK(pool.x.size() == expected.size());
+}
+
+TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(10 / kStep);
+    emitter.speed = 0;
+    emitter.inherit = 0;
+    const Entity entity = scene.add(emitter, falling(0));
+    const auto place = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
+    scene.world.get<WorldTransform>(entity).world = place(6);
+    scene.world.get<PreviousWorldTransform>(entity).world = place(5);
+    scene.run();
+    REQUIRE(scene.pool().size() == 10);
+    for (std::size_t i = 0; i < 10; ++i) {
+        CHECK(scene.pool().x[i] == doctest::Approx(5.1 + 0.1 * static_cast<double>(i)));
+    }
+    scene.world.get<ParticleEmitter>(entity).inherit = 0.5f;
+    scene.run();
+    CHECK(scene.pool().vx.back() == doctest::Approx(30));  // of 60 m/s
+}
+
+TEST_CASE("particles: two emitters alike differ, unless they have the same seed") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(50);
+    emitter.shape = EmitterShape::Ball;
+    scene.add(emitter);
+    scene.add(emitter);
+    emitter.seed = 5;
+    scene.add(emitter);
+    scene.add(emitter);
+    scene.run(3);
+    CHECK(scene.pool(0).x != scene.pool(1).x);
+    CHECK(scene.pool(2).x == scene.pool(3).x);
+    CHECK(scene.pool(2).look == scene.pool(3).look);
+}
+
+TEST_CASE("particles: threads do not change the bits, nor does a snapshot in between") {
+    const auto build = [](Emitters& scene) {
+        ParticleEmitter emitter = steady(20000);
+        emitter.shape = EmitterShape::Ball;
+        emitter.life = 0.3f;
+        emitter.life_spread = 0.2f;
+        emitter.cone = 1;
+        ParticleMotion motion;
+        motion.drag = 1;
+        motion.turbulence = 5;
+        motion.vortex = 2;
+        for (int i = 0; i < 3; ++i) {
+            scene.add(emitter, motion);
+        }
+    };
+    const int threads = thread_count();
+    std::vector<ParticlePool> expected;
+    for (const int count : {1, 2, 7}) {
+        CAPTURE(count);
+        set_thread_count(count);
+        Emitters scene;
+        build(scene);
+        scene.run(20);
+        const Result<std::vector<std::byte>> saved = save_snapshot(scene.world);
+        REQUIRE(saved.ok());
+        scene.run(20);
+        if (expected.empty()) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                expected.push_back(scene.pool(i));
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            REQUIRE(scene.pool(i).size() > 3000);
+            CHECK(same_bits(scene.pool(i), expected[i]));
+        }
+        REQUIRE(restore_snapshot(scene.world, *saved).ok());
+        scene.run(20);
+        for (std::size_t i = 0; i < 3; ++i) {
+            CHECK(same_bits(scene.pool(i), expected[i]));
+        }
+    }
+    set_thread_count(threads);
+}
+
+TEST_CASE("particles: no number makes a NaN, a hang or more than fits") {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    for (const float bad : {kNan, kInf, -kInf, 1e9f, -1e9f, 0.0f}) {
+        CAPTURE(bad);
+        for (int field = 0; field < 10; ++field) {
+            CAPTURE(field);
+            Emitters scene;
+            ParticleEmitter emitter = steady(100);
+            emitter.bursts = {{.time = 0.05f, .count = 10}};
+            emitter.duration = 0.5f;
+            emitter.capacity = 5000;
+            ParticleMotion motion;
+            motion.turbulence = 1;
+            float* const fields[] = {
+                &emitter.rate, &emitter.rate_spread,   &emitter.life,     &emitter.speed,
+                &emitter.cone, &emitter.size.y,        &emitter.duration, &emitter.bursts[0].count,
+                &motion.drag,  &motion.turbulence_size};
+            emitter.shape = EmitterShape::Ball;
+            *fields[field] = bad;
+            scene.add(emitter, motion);
+            scene.run(40);
+            const ParticlePool& pool = scene.pool();
+            REQUIRE(pool.size() <= 5000);
+            for (std::size_t i = 0; i < pool.size(); ++i) {
+                REQUIRE(
+                    std::isfinite(pool.x[i] + pool.y[i] + pool.z[i] + pool.vx[i] + pool.age[i]));
+            }
+        }
+    }
+}
+
+TEST_CASE("particles: a step of ten seconds moves them by a tenth of one") {
+    Emitters scene(10.0f);
+    scene.add(steady(100), falling(0));
+    scene.run();
+    CHECK(scene.pool().size() == 10);
+    CHECK(*std::max_element(scene.pool().y.begin(), scene.pool().y.end()) <= 0.1f);
+}
