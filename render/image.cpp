@@ -13,6 +13,7 @@
 #include "render/passes/light_pass.h"
 #include "render/passes/mirror_caustic_pass.h"
 #include "render/passes/motion_blur_pass.h"
+#include "render/passes/particle_pass.h"
 #include "render/passes/probe_pass.h"
 #include "render/passes/ripple_pass.h"
 #include "render/passes/shadow_pass.h"
@@ -47,6 +48,7 @@ constexpr EffectEntry kImage[] = {
     effect<WaterEffect>(kSceneViews),      // over all that is opaque
     effect<WaterVeilEffect>(kSceneViews),  // what lies between a camera in the water and all else
     effect<BlendEffect>(kSceneViews),      // after sky and water, which are seen through it
+    effect<ParticleEffect>(kSceneViews),   // over all surfaces
     effect<SpeedLineEffect>(kMainViews),
 
     // Where views end that are not the camera's.

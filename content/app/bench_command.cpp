@@ -183,10 +183,11 @@ Status run_bench(const BenchOptions& options) {
                 report.heap_mib = std::min(report.heap_mib, heap_memory_mib());
             }
             if (i + 1 == options.warmup) {
+                const double before = heap_memory_mib();
                 touch_samples(report);
                 report.compiled = 0;
                 report.resident_begin_mib = resident_memory_mib();
-                report.heap_begin_mib = report.heap_mib;
+                report.heap_begin_mib = report.heap_mib + heap_memory_mib() - before;
             }
             progress.update(i + 1);
         }

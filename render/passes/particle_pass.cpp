@@ -1,0 +1,201 @@
+#include "render/passes/particle_pass.h"
+
+#include "ecs/components/time.h"
+#include "ecs/world.h"
+#include "render/gpu/device.h"
+#include "render/lighting.h"
+#include "render/material_pool.h"
+#include "render/view_block.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kImagesUnit = 0;
+constexpr unsigned kParticlesUnit = 2;
+constexpr unsigned kLooksUnit = 3;
+constexpr unsigned kSceneDepthUnit = 4;
+constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
+
+/// Straight between the keys around `at`, which is 0 .. 1.
+template <typename Key, typename Value>
+auto sample_keys(const std::vector<Key>& keys, float at, Value&& value) {
+    std::vector<Key> sorted = keys;
+    std::stable_sort(
+        sorted.begin(), sorted.end(), [](const Key& a, const Key& b) { return a.at < b.at; });
+    const auto next =
+        std::find_if(sorted.begin(), sorted.end(), [at](const Key& key) { return key.at > at; });
+    if (next == sorted.begin()) {
+        return value(*next);
+    }
+    const Key& last = *std::prev(next);
+    if (next == sorted.end()) {
+        return value(last);
+    }
+    const float t = (at - last.at) / (next->at - last.at);
+    return value(last) + (value(*next) - value(last)) * t;
+}
+
+}  // namespace
+
+float sample_curve(const std::vector<CurveKey>& keys, float at) {
+    return keys.empty() ? 1.0f
+                        : sample_keys(keys, at, [](const CurveKey& key) { return key.value; });
+}
+
+Vec4 sample_colors(const std::vector<ColorKey>& keys, float at) {
+    return keys.empty() ? Vec4(1) : sample_keys(keys, at, [](const ColorKey& key) {
+        return Vec4(key.color, key.opacity);
+    });
+}
+
+LookRecord make_look_record(const ParticleLook& look, int layer) {
+    LookRecord record{};
+    record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
+    record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
+    record[2] = {look.emission, look.lit, look.cover, static_cast<float>(look.facing)};
+    record[3] = {
+        static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
+        look.frame_rate, static_cast<float>(layer)};
+    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
+        const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
+        record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
+            sample_curve(look.size_curve, at);
+        record[layout::kLookColors + i] = sample_colors(look.colors, at);
+    }
+    return record;
+}
+
+void append_particles(
+    const ParticlePool& pool, std::uint32_t look, float back,
+    std::vector<ParticleInstance>& instances) {
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const float age = pool.age[i] - back;
+        if (age < 0) {
+            continue;  // not born yet
+        }
+        const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
+        const float share = std::clamp(age / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
+        instances.push_back(
+            {.position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
+             .look_and_share = look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
+             .velocity_and_age = glm::packHalf4x16(Vec4(velocity, age)),
+             .random = pool.look[i]});
+    }
+}
+
+std::vector<std::uint32_t> order_by_distance(
+    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward) {
+    std::vector<float> distances(instances.size());
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const float distance = glm::dot(instances[i].position - eye, forward);
+        distances[i] = std::isnan(distance) ? INFINITY : distance;
+    }
+    std::vector<std::uint32_t> order(instances.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return distances[a] > distances[b];
+    });
+    return order;
+}
+
+Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
+    return ParticleEffect{
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"})};
+}
+
+bool ParticleEffect::is_used(const FrameData& frame) {
+    return !frame.world->query<const ParticleLook>().empty();
+}
+
+void ParticleEffect::collect(FrameData& frame) {
+    const auto* const time = frame.world->find_resource<FrameTime>();
+    const float step = time != nullptr ? time->step : FrameTime{}.step;
+    const float back = (1.0f - frame.camera.alpha) * step;
+    const ImagePool& pool = frame.materials->images();
+    looks.clear();
+    arrays.clear();
+    instances.clear();
+    lit = images = false;
+    frame.world->query<const ParticleLook, const ParticlePool>().each(
+        [&](const ParticleLook& look, const ParticlePool& particles) {
+            if (looks.size() >= kMaxLooks) {
+                return;
+            }
+            const bool has_image = frame.assets->images.size() > look.image.index;
+            const ImageLayer place = has_image ? pool.find(look.image) : ImageLayer{};
+            append_particles(particles, static_cast<std::uint32_t>(looks.size()), back, instances);
+            looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
+            arrays.push_back(place.array);
+            lit = lit || look.lit > 0;
+            images = images || has_image;
+        });
+    if (frame.warm_up && instances.empty() && !looks.empty()) {
+        instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
+    }
+
+    const Affine& camera = frame.camera.world_from_camera;
+    const std::vector<std::uint32_t> order = order_by_distance(
+        instances, transform_point(camera, Vec3(0)), transform_vector(camera, Vec3(0, 0, -1)));
+    sorted.clear();
+    runs.clear();
+    for (const std::uint32_t i : order) {
+        // Discs fit any array.
+        const std::uint32_t look = instances[i].look_and_share >> 16;
+        const bool is_disc = looks[look][3].w < 0;
+        if (runs.empty() || (!is_disc && runs.back().array != arrays[look])) {
+            runs.push_back(
+                {.array = arrays[look], .first = static_cast<int>(sorted.size()), .count = 0});
+        }
+        ++runs.back().count;
+        sorted.push_back(instances[i]);
+    }
+    particle_texels.upload(*frame.ring, sorted);
+    look_texels.upload(*frame.ring, looks);
+}
+
+void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
+    if (runs.empty()) {
+        return;
+    }
+    const std::vector<Use> reads = lighting_reads(
+        view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
+    const Use writes[] = {view.radiance};
+    graph.add_pass(
+        "particles", std::span(reads), writes, [this, &frame, &view](PassContext& context) {
+            const bool clipped = is_clipped(view);
+            Variant variant = view.lighting.variant;
+            variant.add_if(clipped, "CLIPPED");
+            variant.add_if(lit, "LIT");
+            variant.add_if(images, "IMAGES");
+            const gpu::Program* const program = programs.get(variant);
+            if (program == nullptr) {
+                return;
+            }
+            gpu::Device& device = context.device();
+            device.use(gpu::Pipeline{
+                program,
+                {.depth = {.write = false},
+                 .blend = gpu::kBlendPremultiplied,
+                 .cull = GL_NONE,
+                 .clip = clipped}});
+            bind_lighting(context, view);
+            particle_texels.bind(device, kParticlesUnit);
+            look_texels.bind(device, kLooksUnit);
+            for (const Run& run : runs) {
+                program->set("first", run.first);
+                if (images) {
+                    device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
+                }
+                device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
+            }
+        });
+}
+
+}  // namespace limn

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "ecs/components/particles.h"
+#include "render/buffer_texture.h"
+#include "render/effect.h"
+#include "render/image_pool.h"
+#include "render/shaders/particle_gpu.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// Draws the particles of all emitters, back to front, as quads that are lit at their corners
+// (engine.billboard, particle.gpu-draw, particle.light-source-render).
+//
+// Reads    depth, light clusters, environment; ParticlePool with ParticleLook
+// Writes   radiance
+// Order    after blended surfaces, before the lens
+// Shaders  particle.vert, particle.frag; layout in particle_gpu.h
+//
+// A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
+// and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
+// format. Sorted by distance of their centers; blended surfaces are all behind.
+
+/// Layout of two texels in particle_gpu.h.
+struct ParticleInstance {
+    Vec3 position;
+    std::uint32_t look_and_share = 0;
+    std::uint64_t velocity_and_age = 0;  ///< four halfs, the first in the lowest bits
+    std::uint32_t random = 0;
+    std::uint32_t unused = 0;
+};
+static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
+
+/// The record of a look in particle_gpu.h.
+using LookRecord = std::array<Vec4, layout::kLookTexels>;
+
+/// `layer`: of the texture array that its image is in; -1: a soft disc.
+[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
+
+/// Factor on the size at a share 0 .. 1 of the life: straight between keys, which may be in any
+/// order. 1 without keys.
+[[nodiscard]] float sample_curve(const std::vector<CurveKey>& keys, float at);
+/// Color and opacity likewise; white without keys.
+[[nodiscard]] Vec4 sample_colors(const std::vector<ColorKey>& keys, float at);
+
+/// Appends the particles that exist `back` seconds before the end of the step, where they are then.
+void append_particles(
+    const ParticlePool& pool, std::uint32_t look, float back,
+    std::vector<ParticleInstance>& instances);
+
+/// Order of the instances from back to front, seen from `eye` along `forward`; equal distances keep
+/// their order, NaN comes first.
+[[nodiscard]] std::vector<std::uint32_t> order_by_distance(
+    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward);
+
+struct ParticleEffect {
+    /// Particles that follow one another in the order and have images of one texture array.
+    struct Run {
+        std::uint32_t array = 0;  ///< of ImagePool
+        int first = 0;
+        int count = 0;
+    };
+
+    ProgramVariants programs;
+    std::vector<LookRecord> looks = {};
+    std::vector<std::uint32_t> arrays = {};  ///< of each look's image
+    std::vector<ParticleInstance> instances = {};
+    std::vector<ParticleInstance> sorted = {};
+    std::vector<Run> runs = {};
+    bool lit = false;
+    bool images = false;
+    BufferTexture particle_texels = BufferTexture("particles", GL_RGBA32UI);
+    BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
+
+    [[nodiscard]] static Result<ParticleEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    void collect(FrameData& frame);
+    void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+};
+
+}  // namespace limn
