@@ -28,12 +28,14 @@ ImageData make_image(int size, bool srgb) {
     return image;
 }
 
-void put(ImageData& image, std::size_t pixel, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+void put(
+    ImageData& image, std::size_t pixel, std::uint8_t r, std::uint8_t g, std::uint8_t b,
+    std::uint8_t a = 255) {
     std::uint8_t* at = &image.pixels[4 * pixel];
     at[0] = r;
     at[1] = g;
     at[2] = b;
-    at[3] = 255;
+    at[3] = a;
 }
 
 /// Runs body(x, y, pixel) for every pixel.
@@ -63,7 +65,7 @@ PatternMaps make_pattern_maps(int size, const std::function<PatternTexel(const V
         heights[pixel] = t.height * pixels;
         const Vec3 c = glm::clamp(t.color, 0.0f, 1.0f);
         put(maps.base_color, pixel, to_byte(encode_srgb(c.x)), to_byte(encode_srgb(c.y)),
-            to_byte(encode_srgb(c.z)));
+            to_byte(encode_srgb(c.z)), to_byte(t.opacity));
         put(maps.orm, pixel, to_byte(t.occlusion), to_byte(t.roughness), to_byte(t.metalness));
     });
     for_pixels(size, [&](int x, int y, std::size_t pixel) {

@@ -15,11 +15,12 @@ struct PatternTexel {
     float roughness = 0.5f;           ///< perceptual, 0 .. 1
     float metalness = 0;              ///< 0 .. 1
     float occlusion = 1;              ///< visible share of the sky, 0 .. 1
+    float opacity = 1;                ///< 0 .. 1
 };
 
 /// Three square images of one size that tile in both directions.
 struct PatternMaps {
-    ImageData base_color;  ///< sRGB
+    ImageData base_color;  ///< sRGB, and opacity
     ImageData normal;      ///< tangent space, green up, from the heights
     ImageData orm;         ///< r occlusion, g roughness, b metalness, as glTF packs them
 };

@@ -3,6 +3,7 @@
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
+#include "content/make/sprite_patterns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -374,10 +375,12 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<CheckerPattern, make_checker>("checker", "two colors in squares, polished"),
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
+        pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
             "rose_window", "a round window of stained glass; black outside of the glass"),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
+        pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),
         pattern_kind<StainedGlassPattern, make_stained_glass>(
             "stained_glass", "leaded diamonds between two borders; black at the lead"),
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),

@@ -59,7 +59,7 @@ std::uint64_t bits(const PatternMaps& maps) {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
-    REQUIRE(pattern_kinds().size() == 16);
+    REQUIRE(pattern_kinds().size() == 18);
     for (const PatternKind& kind : pattern_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -72,6 +72,37 @@ TEST_CASE("patterns: every kind makes three whole images of the size asked for")
         CHECK(!maps.normal.srgb);
         CHECK(!maps.orm.srgb);
         CHECK(make_small(kind, 1).normal.pixels.size() == 4);
+    }
+}
+
+TEST_CASE("patterns: frames of a flipbook end before their border, and differ") {
+    for (const PatternKind& kind : pattern_kinds()) {
+        if (kind.name != std::string("smoke") && kind.name != std::string("flame")) {
+            continue;
+        }
+        INFO(std::string(kind.name));
+        const ImageData image = make_small(kind, 256).base_color;  // 4 x 4 frames
+        const auto opacity = [&](int x, int y) {
+            return image.pixels[static_cast<std::size_t>(y * 256 + x) * 4 + 3];
+        };
+        int differences = 0;
+        for (int i = 0; i < 256; ++i) {
+            for (const int border : {0, 63, 64, 127, 128, 191, 192, 255}) {
+                REQUIRE(opacity(border, i) == 0);
+                REQUIRE(opacity(i, border) == 0);
+            }
+            for (int y = 0; y < 64; ++y) {
+                differences += std::abs(opacity(i, y) - opacity(i, y + 64)) > 20 ? 1 : 0;
+            }
+        }
+        CHECK(differences > 1000);
+        for (int frame = 0; frame < 16; ++frame) {
+            int most = 0;
+            for (int i = 0; i < 64; ++i) {
+                most = std::max<int>(most, opacity(frame % 4 * 64 + 32, frame / 4 * 64 + i));
+            }
+            CHECK(most > 120);
+        }
     }
 }
 

@@ -1,0 +1,251 @@
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "render/passes/particle_pass.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::test {
+namespace {
+
+struct ParticleScene : Scene {
+    ParticleScene() { world.insert_resource(FrameTime{}); }
+
+    /// Particles at rest, in the middle of their life of a second.
+    void emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+        ParticlePool pool;
+        for (const Vec3& place : places) {
+            pool.x.push_back(place.x);
+            pool.y.push_back(place.y);
+            pool.z.push_back(place.z);
+            for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
+                column->push_back(0);
+            }
+            pool.age.push_back(0.5f);
+            pool.life.push_back(1);
+            pool.look.push_back(7);
+        }
+        world.create(ParticleEmitter{}, look, pool);
+    }
+    [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, 9, 9); }
+    Vec3 middle() { return rgb_at(radiance(view()), 4, 4); }
+};
+
+/// A disc that adds or hides light and does not soften.
+ParticleLook disc(const Vec3& color, float opacity, float cover) {
+    ParticleLook look;
+    look.size = 1;
+    look.colors = {{.at = 0, .color = color, .opacity = opacity}};
+    look.emission = 1;
+    look.lit = 0;
+    look.cover = cover;
+    look.softness = 0;
+    return look;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "particle pass: curves are straight between their keys, in any order and where keys meet") {
+    CHECK(sample_curve({}, 0.3f) == 1.0f);
+    CHECK(sample_curve({{0.5f, 3}}, 0.1f) == 3.0f);
+    const std::vector<CurveKey> keys = {{0.75f, 6}, {0.25f, 2}};
+    CHECK(sample_curve(keys, 0) == 2.0f);
+    CHECK(sample_curve(keys, 0.5f) == doctest::Approx(4));
+    CHECK(sample_curve(keys, 1) == 6.0f);
+    const std::vector<CurveKey> step = {{0, 1}, {0.5f, 1}, {0.5f, 5}, {1, 5}};
+    CHECK(sample_curve(step, 0.49f) == doctest::Approx(1));
+    CHECK(sample_curve(step, 0.5f) == 5.0f);
+    const Vec4 mixed = sample_colors({{0, {1, 0, 0}, 1}, {1, {0, 0, 1}, 0}}, 0.25f);
+    CHECK(mixed.x == doctest::Approx(0.75));
+    CHECK(mixed.z == doctest::Approx(0.25));
+    CHECK(mixed.w == doctest::Approx(0.75));
+}
+
+TEST_CASE(
+    "particle pass: they are ordered from back to front, equal ones as they were, NaN first") {
+    std::vector<ParticleInstance> instances(100);
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        instances[i].position = {0, 0, -static_cast<float>((i * 37) % 50)};
+    }
+    instances[60].position.x = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::uint32_t> order = order_by_distance(instances, {0, 0, 5}, {0, 0, -1});
+    REQUIRE(order.size() == 100);
+    CHECK(order[0] == 60);
+    std::vector<std::uint32_t> sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < 100; ++i) {
+        CHECK(sorted[i] == i);
+    }
+    for (std::size_t i = 2; i < order.size(); ++i) {
+        const float before = -instances[order[i - 1]].position.z;
+        const float now = -instances[order[i]].position.z;
+        const bool in_order = before > now || (before == now && order[i - 1] < order[i]);
+        CHECK(in_order);
+    }
+}
+
+TEST_CASE("particle pass: between steps they are back on their way, and not there before birth") {
+    ParticlePool pool;
+    for (const float age : {0.5f, 0.01f}) {
+        pool.x.push_back(3);
+        pool.y.push_back(0);
+        pool.z.push_back(0);
+        pool.vx.push_back(10);
+        pool.vy.push_back(0);
+        pool.vz.push_back(0);
+        pool.age.push_back(age);
+        pool.life.push_back(2);
+        pool.look.push_back(1);
+    }
+    std::vector<ParticleInstance> instances;
+    append_particles(pool, 5, 0.1f, instances);
+    REQUIRE(instances.size() == 1);
+    CHECK(instances[0].position.x == doctest::Approx(2));
+    CHECK((instances[0].look_and_share >> 16) == 5);
+    CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == doctest::Approx(0.2).epsilon(1e-3));
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: light adds up, in any order; black and what is hidden add none") {
+    const std::vector<Vec3> places = {{0, 0, -0.3f}, {0, 0, 0}, {0, 0, -0.1f}, {0, 0, 0.2f}};
+    emit(places, disc({0.25f, 0.5f, 1}, 0.5f, 0));
+    const Vec3 four = middle();
+    for (int c = 0; c < 3; ++c) {
+        CHECK(four[c] == near(4 * 0.5f * Vec3(0.25f, 0.5f, 1)[c]).epsilon(1e-5));
+    }
+    world.clear();
+    emit({places[3], places[1], places[0], places[2]}, disc({0.25f, 0.5f, 1}, 0.5f, 0));
+    CHECK(glm::length(middle() - four) < 1e-5f);
+    emit(places, disc({0, 0, 0}, 1, 0));
+    CHECK(glm::length(middle() - four) < 1e-5f);
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {1, 1, 1, 1}}),
+        at({0, 0, -0.2f}));
+    emit({{0, 0, -0.5f}}, disc({9, 9, 9}, 1, 1));
+    CHECK(middle().z == near(1 + 3 * 0.5f).epsilon(1e-5));  // one of the four is behind, too
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: those that cover are blended as by hand, whichever emitter they have") {
+    const Vec3 red = {1, 0.1f, 0};
+    const Vec3 green = {0, 1, 0.2f};
+    const Vec3 blue = {0.3f, 0, 1};
+    emit({{0, 0, 0}}, disc(blue, 0.25f, 1));
+    emit({{0, 0, -0.6f}}, disc(red, 0.5f, 1));
+    emit({{0, 0, -0.3f}}, disc(green, 0.75f, 1));
+    Vec3 want = 0.5f * red;
+    want = 0.25f * want + 0.75f * green;
+    want = 0.75f * want + 0.25f * blue;
+    CHECK(glm::length(middle() - want) < 2e-3f);
+    // Half a cover hides half as much.
+    world.clear();
+    emit({{0, 0, -0.6f}}, disc(red, 1, 1));
+    emit({{0, 0, 0}}, disc(green, 0.5f, 0.5f));
+    CHECK(glm::length(middle() - (0.75f * red + 0.5f * green)) < 2e-3f);
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: they fade over their softness where they meet a surface") {
+    place(
+        add(make_square()),
+        add(Material{.shading = ShadingModel::Unlit, .base_color = {0, 0, 0, 1}}), at({0, 0, 0}));
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.softness = 0.4f;
+    for (const float ahead : {0.1f, 0.2f, 0.4f, 0.6f}) {
+        CAPTURE(ahead);
+        emit({{0, 0, ahead}}, look);
+        CHECK(middle().x == near(std::min(ahead / 0.4f, 1.0f)).epsilon(1e-3));
+        world.query<const ParticlePool>().each(
+            [&](Entity entity, const ParticlePool&) { world.get<ParticlePool>(entity) = {}; });
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: lit ones scatter as much as light falls on them, forward ones from behind") {
+    ParticleLook look = disc({1, 1, 1}, 1, 1);
+    look.emission = 0;
+    look.lit = 1;
+    emit({{0, 0, 0}}, look);
+    CHECK(middle() == Vec3(0));
+    const auto sun = [&](const Vec3& travels, float illuminance) {
+        world.query<const DirectionalLight>().each([&](Entity entity, const DirectionalLight&) {
+            world.get<DirectionalLight>(entity).illuminance = 0;
+        });
+        shine(DirectionalLight{.illuminance = illuminance}, look_at(Vec3(0), travels));
+        return middle().x;
+    };
+    const float front = sun({0, 0, -1}, 1);
+    const float behind = sun({0, 0, 1}, 1);
+    CHECK(front > 0.1f);
+    CHECK(front < 1 / kPi);
+    CHECK(behind < 0.25f * front);
+    CHECK(sun({0, 0, -1}, 3) == near(3 * front).epsilon(1e-4));
+    world.query<const ParticleLook>().each([&](Entity entity, const ParticleLook&) {
+        world.get<ParticleLook>(entity).forward = 0.9f;
+    });
+    // Mostly by the lobe, which is (1 - g^2) / (1 - g)^3 / 4 of 1 / pi.
+    const float lobe = 0.9f * (1 - 0.81f) / (4 * 0.001f) / kPi;
+    CHECK(sun({0, 0, 1}, 1) == near(lobe).epsilon(0.02));
+    CHECK(sun({0, 0, -1}, 1) < 0.2f * front);
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a streak is as long as its way, and points along it") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.size = 0.1f;
+    look.facing = ParticleFacing::Velocity;
+    look.stretch = 0.1f;
+    emit({{0, 0, 0}}, look);
+    world.query<const ParticlePool>().each(
+        [&](Entity entity, const ParticlePool&) { world.get<ParticlePool>(entity).vx = {10}; });
+    const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 65, 65));
+    int wide = 0;
+    int high = 0;
+    for (int i = 0; i < 65; ++i) {
+        wide += image.at(i, 32, 0) > 0 ? 1 : 0;
+        high += image.at(32, i, 0) > 0 ? 1 : 0;
+    }
+    CHECK(
+        std::abs(wide - 1.1 * 32.5)
+        <= 2);  // its diameter and 10 m/s for 0.1 s, 32.5 pixels a meter
+    CHECK(std::abs(high - 0.1 * 32.5) <= 2);
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a flipbook shows the frame of its time, mixed with the next") {
+    ImageData image;
+    image.width = 8;
+    image.height = 4;
+    image.pixels.resize(8 * 4 * 4);
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 8; ++x) {
+            std::uint8_t* const texel = &image.pixels[static_cast<std::size_t>(y * 8 + x) * 4];
+            texel[0] = x < 4 ? 255 : 0;
+            texel[1] = x < 4 ? 0 : 255;
+            texel[2] = 0;
+            texel[3] = 255;
+        }
+    }
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.image = add(image);
+    look.columns = 2;
+    look.turn_spread = 0;
+    look.frame_rate =
+        2.5f;  // half a second: a quarter into the second frame, before the first again
+    emit({{0, 0, 0}}, look);
+    const Vec3 color = middle();
+    CHECK(color.y == near(0.75f).epsilon(0.02));
+    CHECK(color.x == near(0.25f).epsilon(0.02));
+}
+
+}  // namespace limn::test
