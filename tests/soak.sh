@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every level for many frames and fails where memory grows: more than 2 MiB allocated and not freed after the first
 # 3,700, in which every camera path comes round once, buffers find their sizes and the driver compiles its variants. The
-# least of 3,600 frames counts, at the end of both: what is in view and what the driver has in flight varies.
+# least of 600 frames counts, at the end of both: what is in view varies.
 # Resident memory is printed, too: it may grow in steps where the heap is fragmented or more is visible than before.
 #
 #     tests/soak.sh build/release/limn [FRAMES=10000] [LEVEL ...]

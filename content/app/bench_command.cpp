@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLightsScene =
     "lights";                      ///< by name, not by file: measured by light count and method
-constexpr int kHeapFrames = 3600;  ///< the last ones, whose least heap memory counts
+constexpr int kHeapFrames = 600;   ///< the last ones, whose least heap memory counts
 constexpr int kHeapInterval = 60;  ///< frames between its measurements
 constexpr const char* kLensName = "lens";  ///< not a scene: the lens effects, one by one
 

@@ -52,10 +52,23 @@ LIMN_FIELDS(ParticleBurst) {
     LIMN_FIELD(repeats, "how often it comes again");
 }
 
+/// A value at a share of a time, straight between keys.
+struct CurveKey {
+    float at = 0;
+    float value = 1;
+};
+
+LIMN_FIELDS(CurveKey) {
+    LIMN_FIELD(at, "share of the life, or of what the curve is about", "", 0, 1);
+    LIMN_FIELD(value, "factor", "", 0, 1000);
+}
+
 struct ParticleEmitter {
     bool active = true;
     float rate = 50;
     float rate_spread = 0;
+    std::vector<CurveKey> rate_curve;
+    bool by_screen_area = false;
     std::vector<ParticleBurst> bursts;
     float duration = 0;
     bool loop = true;
@@ -76,6 +89,10 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(active, "whether particles are born; the living ones go on");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);
+    LIMN_FIELD(rate_curve, "factor on the rate over the duration; without one, over a second");
+    LIMN_FIELD(
+        by_screen_area,
+        "rate and spread are multiplied by the share of the image that the shape covers");
     LIMN_FIELD(bursts, "many births at one instant");
     LIMN_FIELD(duration, "how long it emits; 0: forever", "s", 0, 1e6);
     LIMN_FIELD(loop, "starts again after the duration, bursts included");
@@ -120,17 +137,6 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(attraction, "acceleration toward the emitter's y axis", "m/s^2", -1e4, 1e4);
 }
 
-/// A value at a share of the life, straight between keys.
-struct CurveKey {
-    float at = 0;
-    float value = 1;
-};
-
-LIMN_FIELDS(CurveKey) {
-    LIMN_FIELD(at, "share of the life", "", 0, 1);
-    LIMN_FIELD(value, "factor", "", 0, 1000);
-}
-
 struct ColorKey {
     float at = 0;
     Vec3 color = {1, 1, 1};
@@ -142,6 +148,11 @@ LIMN_FIELDS(ColorKey) {
     LIMN_FIELD(color, .doc = "linear RGB", .min = 0, .max = 1000);
     LIMN_FIELD(opacity, "0 transparent, 1 opaque in the middle", "", 0, 1);
 }
+
+/// Value at 0 .. 1: straight between keys, which may be in any order. 1 without keys.
+[[nodiscard]] float sample_curve(const std::vector<CurveKey>& keys, float at);
+/// Color and opacity likewise; white without keys.
+[[nodiscard]] Vec4 sample_colors(const std::vector<ColorKey>& keys, float at);
 
 enum class ParticleFacing : std::uint8_t {
     Camera,    ///< a disc toward the camera

@@ -40,12 +40,6 @@ using LookRecord = std::array<Vec4, layout::kLookTexels>;
 /// `layer`: of the texture array that its image is in; -1: a soft disc.
 [[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
 
-/// Factor on the size at a share 0 .. 1 of the life: straight between keys, which may be in any
-/// order. 1 without keys.
-[[nodiscard]] float sample_curve(const std::vector<CurveKey>& keys, float at);
-/// Color and opacity likewise; white without keys.
-[[nodiscard]] Vec4 sample_colors(const std::vector<ColorKey>& keys, float at);
-
 /// Appends the particles that exist `back` seconds before the end of the step, where they are then.
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,

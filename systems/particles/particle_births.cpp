@@ -8,6 +8,7 @@
 namespace limn {
 namespace {
 
+constexpr float kAspect = 16.0f / 9.0f;
 constexpr double kSlack =
     1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
 constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
@@ -97,10 +98,10 @@ class Births {
 }  // namespace
 
 void find_births(
-    const ParticleEmitter& emitter, float dt, std::size_t room, Random& random, ParticlePool& pool,
-    std::vector<float>& births) {
+    const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
+    ParticlePool& pool, std::vector<float>& births) {
     const float rate =
-        spread(finite_or(emitter.rate, 0), finite_or(emitter.rate_spread, 0), random);
+        scale * spread(finite_or(emitter.rate, 0), finite_or(emitter.rate_spread, 0), random);
     const double asked = static_cast<double>(finite_or(emitter.duration, 0));
     const double duration = asked > 0 ? std::max(asked, kMinDuration) : 0;
     Births found(dt, room, pool, births);
@@ -115,7 +116,11 @@ void find_births(
             pool.time, std::min(left, std::max(rest, 0.0)), static_cast<double>(dt) - left};
         if (emitter.active) {
             found.begin();
-            found.add_rate(piece, static_cast<double>(rate));
+            // Of its middle: exact for straight lines.
+            const double period = duration > 0 ? duration : 1.0;
+            const double at = std::fmod((piece.begin + 0.5 * piece.length) / period, 1.0);
+            const float factor = sample_curve(emitter.rate_curve, static_cast<float>(at));
+            found.add_rate(piece, static_cast<double>(rate * finite_or(factor, 0)));
             for (const ParticleBurst& burst : emitter.bursts) {
                 found.add_burst(piece, burst, random);
             }
@@ -124,6 +129,16 @@ void find_births(
         pool.time =
             duration > 0 && rest <= piece.length && emitter.loop ? 0.0 : pool.time + piece.length;
     }
+}
+
+float screen_share(float radius, float distance, float fov_y) {
+    if (!(distance > radius)) {
+        return 1;
+    }
+    // A disc of this radius in an image plane of height 2 tan(fov / 2).
+    const float seen = radius / std::sqrt(distance * distance - radius * radius);
+    const float half_height = std::tan(0.5f * fov_y);
+    return std::min(kPi * seen * seen / (4.0f * half_height * half_height * kAspect), 1.0f);
 }
 
 Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {

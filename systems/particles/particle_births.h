@@ -20,10 +20,15 @@ namespace limn {
 
 /// The instants of births in a step, as shares 0 .. 1 of it: those of the rate in equal intervals
 /// that go on across steps, then those of bursts. Advances the pool's time and carry. `random`
-/// decides the spreads. At most `room` births; the others are added to `pool.dropped`.
+/// decides the spreads; `scale` is a factor on the rate. At most `room` births; the others are
+/// added to `pool.dropped`.
 void find_births(
-    const ParticleEmitter& emitter, float dt, std::size_t room, Random& random, ParticlePool& pool,
-    std::vector<float>& births);
+    const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
+    ParticlePool& pool, std::vector<float>& births);
+
+/// Share 0 .. 1 of an image of 16 : 9 that a ball covers in its middle, seen from `distance` with
+/// the vertical field of view `fov_y` [rad]; 1 from inside.
+[[nodiscard]] float screen_share(float radius, float distance, float fov_y);
 
 /// A point of the emitter's shape in local space (particle.generation-shape).
 [[nodiscard]] Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random);

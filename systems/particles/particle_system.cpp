@@ -26,6 +26,7 @@ struct Work {
     const ParticleEmitter* emitter = nullptr;
     ParticlePool* pool = nullptr;
     EmitterPlace place;
+    float scale = 1;  ///< of its rate
     ParticleStep step = {};
     Turbulence turbulence = {};
     Vortex vortex = {};
@@ -72,6 +73,32 @@ Work make_work(
     return work;
 }
 
+/// The camera that decides how large an emitter appears.
+struct Eye {
+    Vec3 place = {0, 0, 0};
+    float fov_y = 1;
+};
+Eye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
+    Eye eye;
+    bool found = false;
+    cameras.each([&](const Camera& camera, const WorldTransform& transform) {
+        if (camera.active && !found) {
+            eye = {transform_point(transform.world, Vec3(0)), camera.fov_y};
+            found = true;
+        }
+    });
+    return eye;
+}
+
+float seen_share(const ParticleEmitter& emitter, const Affine& world, const Eye& eye) {
+    const Vec3 reach = transform_vector(world, {emitter.size.x, 0, 0});
+    const Vec3 side = transform_vector(world, {0, emitter.size.y, 0});
+    const Vec3 depth = transform_vector(world, {0, 0, emitter.size.z});
+    const float radius = std::max({glm::length(reach), glm::length(side), glm::length(depth)});
+    return screen_share(
+        radius, glm::distance(transform_point(world, Vec3(0)), eye.place), eye.fov_y);
+}
+
 void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
@@ -79,7 +106,7 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     Random random(seed, subject, name_hash("particle births"), time.frame);
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
     std::vector<float> births;
-    find_births(emitter, work.step.dt, room, random, pool, births);
+    find_births(emitter, work.scale, work.step.dt, room, random, pool, births);
     add_particles(emitter, work.place, work.step.dt, seed, subject, births, pool);
 }
 
@@ -106,10 +133,11 @@ void update_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, ParticlePool>
         emitters,
-    Res<const WeatherState> gusts, OptionalRes<const Weather> weather, Res<const RandomSeed> seed,
-    Res<const FrameTime> time) {
+    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
+    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
+    const Eye eye = find_eye(cameras);
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
@@ -119,6 +147,7 @@ void update_particles(
         const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
         static const ParticleMotion kStill;
         Work work = make_work(entity, motion != nullptr ? *motion : kStill, place, wind, dt, *time);
+        work.scale = emitter.by_screen_area ? seen_share(emitter, now.world, eye) : 1.0f;
         work.emitter = &emitter;
         work.pool = &pool;
         works.push_back(work);

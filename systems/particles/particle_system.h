@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/commands.h"
+#include "ecs/components/camera.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -34,7 +35,7 @@ void update_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, ParticlePool>
         emitters,
-    Res<const WeatherState> gusts, OptionalRes<const Weather> weather, Res<const RandomSeed> seed,
-    Res<const FrameTime> time);
+    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
+    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 
 }  // namespace limn

@@ -1,5 +1,6 @@
 #include "ecs/base/jobs.h"
 #include "ecs/components/all.h"
+#include "ecs/components/camera.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -127,6 +128,61 @@ TEST_CASE("particles: births that vary by half have the mean rate, whatever the 
         scene.run(steps);
         CHECK(std::abs(static_cast<double>(scene.pool().born) / 30000 - 1) < 0.01);
     }
+}
+
+TEST_CASE("particles: a rate that grows along a curve gives its integral, one that falls a thinner "
+          "cloud") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(600);
+    emitter.duration = 4;
+    emitter.loop = false;
+    emitter.rate_curve = {{0, 0}, {1, 1}};
+    scene.add(emitter);
+    scene.run(120);
+    CHECK(std::abs(static_cast<double>(scene.pool().born) - 300) <= 1);  // 600 t^2 / 8
+    scene.run(300);
+    CHECK(std::abs(static_cast<double>(scene.pool().born) - 1200) <= 1);
+
+    Emitters falling_rate;
+    emitter.rate_curve = {{0, 1}, {1, 0}};
+    emitter.life = 0.5f;
+    falling_rate.add(emitter);
+    std::size_t last = 0;
+    for (int i = 0; i < 4; ++i) {
+        falling_rate.run(55);
+        CHECK((i == 0 || falling_rate.pool().size() < last));
+        last = falling_rate.pool().size();
+    }
+}
+
+TEST_CASE("particles: by screen area, half the area are half the births") {
+    Emitters scene;
+    const Entity eye =
+        scene.world.create(Camera{.fov_y = 1}, WorldTransform{}, PreviousWorldTransform{Affine{}});
+    const auto seen_from = [&](float distance) {
+        scene.world.get<WorldTransform>(eye).world =
+            affine_from({0, 0, distance}, Quat(1, 0, 0, 0), Vec3(1));
+    };
+    ParticleEmitter emitter = steady(1e5f);
+    emitter.by_screen_area = true;
+    emitter.size = {0.5f, 0.2f, 0.1f};
+    seen_from(10);
+    scene.add(emitter);
+    scene.run(60);
+    const auto near = static_cast<double>(scene.pool().born);
+    seen_from(10 * std::sqrt(2.0f));
+    scene.run(60);
+    const auto far = static_cast<double>(scene.pool().born) - near;
+    CHECK(far / near == doctest::Approx(0.5).epsilon(0.01));
+    // A ball of 0.5 m at 10 m, in an image of 2 tan(0.5) by 16 / 9 of it.
+    const double height = 2 * std::tan(0.5);
+    const double share = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
+    CHECK(near == doctest::Approx(1e5 * share).epsilon(0.01));
+    seen_from(0.1f);
+    scene.run(1);
+    CHECK(
+        static_cast<double>(scene.pool().born) - near - far
+        == doctest::Approx(1e5 / 60).epsilon(0.01));
 }
 
 TEST_CASE("particles: births are evenly spaced in time, across steps too") {
