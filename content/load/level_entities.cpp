@@ -270,6 +270,7 @@ Status LevelEntities::add_copy(
     list.entities.entities.push_back({std::move(components)});
     follow_character(list.entities, index);
     std::uint32_t scope = context.scope;
+    list.positions.push_back(node.json->at);
     if (node.is_copy && node.has_children) {
         scope = static_cast<std::uint32_t>(list.scopes.size());
         list.scopes.push_back({context.scope, {}});

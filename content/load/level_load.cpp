@@ -319,6 +319,7 @@ class LevelParser {
             return index < 0 ? std::nullopt
                              : std::optional(prefab_entity(static_cast<std::uint32_t>(index)));
         };
+        level_.entity_positions = std::move(entities.positions());
         names.all = [&entities, assets = names.all](std::string_view kind) {
             return kind == "entity" ? entities.names() : assets(kind);
         };
@@ -340,6 +341,7 @@ class LevelParser {
             const auto* const path = find_in<CameraPath>(entity.components);
             auto* const transform = find_in<Transform>(entity.components);
             if (path == nullptr || transform == nullptr || path->keys.empty()) {
+            level_.event_positions.push_back(events[i].at);
                 continue;
             }
             Vec3 target = path->keys.front().look_at;
