@@ -154,6 +154,10 @@ TEST_CASE("json: a missing file, a directory and an empty file each give one lin
     CHECK(
         load_json(folder.file("none.json")).error().message
         == folder.file("none.json") + ": no such file");
+    std::ofstream(folder.file("Fox.glb")) << "";
+    CHECK(
+        load_json(folder.file("fox.gltf")).error().message
+        == folder.file("fox.gltf") + ": no such file (did you mean Fox.glb?)");
     CHECK(
         load_json(folder.path()).error().message
         == folder.path() + ": found a folder, expected a file");

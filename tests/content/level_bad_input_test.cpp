@@ -90,8 +90,9 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         has(scene_error_of(folder, "{\"entities\": [\n{\"clip_player\": {\"clip\": \"Run\"}}]}"),
             "t.level.json:2:26: entity 0: clip_player: found the clip \"Run\""));
     CHECK(
-        has(scene_error_of(folder, R"({"entities": [{"gltf": "no.glb"}]})"),
-            "\"no.glb\": no such file in " + std::filesystem::canonical(folder.path()).string()));
+        has(scene_error_of(folder, R"({"entities": [{"gltf": "fox.glb"}]})"),
+            "\"fox.glb\": no such file in " + std::filesystem::canonical(folder.path()).string()
+                + " (did you mean Fox.glb?)"));
 }
 
 TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error") {
@@ -112,6 +113,7 @@ TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error
 
 TEST_CASE("bad level: unknown keys, components, fields and names, with the nearest") {
     CHECK(
+    std::ofstream(folder.file("Fox.glb")) << "";
         error_of(R"({"entites": []})")
         == "t.level.json:1:2: found the key \"entites\", expected one of title description "
            "resources "
