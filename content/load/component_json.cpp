@@ -43,6 +43,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr WrittenUnit kWrittenUnits[] = {
     {"rad", "deg", kDegree},
     {"rad", "rad", 1},
+    {"deg", "deg", 1},
+    {"deg", "rad", 1 / kDegree},
     {"rad/s", "deg/s", kDegree},
     {"rad/s", "rad/s", 1},
     {"rad/s", "rpm", 6 * kDegree},
@@ -307,7 +309,7 @@ struct Reader {
                 json, at, "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
         }
         FieldInfo plain = info;
-        plain.meta = {};
+        plain.meta = {.unit = is_euler ? "deg" : ""};
         float v[4] = {};
         LIMN_TRY(read_floats(json, plain, {v, json.items.size()}, at));
         if (is_euler) {
