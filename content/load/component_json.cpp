@@ -236,7 +236,9 @@ struct Reader {
             const std::string color =
                 info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
             return unexpected(
-                json, at, fmt::format("an array of {} numbers{}", floats.size(), color));
+                json, at,
+                info.meta.color ? expected_color(floats)
+                                : fmt::format("an array of {} numbers", floats.size()));
         }
         for (std::size_t i = 0; i < json.items.size(); ++i) {
             LIMN_TRY(read_float(json.items[i], floats[i], item_in(at, i)));
@@ -274,6 +276,11 @@ struct Reader {
         const std::uint64_t value = is_negative ? ~magnitude + 1 : magnitude;
         std::memcpy(field, &value, info.size);  // little-endian
         return Done{};
+    static std::string expected_color(std::span<const float> floats) {
+        return floats.size() == 4 ? R"([r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"
+                                  : R"([r, g, b] or "#rrggbb")";
+    }
+
     }
 
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
@@ -287,8 +294,7 @@ struct Reader {
             good = parsed.ec == std::errc() && parsed.ptr == end;
         }
         if (!good) {
-            const char* const form = floats.size() == 4 ? "#rrggbb or #rrggbbaa" : "#rrggbb";
-            return unexpected(json, at, std::string("a color as ") + form);
+            return unexpected(json, at, expected_color(floats));
         }
         if (digits == 8) {
             floats[3] = static_cast<float>(code & 0xff) / 255.0f;
