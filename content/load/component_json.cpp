@@ -233,8 +233,6 @@ struct Reader {
         const bool without_alpha = info.meta.color && floats.size() == 4 && json.items.size() == 3;
         if (json.kind != JsonKind::Array
             || (json.items.size() != floats.size() && !without_alpha)) {
-            const std::string color =
-                info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
             return unexpected(
                 json, at,
                 info.meta.color ? expected_color(floats)
@@ -276,11 +274,11 @@ struct Reader {
         const std::uint64_t value = is_negative ? ~magnitude + 1 : magnitude;
         std::memcpy(field, &value, info.size);  // little-endian
         return Done{};
+    }
+
     static std::string expected_color(std::span<const float> floats) {
         return floats.size() == 4 ? R"([r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"
                                   : R"([r, g, b] or "#rrggbb")";
-    }
-
     }
 
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
@@ -354,7 +352,9 @@ struct Reader {
         const bool is_entity = info.type == FieldType::Entity;
         const std::string kind = is_entity ? "entity" : info.asset;
         if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
-            return unexpected(json, at, "the name of an " + kind + ", or null");
+            FieldInfo one = info;
+            one.shape = FieldShape::One;
+            return unexpected(json, at, "the " + type_text(one) + ", or null");
         }
         bool found = false;
         if (is_entity) {
