@@ -46,9 +46,9 @@ hash_rows(const Column& column, std::uint32_t first, std::uint32_t count, std::u
 /// Identifies the serialized layout of the type: hash of names, types and sizes of its fields.
 [[nodiscard]] std::uint64_t layout_hash(const ComponentInfo& info);
 
-/// Calls call(Entity&) for every Entity field of the component, at any depth.
+/// Calls call(Entity&) for every Entity in these fields of the component, at any depth.
 template <typename Call>
-void for_each_entity(const std::vector<FieldInfo>& fields, void* around, const Call& call) {
+void for_each_entity(std::span<const FieldInfo> fields, void* around, const Call& call) {
     for (const FieldInfo& field : fields) {
         if (field.type != FieldType::Entity && field.type != FieldType::Struct) {
             continue;

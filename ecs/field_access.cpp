@@ -455,7 +455,9 @@ std::string type_text(const FieldInfo& field) {
         text = "name of an entity";
         break;
     case FieldType::Asset:
-        text = format_text("name of a {}", field.asset);
+        text = format_text(
+            "name of {} {}", std::strchr("aeiou", field.asset[0]) != nullptr ? "an" : "a",
+            field.asset);
         break;
     case FieldType::Struct:
         text = "object";

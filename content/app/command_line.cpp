@@ -438,15 +438,28 @@ Command add_shows(CLI::App& program, std::string& id) {
     return {app, [&id] { return run_shows(id); }};
 }
 
-Command add_components(CLI::App& program, bool& schema, bool& all) {
+struct ComponentsOptions {
+    std::string name;
+    bool schema = false;
+    bool all = false;
+};
+
+Command add_components(CLI::App& program, ComponentsOptions& options) {
     CLI::App* app = program.add_subcommand(
-        "components", "List the components with fields, units, ranges and defaults");
-    app->add_flag("--schema", schema, "print the JSON Schema of a level file instead");
-    app->add_flag("--all", all, "with those that systems keep for themselves");
+        "components", "List what levels are made of, with fields, units, ranges and defaults");
+    CLI::Option* name = app->add_option(
+                               "name", options.name,
+                               "of a component, resource, \"material\", \"path\", or what meshes "
+                               "and images are made by; default: list all")
+                            ->type_name("NAME");
+    app->add_flag("--schema", options.schema, "print the JSON Schema of a level file instead")
+        ->excludes(name);
+    app->add_flag("--all", options.all, "with those that systems keep for themselves");
     app->footer("Examples:\n"
                 "  limn components\n"
+                "  limn components point_light\n"
                 "  limn components --schema > level.schema.json");
-    return {app, [&schema, &all] { return run_components(schema, all); }};
+    return {app, [&options] { return run_components(options.name, options.schema, options.all); }};
 }
 
 /// The options of all commands, at their defaults.
@@ -460,8 +473,7 @@ struct AllOptions {
     std::string info_file;
     std::string show;
     std::string checked;
-    bool schema = false;
-    bool all_components = false;
+    ComponentsOptions components;
 };
 
 std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
@@ -477,7 +489,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_info(program, options.info_file),
         add_levels(program),
         add_shows(program, options.show),
-        add_components(program, options.schema, options.all_components)};
+        add_components(program, options.components)};
 }
 
 /// "limn render" for a parsed subcommand, else "limn".

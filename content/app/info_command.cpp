@@ -9,7 +9,9 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/path.h"
+#include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
+#include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
@@ -41,8 +43,19 @@ std::string extension_of(const std::string& path) {
 
 void print_rest(std::size_t count) {
     if (count > kMaxLines) {
-        fmt::print("    and {} more\n", count - kMaxLines);
+        fmt::print("    ... and {} more\n", count - kMaxLines);
     }
+}
+
+/// "1 mesh", "2 meshes", "3 entities".
+std::string counted(std::size_t count, std::string_view what) {
+    if (count == 1) {
+        return fmt::format("1 {}", what);
+    }
+    if (what.ends_with('y')) {
+        return fmt::format("{} {}ies", count, what.substr(0, what.size() - 1));
+    }
+    return fmt::format("{} {}{}", count, what, what.ends_with("sh") ? "es" : "s");
 }
 
 /// Entities of the file, without what a model gets to be looked at.
@@ -71,7 +84,7 @@ void print_components(const World& world, std::span<const Entity> entities) {
             ++counts[component_info(id).name];
         }
     }
-    fmt::print("{} entities\n", entities.size());
+    fmt::print("{}\n", counted(entities.size(), "entity"));
     for (const auto& [name, count] : counts) {
         fmt::print("    {:>8}  {}\n", count, name);
     }
@@ -82,17 +95,16 @@ void print_list(const char* what, const std::vector<std::string>& lines) {
     if (lines.empty()) {
         return;
     }
-    fmt::print("{} {}\n", lines.size(), what);
+    fmt::print("{}\n", counted(lines.size(), what));
     for (std::size_t i = 0; i < std::min(lines.size(), kMaxLines); ++i) {
         fmt::print("    {}\n", lines[i]);
     }
     print_rest(lines.size());
 }
 
-void print_names(const World& world, std::span<const Entity> entities) {
+void print_cameras_and_lights(const World& world, std::span<const Entity> entities) {
     std::vector<std::string> cameras;
     std::vector<std::string> lights;
-    std::vector<std::string> names;
     for (const Entity entity : entities) {
         const std::string name = name_of(world, entity);
         if (const auto* const camera = world.find<Camera>(entity)) {
@@ -107,13 +119,37 @@ void print_names(const World& world, std::span<const Entity> entities) {
         if (const auto* const light = world.find<SpotLight>(entity)) {
             lights.push_back(fmt::format("spot         {:>8.4g} cd  {}", light->intensity, name));
         }
-        if (world.has<Name>(entity)) {
-            names.push_back(name);
+    }
+    print_list("camera", cameras);
+    print_list("light", lights);
+}
+
+/// Names, children indented below their parents.
+void print_hierarchy(World& world, std::span<const Entity> entities) {
+    struct Open {
+        Entity entity;
+        std::size_t depth = 0;
+    };
+    std::vector<Open> open;
+    for (const Entity entity : entities) {
+        if (parent_of(world, entity).is_null()) {
+            open.push_back({entity});
         }
     }
-    print_list("cameras", cameras);
-    print_list("lights", lights);
-    print_list("names", names);
+    std::reverse(open.begin(), open.end());
+    if (!entities.empty()) {
+        fmt::print("hierarchy\n");
+    }
+    for (std::size_t i = 0; i < kMaxLines && !open.empty(); ++i) {
+        const auto [entity, depth] = open.back();
+        open.pop_back();
+        fmt::print("    {:{}}{}\n", "", 2 * depth, name_of(world, entity));
+        const std::span<const Entity> children = children_of(world, entity);
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            open.push_back({*child, depth + 1});
+        }
+    }
+    print_rest(entities.size());
 }
 
 /// Length, and how many of its joins are smooth: in direction and speed, in direction alone, or
@@ -124,11 +160,19 @@ void print_path(const PathData& path) {
         ++joins[static_cast<std::size_t>(join)];
     }
     fmt::print(
-        "path of {:.1f} m, {} curves; joins: {} of one speed, {} of one direction, {} corners  "
-        "{}\n",
-        path.length(), path.segments.size(), joins[static_cast<std::size_t>(BezierJoin::Speed)],
+        "path of {:.1f} m, {}; joins: {} of one speed, {} of one direction, {}  {}\n",
+        path.length(), counted(path.segments.size(), "curve"),
+        joins[static_cast<std::size_t>(BezierJoin::Speed)],
         joins[static_cast<std::size_t>(BezierJoin::Direction)],
-        joins[static_cast<std::size_t>(BezierJoin::Position)], path.name);
+        counted(
+            static_cast<std::size_t>(joins[static_cast<std::size_t>(BezierJoin::Position)]),
+            "corner"),
+        path.name);
+}
+
+/// A factor of a texture is rarely what one sees.
+std::string factor_text(float factor, const TextureSlot& texture) {
+    return texture.image.index != kNoAsset && factor > 0 ? "mapped" : fmt::format("{:.2f}", factor);
 }
 
 /// `meshes` and `materials`: those of the file.
@@ -140,7 +184,9 @@ void print_assets(
         triangles += mesh.indices.size() / 3;
         vertices += mesh.positions.size();
     }
-    fmt::print("{} meshes, {} triangles, {} vertices\n", meshes.size(), triangles, vertices);
+    fmt::print(
+        "{}, {}, {} vertices\n", counted(meshes.size(), "mesh"), counted(triangles, "triangle"),
+        vertices);
     for (std::size_t i = 0; i < std::min(meshes.size(), kMaxLines); ++i) {
         const MeshData& mesh = meshes[i];
         const Vec3 size = is_empty(mesh.bounds) ? Vec3(0) : 2.0f * half_extent(mesh.bounds);
@@ -151,17 +197,18 @@ void print_assets(
     print_rest(meshes.size());
 
     static constexpr const char* kShading[] = {"pbr", "blinn", "phong", "unlit", "skin"};
-    fmt::print("{} materials\n", materials.size());
+    fmt::print("{}\n", counted(materials.size(), "material"));
     for (std::size_t i = 0; i < std::min(materials.size(), kMaxLines); ++i) {
         const Material& material = materials[i];
         fmt::print(
-            "    {:<5}  metalness {:.2f}  roughness {:.2f}  {}\n",
-            kShading[static_cast<std::size_t>(material.shading)], material.metalness,
-            material.roughness, material.name);
+            "    {:<5}  metalness {:<6}  roughness {:<6}  {}\n",
+            kShading[static_cast<std::size_t>(material.shading)],
+            factor_text(material.metalness, material.metal_rough_texture),
+            factor_text(material.roughness, material.metal_rough_texture), material.name);
     }
     print_rest(materials.size());
 
-    fmt::print("{} images\n", assets.images.size());
+    fmt::print("{}\n", counted(assets.images.size(), "image"));
     for (std::size_t i = 0; i < std::min(assets.images.size(), kMaxLines); ++i) {
         const ImageData& image = assets.images[i];
         fmt::print("    {:>5} x {:<5}  {}\n", image.width, image.height, image.name);
@@ -172,10 +219,15 @@ void print_assets(
         print_path(path);
     }
     for (const SkeletonData& skeleton : assets.skeletons) {
-        fmt::print("skeleton of {} joints  {}\n", skeleton.joints.size(), skeleton.name);
+        fmt::print("skeleton of {}  {}\n", counted(skeleton.joints.size(), "joint"), skeleton.name);
     }
+    std::vector<std::string> skins;
+    for (const SkinData& skin : assets.skins) {
+        skins.push_back(fmt::format("{:>8} joints  {}", skin.joints.size(), skin.name));
+    }
+    print_list("skin", skins);
     if (!assets.clips.empty()) {
-        fmt::print("{} clips\n", assets.clips.size());
+        fmt::print("{}\n", counted(assets.clips.size(), "clip"));
     }
     for (std::size_t i = 0; i < std::min(assets.clips.size(), kMaxLines); ++i) {
         const ClipData& clip = assets.clips[i];
@@ -192,7 +244,8 @@ void print_programs(World& world, Entity camera) {
         return;
     }
     start_world(world, add_game_systems);
-    fmt::print("{} shader programs\n", warm_up_world(*headless, world, camera, kProgramsSize));
+    const int programs = warm_up_world(*headless, world, camera, kProgramsSize);
+    fmt::print("{}\n", counted(static_cast<std::size_t>(programs), "shader program"));
 }
 
 Status print_scene(const std::string& file) {
@@ -216,7 +269,8 @@ Status print_scene(const std::string& file) {
     }
     const std::vector<Entity> entities = own_entities(world, *scene);
     print_components(world, entities);
-    print_names(world, entities);
+    print_cameras_and_lights(world, entities);
+    print_hierarchy(world, entities);
     const Assets& assets = world.resource<Assets>();
     const ModelView view = scene->model.value_or(ModelView{});
     print_assets(
@@ -232,8 +286,8 @@ Status print_exr(const std::string& file) {
         return image.error();
     }
     fmt::print(
-        "{}\nOpenEXR, {} x {} pixels, {} channels\n", file, image->width, image->height,
-        image->channels.size());
+        "{}\nOpenEXR, {} x {} pixels, {}\n", file, image->width, image->height,
+        counted(image->channels.size(), "channel"));
     for (const ExrChannel& channel : image->channels) {
         float smallest = INFINITY;
         float largest = -INFINITY;

@@ -13,9 +13,9 @@ namespace limn {
 /// `id` lists them all.
 [[nodiscard]] Status run_shows(const std::string& id);
 
-/// `limn components`: components and resources with their fields, units, ranges and defaults; with
-/// `all` those, too, that systems keep for themselves; with `schema` the JSON Schema of a level
-/// file instead.
-[[nodiscard]] Status run_components(bool schema, bool all);
+/// `limn components [NAME]`: what levels are made of, with fields, units, ranges and defaults as
+/// levels write them; or that of one name. With `all` those, too, that systems keep for themselves;
+/// with `schema` the JSON Schema of a level file instead.
+[[nodiscard]] Status run_components(const std::string& name, bool schema, bool all);
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "content/load/atomic_file.h"
 
 #include "ecs/base/text.h"
+#include "ecs/base/type_name.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -130,11 +131,23 @@ Status write_file(const std::string& path, const std::string& text) {
     return write_file(path, std::as_bytes(std::span(text)));
 }
 
+std::string file_suggestion(const std::string& path) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder_of(path), error), end;
+         !error && entry != end; entry.increment(error)) {
+        names.push_back(entry->path().filename().string());
+    }
+    const std::string nearest =
+        nearest_name(std::filesystem::path(path).filename().string(), names);
+    return nearest.empty() ? "" : format_text(" (did you mean {}?)", nearest);
+}
+
 Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t max_size) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file.is_open()) {
         if (errno == ENOENT) {
-            return fail("{}: no such file", path);
+            return fail("{}: no such file{}", path, file_suggestion(path));
         }
         return system_error(path, "cannot be read");
     }

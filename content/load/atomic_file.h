@@ -23,6 +23,9 @@ namespace limn {
 /// The same for text.
 [[nodiscard]] Status write_file(const std::string& path, const std::string& text);
 
+/// " (did you mean Fox.glb?)" with the nearest name in the folder of `path`, or "".
+[[nodiscard]] std::string file_suggestion(const std::string& path);
+
 /// Reads a whole regular file. Fails with "path: found X, expected Y" when it does not exist, is a
 /// folder or a device, or is larger than `max_size` bytes.
 [[nodiscard]] Result<std::vector<std::byte>>

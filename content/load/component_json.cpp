@@ -43,6 +43,8 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr WrittenUnit kWrittenUnits[] = {
     {"rad", "deg", kDegree},
     {"rad", "rad", 1},
+    {"deg", "deg", 1},
+    {"deg", "rad", 1 / kDegree},
     {"rad/s", "deg/s", kDegree},
     {"rad/s", "rad/s", 1},
     {"rad/s", "rpm", 6 * kDegree},
@@ -231,10 +233,10 @@ struct Reader {
         const bool without_alpha = info.meta.color && floats.size() == 4 && json.items.size() == 3;
         if (json.kind != JsonKind::Array
             || (json.items.size() != floats.size() && !without_alpha)) {
-            const std::string color =
-                info.meta.color ? R"( or a color like "#ffcc80")" : std::string();
             return unexpected(
-                json, at, fmt::format("an array of {} numbers{}", floats.size(), color));
+                json, at,
+                info.meta.color ? expected_color(floats)
+                                : fmt::format("an array of {} numbers", floats.size()));
         }
         for (std::size_t i = 0; i < json.items.size(); ++i) {
             LIMN_TRY(read_float(json.items[i], floats[i], item_in(at, i)));
@@ -274,6 +276,11 @@ struct Reader {
         return Done{};
     }
 
+    static std::string expected_color(std::span<const float> floats) {
+        return floats.size() == 4 ? R"([r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"
+                                  : R"([r, g, b] or "#rrggbb")";
+    }
+
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
         const std::string& text = json.text;
         const std::size_t digits = text.size() - 1;
@@ -285,8 +292,7 @@ struct Reader {
             good = parsed.ec == std::errc() && parsed.ptr == end;
         }
         if (!good) {
-            const char* const form = floats.size() == 4 ? "#rrggbb or #rrggbbaa" : "#rrggbb";
-            return unexpected(json, at, std::string("a color as ") + form);
+            return unexpected(json, at, expected_color(floats));
         }
         if (digits == 8) {
             floats[3] = static_cast<float>(code & 0xff) / 255.0f;
@@ -307,7 +313,7 @@ struct Reader {
                 json, at, "a quaternion [x, y, z, w] or angles [yaw, pitch, roll] in degrees");
         }
         FieldInfo plain = info;
-        plain.meta = {};
+        plain.meta = {.unit = is_euler ? "deg" : ""};
         float v[4] = {};
         LIMN_TRY(read_floats(json, plain, {v, json.items.size()}, at));
         if (is_euler) {
@@ -346,7 +352,9 @@ struct Reader {
         const bool is_entity = info.type == FieldType::Entity;
         const std::string kind = is_entity ? "entity" : info.asset;
         if (json.kind != JsonKind::String && json.kind != JsonKind::Null) {
-            return unexpected(json, at, "the name of an " + kind + ", or null");
+            FieldInfo one = info;
+            one.shape = FieldShape::One;
+            return unexpected(json, at, "the " + type_text(one) + ", or null");
         }
         bool found = false;
         if (is_entity) {

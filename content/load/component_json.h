@@ -25,8 +25,8 @@ namespace limn {
 //     vector         an array of its length
 //     color          linear [r, g, b] or [r, g, b, a], or "#rrggbb", "#rrggbbaa" in sRGB;
 //                    without alpha, the field keeps its own
-//     rotation       [x, y, z, w], or [yaw, pitch, roll] in degrees about y, then x, then z
-//                    (R = Ry Rx Rz)
+//     rotation       [x, y, z, w], or [yaw, pitch, roll] in degrees, or with a unit, about y, then
+//                    x, then z (R = Ry Rx Rz)
 //     matrix         an array of its elements, column-major; Affine row-major
 //     entity, asset  its name, or null for none
 //     struct         an object; fields that it does not name keep their values

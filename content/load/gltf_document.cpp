@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -29,6 +30,20 @@ std::uint64_t size_of(const JsonValue& value) {
     return static_cast<std::uint64_t>(value.number);
 }
 
+bool has_extension(const std::string& name) {
+    return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
+}
+
+void warn_of_extensions(GltfDocument& document) {
+    std::set<std::string_view> ignored;
+    for (const JsonValue& used : document.json["extensionsUsed"].items) {
+        if (!has_extension(used.text) && ignored.insert(used.text).second) {
+            document.warnings.push_back(fmt::format(
+                "{}: the extension {} is ignored", document.file, in_quotes(used.text)));
+        }
+    }
+}
+
 Status check_version(const JsonValue& json, const std::string& file) {
     const std::string& version = json["asset"]["version"].text;
     if (!version.starts_with("2.")) {
@@ -37,7 +52,7 @@ Status check_version(const JsonValue& json, const std::string& file) {
     const std::vector<JsonValue>& required = json["extensionsRequired"].items;
     for (std::size_t i = 0; i < required.size(); ++i) {
         const std::string& name = required[i].text;
-        if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end()) {
+        if (!has_extension(name)) {
             return fail(
                 "{}: extensionsRequired[{}]: found {}, expected one of {}", file, i,
                 in_quotes(name), join_text(kExtensions, ", "));
@@ -352,6 +367,7 @@ Result<GltfDocument> open_gltf(
         document.warnings.push_back(
             fmt::format("{}: {} bytes after the GLB are ignored", file, chunks.trailing));
     }
+    warn_of_extensions(document);
     warn_of_unknown_types(document);
     LIMN_TRY(load_buffers(document, chunks));
     LIMN_TRY(find_views(document));

@@ -236,7 +236,9 @@ Result<std::vector<std::byte>> fetch_uri(
     const std::filesystem::path base = std::filesystem::canonical(folder, error);
     const std::filesystem::path path = std::filesystem::canonical(base / *relative, error);
     if (error) {
-        return fail("{}: {}: no such file in {}", place, in_quotes(uri), base.string());
+        return fail(
+            "{}: {}: no such file in {}{}", place, in_quotes(uri), base.string(),
+            file_suggestion((base / *relative).string()));
     }
     if (!is_under(path, base)) {
         return fail(

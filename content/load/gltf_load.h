@@ -21,7 +21,8 @@ namespace limn {
 // KHR_mesh_quantization, KHR_texture_transform, skeletons, skins with any number of joints per
 // vertex, morph targets, animation clips, and our components in extras.limn of a node. Ignored with
 // a warning: points and lines, orthographic cameras, lights of unknown type, bytes after a GLB,
-// textures in unsupported image formats, morph targets of texture coordinates and colors.
+// textures in unsupported image formats, morph targets of texture coordinates and colors, other
+// extensions unless they are required.
 //
 // Missing normals are generated with a crease angle of 50 degrees, not flat as the specification
 // demands: models without normals are mostly organic scans and low-poly animals, which look better

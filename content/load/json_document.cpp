@@ -353,12 +353,16 @@ class JsonParser {
             if (c != close && c != ',') {
                 return refuse(expected);
             }
+            const SourcePosition at = position();
             ++next_;
             if (c == close) {
                 return true;
             }
             if (!skip_blank()) {
                 return false;
+            }
+            if (peek() == close) {
+                return refuse_at(at, fmt::format("a comma before {}", close), "none there");
             }
         }
         return false;

@@ -264,10 +264,13 @@ Status LevelEntities::add_copy(
         if (!is_new) {
             return refuse(
                 node.path, node.json->find("name")->at, "a duplicate name " + in_quotes(name),
-                "each name once");
+                fmt::format(
+                    "each name once (the first is in line {})",
+                    list.positions[place->second].line));
         }
     }
     list.entities.entities.push_back({std::move(components)});
+    list.positions.push_back(node.json->at);
     follow_character(list.entities, index);
     std::uint32_t scope = context.scope;
     if (node.is_copy && node.has_children) {
@@ -385,19 +388,31 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
     };
     for (std::size_t i = 0; i < list.entities.entities.size(); ++i) {
         const NameUse* unknown = nullptr;
-        for (AnyComponent& component : list.entities.entities[i].components) {
-            if (!component.info().has_entities) {
-                continue;
-            }
-            for_each_entity(component.info().fields, component.data(), [&](Entity& entity) {
+        std::string place;
+        std::vector<AnyComponent>& components = list.entities.entities[i].components;
+        const auto read_names = [&](const ComponentInfo& info, const FieldInfo& field, void* data) {
+            for_each_entity(std::span(&field, 1), data, [&](Entity& entity) {
                 if (entity.generation != kUseGeneration) {
                     return;
                 }
                 const NameUse& use = list.uses[entity.index];
                 const std::optional<Entity> named = find_use(use, list.scope_of[i]);
-                unknown = named ? unknown : &use;
+                if (!named) {
+                    const auto* const name = find_in<Name>(components);
+                    unknown = &use;
+                    place = fmt::format(
+                        "entity {}: {}.{}",
+                        name != nullptr ? in_quotes(name->text) : std::to_string(i), info.name,
+                        field.name);
+                }
                 entity = named.value_or(Entity{});
             });
+        };
+        for (AnyComponent& component : components) {
+            const ComponentInfo& info = component.info();
+            for (std::size_t k = 0; info.has_entities && k < info.fields.size(); ++k) {
+                read_names(info, info.fields[k], component.data());
+            }
         }
         if (unknown != nullptr) {
             std::vector<std::string_view> known = names();
@@ -405,7 +420,7 @@ Status LevelEntities::resolve(List& list, bool is_level) const {
                 known.emplace_back(name);
             }
             return refuse(
-                "", unknown->at, "the entity " + in_quotes(unknown->name),
+                place, unknown->at, "the entity " + in_quotes(unknown->name),
                 "an existing name" + did_you_mean(unknown->name, known));
         }
     }

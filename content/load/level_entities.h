@@ -59,6 +59,8 @@ class LevelEntities {
     [[nodiscard]] Status check_unused_prefabs();
 
     [[nodiscard]] Prefab& entities() { return level_.entities; }
+    /// Where each of them is written.
+    [[nodiscard]] std::vector<SourcePosition>& positions() { return level_.positions; }
     [[nodiscard]] std::vector<GltfUse>& gltfs() { return level_.gltfs; }
 
   private:
@@ -74,6 +76,7 @@ class LevelEntities {
     };
     struct List {
         Prefab entities;
+        std::vector<SourcePosition> positions;
         std::vector<std::uint32_t> scope_of;  // in which each entity resolves names
         std::vector<Scope> scopes = {Scope{}};
         std::vector<NameUse> uses;

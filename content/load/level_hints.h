@@ -12,7 +12,8 @@ struct ComponentInfo;
 [[nodiscard]] bool is_internal(const ComponentInfo& info);
 
 /// To end a message about an unknown name in a level: ` ("environment" is a resource: it belongs in
-/// "resources")`; `did_you_mean` for names of neither components nor resources.
+/// "resources")`; else `did_you_mean`, and where that is empty ` ("position" is a field of
+/// transform)`.
 [[nodiscard]] std::string where_it_belongs(std::string_view name, const std::string& did_you_mean);
 
 }  // namespace limn

@@ -241,15 +241,26 @@ class LevelParser {
         return Done{};
     }
 
+    /// What is meant by a pattern that does not exist: another one, or a file.
+    [[nodiscard]] std::string pattern_hint(const std::string& name) const {
+        constexpr const char* kUse = R"("base_color_texture": {"image": )";
+        if (images_.contains(name)) {
+            return fmt::format(" (for a single image write {}{}}})", kUse, in_quotes(name));
+        }
+        const std::string stem = std::filesystem::path(name).stem().string();
+        return stem == name ? did_you_mean(name, sorted_names(patterns_))
+                            : fmt::format(
+                                R"( (for a file write {}{}}}, and {}: {{"file": {}}} in "images"))",
+                                kUse, in_quotes(stem), in_quotes(stem), in_quotes(name));
+    }
+
     /// Sets the maps of a pattern, and neutral factors for them.
     Status read_pattern(const JsonValue& json, const JsonPlace& at, Material& material) {
         const auto pattern =
             json.kind == JsonKind::String ? patterns_.find(json.text) : patterns_.end();
         if (pattern == patterns_.end()) {
             return unexpected(
-                json, at,
-                "the name of a pattern in \"images\""
-                    + did_you_mean(json.text, sorted_names(patterns_)));
+                json, at, "the name of a made image in \"images\"" + pattern_hint(json.text));
         }
         const std::uint32_t first = pattern->second;
         material.base_color = Vec4(1);
@@ -308,6 +319,7 @@ class LevelParser {
         LIMN_TRY(read_events(entities));
         LIMN_TRY(entities.check_unused_prefabs());
         level_.entities = std::move(entities.entities());
+        level_.entity_positions = std::move(entities.positions());
         level_.gltfs = std::move(entities.gltfs());
         return Done{};
     }
@@ -329,6 +341,7 @@ class LevelParser {
         for (std::size_t i = 0; i < events.size(); ++i) {
             level_.events.events.push_back(LIMN_TRY(
                 read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab)));
+            level_.event_positions.push_back(events[i].at);
         }
         return Done{};
     }

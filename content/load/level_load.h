@@ -122,6 +122,8 @@ struct Level {
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(index in `entities`).
     EventList events;
+    std::vector<SourcePosition> entity_positions;  ///< where each of `entities` is written
+    std::vector<SourcePosition> event_positions;   ///< and each of `events`
     std::vector<LevelShow> shows;
     std::optional<LevelShow> show;  ///< the one that was chosen and is applied
 

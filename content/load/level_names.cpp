@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -117,17 +119,34 @@ class DeferredNames {
                     index = *found;
                     return;
                 }
-                std::vector<std::string_view> known;
-                for (const NameList& list : lists->second) {
-                    known.insert(known.end(), list.names.begin(), list.names.end());
-                }
+                const std::vector<std::string_view> known = known_names(lists->second, own);
                 result = fail(
-                    "{}:{}:{}: {}: found the {} {}, expected one of a glTF file or a generated "
-                    "mesh{}",
-                    level_.file, at.line, at.column, place, kind, in_quotes(name),
+                    "{}:{}:{}: {}: found the {} {}, expected {}{}", level_.file, at.line, at.column,
+                    place, kind, in_quotes(name),
+                    known.empty() ? "one of a glTF file or a generated mesh, which have none"
+                                  : "one of " + some_of(known),
                     did_you_mean(name, known));
             });
         return result;
+    }
+
+    /// Those of the entity's own file, or else all.
+    static std::vector<std::string_view>
+    known_names(const std::vector<NameList>& lists, SceneNumber own) {
+        if (own && !lists[*own + 1].names.empty()) {
+            return lists[*own + 1].names;
+        }
+        std::vector<std::string_view> known;
+        for (const NameList& list : lists) {
+            known.insert(known.end(), list.names.begin(), list.names.end());
+        }
+        return known;
+    }
+
+    static std::string some_of(std::span<const std::string_view> names) {
+        constexpr std::size_t kShown = 8;
+        std::string text = join_text(names.first(std::min(names.size(), kShown)), ", ");
+        return names.size() > kShown ? text + " ..." : text;
     }
 
     static std::optional<std::uint32_t>

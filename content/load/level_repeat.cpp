@@ -26,16 +26,15 @@ Result<std::vector<double>> read_lanes(
     const FieldInfo& field = *variation.field;
     std::vector<double> lanes;
     if (field.type == FieldType::Quat) {
-        for (const JsonValue& item : json.items) {
-            lanes.push_back(item.number);
-        }
-        const bool good =
-            json.items.size() == 3
-            && std::all_of(json.items.begin(), json.items.end(), [](const JsonValue& item) {
-                   return item.kind == JsonKind::Number && std::abs(item.number) <= 1e6;
-               });
-        if (!good) {
+        if (json.items.size() != 3) {
             return unexpected(json, place, "angles [yaw, pitch, roll] in degrees");
+        }
+        FieldInfo angle;
+        angle.meta = {.unit = "deg", .min = -1e6, .max = 1e6};
+        angle.type = FieldType::Double;
+        lanes.resize(json.items.size());
+        for (std::size_t i = 0; i < lanes.size(); ++i) {
+            LIMN_TRY(read_field(json.items[i], angle, &lanes[i], item_in(place, i), names));
         }
         return lanes;
     }

@@ -142,8 +142,11 @@ JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
         return json_object({member("type", json_array({text("string"), text("null")}))});
     case FieldType::Struct:
         return schema_of_fields(field.fields, defaults);
-    case FieldType::Quat:
-        return array_of(of_type("number"), 3, 4);
+    case FieldType::Quat: {
+        FieldInfo angle;
+        angle.meta.unit = "deg";
+        return array_of(schema_of_number(angle), 3, 4);
+    }
     default:
         break;
     }

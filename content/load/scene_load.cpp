@@ -109,10 +109,20 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
     scene.path = path;
     scene.shows = std::move(level.shows);
     scene.show = std::move(level.show);
-    (void)spawn_level(world, std::move(level));
+    const std::vector<SourcePosition> entity_positions = std::move(level.entity_positions);
+    const std::vector<SourcePosition> event_positions = std::move(level.event_positions);
+    const std::vector<Entity> entities = spawn_level(world, std::move(level));
     complete_scene(world, options, scene);
-    for (const std::string& warning : find_scene_warnings(world)) {
-        log_warn("{}: {}", path, warning);
+    for (const SceneWarning& warning : find_scene_warnings(world)) {
+        const auto entity = std::find(entities.begin(), entities.end(), warning.entity);
+        const SourcePosition at =
+            warning.event >= 0 ? event_positions[static_cast<std::size_t>(warning.event)]
+            : entity != entities.end()
+                ? entity_positions[static_cast<std::size_t>(entity - entities.begin())]
+                : SourcePosition{};
+        log_warn(
+            "{}{}: {}", path, at.line > 0 ? format_text(":{}:{}", at.line, at.column) : "",
+            warning.text);
     }
     scene.camera = find_camera(world);
     if (scene.camera.is_null()) {

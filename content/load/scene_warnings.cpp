@@ -2,7 +2,9 @@
 
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/caustics.h"
 #include "ecs/components/env_probe.h"
+#include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/path.h"
@@ -10,6 +12,8 @@
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
 #include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
 #include <fmt/format.h>
@@ -18,8 +22,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <compare>
 #include <cstddef>
+#include <map>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -49,6 +57,8 @@ constexpr Need kNeeds[] = {
     {"deformed", {"mesh_instance", "", ""}},
 };
 
+constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
+
 std::string label_of(const World& world, Entity entity) {
     const Name* const name = world.find<Name>(entity);
     return name != nullptr && !name->text.empty() ? fmt::format("entity \"{}\"", name->text)
@@ -60,118 +70,216 @@ bool has_component(const World& world, Entity entity, std::string_view name) {
     return info != nullptr && world.has(entity, info->id);
 }
 
-void check_needs(const World& world, Entity entity, std::vector<std::string>& warnings) {
-    for (const Need& need : kNeeds) {
-        if (!has_component(world, entity, need.component)
-            || std::any_of(need.needs.begin(), need.needs.end(), [&](std::string_view one) {
-                   return has_component(world, entity, one);
-               })) {
-            continue;
-        }
-        const auto end = std::find(need.needs.begin(), need.needs.end(), "");
-        warnings.push_back(fmt::format(
-            "{}: {} has no effect without {}", label_of(world, entity), need.component,
-            fmt::join(need.needs.begin(), end, " or ")));
+/// The local +z axis in world space; scales count as uniform.
+Vec3 back_of(const World& world, Entity entity) {
+    Vec3 back(0, 0, 1);
+    for (; !entity.is_null(); entity = parent_of(world, entity)) {
+        const auto* const transform = world.find<Transform>(entity);
+        back = transform != nullptr ? transform->rotation * back : back;
     }
+    return back;
 }
 
-void check_followers(const World& world, std::vector<std::string>& warnings) {
-    const auto* const assets = world.find_resource<Assets>();
-    const std::size_t paths = assets != nullptr ? assets->paths.size() : 0;
-    world.query<const PathFollower>().each([&](Entity entity, const PathFollower& follower) {
-        if (follower.path.index >= paths) {
-            warnings.push_back(fmt::format(
-                "{}: path_follower has no effect without a path", label_of(world, entity)));
-        }
-    });
-}
+struct SceneCheck {
+    const World& world;
+    std::vector<SceneWarning> warnings = {};
 
-void check_cameras(const World& world, std::vector<std::string>& warnings) {
-    std::vector<std::string> active;
-    world.query<const Camera>().each([&](Entity entity, const Camera& camera) {
-        if (camera.active) {
-            active.push_back(label_of(world, entity));
-        }
-    });
-    if (active.size() > 1) {
-        warnings.push_back(fmt::format(
-            "{} active cameras: {}; the first is used, set \"active\": false on the others",
-            active.size(), fmt::join(active, ", ")));
+    void warn(Entity entity, std::string_view what) {
+        warnings.push_back({fmt::format("{}: {}", label_of(world, entity), what), entity});
     }
-}
 
-/// Keyframes whose times do not increase.
-template <typename Track>
-void check_key_order(
-    const World& world, std::string_view component, std::vector<std::string>& warnings) {
-    world.query<const Track>().each([&](Entity entity, const Track& track) {
-        for (std::size_t i = 1; i < track.keys.size(); ++i) {
-            if (!(track.keys[i].time > track.keys[i - 1].time)) {
-                warnings.push_back(fmt::format(
-                    "{}: {}.keys[{}].time is {} s, not after the key before it ({} s)",
-                    label_of(world, entity), component, i, track.keys[i].time,
-                    track.keys[i - 1].time));
-                return;
-            }
-        }
-    });
-}
-
-/// Sizes that the renderer and the simulation round to a power of two.
-void check_resolutions(const World& world, std::vector<std::string>& warnings) {
-    const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
-        if (static_cast<unsigned>(asked) != used) {
-            warnings.push_back(fmt::format(
-                "{}: {} {} is rounded to the power of two {}", label_of(world, entity), field,
-                asked, used));
-        }
-    };
-    world.query<const Shadow>().each([&](Entity entity, const Shadow& shadow) {
-        const auto asked = static_cast<unsigned>(std::max(shadow.resolution, 1));
-        check(entity, "shadow.resolution", shadow.resolution, std::bit_ceil(asked));
-    });
-    world.query<const Ocean>().each([&](Entity entity, const Ocean& ocean) {
-        const auto asked = static_cast<unsigned>(std::max(ocean.resolution, 1));
-        check(entity, "ocean.resolution", ocean.resolution, std::bit_floor(asked));
-    });
-    world.query<const EnvProbe>().each([&](Entity entity, const EnvProbe& probe) {
-        const auto asked = static_cast<unsigned>(std::max(probe.resolution, 1));
-        check(entity, "env_probe.resolution", probe.resolution, std::bit_floor(asked));
-    });
-}
-
-/// Events that change a component which their entity does not have.
-void check_events(const World& world, std::vector<std::string>& warnings) {
-    const auto* const list = world.find_resource<EventList>();
-    for (std::size_t i = 0; list != nullptr && i < list->events.size(); ++i) {
-        for (const ScriptAction& action : list->events[i].actions) {
-            const bool is_edit =
-                action.action == EventAction::Set || action.action == EventAction::Impulse;
-            if (!is_edit || action.is_resource || !world.alive(action.entity)
-                || world.has(action.entity, action.value.info().id)) {
+    void check_needs(Entity entity) {
+        for (const Need& need : kNeeds) {
+            if (!has_component(world, entity, need.component)
+                || std::any_of(need.needs.begin(), need.needs.end(), [&](std::string_view one) {
+                       return has_component(world, entity, one);
+                   })) {
                 continue;
             }
-            warnings.push_back(fmt::format(
-                "events[{}]: {} has no {}{}", i, label_of(world, action.entity),
-                action.value.info().name,
-                action.action == EventAction::Set ? "; the event adds it, with defaults"
-                                                  : "; the event does nothing"));
+            const auto end = std::find(need.needs.begin(), need.needs.end(), "");
+            warn(
+                entity, fmt::format(
+                            "{} has no effect without {}", need.component,
+                            fmt::join(need.needs.begin(), end, " or ")));
         }
     }
+
+    void check_followers() {
+        const auto* const assets = world.find_resource<Assets>();
+        const std::size_t paths = assets != nullptr ? assets->paths.size() : 0;
+        world.query<const PathFollower>().each([&](Entity entity, const PathFollower& follower) {
+            if (follower.path.index >= paths) {
+                warn(entity, "path_follower has no effect without a path");
+            }
+        });
+    }
+
+    void check_cameras() {
+        std::vector<std::string> active;
+        world.query<const Camera>().each([&](Entity entity, const Camera& camera) {
+            if (camera.active) {
+                active.push_back(label_of(world, entity));
+            }
+        });
+        if (active.size() > 1) {
+            warnings.push_back({fmt::format(
+                "{} active cameras: {}; the first is used, set \"active\": false on the others",
+                active.size(), fmt::join(active, ", "))});
+        }
+    }
+
+    /// Caustics need a sun above the horizon, which may still be off.
+    void check_caustics() {
+        bool has_sun = false;
+        world.query<const DirectionalLight>().each([&](Entity entity, const DirectionalLight&) {
+            has_sun = has_sun || back_of(world, entity).y > kMinSunSine;
+        });
+        world.query<const Caustics>().each([&](Entity entity, const Caustics&) {
+            if (!has_sun) {
+                warn(entity, "caustics has no effect without a directional_light from above");
+            }
+        });
+    }
+
+    /// Lights whose color makes them brighter than their intensity says.
+    template <typename Light>
+    void check_colors() {
+        world.query<const Light>().each([&](Entity entity, const Light& light) {
+            const Vec3& color = light.color;
+            if (std::max({color.x, color.y, color.z}) > 1) {
+                warn(
+                    entity,
+                    fmt::format(
+                        "{0}.color is a tint in 0 .. 1, found [{1}, {2}, {3}]; raise {0}.{4} "
+                        "instead",
+                        component_info<Light>().name, color.x, color.y, color.z,
+                        std::is_same_v<Light, DirectionalLight> ? "illuminance" : "intensity"));
+            }
+        });
+    }
+
+    /// Keyframes whose times do not increase.
+    template <typename Track>
+    void check_key_order() {
+        world.query<const Track>().each([&](Entity entity, const Track& track) {
+            for (std::size_t i = 1; i < track.keys.size(); ++i) {
+                if (!(track.keys[i].time > track.keys[i - 1].time)) {
+                    warn(
+                        entity, fmt::format(
+                                    "{}.keys[{}].time is {} s, not after the key before it ({} s)",
+                                    component_info<Track>().name, i, track.keys[i].time,
+                                    track.keys[i - 1].time));
+                    return;
+                }
+            }
+        });
+    }
+
+    /// Sizes that the renderer and the simulation round to a power of two.
+    void check_resolutions() {
+        const auto check = [&](Entity entity, const char* field, int asked, unsigned used) {
+            if (static_cast<unsigned>(asked) != used) {
+                warn(
+                    entity,
+                    fmt::format("{} {} is rounded to the power of two {}", field, asked, used));
+            }
+        };
+        world.query<const Shadow>().each([&](Entity entity, const Shadow& shadow) {
+            const auto asked = static_cast<unsigned>(std::max(shadow.resolution, 1));
+            check(entity, "shadow.resolution", shadow.resolution, std::bit_ceil(asked));
+        });
+        world.query<const Ocean>().each([&](Entity entity, const Ocean& ocean) {
+            const auto asked = static_cast<unsigned>(std::max(ocean.resolution, 1));
+            check(entity, "ocean.resolution", ocean.resolution, std::bit_floor(asked));
+        });
+        world.query<const EnvProbe>().each([&](Entity entity, const EnvProbe& probe) {
+            const auto asked = static_cast<unsigned>(std::max(probe.resolution, 1));
+            check(entity, "env_probe.resolution", probe.resolution, std::bit_floor(asked));
+        });
+    }
+};
+
+/// When an action first runs; events of one time run in their order.
+struct ActionTime {
+    double time = 0;
+    std::size_t event = 0;
+    std::size_t action = 0;
+
+    [[nodiscard]] auto operator<=>(const ActionTime&) const = default;
+};
+
+/// Events that change a component which their entity does not have, or an entity that is gone.
+void check_events(SceneCheck& check) {
+    const World& world = check.world;
+    const auto* const list = world.find_resource<EventList>();
+    if (list == nullptr) {
+        return;
+    }
+    const auto warn = [&](std::size_t event, std::string_view what) {
+        check.warnings.push_back(
+            {fmt::format("events[{}]: {}", event, what), {}, static_cast<int>(event)});
+    };
+    std::map<Entity, ActionTime> destroyed;
+    const auto each_action = [&](auto&& visit) {
+        for (std::size_t i = 0; i < list->events.size(); ++i) {
+            for (std::size_t k = 0; k < list->events[i].actions.size(); ++k) {
+                const ScriptAction& action = list->events[i].actions[k];
+                if (world.alive(action.entity)) {
+                    visit(ActionTime{list->events[i].time, i, k}, action);
+                }
+            }
+        }
+    };
+    each_action([&](const ActionTime& time, const ScriptAction& action) {
+        if (action.action == EventAction::Destroy) {
+            ActionTime& first = destroyed.try_emplace(action.entity, time).first->second;
+            first = std::min(first, time);
+        }
+    });
+    const auto is_gone = [&](const ActionTime& time, const ScriptAction& action) {
+        for (Entity e = action.entity; !e.is_null(); e = parent_of(world, e)) {
+            const auto found = destroyed.find(e);
+            if (found != destroyed.end() && found->second < time) {
+                warn(
+                    time.event,
+                    fmt::format(
+                        "{} does not exist any more: events[{}] destroys it at {} s",
+                        label_of(world, action.entity), found->second.event, found->second.time));
+                return true;
+            }
+        }
+        return false;
+    };
+    each_action([&](const ActionTime& time, const ScriptAction& action) {
+        if (is_gone(time, action) || action.value.is_empty()
+            || world.has(action.entity, action.value.info().id)) {
+            return;
+        }
+        warn(
+            time.event,
+            fmt::format(
+                "{} has no {}{}", label_of(world, action.entity), action.value.info().name,
+                action.action == EventAction::Set ? "; the event adds it, with defaults"
+                                                  : "; the event does nothing"));
+    });
 }
 
 }  // namespace
 
-std::vector<std::string> find_scene_warnings(const World& world) {
-    std::vector<std::string> warnings;
-    world.each_entity([&](Entity entity) { check_needs(world, entity, warnings); });
-    check_followers(world, warnings);
-    check_cameras(world, warnings);
-    check_key_order<CameraPath>(world, "camera_path", warnings);
-    check_key_order<RotationTrack>(world, "rotation_track", warnings);
-    check_resolutions(world, warnings);
-    check_events(world, warnings);
-    return warnings;
+std::vector<SceneWarning> find_scene_warnings(const World& world) {
+    SceneCheck check{world};
+    world.each_entity([&](Entity entity) { check.check_needs(entity); });
+    check.check_followers();
+    check.check_cameras();
+    check.check_caustics();
+    check.check_colors<PointLight>();
+    check.check_colors<SpotLight>();
+    check.check_colors<DirectionalLight>();
+    check.check_key_order<CameraPath>();
+    check.check_key_order<RotationTrack>();
+    check.check_resolutions();
+    check_events(check);
+    return std::move(check.warnings);
 }
 
 }  // namespace limn

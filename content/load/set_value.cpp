@@ -1,6 +1,7 @@
 #include "content/load/set_value.h"
 
 #include "content/load/asset_lists.h"
+#include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/name.h"
 #include "ecs/components/surface.h"
@@ -62,6 +63,23 @@ Status set_field(
     return Done{};
 }
 
+/// To entities that lack the component: adds it first, with defaults.
+Status add_to_entities(
+    World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
+    std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
+    if (info.ops.construct_default == nullptr) {
+        return fail("{}: found no component {} on the entity, expected one", place.file, info.name);
+    }
+    AnyComponent fresh(info);
+    LIMN_TRY(set_field(info, fresh.data(), field_path, value, place, make_name_resolver(world)));
+    for (const Entity entity : entities) {
+        world.add(entity, info.id);
+        world.write(entity, info.id, fresh.data());
+    }
+    log_warn("{}: the entity has no {}; it is added, with defaults", place.file, info.name);
+    return Done{};
+}
+
 Status set_in_entities(
     World& world, const std::vector<Entity>& entities, const ComponentInfo& info,
     std::string_view field_path, const JsonValue& value, const JsonPlace& place) {
@@ -76,10 +94,8 @@ Status set_in_entities(
         world.write(entity, info.id, component.data());
         is_set = true;
     }
-    if (!is_set) {
-        return fail("{}: found no component {} on the entity, expected one", place.file, info.name);
-    }
-    return Done{};
+    return is_set ? Status(Done{})
+                  : add_to_entities(world, entities, info, field_path, value, place);
 }
 
 /// Creates the resource with default values first if the scene has none.
@@ -103,18 +119,21 @@ Status set_in_material(
     World& world, std::string_view rest, const JsonValue& value, const JsonPlace& place) {
     Assets* const assets = world.find_resource<Assets>();
     std::vector<std::string_view> names;
+    Material* named = nullptr;
     for (std::size_t i = 0; assets != nullptr && i < assets->materials.size(); ++i) {
         Material& material = assets->materials[i];
         names.emplace_back(material.name);
-        // Names of glTF materials may contain dots.
-        if (!rest.starts_with(material.name + '.')) {
-            continue;
+        // Names of glTF materials may contain dots: the longest that fits is meant.
+        if (rest.starts_with(material.name + '.')
+            && (named == nullptr || material.name.size() > named->name.size())) {
+            named = &material;
         }
-        const std::string_view field = rest.substr(material.name.size() + 1);
-        const Status status = set_field(
-            component_info<Material>(), &material, field, value, place, make_name_resolver(world));
+    }
+    if (named != nullptr) {
         ++assets->material_version;
-        return status;
+        return set_field(
+            component_info<Material>(), named, rest.substr(named->name.size() + 1), value, place,
+            make_name_resolver(world));
     }
     const std::string_view name = rest.substr(0, rest.find('.'));
     return fail(
@@ -122,11 +141,12 @@ Status set_in_material(
         in_quotes(name), did_you_mean(name, names));
 }
 
-/// Splits `path` at a dot such that an entity's name comes before it and a component after it.
+/// Splits `path` at the last dot that an entity's name comes before: names of glTF nodes may
+/// contain dots.
 Status
 set_in_named(World& world, std::string_view path, const JsonValue& value, const JsonPlace& place) {
-    for (std::size_t dot = path.find('.'); dot != std::string_view::npos;
-         dot = path.find('.', dot + 1)) {
+    for (std::size_t dot = path.rfind('.'); dot != std::string_view::npos && dot > 0;
+         dot = path.rfind('.', dot - 1)) {
         const std::vector<Entity> entities = find_entities(world, path.substr(0, dot));
         if (entities.empty()) {
             continue;

@@ -11,7 +11,8 @@ class World;
 
 /// `--set path=value`: changes one field of a loaded scene.
 ///
-///     lamp.point_light.intensity = 20  entity, component, field; more dots for fields of structs
+///     lamp.point_light.intensity = 20  entity, component, field; more dots for fields of structs;
+///                                      a component that it lacks is added, with a warning
 ///     exposure.ev = -1                 resource, field; created if the scene has none
 ///     materials.gold.roughness = 0.4   a material by name
 ///

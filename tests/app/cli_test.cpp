@@ -178,6 +178,53 @@ TEST_CASE("cli: levels lists the gallery, components their fields with units") {
     CHECK(schema.out.find("\"point_light\"") != std::string::npos);
 }
 
+TEST_CASE("cli: components NAME prints one type, as a level writes it") {
+    const TemporaryFolder folder;
+    const auto printed = [&](const char* name) {
+        const ProgramRun run = run_limn(folder, {"components", name});
+        CAPTURE(name);
+        CHECK(run.exit_code == 0);
+        return run.out;
+    };
+    CHECK(printed("camera_path").starts_with("==== Components: of an entity\n\ncamera_path\n"));
+    CHECK(printed("camera_path").find("keys[].look_at ") != std::string::npos);
+    CHECK(printed("camera_path").find("orbit_camera") == std::string::npos);
+    CHECK(printed("camera").find("angle, as \"45deg\"  = \"50deg\"") != std::string::npos);
+    CHECK(printed("camera").find("177.6 deg ") != std::string::npos);
+    CHECK(
+        printed("transform").find("[yaw, pitch, roll] in degrees  = [0, 0, 0]")
+        != std::string::npos);
+    CHECK(
+        printed("material").find("base_color_texture.image      name of an image")
+        != std::string::npos);
+    CHECK(printed("box").find("\"meshes\"") != std::string::npos);
+    CHECK(printed("wood").find("\"images\"") != std::string::npos);
+    CHECK(printed("exposure").find("Resources") != std::string::npos);
+    check_fails(folder, {"components", "point_ligth"}, 1, "(did you mean point_light?)");
+    check_fails(folder, {"components", "box", "--schema"}, 2);
+}
+
+TEST_CASE("cli: info shows the hierarchy, skins, and what textures hold") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("my.level.json"), R"({
+        "images": {"oak": {"make": "wood", "size": 16}},
+        "materials": {"oak": {"pattern": "oak"}, "plain": {}},
+        "meshes": {"fox": {"make": "creature"}},
+        "entities": [{"name": "post", "children": [{"name": "arm", "children": [{"name": "lamp"}]}]},
+                     {"name": "grass", "repeat": {"count": [50, 1, 1]}}]})");
+    const ProgramRun run = run_limn(folder, {"info", "my.level.json"});
+    CHECK(run.exit_code == 0);
+    CAPTURE(run.out);
+    CHECK(
+        run.out.find("hierarchy\n    post\n      arm\n        lamp\n    grass[0]\n")
+        != std::string::npos);
+    CHECK(run.out.find("grass[36]\n    ... and 14 more\n1 mesh, ") != std::string::npos);
+    CHECK(run.out.find("metalness mapped  roughness mapped  oak\n") != std::string::npos);
+    CHECK(run.out.find("metalness 0.00    roughness 0.50    plain\n") != std::string::npos);
+    CHECK(run.out.find("1 skin\n") != std::string::npos);
+    CHECK(run.out.find(" joints  fox\n") != std::string::npos);
+}
+
 TEST_CASE("cli: check draws a level that is right, and warns of what has no effect") {
     const TemporaryFolder folder;
     const ProgramRun good = run_limn(folder, {"check", "lights"});

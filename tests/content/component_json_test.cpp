@@ -242,6 +242,11 @@ TEST_CASE("component json: angles turn about y, then x, then z") {
     CHECK(rolled.y == test::near(1.0f));
     const auto transform = read<Transform>(R"({"rotation": [90, 30, 0]})");
     CHECK(glm::length(transform.rotation * Vec3(0, 0, -1) - both) < 1e-6f);
+    const auto units = read<Transform>(R"({"rotation": ["90deg", "0.5235988rad", 0]})");
+    CHECK(glm::length(units.rotation * Vec3(0, 0, -1) - both) < 1e-6f);
+    CHECK(
+        error_of<Transform>(R"({"rotation": ["1rad", 0, 0, 0]})").find("found the string")
+        != std::string::npos);
 }
 
 TEST_CASE("json: angles in between depend on the names of the poses, and lock a quarter turn up") {

@@ -240,8 +240,8 @@ TEST_CASE(
     REQUIRE_FALSE(scene.ok());
     CHECK(
         scene.error().message.find(
-            R"(entity "puppet": clip_player: found the clip "nid", expected one of a glTF file or )"
-            R"(a generated mesh (did you mean nod?))")
+            R"(entity "puppet": clip_player: found the clip "nid", expected one of nod, grin )"
+            R"((did you mean nod?))")
         != std::string::npos);
 }
 

@@ -51,6 +51,15 @@ TEST_CASE("gltf: bytes after a GLB are ignored with a warning") {
     }
 }
 
+TEST_CASE("gltf: each extension that is ignored is named once") {
+    check_square(load_edited(R"("scene": 0)", R"("extensionsUsed": ["KHR_materials_unlit"])"), "");
+    check_square(
+        load_edited(
+            R"("scene": 0)",
+            R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_sheen", "KHR_lights_punctual"])"),
+        "square.glb: the extension \"KHR_materials_sheen\" is ignored");
+}
+
 TEST_CASE("gltf: data URIs may be percent-encoded text") {
     std::string uri = "data:application/octet-stream,";
     for (const std::byte byte : square_binary()) {

@@ -71,8 +71,12 @@ TEST_CASE("json: what is no JSON is refused with its place and what was expected
     CHECK(error_of("{\"a\": }") == "t.json:1:7: found \"}\", expected a value");
     CHECK(error_of("{\"a\" 1}") == "t.json:1:6: found \"1\", expected ':' after the key \"a\"");
     CHECK(error_of("[1 2]") == "t.json:1:4: found \"2\", expected ',' or ']' in the array");
-    CHECK(error_of("[1,]") == "t.json:1:4: found \"]\", expected a value");
-    CHECK(error_of("{\"a\": 1,\n}") == "t.json:2:1: found \"}\", expected a key in quotes");
+    CHECK(error_of("[1,]") == "t.json:1:3: found a comma before ], expected none there");
+    CHECK(
+        error_of("{\"a\": [1],  // one\n}")
+        == "t.json:1:10: found a comma before }, expected none there");
+    CHECK(error_of("[1,,]") == "t.json:1:4: found \",\", expected a value");
+    CHECK(error_of("{\"a\": 1,\n}") == "t.json:1:8: found a comma before }, expected none there");
     CHECK(
         error_of("{\"a\": 1,\n \"a\": 2}")
         == "t.json:2:2: found a duplicate key \"a\", expected each key once");
@@ -150,6 +154,10 @@ TEST_CASE("json: a missing file, a directory and an empty file each give one lin
     CHECK(
         load_json(folder.file("none.json")).error().message
         == folder.file("none.json") + ": no such file");
+    std::ofstream(folder.file("Fox.glb")) << "";
+    CHECK(
+        load_json(folder.file("fox.gltf")).error().message
+        == folder.file("fox.gltf") + ": no such file (did you mean Fox.glb?)");
     CHECK(
         load_json(folder.path()).error().message
         == folder.path() + ": found a folder, expected a file");

@@ -79,6 +79,29 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
              "entities": [{"path_follower": {"path": "wya"}}]})",
          "2:54: entities[0]: path_follower.path: found the path \"wya\", expected an existing name "
          "(did you mean way?)"},
+        {R"({"entities": [{"position": [0, 1, 0]}]})",
+         R"(one of name prefab gltf repeat children ("position" is a field of transform))"},
+        {R"({"entities": [{"rotation": [0, 1, 0]}]})", R"(("rotation" is a field of transform))"},
+        {R"({"entities": [{"intensity": 3}]})",
+         R"(("intensity" is a field of point_light or spot_light))"},
+        {R"({"entities": [{"point_light": {"fov_y": 1}}]})", R"(("fov_y" is a field of camera))"},
+        {R"({"resources": {"ev": 1}})", R"(("ev" is a field of exposure))"},
+        {R"({"entities": [{"point_light": {"color": "orange"}}]})",
+         R"(found the string "orange", expected [r, g, b] or "#rrggbb")"},
+        {R"({"materials": {"m": {"base_color": [1, 1]}}})",
+         R"(expected [r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"},
+        {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
+         R"(expected the name of a made image in "images" (for a file write )"
+         R"("base_color_texture": {"image": "leaf"}, and "leaf": {"file": "leaf.png"} in "images"))"},
+        {R"({"images": {"leaf": {"file": "leaf.png"}}, "materials": {"m": {"pattern": "leaf"}}})",
+         R"((for a single image write "base_color_texture": {"image": "leaf"}))"},
+        {R"({"entities": [{"name": "sun"},
+                          {"name": "eye", "autofocus": {"target": "snu"}}]})",
+         "2:67: entity \"eye\": autofocus.target: found the entity \"snu\", expected an existing "
+         "name (did you mean sun?)"},
+        {"{\"entities\": [\n{\"name\": \"a\"},\n{\"name\": \"a\"}]}",
+         "3:10: entity \"a\": found a duplicate name \"a\", expected each name once (the first is "
+         "in line 2)"},
     };
     for (const auto& [level, message] : kCases) {
         const std::string error = error_of(level);
@@ -89,9 +112,11 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
     CHECK(
         has(scene_error_of(folder, "{\"entities\": [\n{\"clip_player\": {\"clip\": \"Run\"}}]}"),
             "t.level.json:2:26: entity 0: clip_player: found the clip \"Run\""));
+    std::ofstream(folder.file("Fox.glb")) << "";
     CHECK(
-        has(scene_error_of(folder, R"({"entities": [{"gltf": "no.glb"}]})"),
-            "\"no.glb\": no such file in " + std::filesystem::canonical(folder.path()).string()));
+        has(scene_error_of(folder, R"({"entities": [{"gltf": "fox.glb"}]})"),
+            "\"fox.glb\": no such file in " + std::filesystem::canonical(folder.path()).string()
+                + " (did you mean Fox.glb?)"));
 }
 
 TEST_CASE("bad level: a missing file, a directory, an empty file, a syntax error") {
@@ -154,7 +179,8 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
             "(did you mean lamp?)"));
     const std::string entity =
         error_of(R"({"entities": [{"name": "sun"}, {"orbit_camera": {"target": "snu"}}]})");
-    CHECK(entity.starts_with("t.level.json:1:60: found the entity \"snu\""));
+    CHECK(entity.starts_with("t.level.json:1:60: entity 1: orbit_camera.target: found the entity "
+                             "\"snu\""));
     CHECK(entity.ends_with("(did you mean sun?)"));
     CHECK(has(
         error_of(R"({"entities": [{"mesh_instance": {"mesh": "a"}}]})"), "no names of that kind"));

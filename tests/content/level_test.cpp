@@ -577,6 +577,35 @@ TEST_CASE("set: a resource that the scene lacks is made, with its defaults other
     CHECK(world.resource<Exposure>() == Exposure{.ev = -2});
 }
 
+TEST_CASE("set: a component that the entity lacks is added, with its defaults and a warning") {
+    World world;
+    spawn_into(world, R"({"entities": [{"name": "lamp"}]})");
+    const std::vector<std::string> messages = test::messages_of(
+        [&] { CHECK(set_value(world, "lamp.point_light.intensity", "3.5").ok()); });
+    CHECK(named<PointLight>(world, "lamp").intensity == 3.5f);
+    CHECK(named<PointLight>(world, "lamp").radius == PointLight{}.radius);
+    REQUIRE(messages.size() == 1);
+    CHECK(
+        messages[0]
+        == "--set lamp.point_light.intensity: the entity has no point_light; it is added, with "
+           "defaults");
+}
+
+TEST_CASE("set: names may contain dots; the longest is meant") {
+    World world;
+    spawn_into(world, R"({"materials": {"gold": {}, "gold.001": {}}})");
+    const Entity bone = world.create(Name{"Bone"}, PointLight{});
+    const Entity other = world.create(Name{"Bone.001"}, PointLight{});
+    CHECK(set_value(world, "Bone.001.point_light.attenuation.linear", "2").ok());
+    CHECK(set_value(world, "Bone.point_light.intensity", "3").ok());
+    CHECK(world.get<const PointLight>(bone).intensity == 3.0f);
+    CHECK(world.get<const PointLight>(bone).attenuation.linear == 0.0f);
+    CHECK(world.get<const PointLight>(other).attenuation.linear == 2.0f);
+    CHECK(set_value(world, "materials.gold.001.roughness", "0.125").ok());
+    CHECK(world.resource<Assets>().materials[1].roughness == 0.125f);
+    CHECK(world.resource<Assets>().materials[0].roughness == Material{}.roughness);
+}
+
 TEST_CASE("set: what cannot be set is named, and nothing changes") {
     World world;
     spawn_into(
@@ -586,7 +615,7 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
         {"lamp.point_light.intensity", "bright"},
         {"lamp.point_light.intensty", "1"},
         {"lamp.point_lihgt.intensity", "1"},
-        {"lamp.spot_light.intensity", "1"},
+        {"lamp.spot_light.intensity", "-1"},
         {"lmap.point_light.intensity", "1"},
         {"lamp.point_light", "1"},
         {"lamp", "1"},
@@ -605,6 +634,7 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
         CHECK(status.error().message.find('\n') == std::string::npos);
     }
     CHECK(named<PointLight>(world, "lamp").intensity == PointLight{}.intensity);
+    CHECK_FALSE(world.has<SpotLight>(find_named(world, "lamp")));
     CHECK(world.find_resource<Exposure>() == nullptr);
     CHECK(set_value(world, "lmap.point_light.intensity", "1")
               .error()

@@ -1,14 +1,16 @@
 // What a level says that has no effect, or not the one that its author expects.
 
 #include "content/load/level_load.h"
+#include "content/load/scene_load.h"
 #include "content/load/scene_warnings.h"
-#include "ecs/base/log.h"
 #include "ecs/components/all.h"
 #include "ecs/world.h"
+#include "tests/support.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -22,12 +24,14 @@ std::vector<std::string> warnings_of(std::string_view text) {
     REQUIRE_MESSAGE(level.ok(), (level ? std::string() : level.error().message));
     World world;
     (void)spawn_level(world, *std::move(level));
-    return find_scene_warnings(world);
+    std::vector<std::string> lines;
+    for (const SceneWarning& warning : find_scene_warnings(world)) {
+        lines.push_back(warning.text);
+    }
+    return lines;
 }
 
 using Warnings = std::vector<std::string>;
-
-std::vector<std::string> logged;
 
 }  // namespace
 
@@ -85,13 +89,87 @@ TEST_CASE("scene warnings: events on a component that the entity lacks") {
         == Warnings{"events[0]: entity \"box\" has no spin; the event does nothing"});
 }
 
+TEST_CASE("scene warnings: caustics without a sun above the horizon") {
+    const auto with = [](const char* light) {
+        return fmt::format(
+            R"({{"entities": [{{"name": "pool", "water": {{}}, "caustics": {{}}}}, {}]}})", light);
+    };
+    CHECK(warnings_of(with(R"({"transform": {"rotation": [0, -30, 0]}, "directional_light": {}})"))
+              .empty());
+    CHECK(warnings_of(with(R"({"transform": {"rotation": [0, -30, 0]},
+        "children": [{"directional_light": {"enabled": false}}]})"))
+              .empty());
+    for (const char* const light :
+         {R"({"point_light": {}})", R"({"directional_light": {}})",
+          R"({"transform": {"rotation": [0, 30, 0]}, "directional_light": {}})"}) {
+        CAPTURE(light);
+        CHECK(
+            warnings_of(with(light))
+            == Warnings{"entity \"pool\": caustics has no effect without a directional_light from "
+                        "above"});
+    }
+}
+
+TEST_CASE("scene warnings: the color of a light is no intensity") {
+    CHECK(warnings_of(R"({"entities": [{"point_light": {"color": [1, 0.5, 0]}}]})").empty());
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {"color": [3, 1.5, 0]}},
+                                     {"name": "sun", "directional_light": {"color": [2, 2, 2]}}]})")
+        == Warnings{
+            "entity \"lamp\": spot_light.color is a tint in 0 .. 1, found [3, 1.5, 0]; raise "
+            "spot_light.intensity instead",
+            "entity \"sun\": directional_light.color is a tint in 0 .. 1, found [2, 2, 2]; raise "
+            "directional_light.illuminance instead"});
+}
+
+TEST_CASE("scene warnings: events on an entity that is destroyed before") {
+    const auto with = [](const char* events) {
+        return fmt::format(
+            R"({{"entities": [{{"name": "box", "spin": {{}}, "children": [{{"name": "lid"}}]}}],
+                "events": [{}]}})",
+            events);
+    };
+    CHECK(warnings_of(with(R"({"at": 2, "destroy": ["box"]},
+        {"at": 1, "every": 1, "impulse": {"box": {"transform": {"position": [0, 1, 0]}}}},
+        {"at": 1, "destroy": ["lid"]})"))
+              .empty());
+    CHECK(
+        warnings_of(with(R"({"at": 2, "set": {"lid": {"spin": {"speed": 1}}}},
+                            {"at": 1, "destroy": ["box"]},
+                            {"at": 1, "destroy": ["box"], "set_resources": {"glow": {"strength": 1}}})"))
+        == Warnings{
+            "events[0]: entity \"lid\" does not exist any more: events[1] destroys it at 1 s",
+            "events[2]: entity \"box\" does not exist any more: events[1] destroys it at 1 s"});
+}
+
+TEST_CASE("scene warnings: a line of a level names the place in its file") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("t.level.json");
+    std::ofstream(path) << R"({"prefabs": {"lamp": {"children": [
+    {"shadow": {}}]}},
+  "entities": [
+    {"name": "a", "prefab": "lamp"}, {"shadow": {}}],
+  "events": [
+    {"at": 1, "impulse": {"a": {"spin": {"speed": 1}}}}]})";
+    const std::vector<std::string> lines = test::messages_of([&] {
+        World world;
+        CHECK(load_scene(world, path).ok());
+    });
+    const std::string shadow =
+        "shadow has no effect without point_light or spot_light or directional_light";
+    CHECK(
+        lines
+        == Warnings{
+            path + ":2:5: entity 1: " + shadow, path + ":4:38: entity 2: " + shadow,
+            path + ":6:5: events[0]: entity \"a\" has no spin; the event does nothing"});
+}
+
 TEST_CASE("scene warnings: state that systems keep, written by hand") {
     register_all_components();
-    logged.clear();
-    set_log_sink([](LogLevel, std::string_view message) { logged.emplace_back(message); });
-    CHECK(parse_level(R"({"entities": [{"name": "a", "world_transform": {}}]})", "t.level.json")
-              .ok());
-    set_log_sink(nullptr);
+    const std::vector<std::string> logged = test::messages_of([] {
+        CHECK(parse_level(R"({"entities": [{"name": "a", "world_transform": {}}]})", "t.level.json")
+                  .ok());
+    });
     REQUIRE(logged.size() == 1);
     CHECK(
         logged[0]
