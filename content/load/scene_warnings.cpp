@@ -55,6 +55,9 @@ constexpr Need kNeeds[] = {
     {"no_shadow", {"mesh_instance", "", ""}},
     {"mesh_levels", {"mesh_instance", "", ""}},
     {"deformed", {"mesh_instance", "", ""}},
+    {"particle_emitter", {"particle_look", "", ""}},
+    {"particle_motion", {"particle_emitter", "", ""}},
+    {"particle_look", {"particle_emitter", "", ""}},
 };
 
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
