@@ -134,6 +134,18 @@ TEST_CASE("play: keys move the camera and open the inspector, and F9 saves what 
     REQUIRE(wait_for(
         [&] { return count_different(read_png(session.folder.file(second_file)), paused) == 0; }));
 
+    // F2 closes the inspector; a click selects the box, F frames it.
+    xdotool("key F2 mousemove 320 200 sleep 0.5 click 1 sleep 0.5 key f");
+    CHECK(session.changes_from(paused, 2000));
+    xdotool("mousemove 20 20 key Home");
+    CHECK(wait_for([&] { return count_different(session.display.grab(), paused) == 0; }));
+    // Full screen and back: the window is as large as the display already.
+    for (int i = 0; i < 2; ++i) {
+        xdotool("key F11 sleep 1");
+        CHECK(session.program->running());
+        CHECK(wait_for([&] { return count_different(session.display.grab(), paused) < 2000; }));
+    }
+
     session.quit();
     CHECK(session.program->wait().exit_code == 0);
 }
