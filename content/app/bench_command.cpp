@@ -24,9 +24,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLightsScene =
-    "lights";                      ///< by name, not by file: measured by light count and method
-constexpr int kHeapFrames = 600;   ///< the last ones, whose least heap memory counts
-constexpr int kHeapInterval = 60;  ///< frames between its measurements
+    "lights";  ///< by name, not by file: measured by light count and method
+constexpr int kHeapFrames =
+    600;  ///< the last ones, whose least heap memory counts; a whole camera path if it is longer
+constexpr int kHeapInterval = 60;          ///< frames between its measurements
 constexpr const char* kLensName = "lens";  ///< not a scene: the lens effects, one by one
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
@@ -169,6 +170,8 @@ Status run_bench(const BenchOptions& options) {
     report.heap_begin_mib = heap_memory_mib();
     {
         const int frames = options.warmup + options.frames;
+        const int path = static_cast<int>(stage.scene.duration / stage_step(stage));
+        const int heap_frames = std::max(kHeapFrames, path);
         Progress progress("frame", frames);
         for (int i = 0; i < frames; ++i) {
             // The last frame of the warmup names the series.
@@ -178,7 +181,7 @@ Status run_bench(const BenchOptions& options) {
             if (i == 0 || i == options.warmup) {
                 report.heap_mib = std::numeric_limits<double>::infinity();
             }
-            if (left < kHeapFrames && left % kHeapInterval == 0) {
+            if (left < heap_frames && left % kHeapInterval == 0) {
                 glFinish();  // the driver keeps more while frames are in flight
                 report.heap_mib = std::min(report.heap_mib, heap_memory_mib());
             }

@@ -81,6 +81,7 @@ struct ParticleEmitter {
     float speed = 1;
     float speed_spread = 0.2f;
     float inherit = 0;
+    float drop_speed = 1;
     float life = 2;
     float life_spread = 0.5f;
 };
@@ -109,6 +110,9 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(speed, "initial speed", "m/s", -1e4, 1e4);
     LIMN_FIELD(speed_spread, "give or take", "m/s", 0, 1e4);
     LIMN_FIELD(inherit, "share of the emitter's own velocity that is added", "", -10, 10);
+    LIMN_FIELD(
+        drop_speed, "factor on the speed of drops that a spray source or obstacle throws up", "", 0,
+        100);
     LIMN_FIELD(life, "lifetime", "s", 0, 1e5);
     LIMN_FIELD(life_spread, "give or take", "s", 0, 1e5);
 }

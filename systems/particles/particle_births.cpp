@@ -35,6 +35,31 @@ void reserve(ParticlePool& pool, std::size_t count) {
     pool.look.reserve(count);
 }
 
+void make_room(const ParticleEmitter& emitter, std::size_t more, ParticlePool& pool) {
+    const std::size_t size = pool.size() + more;
+    if (pool.x.capacity() < size) {
+        reserve(pool, std::max<std::size_t>(emitter.capacity, size));
+    }
+}
+
+/// `ahead`: how much of the next step's time is before its birth [s].
+void add_particle(
+    ParticlePool& pool, const Vec3& position, const Vec3& velocity, float ahead, float life,
+    std::uint32_t look) {
+    if (!std::isfinite(position.x + position.y + position.z + life)) {
+        return;
+    }
+    pool.x.push_back(position.x);
+    pool.y.push_back(position.y);
+    pool.z.push_back(position.z);
+    pool.vx.push_back(velocity.x);
+    pool.vy.push_back(velocity.y);
+    pool.vz.push_back(velocity.z);
+    pool.age.push_back(-ahead);
+    pool.life.push_back(life);
+    pool.look.push_back(look);
+}
+
 /// One piece of a step, without a restart of the emitter within it.
 struct Piece {
     double begin;  ///< of the emitter's time [s]
@@ -180,10 +205,7 @@ void add_particles(
     const auto origin = [](const Affine& world) { return transform_point(world, Vec3(0)); };
     const Vec3 moved = (origin(place.now) - origin(place.before)) / dt;
     const Vec3 inherited = moved * finite_or(emitter.inherit, 0);
-    const std::size_t size = pool.size() + births.size();
-    if (pool.x.capacity() < size) {
-        reserve(pool, std::max<std::size_t>(emitter.capacity, size));
-    }
+    make_room(emitter, births.size(), pool);
     for (const float at : births) {
         Random random(seed, subject, name_hash("particles"), pool.born++);
         const Affine world = between(place.before, place.now, at);
@@ -197,18 +219,24 @@ void add_particles(
         const Vec3 velocity = aim * speed + inherited;
         const Vec3 position = transform_point(world, local) - velocity * (at * dt);
         const float life = spread(emitter.life, emitter.life_spread, random);
-        if (!std::isfinite(position.x + position.y + position.z + life)) {
-            continue;
-        }
-        pool.x.push_back(position.x);
-        pool.y.push_back(position.y);
-        pool.z.push_back(position.z);
-        pool.vx.push_back(velocity.x);
-        pool.vy.push_back(velocity.y);
-        pool.vz.push_back(velocity.z);
-        pool.age.push_back(-at * dt);
-        pool.life.push_back(life);
-        pool.look.push_back(random.word());
+        add_particle(pool, position, velocity, at * dt, life, random.word());
+    }
+}
+
+void add_drops(
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, float dt,
+    std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
+    const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+    const std::size_t count = std::min(drops.size(), room);
+    pool.dropped += drops.size() - count;
+    make_room(emitter, count, pool);
+    for (std::size_t i = 0; i < count; ++i) {
+        Random random(seed, subject, name_hash("particles"), pool.born++);
+        const float ahead = random.uniform() * dt;
+        const float life = spread(emitter.life, emitter.life_spread, random);
+        const Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);
+        const Vec3 position = drops[i].position - velocity * ahead;
+        add_particle(pool, position, velocity, ahead, life, random.word());
     }
 }
 

@@ -3,6 +3,7 @@
 #include "ecs/base/math.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/particles.h"
+#include "ecs/components/water_spray.h"
 
 #include <cmath>
 #include <cstdint>
@@ -34,6 +35,13 @@ void find_births(
 [[nodiscard]] Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random);
 /// Unit: a direction within `cone` [rad] of +y, even by solid angle.
 [[nodiscard]] Vec3 sample_cone(float cone, Random& random);
+
+/// Adds a particle for every drop that waves have thrown up in this step (water.crest-spray,
+/// water.impact-spray), at any instant of it; lifetimes are the emitter's. At most up to its
+/// capacity.
+void add_drops(
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, float dt,
+    std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
 /// An emitter's place at the ends of a step.
 struct EmitterPlace {

@@ -24,6 +24,7 @@ const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 struct Work {
     Entity entity;
     const ParticleEmitter* emitter = nullptr;
+    const SprayDrops* drops = nullptr;
     ParticlePool* pool = nullptr;
     EmitterPlace place;
     float scale = 1;  ///< of its rate
@@ -108,6 +109,9 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     std::vector<float> births;
     find_births(emitter, work.scale, work.step.dt, room, random, pool, births);
     add_particles(emitter, work.place, work.step.dt, seed, subject, births, pool);
+    if (work.drops != nullptr && emitter.active) {
+        add_drops(emitter, work.drops->drops, work.step.dt, seed, subject, pool);
+    }
 }
 
 std::uint32_t move(const Work& work, const ParticleBlock& block) {
@@ -131,7 +135,7 @@ void add_particle_pools(
 void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, ParticlePool>
+        const PreviousWorldTransform, Optional<const SprayDrops>, ParticlePool>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
@@ -141,7 +145,7 @@ void update_particles(
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
-                      ParticlePool& pool) {
+                      const SprayDrops* drops, ParticlePool& pool) {
         const Vec4& row = previous.world.row[0];
         const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
         const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
@@ -149,6 +153,7 @@ void update_particles(
         Work work = make_work(entity, motion != nullptr ? *motion : kStill, place, wind, dt, *time);
         work.scale = emitter.by_screen_area ? seen_share(emitter, now.world, eye) : 1.0f;
         work.emitter = &emitter;
+        work.drops = drops;
         work.pool = &pool;
         works.push_back(work);
     });

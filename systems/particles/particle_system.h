@@ -5,6 +5,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water_spray.h"
 #include "ecs/components/weather.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
@@ -33,7 +34,7 @@ void add_particle_pools(
 void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, ParticlePool>
+        const PreviousWorldTransform, Optional<const SprayDrops>, ParticlePool>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);

@@ -4,6 +4,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water_spray.h"
 #include "ecs/components/weather.h"
 #include "ecs/snapshot.h"
 #include "ecs/world.h"
@@ -130,8 +131,7 @@ TEST_CASE("particles: births that vary by half have the mean rate, whatever the 
     }
 }
 
-TEST_CASE("particles: a rate that grows along a curve gives its integral, one that falls a thinner "
-          "cloud") {
+TEST_CASE("particles: a rate along a curve gives its integral") {
     Emitters scene;
     ParticleEmitter emitter = steady(600);
     emitter.duration = 4;
@@ -504,6 +504,32 @@ TEST_CASE("particles: the dead leave in place, the others keep their order") {
     remove_dead(pool, 100);
     CHECK(pool.look == expected);
     CHECK(pool.x.size() == expected.size());
+}
+
+TEST_CASE("particles: drops that waves throw up fly on from where they are, up to the capacity") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(0);
+    emitter.capacity = 30;
+    const Entity entity = scene.add(emitter, falling(0));
+    scene.world.add(
+        entity, SprayDrops{.drops = std::vector<SprayDrop>(20, {{1, 2, 3}, {6, 0, 0}})});
+    scene.run();
+    REQUIRE(scene.pool().size() == 20);
+    for (std::size_t i = 0; i < 20; ++i) {
+        CHECK(scene.pool().x[i] >= 1.0f);
+        CHECK(scene.pool().x[i] <= 1 + 6 * kStep + 1e-5f);
+        CHECK(
+            scene.pool().x[i] - 1
+            == doctest::Approx(6 * scene.pool().age[i]).scale(1).epsilon(1e-5));
+        CHECK(scene.pool().y[i] == 2.0f);
+    }
+    CHECK(scene.pool().x[0] != scene.pool().x[1]);
+    scene.world.get<ParticleEmitter>(entity).drop_speed = 2;
+    scene.run();
+    CHECK(scene.pool().size() == 30);
+    CHECK(scene.pool().dropped == 10);
+    CHECK(scene.pool().vx[0] == 6.0f);
+    CHECK(scene.pool().vx.back() == 12.0f);
 }
 
 TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity") {
