@@ -162,8 +162,8 @@ TEST_CASE("model view: what is framed has the file's morph weights, not those of
     model.world.add(box, Deformed{.character = box, .skin = {}, .first_morph = 1});
     const Vec3 corner = model.world.resource<Assets>().meshes[0].positions[0];
     const Bounds framed = model.view().subject;
-    CHECK(framed.max.y == doctest::Approx(std::max(1.0f, corner.y + 0.5f + 2.0f)));
-    CHECK(framed.max.x == doctest::Approx(0.5f));
+    CHECK(framed.max.y == test::near(std::max(1.0f, corner.y + 0.5f + 2.0f)));
+    CHECK(framed.max.x == test::near(0.5f));
 }
 
 TEST_CASE("model view: a table top, a lid and a crowd are part of the model") {

@@ -56,15 +56,15 @@ TEST_CASE(
     CHECK(sample_curve({{0.5f, 3}}, 0.1f) == 3.0f);
     const std::vector<CurveKey> keys = {{0.75f, 6}, {0.25f, 2}};
     CHECK(sample_curve(keys, 0) == 2.0f);
-    CHECK(sample_curve(keys, 0.5f) == doctest::Approx(4));
+    CHECK(sample_curve(keys, 0.5f) == test::near(4));
     CHECK(sample_curve(keys, 1) == 6.0f);
     const std::vector<CurveKey> step = {{0, 1}, {0.5f, 1}, {0.5f, 5}, {1, 5}};
-    CHECK(sample_curve(step, 0.49f) == doctest::Approx(1));
+    CHECK(sample_curve(step, 0.49f) == test::near(1));
     CHECK(sample_curve(step, 0.5f) == 5.0f);
     const Vec4 mixed = sample_colors({{0, {1, 0, 0}, 1}, {1, {0, 0, 1}, 0}}, 0.25f);
-    CHECK(mixed.x == doctest::Approx(0.75));
-    CHECK(mixed.z == doctest::Approx(0.25));
-    CHECK(mixed.w == doctest::Approx(0.75));
+    CHECK(mixed.x == test::near(0.75));
+    CHECK(mixed.z == test::near(0.25));
+    CHECK(mixed.w == test::near(0.75));
 }
 
 TEST_CASE(
@@ -106,9 +106,9 @@ TEST_CASE("particle pass: between steps they are back on their way, and not ther
     std::vector<ParticleInstance> instances;
     append_particles(pool, 5, 0.1f, instances);
     REQUIRE(instances.size() == 1);
-    CHECK(instances[0].position.x == doctest::Approx(2));
+    CHECK(instances[0].position.x == test::near(2));
     CHECK((instances[0].look_and_share >> 16) == 5);
-    CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == doctest::Approx(0.2).epsilon(1e-3));
+    CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
 }
 
 TEST_CASE_FIXTURE(

@@ -11,6 +11,7 @@
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_system.h"
+#include "tests/near.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -173,16 +174,15 @@ TEST_CASE("particles: by screen area, half the area are half the births") {
     seen_from(10 * std::sqrt(2.0f));
     scene.run(60);
     const auto far = static_cast<double>(scene.pool().born) - near;
-    CHECK(far / near == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(far / near == test::near(0.5).epsilon(0.01));
     // A ball of 0.5 m at 10 m, in an image of 2 tan(0.5) by 16 / 9 of it.
     const double height = 2 * std::tan(0.5);
     const double share = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
-    CHECK(near == doctest::Approx(1e5 * share).epsilon(0.01));
+    CHECK(near == test::near(1e5 * share).epsilon(0.01));
     seen_from(0.1f);
     scene.run(1);
     CHECK(
-        static_cast<double>(scene.pool().born) - near - far
-        == doctest::Approx(1e5 / 60).epsilon(0.01));
+        static_cast<double>(scene.pool().born) - near - far == test::near(1e5 / 60).epsilon(0.01));
 }
 
 TEST_CASE("particles: births are evenly spaced in time, across steps too") {
@@ -192,8 +192,8 @@ TEST_CASE("particles: births are evenly spaced in time, across steps too") {
     const ParticlePool& pool = scene.pool();
     REQUIRE(pool.size() == 35);
     for (std::size_t i = 1; i < pool.size(); ++i) {
-        CHECK(pool.age[i - 1] - pool.age[i] == doctest::Approx(kStep / 7).epsilon(1e-3));
-        CHECK(pool.y[i - 1] - pool.y[i] == doctest::Approx(kStep / 7).epsilon(1e-3));  // 1 m/s
+        CHECK(pool.age[i - 1] - pool.age[i] == test::near(kStep / 7).epsilon(1e-3));
+        CHECK(pool.y[i - 1] - pool.y[i] == test::near(kStep / 7).epsilon(1e-3));  // 1 m/s
     }
     CHECK(pool.age.back() >= 0);
     CHECK(pool.age.front() <= 5 * kStep);
@@ -309,7 +309,7 @@ TEST_CASE("particles: shapes are filled evenly") {
             near += radius < 0.5f ? 1 : 0;
             sum += glm::dvec3(p);
         }
-        CHECK(near / double{kCount} == doctest::Approx(one.half_share).scale(1).epsilon(0.005));
+        CHECK(near / double{kCount} == test::near(one.half_share).scale(1).epsilon(0.005));
         CHECK(glm::length(sum) / kCount < 0.01);
     }
     Vec3 high(0);
@@ -334,7 +334,7 @@ TEST_CASE("particles: directions are unit, within the cone, even over its cap") 
         REQUIRE(v.y >= std::cos(cone) - 1e-6f);
         inner += v.y > middle ? 1 : 0;
     }
-    CHECK(inner / double{kCount} == doctest::Approx(0.5).epsilon(0.02));
+    CHECK(inner / double{kCount} == test::near(0.5).epsilon(0.02));
 }
 
 TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
@@ -348,9 +348,9 @@ TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
                 particle_block(pool, 0, pool.size()), {.gravity = {0, -9.81f, 0}, .dt = dt});
         }
         for (std::size_t i = 0; i < pool.size(); ++i) {
-            CHECK(pool.y[i] - start.y[i] - start.vy[i] == doctest::Approx(-4.905f).epsilon(2e-5));
-            CHECK(pool.vy[i] - start.vy[i] == doctest::Approx(-9.81f).epsilon(1e-5));
-            CHECK(pool.x[i] - start.x[i] == doctest::Approx(start.vx[i]).scale(20).epsilon(1e-5));
+            CHECK(pool.y[i] - start.y[i] - start.vy[i] == test::near(-4.905f).epsilon(2e-5));
+            CHECK(pool.vy[i] - start.vy[i] == test::near(-9.81f).epsilon(1e-5));
+            CHECK(pool.x[i] - start.x[i] == test::near(start.vx[i]).scale(20).epsilon(1e-5));
         }
     }
 }
@@ -369,8 +369,8 @@ TEST_CASE("particles: one thrown upward turns at v / g, v^2 / 2 g high") {
             when = scene.pool().age[0];
         }
     }
-    CHECK(highest == doctest::Approx(49 / (2 * 9.81)).epsilon(1e-4));
-    CHECK(when == doctest::Approx(7 / 9.81).epsilon(0.004));
+    CHECK(highest == test::near(49 / (2 * 9.81)).epsilon(1e-4));
+    CHECK(when == test::near(7 / 9.81).epsilon(0.004));
 }
 
 TEST_CASE("particles: drag leads to the air's velocity and to the terminal speed") {
@@ -381,9 +381,9 @@ TEST_CASE("particles: drag leads to the air's velocity and to the terminal speed
     scene.add(burst(20), motion);
     scene.run(600);
     for (std::size_t i = 0; i < scene.pool().size(); ++i) {
-        CHECK(scene.pool().vx[i] == doctest::Approx(3).epsilon(1e-4));
-        CHECK(scene.pool().vz[i] == doctest::Approx(-1).epsilon(1e-4));
-        CHECK(scene.pool().vy[i] == doctest::Approx(-9.81 / 2).epsilon(0.02));  // of the step
+        CHECK(scene.pool().vx[i] == test::near(3).epsilon(1e-4));
+        CHECK(scene.pool().vz[i] == test::near(-1).epsilon(1e-4));
+        CHECK(scene.pool().vy[i] == test::near(-9.81 / 2).epsilon(0.02));  // of the step
     }
 }
 
@@ -402,7 +402,7 @@ TEST_CASE("particles: opposite forces cancel") {
     whirl_particles(block, {.around = 3, .toward = 2}, 0.1f);
     whirl_particles(block, {.around = -3, .toward = -2}, 0.1f);
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        CHECK(pool.vx[i] == doctest::Approx(before.vx[i]).scale(1).epsilon(1e-5));
+        CHECK(pool.vx[i] == test::near(before.vx[i]).scale(1).epsilon(1e-5));
     }
 }
 
@@ -416,8 +416,8 @@ TEST_CASE("particles: a vortex turns about its axis and pulls toward it, by unit
         particle_block(pool, 0, 3),
         {.origin = {5, 0, 0}, .axis = {0, 1, 0}, .around = 4, .toward = 6}, 0.5f);
     // The first is at -x of the axis: around it is +z, toward it +x.
-    CHECK(pool.vx[0] - before.vx[0] == doctest::Approx(3));
-    CHECK(pool.vz[0] - before.vz[0] == doctest::Approx(2));
+    CHECK(pool.vx[0] - before.vx[0] == test::near(3));
+    CHECK(pool.vz[0] - before.vz[0] == test::near(2));
     CHECK(pool.vy[0] == before.vy[0]);
     CHECK(pool.vx[2] == before.vx[2]);  // on the axis
     CHECK(pool.vz[2] == before.vz[2]);
@@ -445,7 +445,7 @@ TEST_CASE("particles: curl noise has no sources and the strength that it is aske
         }
         REQUIRE(std::abs(divergence) < 0.02 * change + 0.02);
     }
-    CHECK(std::sqrt(square / kCount) == doctest::Approx(2).epsilon(0.15));
+    CHECK(std::sqrt(square / kCount) == test::near(2).epsilon(0.15));
 }
 
 TEST_CASE("particles: gradients of the noise are those of differences, and continue across cells") {
@@ -518,9 +518,7 @@ TEST_CASE("particles: drops that waves throw up fly on from where they are, up t
     for (std::size_t i = 0; i < 20; ++i) {
         CHECK(scene.pool().x[i] >= 1.0f);
         CHECK(scene.pool().x[i] <= 1 + 6 * kStep + 1e-5f);
-        CHECK(
-            scene.pool().x[i] - 1
-            == doctest::Approx(6 * scene.pool().age[i]).scale(1).epsilon(1e-5));
+        CHECK(scene.pool().x[i] - 1 == test::near(6 * scene.pool().age[i]).scale(1).epsilon(1e-5));
         CHECK(scene.pool().y[i] == 2.0f);
     }
     CHECK(scene.pool().x[0] != scene.pool().x[1]);
@@ -544,11 +542,11 @@ TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity
     scene.run();
     REQUIRE(scene.pool().size() == 10);
     for (std::size_t i = 0; i < 10; ++i) {
-        CHECK(scene.pool().x[i] == doctest::Approx(5.1 + 0.1 * static_cast<double>(i)));
+        CHECK(scene.pool().x[i] == test::near(5.1 + 0.1 * static_cast<double>(i)));
     }
     scene.world.get<ParticleEmitter>(entity).inherit = 0.5f;
     scene.run();
-    CHECK(scene.pool().vx.back() == doctest::Approx(30));  // of 60 m/s
+    CHECK(scene.pool().vx.back() == test::near(30));  // of 60 m/s
 }
 
 TEST_CASE("particles: two emitters alike differ, unless they have the same seed") {
