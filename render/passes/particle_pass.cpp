@@ -60,19 +60,16 @@ void append_particles(
     }
 }
 
-std::vector<std::uint32_t> order_by_distance(
-    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward) {
-    std::vector<float> distances(instances.size());
+void order_by_distance(
+    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward,
+    ParticleOrder& order) {
+    order.keys.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        const float distance = glm::dot(instances[i].position - eye, forward);
-        distances[i] = std::isnan(distance) ? INFINITY : distance;
+        order.keys[i] = depth_key(glm::dot(instances[i].position - eye, forward));
     }
-    std::vector<std::uint32_t> order(instances.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return distances[a] > distances[b];
-    });
-    return order;
+    order.indices.resize(instances.size());
+    std::iota(order.indices.begin(), order.indices.end(), 0u);
+    sort_by_depth(order.keys, order.indices, order.scratch);
 }
 
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
@@ -111,11 +108,12 @@ void ParticleEffect::collect(FrameData& frame) {
     }
 
     const Affine& camera = frame.camera.world_from_camera;
-    const std::vector<std::uint32_t> order = order_by_distance(
-        instances, transform_point(camera, Vec3(0)), transform_vector(camera, Vec3(0, 0, -1)));
+    order_by_distance(
+        instances, transform_point(camera, Vec3(0)), transform_vector(camera, Vec3(0, 0, -1)),
+        order);
     sorted.clear();
     runs.clear();
-    for (const std::uint32_t i : order) {
+    for (const std::uint32_t i : order.indices) {
         // Discs fit any array.
         const std::uint32_t look = instances[i].look_and_share >> 16;
         const bool is_disc = looks[look][3].w < 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/depth_sort.h"
 #include "ecs/components/particles.h"
 #include "render/buffer_texture.h"
 #include "render/effect.h"
@@ -45,10 +46,17 @@ void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances);
 
-/// Order of the instances from back to front, seen from `eye` along `forward`; equal distances keep
-/// their order, NaN comes first.
-[[nodiscard]] std::vector<std::uint32_t> order_by_distance(
-    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward);
+/// Keeps its memory from frame to frame.
+struct ParticleOrder {
+    std::vector<std::uint32_t> indices{};  ///< of instances, from back to front
+    std::vector<std::uint32_t> keys{};
+    SortScratch scratch{};
+};
+/// As seen from `eye` along `forward`; equal distances keep their order, NaN comes first
+/// (particle.distance-sort).
+void order_by_distance(
+    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward,
+    ParticleOrder& order);
 
 struct ParticleEffect {
     /// Particles that follow one another in the order and have images of one texture array.
@@ -62,6 +70,7 @@ struct ParticleEffect {
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
     std::vector<ParticleInstance> instances = {};
+    ParticleOrder order = {};
     std::vector<ParticleInstance> sorted = {};
     std::vector<Run> runs = {};
     bool lit = false;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "ecs/base/depth_sort.h"
 #include "ecs/base/math.h"
-#include "systems/particles/particle_sort.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -74,7 +74,9 @@ TEST_CASE(
         instances[i].position = {0, 0, -static_cast<float>((i * 37) % 50)};
     }
     instances[60].position.x = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<std::uint32_t> order = order_by_distance(instances, {0, 0, 5}, {0, 0, -1});
+    ParticleOrder found;
+    order_by_distance(instances, {0, 0, 5}, {0, 0, -1}, found);
+    const std::vector<std::uint32_t>& order = found.indices;
     REQUIRE(order.size() == 100);
     CHECK(order[0] == 60);
     std::vector<std::uint32_t> sorted = order;

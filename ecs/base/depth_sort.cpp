@@ -1,4 +1,4 @@
-#include "systems/particles/particle_sort.h"
+#include "ecs/base/depth_sort.h"
 
 #include "ecs/base/check.h"
 #include "ecs/base/jobs.h"

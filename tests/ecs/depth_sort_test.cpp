@@ -1,6 +1,6 @@
+#include "ecs/base/depth_sort.h"
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
-#include "systems/particles/particle_sort.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
