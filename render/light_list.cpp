@@ -1,6 +1,7 @@
 #include "render/light_list.h"
 
 #include "ecs/base/gradient_noise.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -212,6 +213,8 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
         });
     list.directional = static_cast<int>(list.records.size());
 
+    add_particle_lights(world, (1.0f - alpha) * (frame == nullptr ? 0 : frame->step), list);
+
     // Lights with a shadow or a cookie come last, so that shaders test only those for them.
     for (const bool last : {false, true}) {
         list.first_shadowed = static_cast<int>(list.records.size());
@@ -245,6 +248,38 @@ void collect_lights(const World& world, float alpha, LightList& list, bool all) 
                 }
             });
     }
+}
+
+void add_particle_lights(const World& world, float back, LightList& list) {
+    world.query<const ParticleLight, const ParticlePool>().each(
+        [&](const ParticleLight& light, const ParticlePool& pool) {
+            const auto add = [&](const Vec3& position, float factor) {
+                const PointLight one = {
+                    .color = light.color, .intensity = light.intensity, .radius = light.radius};
+                const layout::LightRecord record = make_record(one, position, factor);
+                if (is_valid(record)) {
+                    list.records.push_back(record);
+                    list.reach.push_back({position, reach_radius(record)});
+                    ++list.points;
+                }
+            };
+            const auto lit = static_cast<std::uint32_t>(light.share * 65536.0f);
+            std::uint32_t count = 0;
+            for (std::size_t i = 0; i < pool.size() && count < light.count; ++i) {
+                const float age = pool.age[i] - back;
+                if ((pool.look[i] & 0xffff) >= lit || age < 0) {
+                    continue;
+                }
+                const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
+                const float share = age / std::max(pool.life[i], 1e-6f);
+                add(Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
+                    sample_curve(light.curve, std::min(share, 1.0f)));
+                ++count;
+            }
+            if (count == 0) {
+                add(Vec3(0), 0);  // so that shaders have a loop over lights all the time
+            }
+        });
 }
 
 bool any_light_off(const World& world) {

@@ -73,6 +73,10 @@ struct LightList {
 /// `all` lights also from those that are off.
 void collect_lights(const World& world, float alpha, LightList& list, bool all = false);
 
+/// Appends a point light for every particle of a ParticleLight, where it is `back` seconds before
+/// the end of the step.
+void add_particle_lights(const World& world, float back, LightList& list);
+
 /// Whether some light is off: disabled or black.
 [[nodiscard]] bool any_light_off(const World& world);
 

@@ -1,10 +1,13 @@
 #include "systems/script_system.h"
 
+#include "ecs/components/input.h"
+#include "ecs/components/lifetime.h"
 #include "ecs/field_access.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace limn {
 
@@ -84,6 +87,14 @@ void run_action(World& world, const ScriptAction& action) {
     }
 }
 
+bool has_key(const ScriptEvent& event, const Input& input) {
+    if (event.key.empty()) {
+        return false;
+    }
+    const std::string action = key_action(event.key);
+    return event.on_release ? is_released(input, action) : is_pressed(input, action);
+}
+
 }  // namespace
 
 void run_events(World& world) {
@@ -92,11 +103,32 @@ void run_events(World& world) {
     if (time == nullptr || list == nullptr) {
         return;
     }
+    const Input* const input = std::as_const(world).find_resource<Input>();
+    const Input keys = input != nullptr ? *input : Input{};
     for (const ScriptEvent& event : list->events) {
-        if (is_due(event, time->frame, time->step)) {
+        if (is_due(event, time->frame, time->step) || has_key(event, keys)) {
             for (const ScriptAction& action : event.actions) {
                 run_action(world, action);
             }
+        }
+    }
+    if (input != nullptr) {
+        world.resource<Input>().before = keys.actions;
+    }
+}
+
+void end_lifetimes(World& world) {
+    const FrameTime* const time = std::as_const(world).find_resource<FrameTime>();
+    std::vector<Entity> ended;
+    world.query<Lifetime>().each([&](Entity entity, Lifetime& lifetime) {
+        lifetime.left -= time != nullptr ? time->step : 0.0f;
+        if (!(lifetime.left > 0)) {
+            ended.push_back(entity);
+        }
+    });
+    for (const Entity entity : ended) {
+        if (world.alive(entity)) {  // not a descendant of another one
+            destroy_tree(world, entity);
         }
     }
 }

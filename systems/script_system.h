@@ -16,6 +16,9 @@ class World;
 /// result. Does nothing without EventList or FrameTime.
 void run_events(World& world);
 
+/// Destroys the entities whose Lifetime is over. Exclusive, after run_events.
+void end_lifetimes(World& world);
+
 /// Moves every camera with a CameraPath to its pose at the end of this step; before
 /// update_transforms. Uses the target's position of the previous step, taken as relative to the
 /// camera's parent: cameras with a target should have no parent.

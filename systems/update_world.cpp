@@ -41,6 +41,7 @@ using enum When;
 
 void add_object_systems(SystemList& systems) {
     systems.add<run_events>(Events);
+    systems.add<end_lifetimes>(Events);
     systems.add<add_world_transforms>(Create);
     systems.add<add_env_probe_states>(Create, Both);
     systems.add<update_spins>(Move);

@@ -7,6 +7,7 @@
 #include "ecs/world.h"
 
 #include <span>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -26,6 +27,20 @@ void add_group(const ActionGroup& group, const Bindings* bindings, std::vector<K
             lines.push_back({keys.front(), action.doc});
         }
         last = &action;
+    }
+}
+
+/// The keys of the level's events.
+void add_events(const Bindings* bindings, std::vector<KeyHelp>& lines) {
+    bool first = true;
+    for (const Bindings::Binding& binding :
+         bindings != nullptr ? bindings->bindings : std::vector<Bindings::Binding>{}) {
+        if (!binding.text.empty() && !binding.keys.empty()) {
+            if (std::exchange(first, false)) {
+                lines.push_back({"", "This level"});
+            }
+            lines.push_back({binding.keys.front(), binding.text});
+        }
     }
 }
 
@@ -69,6 +84,7 @@ std::vector<KeyHelp> player_help(const World& world, const HelpState& state) {
             add_group(group, bindings, lines);
         }
     }
+    add_events(bindings, lines);
     add_camera(state, lines);
     lines.push_back({"", "Time and levels"});
     lines.push_back({"Space", "pause, resume"});

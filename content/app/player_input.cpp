@@ -196,15 +196,21 @@ Input Player::read_input(const WindowEvents& events, float dt) {
     if (!hud_->wants_keyboard() && !window_->is_key_down(GLFW_KEY_LEFT_CONTROL)
         && !window_->is_key_down(GLFW_KEY_RIGHT_CONTROL)) {
         const auto* bindings = std::as_const(stage_->world).find_resource<Bindings>();
+        const auto read = [&](std::string_view action, std::span<const std::string> keys) {
+            if (std::any_of(keys.begin(), keys.end(), [this](const std::string& key) {
+                    return is_down(*window_, key);
+                })) {
+                set_action(input, action);
+            }
+        };
         for (const ActionGroup& group : action_groups()) {
             for (const ActionInfo& action : group.actions) {
-                const std::span<const std::string> keys = keys_of(action, bindings);
-                if (std::any_of(keys.begin(), keys.end(), [this](const std::string& key) {
-                        return is_down(*window_, key);
-                    })) {
-                    set_action(input, action.name);
-                }
+                read(action.name, keys_of(action, bindings));
             }
+        }
+        for (const Bindings::Binding& binding :
+             bindings != nullptr ? bindings->bindings : std::vector<Bindings::Binding>{}) {
+            read(binding.action, binding.keys);
         }
     }
     const GamepadInput gamepad = poll_gamepad();

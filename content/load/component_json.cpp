@@ -495,10 +495,7 @@ JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider
 
 Error error_at(
     const JsonPlace& place, SourcePosition at, std::string_view found, std::string_view expected) {
-    std::string line(place.file);
-    if (at.line > 0) {
-        line += fmt::format(":{}:{}", at.line, at.column);
-    }
+    std::string line = place_text(place.file, at);
     if (!place.path.empty()) {
         line += ": " + place.path;
     }
@@ -550,8 +547,7 @@ Status read_component(
     const NameResolver& names) {
     LIMN_TRY(Reader{names}.read_fields(json, info.fields, object, place));
     if (const std::string problem = constraint_error(info, object); !problem.empty()) {
-        return fail(
-            "{}:{}:{}: {}: {}", place.file, json.at.line, json.at.column, place.path, problem);
+        return fail("{}: {}: {}", place_text(place.file, json.at), place.path, problem);
     }
     return Done{};
 }

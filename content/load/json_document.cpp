@@ -533,6 +533,11 @@ const JsonValue& JsonValue::operator[](std::string_view key) const {
     return member != nullptr ? *member : null;
 }
 
+std::string place_text(std::string_view file, SourcePosition at) {
+    const std::string_view name = at.file != nullptr ? *at.file : file;
+    return at.line > 0 ? fmt::format("{}:{}:{}", name, at.line, at.column) : std::string(name);
+}
+
 Result<JsonValue>
 parse_json(std::string_view text, std::string_view file, const JsonLimits& limits) {
     return JsonParser(text, file, limits).parse();

@@ -349,8 +349,8 @@ Status LevelEntities::read_layer(
         }
         if (is_internal(*info)) {
             log_warn(
-                "{}:{}:{}: {}: systems keep {} and overwrite what is written here", file_,
-                member.at.line, member.at.column, node.path, member.key);
+                "{}: {}: systems keep {} and overwrite what is written here",
+                place_text(file_, member.at), node.path, member.key);
         }
         AnyComponent* component = find_in(components, info->id);
         if (member.value.kind == JsonKind::Null) {

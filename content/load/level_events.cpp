@@ -2,6 +2,7 @@
 
 #include "content/load/level_hints.h"
 #include "ecs/base/text.h"
+#include "ecs/components/input.h"
 #include "ecs/field_access.h"
 
 #include <fmt/format.h>
@@ -14,8 +15,9 @@ namespace limn {
 
 namespace {
 
-constexpr std::string_view kKeys[] = {"at",      "every", "times",  "set", "set_resources",
-                                      "impulse", "spawn", "destroy"};
+constexpr std::string_view kKeys[] = {"at",       "every", "times",  "key",
+                                      "released", "text",  "set",    "set_resources",
+                                      "impulse",  "spawn", "destroy"};
 constexpr double kMaxTime = 1e6;  // [s]
 
 std::string event_hint(std::string_view name, const std::string& did_you_mean) {
@@ -30,13 +32,41 @@ struct EventReader {
     const ReadPrefab& read_prefab;
     ScriptEvent event;
 
+    Status read_key(const JsonValue& json, const char* name) {
+        const JsonPlace here = place_in(place, name);
+        const JsonValue& key = json[name];
+        for (const char* const time : {"at", "every", "times", "released"}) {
+            if (const JsonValue* const other = json.find(time); other != nullptr && other != &key) {
+                return error_at(
+                    here, other->at, fmt::format("{} with {}", in_quotes(time), in_quotes(name)),
+                    "a time or a key, in an event each");
+            }
+        }
+        const std::vector<std::string_view>& known = key_names();
+        if (std::find(known.begin(), known.end(), key.text) == known.end()) {
+            return unexpected(
+                key, here,
+                "a key such as \"G\", \"7\", \"Left\" or \"Enter\" that the program does "
+                "not use");
+        }
+        event.key = key.text;
+        event.on_release = std::string_view(name) == "released";
+        return Done{};
+    }
+
     Status read_times(const JsonValue& json) {
+        for (const char* const name : {"key", "released"}) {
+            if (json.find(name) != nullptr) {
+                return read_key(json, name);
+            }
+        }
         const JsonValue* const at = json.find("at");
         const JsonValue* const every = json.find("every");
         const JsonValue* const times = json.find("times");
         if (at == nullptr) {
             return error_at(
-                place, json.at, "no time", "\"at\": seconds since the start of the level");
+                place, json.at, "no time",
+                "\"at\": seconds since the start of the level, or \"key\": one that is pressed");
         }
         event.time = LIMN_TRY(expect_number(*at, 0.0, kMaxTime, place_in(place, "at")));
         if (every != nullptr) {

@@ -13,6 +13,8 @@ namespace limn {
 //     {
 //       "at": 2.0,                   // seconds since the start of the level
 //       "every": 0.5, "times": 10,   // repeated: ten times in total
+//       "key": "G",                  // instead of a time: when this key is pressed, or "released":
+//       "text": "strike the iron",   // what it does, for the help
 //       // assigns fields
 //       "set": {"lamp": {"point_light": {"enabled": false}}},
 //       "set_resources": {"exposure": {"ev": -1}},

@@ -26,6 +26,7 @@ struct LevelKey {
 };
 constexpr LevelKey kLevelKeys[] = {
     {"title", JsonKind::String},     {"description", JsonKind::String},
+    {"include", JsonKind::Array},  // read by load_level
     {"resources", JsonKind::Object}, {"images", JsonKind::Object},
     {"materials", JsonKind::Object}, {"paths", JsonKind::Object},
     {"meshes", JsonKind::Object},    {"prefabs", JsonKind::Object},
@@ -127,8 +128,8 @@ class LevelParser {
         }
         if (is_internal(*info)) {
             log_warn(
-                "{}:{}:{}: {}: systems keep this resource and overwrite what is written here",
-                level_.file, member.at.line, member.at.column, at.path);
+                "{}: {}: systems keep this resource and overwrite what is written here",
+                place_text(level_.file, member.at), at.path);
         }
         level_.resources.push_back(
             LIMN_TRY(read_component(member.value, *info, at, asset_names())));
@@ -279,8 +280,7 @@ class LevelParser {
         Result<PathData> path = make_path(shape.as<PathShape>());
         if (!path) {
             return fail(
-                "{}:{}:{}: {}: {}", at.file, member.value.at.line, member.value.at.column, at.path,
-                path.error().message);
+                "{}: {}: {}", place_text(at.file, member.value.at), at.path, path.error().message);
         }
         path->name = member.key;
         paths_[member.key] = static_cast<std::uint32_t>(level_.assets.paths.size());
@@ -342,8 +342,27 @@ class LevelParser {
             level_.events.events.push_back(LIMN_TRY(
                 read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab)));
             level_.event_positions.push_back(events[i].at);
+            bind_key(level_.events.events.back(), events[i]["text"].text);
         }
         return Done{};
+    }
+
+    /// So that the player reads the key of an event.
+    void bind_key(const ScriptEvent& event, const std::string& text) {
+        if (event.key.empty()) {
+            return;
+        }
+        const std::string action = key_action(event.key);
+        std::vector<Bindings::Binding>& bindings = level_.bindings.bindings;
+        const auto bound =
+            std::find_if(bindings.begin(), bindings.end(), [&](const Bindings::Binding& binding) {
+                return binding.action == action;
+            });
+        if (bound == bindings.end()) {
+            bindings.push_back({action, {event.key}, text});
+        } else if (bound->text.empty()) {
+            bound->text = text;
+        }
     }
 
     /// Moves cameras with a path to its start, so that the first frame is right.
@@ -407,7 +426,7 @@ class LevelParser {
 // ---- assets -------------------------------------------------------------------------------------
 
 std::string place_of(const Level& level, SourcePosition at, std::string_view path) {
-    return fmt::format("{}:{}:{}: {}", level.file, at.line, at.column, path);
+    return place_text(level.file, at) + ": " + std::string(path);
 }
 
 Status
@@ -526,9 +545,11 @@ Result<Level> load_level(
     const std::string& path, const LevelLimits& limits, const ShowChoice& choice,
     MadeAssets* made) {
     JsonValue json = LIMN_TRY(load_json(path, limits.json));
+    SourceFiles included = LIMN_TRY(include_files(json, path, limits.json));
     std::optional<LevelShow> show = LIMN_TRY(choose_show(choice, path, json));
     Level level = LIMN_TRY(LevelParser(json, path, limits).parse());
     level.show = std::move(show);
+    level.included = std::move(included);
     const std::string parent = std::filesystem::path(path).parent_path().string();
     LIMN_TRY(load_level_assets(level, parent.empty() ? "." : parent, limits, made));
     return level;

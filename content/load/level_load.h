@@ -3,6 +3,7 @@
 #include "content/load/gltf_load.h"
 #include "content/load/json_document.h"
 #include "content/load/level_entities.h"
+#include "content/load/level_include.h"
 #include "content/load/level_show.h"
 #include "content/load/made_assets.h"
 #include "content/make/make_mesh.h"
@@ -42,6 +43,7 @@ class World;
 //         "dull gold": {"like": "gold", "roughness": 0.6},      // a copy of an earlier one
 //         "marble": {"pattern": "floor", "tiling": [4, 4]}      // all maps of a pattern
 //       },
+//       "include": ["fire.effect.json"],        // its prefabs and what they use: level_include.h
 //       "meshes": {"pot": {"make": "teapot", "divisions": 12},
 //                  "fox": {"make": "creature"}},   // with skeleton and skin "fox", "fox.run" ...
 //       "prefabs": {"lamp": NODE},
@@ -122,6 +124,7 @@ struct Level {
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(index in `entities`).
     EventList events;
+    SourceFiles included;  ///< names of included files, which positions refer to
     std::vector<SourcePosition> entity_positions;  ///< where each of `entities` is written
     std::vector<SourcePosition> event_positions;   ///< and each of `events`
     std::vector<LevelShow> shows;

@@ -121,8 +121,8 @@ class DeferredNames {
                 }
                 const std::vector<std::string_view> known = known_names(lists->second, own);
                 result = fail(
-                    "{}:{}:{}: {}: found the {} {}, expected {}{}", level_.file, at.line, at.column,
-                    place, kind, in_quotes(name),
+                    "{}: {}: found the {} {}, expected {}{}", place_text(level_.file, at), place,
+                    kind, in_quotes(name),
                     known.empty() ? "one of a glTF file or a generated mesh, which have none"
                                   : "one of " + some_of(known),
                     did_you_mean(name, known));

@@ -333,6 +333,12 @@ JsonValue schema_of_event() {
     };
     return closed_object(
         {member("at", time("since the start of the level [s]")),
+         member(
+             "key",
+             described(one_of_words(key_names()), "when this key is pressed, instead of a time")),
+         member("released", described(one_of_words(key_names()), "when this key is released")),
+         member(
+             "text", described(of_type("string"), "what the key does, for the help of the window")),
          member("every", time("period of repetitions [s]; without, it occurs once")),
          member(
              "times", described(
@@ -357,7 +363,7 @@ JsonValue schema_of_event() {
              "destroy", described(
                             array_of(of_type("string")),
                             "entities that vanish, with their children, by name"))},
-        {text("at")});
+        {});
 }
 
 JsonValue schema_of_show() {
@@ -405,6 +411,11 @@ JsonValue level_schema() {
          member(
              "resources",
              described(schema_of_resources(), "what the level has one of: sky, exposure, weather")),
+         member(
+             "include",
+             described(
+                 array_of(of_type("string")), "files whose prefabs, images, materials and meshes "
+                                              "can be used, as fire.effect.json")),
          member("images", described(schema_of_images(), "files and generated patterns, by name")),
          member("materials", described(schema_of_materials(), "by name, in order of use")),
          member(

@@ -109,6 +109,7 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
     scene.path = path;
     scene.shows = std::move(level.shows);
     scene.show = std::move(level.show);
+    const SourceFiles included = std::move(level.included);  // named by the positions
     const std::vector<SourcePosition> entity_positions = std::move(level.entity_positions);
     const std::vector<SourcePosition> event_positions = std::move(level.event_positions);
     const std::vector<Entity> entities = spawn_level(world, std::move(level));
@@ -120,9 +121,7 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
             : entity != entities.end()
                 ? entity_positions[static_cast<std::size_t>(entity - entities.begin())]
                 : SourcePosition{};
-        log_warn(
-            "{}{}: {}", path, at.line > 0 ? format_text(":{}:{}", at.line, at.column) : "",
-            warning.text);
+        log_warn("{}: {}", place_text(path, at), warning.text);
     }
     scene.camera = find_camera(world);
     if (scene.camera.is_null()) {

@@ -7,6 +7,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
@@ -58,6 +59,8 @@ constexpr Need kNeeds[] = {
     {"particle_emitter", {"particle_look", "", ""}},
     {"particle_motion", {"particle_emitter", "", ""}},
     {"particle_look", {"particle_emitter", "", ""}},
+    {"particle_source", {"particle_emitter", "", ""}},
+    {"particle_light", {"particle_emitter", "", ""}},
 };
 
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
@@ -113,6 +116,16 @@ struct SceneCheck {
         world.query<const PathFollower>().each([&](Entity entity, const PathFollower& follower) {
             if (follower.path.index >= paths) {
                 warn(entity, "path_follower has no effect without a path");
+            }
+        });
+    }
+
+    void check_particles() {
+        world.query<const ParticleSource>().each([&](Entity entity, const ParticleSource& source) {
+            if (source.emitter == entity) {
+                warn(entity, "particle_source names itself, so that nothing is born");
+            } else if (!has_component(world, source.emitter, "particle_emitter")) {
+                warn(entity, "particle_source has no effect without the name of an emitter");
             }
         });
     }
@@ -273,6 +286,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     SceneCheck check{world};
     world.each_entity([&](Entity entity) { check.check_needs(entity); });
     check.check_followers();
+    check.check_particles();
     check.check_cameras();
     check.check_caustics();
     check.check_colors<PointLight>();

@@ -12,6 +12,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/input.h"
+#include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
 #include "ecs/components/mesh_levels.h"
 #include "ecs/components/mirror_caustic.h"
@@ -51,9 +52,12 @@ namespace limn {
 void register_all_components() {
     register_component<Name>();
     register_component<GltfSource>();
+    register_component<Lifetime>();
     register_component<ParticleEmitter>();
+    register_component<ParticleSource>();
     register_component<ParticleMotion>();
     register_component<ParticleLook>();
+    register_component<ParticleLight>();
     register_component<ParticlePool>();
     register_component<Parent>();
     register_component<Transform>();

@@ -15,15 +15,27 @@ std::vector<ActionGroup>& groups() {
     return all;
 }
 
-}  // namespace
-
-float action_value(const Input& input, std::string_view action) {
-    for (const ActionValue& one : input.actions) {
+float value_in(const std::vector<ActionValue>& actions, std::string_view action) {
+    for (const ActionValue& one : actions) {
         if (one.action == action) {
             return one.value;
         }
     }
     return 0.0f;
+}
+
+}  // namespace
+
+float action_value(const Input& input, std::string_view action) {
+    return value_in(input.actions, action);
+}
+
+bool is_pressed(const Input& input, std::string_view action) {
+    return value_in(input.actions, action) > 0 && !(value_in(input.before, action) > 0);
+}
+
+bool is_released(const Input& input, std::string_view action) {
+    return value_in(input.before, action) > 0 && !(value_in(input.actions, action) > 0);
 }
 
 float action_axis(const Input& input, std::string_view more, std::string_view less) {

@@ -30,6 +30,7 @@ LIMN_FIELDS(ActionValue) {
 /// or a replay.
 struct Input {
     std::vector<ActionValue> actions{};  ///< those not listed are 0
+    std::vector<ActionValue> before{};   ///< in the previous step; kept by run_events
     Vec2 look = {0, 0};                  ///< mouse motion [pixels]: x right, y down
     float zoom = 0.0f;
     bool click = false;  ///< click at the pointer; reset to false by the system that handles it
@@ -39,6 +40,7 @@ struct Input {
 
 LIMN_FIELDS(Input) {
     LIMN_FIELD(actions, "actions in use");
+    LIMN_FIELD(before, "actions in use in the previous step");
     LIMN_FIELD(look, "mouse motion", "pixels");
     LIMN_FIELD(zoom, "wheel steps, > 0 = closer");
     LIMN_FIELD(click, "click at the pointer; reset when handled");
@@ -47,6 +49,9 @@ LIMN_FIELDS(Input) {
 }
 
 [[nodiscard]] float action_value(const Input& input, std::string_view action);
+/// Whether the action is in use since this step; or no longer is since this step.
+[[nodiscard]] bool is_pressed(const Input& input, std::string_view action);
+[[nodiscard]] bool is_released(const Input& input, std::string_view action);
 /// Value of `more` minus that of `less`.
 [[nodiscard]] float action_axis(const Input& input, std::string_view more, std::string_view less);
 void set_action(Input& input, std::string_view action, float value = 1.0f);
@@ -94,6 +99,7 @@ struct Bindings {
     struct Binding {
         std::string action;
         std::vector<std::string> keys;
+        std::string text = {};  ///< for the help, of an action of the level's own
     };
     std::vector<Binding> bindings;
 };

@@ -13,8 +13,10 @@ namespace limn {
 // split by question:
 //
 //     ParticleEmitter   when and where particles are born, and with what
+//     ParticleSource    that they are born where particles of another emitter are
 //     ParticleMotion    what moves them
 //     ParticleLook      how they are drawn
+//     ParticleLight     that they light what is around
 //     ParticlePool      the living ones, kept by the systems: one array per scalar
 //
 // "x, give or take s" means a value drawn evenly from [x - s, x + s], once per particle.
@@ -117,6 +119,37 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(life_spread, "give or take", "s", 0, 1e5);
 }
 
+/// When a particle of another emitter gives birth.
+enum class ParticleMoment : std::uint8_t {
+    Birth,
+    Flight,  ///< all the time: a trail
+    Hit,     ///< when it meets a surface
+    Death,
+};
+
+/// Particles of this emitter are born where those of another one are, and only there: rocket and
+/// trail, shell and stars, drop and splash. The emitter's shape lies around the place, turned as
+/// the emitter is, or with +y along the normal of the surface that was hit.
+struct ParticleSource {
+    Entity emitter{};
+    ParticleMoment at = ParticleMoment::Death;
+    float count = 20;
+    float spread = 0;
+    float inherit = 0.2f;
+};
+
+LIMN_FIELDS(ParticleSource) {
+    LIMN_FIELD(emitter, "whose particles give birth; not this one");
+    LIMN_FIELD(
+        at,
+        .doc = "when; in flight the emitter's rate is per particle, along its curve over the life "
+               "of that",
+        .values = "birth flight hit death");
+    LIMN_FIELD(count, "births at a birth, hit or death", "", 0, 1e6);
+    LIMN_FIELD(spread, "give or take", "", 0, 1e6);
+    LIMN_FIELD(inherit, "share of that particle's velocity that is added", "", -10, 10);
+}
+
 struct ParticleMotion {
     float gravity = 1;
     float drag = 0;
@@ -209,6 +242,25 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(softness, "depth over which it fades where it meets a surface", "m", 0, 100);
 }
 
+/// Particles light surfaces and each other, as small lights without shadows.
+struct ParticleLight {
+    Vec3 color = {1, 1, 1};
+    float intensity = 1;
+    std::vector<CurveKey> curve;
+    float radius = 3;
+    float share = 1;
+    std::uint32_t count = 64;
+};
+
+LIMN_FIELDS(ParticleLight) {
+    LIMN_FIELD(color, .doc = "linear RGB", .min = 0, .max = 100);
+    LIMN_FIELD(intensity, "of each", "cd", 0, 1e6);
+    LIMN_FIELD(curve, "factor on the intensity over the life");
+    LIMN_FIELD(radius, "where its light ends", "m", 0.01, 1e4);
+    LIMN_FIELD(share, "of the particles, 0 .. 1, by chance, that are lights", "", 0, 1);
+    LIMN_FIELD(count, "lights at most, of the oldest particles", "", 0, 1024);
+}
+
 /// The particles of an emitter, oldest first; kept by the systems. World space.
 struct ParticlePool {
     std::vector<float> x, y, z;       ///< position [m]
@@ -219,6 +271,7 @@ struct ParticlePool {
     std::uint64_t dropped = 0;        ///< births for which there was no room
     double time = 0;                  ///< the emitter's own [s]
     double carry = 0;                 ///< a share of a birth that is due
+    std::uint64_t fresh = 0;          ///< of the youngest, how many have not moved yet
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
@@ -237,6 +290,7 @@ LIMN_FIELDS(ParticlePool) {
     LIMN_FIELD(dropped, "births over capacity");
     LIMN_FIELD(time, "of the emitter", "s");
     LIMN_FIELD(carry, "share of a birth that is due");
+    LIMN_FIELD(fresh, "births that have not moved yet");
 }
 
 /// Copies of a prefab start without particles.

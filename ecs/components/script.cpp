@@ -5,10 +5,14 @@
 
 namespace limn {
 
+std::string key_action(std::string_view key) {
+    return "key " + std::string(key);
+}
+
 bool is_due(const ScriptEvent& event, std::uint64_t frame, float step) {
     const double length = static_cast<double>(step);
     const auto first = static_cast<std::uint64_t>(std::llround(event.time / length));
-    if (event.times == 0 || frame < first) {
+    if (!event.key.empty() || event.times == 0 || frame < first) {
         return false;
     }
     if (event.times == 1) {

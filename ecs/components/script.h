@@ -4,13 +4,16 @@
 #include "ecs/prefab.h"
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace limn {
 
-// Timed events of a level: a lamp that is switched on after two seconds, a stone that drops into
-// the pool every half second. Events are immutable content, like levels: which ones are due follows
-// from the step number only, so that a world restored from a snapshot continues like the original.
+// Events of a level: a lamp that is switched on after two seconds, a stone that drops into the pool
+// every half second, sparks when a key is pressed. Events are immutable content, like levels: which
+// ones are due follows from the step number and the input only, so that a world restored from a
+// snapshot continues like the original.
 
 /// One field of a component or resource.
 struct FieldEdit {
@@ -39,6 +42,8 @@ struct ScriptEvent {
     double time = 0.0;        ///< since the start of the level [s]; rounded to the nearest step
     double every = 0.0;       ///< period of repetitions [s], at least one step
     std::uint32_t times = 1;  ///< number of times it occurs
+    std::string key;          ///< not at a time, but each time that this key is pressed
+    bool on_release = false;  ///< or released
     std::vector<ScriptAction> actions;
 };
 
@@ -47,7 +52,10 @@ struct EventList {
     std::vector<ScriptEvent> events;
 };
 
-/// Whether the event occurs in step number `frame`, with steps of length `step` [s].
+/// Name of the action (Input) that is in use while a key of the level's events is held.
+[[nodiscard]] std::string key_action(std::string_view key);
+
+/// Whether the event with a time occurs in step number `frame`, with steps of length `step` [s].
 [[nodiscard]] bool is_due(const ScriptEvent& event, std::uint64_t frame, float step);
 
 }  // namespace limn

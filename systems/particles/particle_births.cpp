@@ -60,6 +60,37 @@ void add_particle(
     pool.look.push_back(look);
 }
 
+/// What is drawn for a birth.
+struct Attributes {
+    Vec3 local;     ///< place in the emitter's space
+    Vec3 velocity;  ///< in world space
+    float life;
+    std::uint32_t look;
+};
+
+Attributes draw_attributes(const ParticleEmitter& emitter, const Affine& world, Random& random) {
+    Attributes its{};
+    its.local = sample_shape(emitter.shape, emitter.size, random);
+    const bool is_radial = emitter.direction == EmitterDirection::Radial;
+    const Vec3 direction = is_radial && its.local != Vec3(0)
+                               ? glm::normalize(its.local)
+                               : sample_cone(is_radial ? kPi : emitter.cone, random);
+    const Vec3 aim = normalize_or(transform_vector(world, direction), Vec3(0, 1, 0));
+    its.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
+    its.life = spread(emitter.life, emitter.life_spread, random);
+    its.look = random.word();
+    return its;
+}
+
+/// The same scale, with +y along the unit vector `up`.
+Affine with_up(const Affine& world, const Vec3& up) {
+    const Vec3 size = {
+        glm::length(transform_vector(world, {1, 0, 0})),
+        glm::length(transform_vector(world, {0, 1, 0})),
+        glm::length(transform_vector(world, {0, 0, 1}))};
+    return affine_from(Vec3(0), Quat(Vec3(0, 1, 0), up), size);
+}
+
 /// One piece of a step, without a restart of the emitter within it.
 struct Piece {
     double begin;  ///< of the emitter's time [s]
@@ -209,17 +240,25 @@ void add_particles(
     for (const float at : births) {
         Random random(seed, subject, name_hash("particles"), pool.born++);
         const Affine world = between(place.before, place.now, at);
-        const Vec3 local = sample_shape(emitter.shape, emitter.size, random);
-        const bool radial =
-            emitter.direction == EmitterDirection::Radial && glm::dot(local, local) > 0;
-        const float cone = emitter.direction == EmitterDirection::Radial ? kPi : emitter.cone;
-        const Vec3 direction = radial ? glm::normalize(local) : sample_cone(cone, random);
-        const Vec3 aim = normalize_or(transform_vector(world, direction), Vec3(0, 1, 0));
-        const float speed = spread(emitter.speed, emitter.speed_spread, random);
-        const Vec3 velocity = aim * speed + inherited;
-        const Vec3 position = transform_point(world, local) - velocity * (at * dt);
-        const float life = spread(emitter.life, emitter.life_spread, random);
-        add_particle(pool, position, velocity, at * dt, life, random.word());
+        const Attributes its = draw_attributes(emitter, world, random);
+        const Vec3 velocity = its.velocity + inherited;
+        const Vec3 position = transform_point(world, its.local) - velocity * (at * dt);
+        add_particle(pool, position, velocity, at * dt, its.life, its.look);
+    }
+}
+
+void add_spawns(
+    const ParticleEmitter& emitter, const Affine& world, const std::vector<ParticleSpawn>& spawns,
+    std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
+    make_room(emitter, spawns.size(), pool);
+    for (const ParticleSpawn& spawn : spawns) {
+        Random random(seed, subject, name_hash("particles"), pool.born++);
+        const Affine place = spawn.axis == Vec3(0) ? world : with_up(world, spawn.axis);
+        const Attributes its = draw_attributes(emitter, place, random);
+        const Vec3 velocity = its.velocity + spawn.velocity;
+        const Vec3 position =
+            spawn.position + transform_vector(place, its.local) + velocity * spawn.age;
+        add_particle(pool, position, velocity, -spawn.age, its.life, its.look);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "ecs/base/rng.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/water_spray.h"
+#include "systems/particles/particle_sources.h"
 
 #include <cmath>
 #include <cstdint>
@@ -54,5 +55,11 @@ struct EmitterPlace {
 void add_particles(
     const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
     std::uint64_t subject, const std::vector<float>& births, ParticlePool& pool);
+
+/// Adds a particle for every birth by another one (ParticleSource), where it is at the end of the
+/// step. `world` turns and scales the emitter's shape.
+void add_spawns(
+    const ParticleEmitter& emitter, const Affine& world, const std::vector<ParticleSpawn>& spawns,
+    std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
 }  // namespace limn

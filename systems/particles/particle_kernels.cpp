@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kHashY = 0xd8163841u;
 inline constexpr std::uint32_t kHashZ = 0xcb1ab31fu;
 inline constexpr std::uint32_t kHashMix = 0x7feb352du;
 inline constexpr std::uint32_t kSeedB = 0x68bc21ebu;  // of the second field of curl noise
-inline constexpr float kCurlScale = 1.1f;             // root mean square 1, measured
+inline constexpr float kCurlScale = 0.887f;           // root mean square 1, measured
 
 }  // namespace limn::particles
 #endif

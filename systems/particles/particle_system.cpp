@@ -4,6 +4,7 @@
 #include "ecs/base/rng.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_kernels.h"
+#include "systems/particles/particle_sources.h"
 
 #include <glm/geometric.hpp>
 
@@ -14,6 +15,7 @@
 namespace limn {
 namespace {
 
+constexpr std::uint32_t kNone = 0xffffffff;
 constexpr std::size_t kBlock = 1024;         // particles that move as one piece of work
 constexpr std::size_t kBlockGrain = 4;       // blocks of one job
 constexpr float kGravity = 9.81f;            // [m/s^2]
@@ -25,6 +27,9 @@ struct Work {
     Entity entity;
     const ParticleEmitter* emitter = nullptr;
     const SprayDrops* drops = nullptr;
+    const ParticleSource* source = nullptr;
+    std::uint32_t parent = kNone;  ///< that source's emitter in the list of works
+    std::vector<ParticleSpawn> spawns = {};
     ParticlePool* pool = nullptr;
     EmitterPlace place;
     float scale = 1;  ///< of its rate
@@ -100,11 +105,19 @@ float seen_share(const ParticleEmitter& emitter, const Affine& world, const Eye&
         radius, glm::distance(transform_point(world, Vec3(0)), eye.place), eye.fov_y);
 }
 
+std::uint64_t subject_of(const Work& work) {
+    return work.emitter->seed != 0 ? work.emitter->seed : work.entity.bits();
+}
+
 void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
-    const std::uint64_t subject = emitter.seed != 0 ? emitter.seed : work.entity.bits();
+    if (work.source != nullptr) {
+        return;
+    }
+    const std::uint64_t subject = subject_of(work);
     Random random(seed, subject, name_hash("particle births"), time.frame);
+    const std::size_t before = pool.size();
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
     std::vector<float> births;
     find_births(emitter, work.scale, work.step.dt, room, random, pool, births);
@@ -112,6 +125,34 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     if (work.drops != nullptr && emitter.active) {
         add_drops(emitter, work.drops->drops, work.step.dt, seed, subject, pool);
     }
+    pool.fresh = pool.size() - before;
+}
+
+void find_parents(std::vector<Work>& works) {
+    for (Work& work : works) {
+        if (work.source == nullptr || work.source->emitter == work.entity) {
+            continue;
+        }
+        const auto parent = std::find_if(works.begin(), works.end(), [&](const Work& other) {
+            return other.entity == work.source->emitter;
+        });
+        work.parent =
+            parent != works.end() ? static_cast<std::uint32_t>(parent - works.begin()) : kNone;
+    }
+}
+
+/// Births by the particles of the work's parent, which have moved and not lost their dead yet.
+void find_spawns_of(
+    Work& work, const std::vector<Work>& works, std::uint64_t seed, const FrameTime& time) {
+    if (work.parent == kNone || !work.emitter->active) {
+        return;
+    }
+    const std::size_t size = work.pool->size();
+    const std::size_t room = work.emitter->capacity > size ? work.emitter->capacity - size : 0;
+    Random random(seed, subject_of(work), name_hash("particle sources"), time.frame);
+    work.pool->dropped += find_spawns(
+        *work.source, *work.emitter, *works[work.parent].pool, {}, work.step.dt, room, random,
+        work.spawns);
 }
 
 std::uint32_t move(const Work& work, const ParticleBlock& block) {
@@ -135,7 +176,8 @@ void add_particle_pools(
 void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, Optional<const SprayDrops>, ParticlePool>
+        const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
+        ParticlePool>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
@@ -145,7 +187,7 @@ void update_particles(
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
-                      const SprayDrops* drops, ParticlePool& pool) {
+                      const SprayDrops* drops, const ParticleSource* source, ParticlePool& pool) {
         const Vec4& row = previous.world.row[0];
         const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
         const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
@@ -154,6 +196,7 @@ void update_particles(
         work.scale = emitter.by_screen_area ? seen_share(emitter, now.world, eye) : 1.0f;
         work.emitter = &emitter;
         work.drops = drops;
+        work.source = source;
         work.pool = &pool;
         works.push_back(work);
     });
@@ -179,6 +222,14 @@ void update_particles(
         }
     });
 
+    // Children's births wait until the dead are gone: their parents may be children too.
+    find_parents(works);
+    parallel_for(works.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            find_spawns_of(works[i], works, seed->seed, *time);
+        }
+    });
+
     // Those before the first block with a dead one stay where they are.
     std::vector<Block> firsts;
     for (const Block& block : blocks) {
@@ -189,6 +240,17 @@ void update_particles(
     parallel_for(firsts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             remove_dead(*works[firsts[i].work].pool, firsts[i].first);
+        }
+    });
+    parallel_for(works.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Work& work = works[i];
+            if (work.source != nullptr) {
+                add_spawns(
+                    *work.emitter, work.place.now, work.spawns, seed->seed, subject_of(work),
+                    *work.pool);
+                work.pool->fresh = work.spawns.size();
+            }
         }
     });
 }

@@ -34,7 +34,8 @@ void add_particle_pools(
 void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, Optional<const SprayDrops>, ParticlePool>
+        const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
+        ParticlePool>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);

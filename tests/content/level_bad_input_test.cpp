@@ -83,7 +83,7 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
          R"(one of name prefab gltf repeat children ("position" is a field of transform))"},
         {R"({"entities": [{"rotation": [0, 1, 0]}]})", R"(("rotation" is a field of transform))"},
         {R"({"entities": [{"intensity": 3}]})",
-         R"(("intensity" is a field of point_light or spot_light))"},
+         R"(("intensity" is a field of particle_light or point_light or spot_light))"},
         {R"({"entities": [{"point_light": {"fov_y": 1}}]})", R"(("fov_y" is a field of camera))"},
         {R"({"resources": {"ev": 1}})", R"(("ev" is a field of exposure))"},
         {R"({"entities": [{"point_light": {"color": "orange"}}]})",
@@ -139,7 +139,7 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
     CHECK(
         error_of(R"({"entites": []})")
         == "t.level.json:1:2: found the key \"entites\", expected one of title description "
-           "resources "
+           "include resources "
            "images materials paths meshes prefabs entities events bindings shows $schema (did you "
            "mean "
            "entities?)");

@@ -1,5 +1,7 @@
+#include "ecs/components/all.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
+#include "render/light_list.h"
 #include "render/passes/particle_pass.h"
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
@@ -248,6 +250,54 @@ TEST_CASE_FIXTURE(
     const Vec3 color = middle();
     CHECK(color.y == near(0.75f).epsilon(0.02));
     CHECK(color.x == near(0.25f).epsilon(0.02));
+}
+
+TEST_CASE(
+    "particle light: one for each particle that has been born, where it is, along its curve") {
+    World world;
+    register_all_components();
+    ParticlePool pool;
+    for (int i = 0; i < 10; ++i) {
+        const auto at = static_cast<float>(i);
+        for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vz}) {
+            column->push_back(at);
+        }
+        pool.vy.push_back(0);
+        pool.age.push_back(0.1f * at);
+        pool.life.push_back(1);
+        pool.look.push_back(i < 5 ? 0x1000 : 0xf000);
+    }
+    ParticleLight light{.color = {1, 0.5f, 0}, .intensity = 10, .radius = 2};
+    light.curve = {{.at = 0, .value = 2}, {.at = 1, .value = 0}};
+    const Entity entity = world.create(light, pool);
+    LightList list;
+    add_particle_lights(world, 0.05f, list);
+    REQUIRE(list.records.size() == 9);  // the first was not there yet
+    REQUIRE(list.reach.size() == 9);
+    CHECK(list.points == 9);
+    for (int i = 1; i < 10; ++i) {
+        const layout::LightRecord& record = list.records[static_cast<std::size_t>(i - 1)];
+        CHECK(record.position.x == test::near(0.95 * i));
+        CHECK(record.position.y == test::near(i));
+        CHECK(record.color.x == test::near(20 * (1 - (0.1 * i - 0.05))));
+        CHECK(record.color.y == test::near(10 * (1 - (0.1 * i - 0.05))));
+        CHECK(record.position.w == test::near(0.25));
+    }
+    world.get<ParticleLight>(entity).share = 0.5f;
+    list = {};
+    add_particle_lights(world, 0, list);
+    CHECK(list.points == 5);
+    world.get<ParticleLight>(entity).share = 1;
+    world.get<ParticleLight>(entity).count = 3;
+    list = {};
+    add_particle_lights(world, 0, list);
+    CHECK(list.points == 3);
+    CHECK(list.records[2].position.y == 2);  // the oldest
+    world.get<ParticlePool>(entity) = {};
+    list = {};
+    add_particle_lights(world, 0, list);
+    REQUIRE(list.points == 1);  // a black one, so that shaders stay the same
+    CHECK(Vec3(list.records[0].color) == Vec3(0));
 }
 
 }  // namespace limn::test

@@ -1,5 +1,7 @@
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/input.h"
+#include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
@@ -188,6 +190,48 @@ TEST_CASE("script: spawned prefabs are whole and new each time; destroy takes wh
     CHECK(world.query<const Parent>().count() == 3);
     CHECK_FALSE(world.alive(old));
     CHECK_FALSE(world.alive(below));
+}
+
+TEST_CASE(
+    "script: an event of a key comes once for each press, or release, however long it is held") {
+    World world;
+    const Entity pressed = world.create(Transform{});
+    const Entity released = world.create(Transform{});
+    const auto up = [&](Entity entity) {
+        return change(EventAction::Impulse, entity, Transform{.position = {0, 1, 0}}, "position");
+    };
+    ScriptEvent press = event_at(0, up(pressed));
+    press.key = "G";
+    ScriptEvent release = event_at(0, up(released));
+    release.key = "G";
+    release.on_release = true;
+    world.insert_resource(EventList{{press, release}});
+    world.insert_resource(Input{});
+    const bool held[] = {false, true, true, true, false, false, true, false, true, true};
+    const float presses[] = {0, 1, 1, 1, 1, 1, 2, 2, 3, 3};
+    const float releases[] = {0, 0, 0, 0, 1, 1, 1, 2, 2, 2};
+    for (std::uint64_t frame = 0; frame < 10; ++frame) {
+        set_action(world.resource<Input>(), key_action("G"), held[frame] ? 1.0f : 0.0f);
+        set_action(world.resource<Input>(), key_action("H"), 1);  // of nothing
+        run_step(world, frame);
+        CHECK(world.get<const Transform>(pressed).position.y == presses[frame]);
+        CHECK(world.get<const Transform>(released).position.y == releases[frame]);
+    }
+}
+
+TEST_CASE("lifetime: an entity goes with its descendants when its time is up, others stay") {
+    World world;
+    const Entity short_lived = world.create(Lifetime{0.1f});
+    const Entity child = world.create(Parent{short_lived}, Lifetime{0.1f});
+    const Entity long_lived = world.create(Lifetime{10});
+    world.insert_resource(FrameTime{.step = kStep});
+    for (int step = 1; step <= 6; ++step) {
+        CHECK(world.alive(short_lived));
+        end_lifetimes(world);
+    }
+    CHECK_FALSE(world.alive(short_lived));
+    CHECK_FALSE(world.alive(child));
+    CHECK(world.alive(long_lived));
 }
 
 TEST_CASE("script: what is aimed at an entity that is gone does nothing") {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/rng.h"
+#include "ecs/components/particles.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Births where particles of another emitter are born, fly, hit or die (ParticleSource).
+
+/// Where a particle met a surface in this step.
+struct ParticleHit {
+    std::uint32_t particle = 0;  ///< its index
+    float since = 0;             ///< until the end of the step [s]
+    Vec3 point = {0, 0, 0};
+    Vec3 normal = {0, 1, 0};    ///< unit, outward
+    Vec3 velocity = {0, 0, 0};  ///< before it
+};
+
+/// A birth by another particle.
+struct ParticleSpawn {
+    Vec3 position = {0, 0, 0};
+    Vec3 velocity = {0, 0, 0};  ///< that is added to the emitter's own
+    Vec3 axis = {0, 0, 0};      ///< unit: +y of the shape and directions; 0: as the emitter's
+    float age = 0;              ///< at the end of the step [s]
+};
+
+/// Appends to `spawns` the births in a step of the parent's particles, which have moved but not
+/// lost their dead, in their order; `hits` by index. At most `room`; returns how many more there
+/// would have been. Places are on the straight line along the last velocity.
+std::uint64_t find_spawns(
+    const ParticleSource& source, const ParticleEmitter& emitter, const ParticlePool& parent,
+    std::span<const ParticleHit> hits, float dt, std::size_t room, Random& random,
+    std::vector<ParticleSpawn>& spawns);
+
+}  // namespace limn
