@@ -553,7 +553,7 @@ int run_command_line(int argc, char** argv) {
         }
         const Status status = command.run();
         if (!status) {
-            fmt::print(stderr, "{}\n", one_line(status.error().message));
+            fmt::print(stderr, "{}\n", printable_lines(status.error().message));
             return kFailed;
         }
         return std::fflush(stdout) == 0 ? kDone : kFailed;

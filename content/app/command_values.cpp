@@ -97,7 +97,21 @@ Result<gpu::Profile> parse_profile(std::string_view text) {
 }
 
 std::string one_line(std::string text) {
+    text = printable_lines(std::move(text));
     std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+std::string printable_lines(std::string text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if ((byte < 0x20 && text[i] != '\n') || byte == 0x7f) {
+            text[i] = ' ';
+        } else if (
+            byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0) {
+            text.replace(i, 2, " ");  // U+0080 .. U+009F in UTF-8
+        }
+    }
     return text;
 }
 

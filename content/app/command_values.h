@@ -57,4 +57,7 @@ parse_integer(std::string_view text, std::int64_t min, std::int64_t max);
 /// A message without line breaks.
 [[nodiscard]] std::string one_line(std::string text);
 
+/// A message of one or several lines without other control characters, which a terminal would obey.
+[[nodiscard]] std::string printable_lines(std::string text);
+
 }  // namespace limn

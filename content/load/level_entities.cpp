@@ -111,6 +111,7 @@ LevelEntities::LevelEntities(
 }
 
 Status LevelEntities::add(const JsonValue& node, const std::string& path) {
+    open_.clear();
     return add_node(level_, node, {}, path);
 }
 
@@ -205,6 +206,7 @@ Status LevelEntities::charge_limits(const Node& node, std::uint64_t copies) {
             values += member.key == "children" ? 0 : weight(member.value);
         }
     }
+    is_full_ = true;
     if (copies > limits_.max_entities - entities_) {
         return refuse(
             node.path, node.json->at, fmt::format("{} entities here", copies),
@@ -215,6 +217,7 @@ Status LevelEntities::charge_limits(const Node& node, std::uint64_t copies) {
             node.path, node.json->at, fmt::format("{} copies of {} values", copies, values),
             fmt::format("at most {} in all entities", limits_.max_values));
     }
+    is_full_ = false;
     entities_ += copies;
     values_ += copies * values;
     return Done{};

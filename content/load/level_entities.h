@@ -42,7 +42,10 @@ class LevelEntities {
         const EntityLimits& limits);
 
     /// Appends the entity `node` and its descendants. `path` is used in messages if it has no name.
+    /// After an error others can be added, to find more errors, but not resolved.
     [[nodiscard]] Status add(const JsonValue& node, const std::string& path);
+    /// Whether an entity exceeded the limits, as all further ones would.
+    [[nodiscard]] bool is_full() const { return is_full_; }
 
     /// Replaces names by entity indices, after all nodes are added.
     [[nodiscard]] Status resolve_names();
@@ -132,6 +135,7 @@ class LevelEntities {
     EntityLimits limits_;
     std::size_t entities_ = 0;
     std::size_t values_ = 0;
+    bool is_full_ = false;
     List level_;
 };
 

@@ -6,6 +6,7 @@
 #include "content/load/level_hints.h"
 #include "content/load/level_names.h"
 #include "ecs/base/log.h"
+#include "ecs/base/text.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/transform.h"
 #include "ecs/field_access.h"
@@ -73,8 +74,9 @@ class LevelParser {
         LIMN_TRY(read_section("materials", &LevelParser::read_material));
         LIMN_TRY(read_section("paths", &LevelParser::read_path));
         LIMN_TRY(read_section("meshes", &LevelParser::read_mesh));
-        LIMN_TRY(read_section("resources", &LevelParser::read_resource));
-        LIMN_TRY(read_section("bindings", &LevelParser::read_binding));
+        // Nothing depends on these: their errors are reported with those of entities.
+        (void)read_section("resources", &LevelParser::read_resource);
+        (void)read_section("bindings", &LevelParser::read_binding);
         LIMN_TRY(read_entities());
         level_.shows = LIMN_TRY(read_shows(json_, level_.file));
         place_cameras();
@@ -110,12 +112,36 @@ class LevelParser {
         return Done{};
     }
 
+    /// Keeps an error for kept_errors(), so that one run reports several; one for each place in the
+    /// file, since a prefab has the same errors in all its copies.
+    void keep_error(const Status& status) {
+        if (status || errors_.size() >= kMaxErrors) {
+            return;
+        }
+        const std::string& message = status.error().message;
+        const auto at = [&](const std::string& line) {
+            return line.substr(0, line.find(": ", level_.file.size()));
+        };
+        if (std::none_of(errors_.begin(), errors_.end(), [&](const std::string& error) {
+                return at(error) == at(message);
+            })) {
+            errors_.push_back(message);
+        }
+    }
+
+    [[nodiscard]] Status kept_errors() const {
+        return errors_.empty() ? Status(Done{}) : Error{join_text(errors_, "\n")};
+    }
+
     Status read_section(
         const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonPlace&)) {
         for (const JsonMember& member : json_[section].members) {
-            LIMN_TRY((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
+            if (errors_.size() >= kMaxErrors) {
+                break;
+            }
+            keep_error((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
         }
-        return Done{};
+        return kept_errors();
     }
 
     Status read_resource(const JsonMember& member, const JsonPlace& at) {
@@ -209,6 +235,9 @@ class LevelParser {
         const JsonValue& json = member.value;
         Material material;
         if (const JsonValue* const like = json.find("like")) {
+            if (!errors_.empty()) {
+                return Done{};  // the other may be what failed
+            }
             const auto other =
                 like->kind == JsonKind::String ? materials_.find(like->text) : materials_.end();
             if (other == materials_.end()) {
@@ -312,9 +341,13 @@ class LevelParser {
         LevelEntities entities(
             level_.file, json_["prefabs"].members, asset_names(), limits_.entities);
         const std::vector<JsonValue>& nodes = json_["entities"].items;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            LIMN_TRY(entities.add(nodes[i], fmt::format("entities[{}]", i)));
+        for (std::size_t i = 0; i < nodes.size() && errors_.size() < kMaxErrors; ++i) {
+            keep_error(entities.add(nodes[i], fmt::format("entities[{}]", i)));
+            if (entities.is_full()) {
+                break;
+            }
         }
+        LIMN_TRY(kept_errors());
         LIMN_TRY(entities.resolve_names());
         LIMN_TRY(read_events(entities));
         LIMN_TRY(entities.check_unused_prefabs());
@@ -338,13 +371,18 @@ class LevelParser {
             return entities.read_prefab(node, at.path);
         };
         const std::vector<JsonValue>& events = json_["events"].items;
-        for (std::size_t i = 0; i < events.size(); ++i) {
-            level_.events.events.push_back(LIMN_TRY(
-                read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab)));
+        for (std::size_t i = 0; i < events.size() && errors_.size() < kMaxErrors; ++i) {
+            Result<ScriptEvent> event =
+                read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab);
+            if (!event) {
+                keep_error(event.error());
+                continue;
+            }
+            level_.events.events.push_back(*std::move(event));
             level_.event_positions.push_back(events[i].at);
             bind_key(level_.events.events.back(), events[i]["text"].text);
         }
-        return Done{};
+        return kept_errors();
     }
 
     /// So that the player reads the key of an event.
@@ -413,8 +451,11 @@ class LevelParser {
         return names;
     }
 
+    static constexpr std::size_t kMaxErrors = 10;
+
     const JsonValue& json_;
     LevelLimits limits_;
+    std::vector<std::string> errors_;  // independent of each other, a line each
     Level level_;
     Names images_;
     Names materials_;

@@ -138,7 +138,8 @@ struct Level {
     std::vector<GltfScene> scenes;  ///< one for each of `gltfs`, after load_level_assets
 };
 
-/// Reads and checks `text`. `file` is the prefix of messages and gives the level its name.
+/// Reads and checks `text`. `file` is the prefix of messages and gives the level its name. An error
+/// is one line, or up to ten for parts that do not depend on each other.
 /// Components must be registered (ecs/components/all.h).
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});

@@ -126,6 +126,22 @@ TEST_CASE("cli: a scene that cannot be loaded ends every command with 1 and one 
     CHECK_FALSE(std::filesystem::exists(folder.file("a.png")));
 }
 
+TEST_CASE("cli: errors of a level are a line each, whatever characters its names hold") {
+    const TemporaryFolder folder;
+    test::write_text(
+        folder.file("bad.level.json"),
+        R"({"entities": [{"a\n\u001b[2J": 1}, {"mesh_instance": {"mesh": "b\nc"}}]})");
+    for (const char* command : {"check", "info"}) {
+        const ProgramRun run = run_limn(folder, {command, "bad.level.json"});
+        CAPTURE(run.err);
+        CHECK(run.exit_code == 1);
+        CHECK(count_lines(run.err) == 2);
+        CHECK(run.err.find("bad.level.json:1:16: ") == 0);
+        CHECK(run.err.find("\nbad.level.json:1:") != std::string::npos);
+        CHECK(run.err.find('\x1b') == std::string::npos);
+    }
+}
+
 TEST_CASE("cli: a level's misspelled name finds the level that was meant") {
     const TemporaryFolder folder;
     check_fails(folder, {"hash", "galery", "--frames", "1"}, 1, "gallery");

@@ -51,6 +51,16 @@ TEST_CASE("command_values: --set needs a path and a value") {
     CHECK_FALSE(parse_assignment("path="));
 }
 
+TEST_CASE("command_values: messages keep their lines, but no other control character") {
+    CHECK(printable_lines("a: b\nc: d") == "a: b\nc: d");
+    CHECK(printable_lines("\x1b[2J a\r\t\x7f") == " [2J a   ");
+    CHECK(
+        printable_lines("\xc2\x9b"
+                        "1m \xc2\xa0 \xc3\xa9 \xc2")
+        == " 1m \xc2\xa0 \xc3\xa9 \xc2");
+    CHECK(one_line("a\nb\x1b") == "a b ");
+}
+
 TEST_CASE("command_values: a list has no empty part") {
     CHECK(parse_list("depth,normal")->size() == 2);
     CHECK(parse_list("depth")->front() == "depth");

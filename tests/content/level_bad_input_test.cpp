@@ -12,7 +12,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 using namespace limn;
 
@@ -184,6 +186,42 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
     CHECK(entity.ends_with("(did you mean sun?)"));
     CHECK(has(
         error_of(R"({"entities": [{"mesh_instance": {"mesh": "a"}}]})"), "no names of that kind"));
+}
+
+TEST_CASE("bad level: errors that do not depend on each other come together, at most ten") {
+    register_all_components();
+    const auto lines_of = [](const std::string& text) {
+        const Result<Level> level = parse_level(text, "t.level.json");
+        REQUIRE_FALSE(level.ok());
+        std::istringstream message(level.error().message);
+        std::vector<std::string> lines;
+        for (std::string line; std::getline(message, line);) {
+            lines.push_back(line.substr(0, line.find(": ")));
+        }
+        return lines;
+    };
+    using Lines = std::vector<std::string>;
+    CHECK(
+        lines_of(R"({"resources": {"exposure": {"evv": 1}},
+                     "prefabs": {"lamp": {"point_light": {"intensity": -1}}},
+                     "entities": [
+{"spinn": {}},
+{"prefab": "lamp"}, {"prefab": "lamp"},
+{"name": "a"}, {"name": "b", "camera": {"fov": 1}}]})")
+        == Lines{
+            "t.level.json:1:29", "t.level.json:4:2", "t.level.json:2:72", "t.level.json:6:41"});
+    CHECK(
+        lines_of(R"({"materials": {"a": {"rough": 1}, "b": {"like": "a"}, "c": {"metal": 1}},
+                     "entities": [{"mesh_instance": {"material": "a"}}]})")
+        == Lines{"t.level.json:1:22", "t.level.json:1:61"});
+    CHECK(
+        lines_of(R"({"events": [{"at": -1}, {"at": 2}, {"at": "soon"}]})")
+        == Lines{"t.level.json:1:20", "t.level.json:1:43"});
+    std::string many = R"({"entities": [3)";
+    for (int i = 0; i < 50; ++i) {
+        many += ", 3";
+    }
+    CHECK(lines_of(many + "]}").size() == 10);
 }
 
 TEST_CASE("bad level: wrong types and numbers out of range") {
