@@ -246,7 +246,7 @@ LIMN_FIELDS(ParticleLook) {
 struct ParticleLight {
     Vec3 color = {1, 1, 1};
     float intensity = 1;
-    std::vector<CurveKey> curve;
+    std::vector<CurveKey> curve{};
     float radius = 3;
     float share = 1;
     std::uint32_t count = 64;
