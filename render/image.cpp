@@ -10,6 +10,7 @@
 #include "render/passes/gbuffer_pass.h"
 #include "render/passes/glare_pass.h"
 #include "render/passes/glow_pass.h"
+#include "render/passes/lens_flare_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/mirror_caustic_pass.h"
 #include "render/passes/motion_blur_pass.h"
@@ -61,6 +62,7 @@ constexpr EffectEntry kImage[] = {
     effect<RippleEffect>(kMainViews),
     effect<MotionBlurEffect>(kMainViews),
     effect<DepthOfFieldEffect>(kMainViews),
+    effect<LensFlareEffect>(kMainViews),
     effect<GlareEffect>(kFilmViews),
     effect<GlowEffect>(kMainViews | kMeanView),
     effect<VignetteEffect>(kFilmViews),

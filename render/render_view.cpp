@@ -145,6 +145,7 @@ RenderView make_render_view(const World& world, Entity camera, const ViewRequest
         world.get<Camera>(camera), current, previous != nullptr ? previous->world : current,
         request);
     view.lens = lens_view(world, camera);
+    view.entity = camera;
     return view;
 }
 

@@ -36,6 +36,7 @@ struct RenderView {
     float alpha = 1.0f;                   ///< time shown, 0 .. 1
     float previous_alpha = 0.0f;          ///< time motion is measured from, <= alpha
     LensView lens;                        ///< a pinhole by default
+    Entity entity;                        ///< of the camera; null: none
     Vec4 clip_plane = {0, 0, 0, 0};       ///< clips where dot(xyz, p) + w < 0; 0: no clipping
     Entity hidden;                        ///< hidden with its descendants; null: nothing is hidden
 };

@@ -297,6 +297,7 @@ RenderView Player::move_camera(float dt, const Input& input, const IVec2& size) 
     }
     RenderView view = make_render_view(camera_.lens, camera_.pose, camera_.previous, request);
     view.lens = lens_view(stage_->world, level_camera);
+    view.entity = level_camera;
     return view;
 }
 
@@ -405,6 +406,7 @@ void Player::draw_off_stage(const IVec2& window_size, int columns) {
         view = make_render_view(world, camera, view_request_);
     } else {
         view.lens = lens_view(world, camera);
+        view.entity = camera;
     }
     const FrameOutput frame = render_frame(*off_renderer_, world, view);
     gpu::blit_to_window(*device_, *frame.display, window_size.x, window_size.y, columns);

@@ -5,6 +5,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
+#include "ecs/components/lens_flare.h"
 #include "ecs/components/name.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -226,6 +227,9 @@ Result<Entity> place_show_camera(World& world, const LevelShow& show, Entity cam
             Name{"show"}, Transform{.position = show.camera->position, .rotation = rotation}, lens);
         if (const Lens* const focus = std::as_const(world).find<Lens>(camera)) {
             world.add(chosen, Lens(*focus));
+        }
+        if (const LensFlare* const flare = std::as_const(world).find<LensFlare>(camera)) {
+            world.add(chosen, LensFlare(*flare));
         }
     } else if (!show.camera_name.empty()) {
         world.query<const Name, const Camera>().each(

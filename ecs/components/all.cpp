@@ -12,6 +12,7 @@
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
 #include "ecs/components/input.h"
+#include "ecs/components/lens_flare.h"
 #include "ecs/components/lifetime.h"
 #include "ecs/components/light.h"
 #include "ecs/components/mesh_levels.h"
@@ -116,6 +117,7 @@ void register_all_components() {
     register_component<Camera>();
     register_component<Lens>();
     register_component<Autofocus>();
+    register_component<LensFlare>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();

@@ -1,0 +1,24 @@
+// The part of each light's disk that nothing hides, one texel per light (lens_flare_pass.h).
+#version 450
+
+layout(binding = 0) uniform sampler2D scene_depth;
+layout(binding = 1) uniform samplerBuffer sources;  // FlareSource
+
+layout(location = 0) out float visible;
+
+const int kSamples = 64;
+const float kGoldenAngle = 2.39996323;
+
+void main() {
+    vec4 source = texelFetch(sources, int(gl_FragCoord.x));
+    ivec2 size = textureSize(scene_depth, 0);
+    int count = 0;
+    for (int i = 0; i < kSamples; ++i) {
+        float radius = source.w * sqrt((float(i) + 0.5) / float(kSamples));
+        float angle = kGoldenAngle * float(i);
+        ivec2 pixel = ivec2(floor(source.xy * vec2(size) + radius * vec2(cos(angle), sin(angle))));
+        bool inside = all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size));
+        count += inside && texelFetch(scene_depth, pixel, 0).r <= source.z ? 1 : 0;
+    }
+    visible = float(count) / float(kSamples);
+}
