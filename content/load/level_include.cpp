@@ -4,6 +4,7 @@
 #include "content/load/level_list.h"
 #include "ecs/base/text.h"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
