@@ -38,11 +38,11 @@ TEST_CASE("include: prefabs with their materials and meshes; the level's own rep
         "a.effect.json",
         R"({"title": "A", "materials": {"m": {"roughness": 0.1}, "n": {"roughness": 0.2}},
             "meshes": {"b": {"make": "box"}},
-            "prefabs": {"lamp": {"name": "a lamp", "mesh_instance": {"mesh": "b", "material": "n"}}}})");
+            "prefabs": {"lamp": {"mesh_instance": {"mesh": "b", "material": "n"}}}})");
     (void)files.write("b.effect.json", R"({"materials": {"n": {"roughness": 0.9}}})");
     Result<Level> level =
         load_level(files.write("t.level.json", R"({"include": ["a.effect.json", "b.effect.json"],
-            "materials": {"m": {"roughness": 0.5}}, "entities": [{"prefab": "lamp"}]})"));
+            "materials": {"m": {"roughness": 0.5}}, "entities": [{"name": "a lamp", "prefab": "lamp"}]})"));
     REQUIRE_MESSAGE(level.ok(), (level ? "" : level.error().message));
     REQUIRE(level->assets.materials.size() == 2);
     CHECK(level->assets.materials[0].roughness == 0.9f);  // the later file's

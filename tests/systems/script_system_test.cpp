@@ -221,8 +221,8 @@ TEST_CASE(
 
 TEST_CASE("lifetime: an entity goes with its descendants when its time is up, others stay") {
     World world;
-    const Entity short_lived = world.create(Lifetime{0.1f});
-    const Entity child = world.create(Parent{short_lived}, Lifetime{0.1f});
+    const Entity short_lived = world.create(Lifetime{0.09f});
+    const Entity child = world.create(Parent{short_lived}, Lifetime{0.09f});
     const Entity long_lived = world.create(Lifetime{10});
     world.insert_resource(FrameTime{.step = kStep});
     for (int step = 1; step <= 6; ++step) {
