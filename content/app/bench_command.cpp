@@ -79,6 +79,15 @@ Status run_lens_bench(const BenchOptions& options) {
         options, lens_bench_table(*bench), lens_bench_json(*bench), lens_bench_csv(*bench));
 }
 
+/// The report's own, which it reserves with the last frame of the warm-up.
+double memory_of_samples_mib(const BenchReport& report) {
+    std::size_t bytes = 0;
+    for (const BenchSeries& series : report.series) {
+        bytes += series.samples.capacity() * sizeof(series.samples[0]);
+    }
+    return static_cast<double>(bytes) / (1 << 20);
+}
+
 /// Empties all series, with their memory in RAM: it must not count as growth of the program.
 void touch_samples(BenchReport& report) {
     for (BenchSeries& series : report.series) {
@@ -186,11 +195,10 @@ Status run_bench(const BenchOptions& options) {
                 report.heap_mib = std::min(report.heap_mib, heap_memory_mib());
             }
             if (i + 1 == options.warmup) {
-                const double before = heap_memory_mib();
                 touch_samples(report);
                 report.compiled = 0;
                 report.resident_begin_mib = resident_memory_mib();
-                report.heap_begin_mib = report.heap_mib + heap_memory_mib() - before;
+                report.heap_begin_mib = report.heap_mib + memory_of_samples_mib(report);
             }
             progress.update(i + 1);
         }
