@@ -106,19 +106,13 @@ CollisionResult follow(
 
     float time = step.dt;
     while (true) {
-        const Vec3 way = to - now.position;
-        const float length = glm::length(way);
-        if (!(length > 0)) {
-            break;
-        }
-        const float beyond = 1 + skin / length;
-        const auto found =
-            nearest_contact(obstacles, now.position, now.position + beyond * way, step.radius);
+        const auto found = nearest_contact(obstacles, now.position, to, step.radius);
         if (!found) {
             now.position = to;
             break;
         }
         const Contact& contact = found->contact;
+        const float length = glm::distance(now.position, to);
         move_if_clear(now.position, contact.point + skin * contact.normal, obstacles, step.radius);
         ++now.contacts;
         const float toward = -glm::dot(now.velocity, contact.normal);
@@ -132,7 +126,7 @@ CollisionResult follow(
         }
         now.velocity = respond(
             now.velocity, contact.normal, {rests ? 0.0f : response.bounce, response.friction});
-        const float left = 1 - std::min(contact.share * beyond, 1.0f);
+        const float left = 1 - contact.share;
         time *= left;
         to = now.position
              + (options.mode == CollisionOptions::Mode::Time

@@ -217,17 +217,35 @@ TEST_CASE("particle collision: the quick test misses no contact and no particle 
     }
 }
 
-TEST_CASE("particle collision: particles above a rough height field are left out") {
-    const Scene scene;
-    const ColliderReach reach = find_reach(scene.colliders[4]);
+TEST_CASE("particle collision: the quick test knows how far a ball looks along a mesh") {
+    const Vec3 positions[] = {{0, 0, -1}, {1, 0, -1}, {0, 0, 1}};
+    const std::uint32_t indices[] = {0, 1, 2};
+    const MeshBvh bvh = build_mesh_bvh(positions, indices);
+    const Collider mesh = MeshCollider{.bvh = &bvh};
+    const ColliderReach reach = find_reach(mesh);
     Swarm swarm;
-    swarm.add({0, -1.2f, 0}, {1, -1, 1});
-    swarm.add({0, 5, 0}, {1, -1, 1});
-    swarm.add({9, -9, 9}, {1, -1, 1});
-    swarm.add({0, -9, 0}, {1, -1, 1});
+    const Vec3 way = {0.95f, -0.31f, 0};
+    swarm.add(Vec3(0.1f, 0, 0) - 1.6f * way, way, 0.2f, 1);  // ends 0.6 m before the triangle
+    REQUIRE(first_contact(mesh, swarm.from(0), swarm.to(0), 0.2f));
+    std::vector<std::uint32_t> found(1 + kReachRoom);
+    CHECK(find_near(swarm.ways(), 0, 1, {&reach, 1}, found.data()) == 1);
+}
+
+TEST_CASE("particle collision: particles over the low parts of a height field are left out") {
+    std::vector<float> ramp;
+    for (int i = 0; i < 11 * 11; ++i) {
+        ramp.push_back(0.1f * static_cast<float>(i % 11));
+    }
+    const Collider field = HeightCollider{.width = 11, .depth = 11, .heights = ramp};
+    const ColliderReach reach = find_reach(field);
+    Swarm swarm;
+    for (int i = 0; i < 20; ++i) {  // the surface is at 0.2 there and rises to 1
+        swarm.add({2, i == 7 ? 0.21f : 0.5f, 5}, {2, -2, 2});
+    }
     std::vector<std::uint32_t> found(swarm.x.size() + kReachRoom);
-    CHECK(find_near(swarm.ways(), 0, 4, {&reach, 1}, found.data()) == 1);
-    CHECK(found[0] == 3);
+    CHECK(find_near(swarm.ways(), 0, 20, {&reach, 1}, found.data()) == 1);
+    CHECK(found[0] == 7);
+    CHECK(find_near_scalar(swarm.ways(), 0, 20, {&reach, 1}, found.data()) == 1);
 }
 
 TEST_CASE("particle collision: the quick test is the same on every vector width") {

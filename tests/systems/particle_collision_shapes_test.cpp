@@ -288,6 +288,17 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("particle collision: a ball nearer to a mesh than its radius touches at once") {
+    const Vec3 positions[] = {{-5, 0, -5}, {5, 0, -5}, {0, 0, 5}};
+    const std::uint32_t indices[] = {0, 1, 2};
+    const MeshBvh bvh = build_mesh_bvh(positions, indices);
+    const auto found = first_contact(MeshCollider{.bvh = &bvh}, {0, 0.2f, 0}, {0, -1, 0}, 0.5f);
+    REQUIRE(found);
+    CHECK(found->share == 0);
+    CHECK(found->point == Vec3(0, 0.5f, 0));
+    CHECK(!first_contact(MeshCollider{.bvh = &bvh}, {0, 0.2f, 0}, {0, 1, 0}, 0.5f));
+}
+
 TEST_CASE("particle collision: ways without length or that are not finite meet nothing") {
     const Collider plane = PlaneCollider{};
     const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -414,3 +414,21 @@ TEST_CASE("particle collision: of 100,000 ways at 60 m/s none passes a mesh 1 mm
     CHECK(count_escaped(room, 0.8f, {&mesh, 1}, 0) == 0);
     CHECK(count_escaped(room, 0.8f, {&mesh, 1}, 0.01f) == 0);
 }
+
+TEST_CASE("particle collision: the skin pushes no particle through a second wall") {
+    // Two sheets that meet at an edge along z, at an angle in which there is no room for the skin.
+    const float open = 1e-5f;
+    const Vec3 positions[] = {{0, 0, -9}, {9, 0, 0}, {0, 0, 9}, {9, 9 * open, 0}};
+    const std::uint32_t indices[] = {0, 1, 2, 0, 3, 2};
+    const MeshBvh bvh = build_mesh_bvh(positions, indices);
+    const Collider wedge = MeshCollider{.bvh = &bvh};
+    Random random(1, 2, 1, 2);
+    for (int i = 0; i < 1000; ++i) {
+        const float x = random.uniform(1.0f, 4.0f);
+        const Vec3 from(x, 0.5f * x * open, random.uniform(-1.0f, 1.0f));
+        const Vec3 v(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f), 0);
+        const Vec3 end = move_with_collisions(from, v, 1, {&wedge, 1}, kMirror).position;
+        CHECK(end.y >= 0);
+        CHECK(end.y <= end.x * open);
+    }
+}
