@@ -1,0 +1,252 @@
+#include "systems/particles/particle_collision.h"
+
+#include "ecs/base/check.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace limn {
+
+namespace {
+
+constexpr std::size_t kBlock = 512;  // particles that are tested before some of them move
+
+/// What a particle may meet; `reach` is empty where nothing is known.
+struct Obstacles {
+    std::span<const Collider> colliders;
+    std::span<const ColliderReach> reach;
+};
+
+struct Step {
+    Vec3 from;
+    Vec3 to;
+    Vec3 velocity;
+    float dt;
+    float radius;
+};
+
+struct NumberedContact {
+    Contact contact;
+    std::uint32_t collider;
+};
+
+bool is_far(
+    const Obstacles& obstacles, std::size_t i, const Vec3& from, const Vec3& to, float radius,
+    float skin) {
+    return !obstacles.reach.empty() && !may_touch(obstacles.reach[i], from, to, radius, skin);
+}
+
+/// Of the contacts with all colliders the first.
+std::optional<NumberedContact>
+nearest_contact(const Obstacles& obstacles, const Vec3& from, const Vec3& to, float radius) {
+    std::optional<NumberedContact> nearest;
+    for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
+        if (is_far(obstacles, i, from, to, radius, 0)) {
+            continue;
+        }
+        const std::optional<Contact> contact =
+            first_contact(obstacles.colliders[i], from, to, radius);
+        if (contact && (!nearest || contact->share < nearest->contact.share)) {
+            nearest = {*contact, static_cast<std::uint32_t>(i)};
+        }
+    }
+    return nearest;
+}
+
+/// Moves to `to` if nothing is between.
+void move_if_clear(Vec3& position, const Vec3& to, const Obstacles& obstacles, float radius) {
+    if (!nearest_contact(obstacles, position, to, radius)) {
+        position = to;
+    }
+}
+
+/// Calls hit(collider, point, normal, velocity) at each hit, before it changes the velocity.
+template <typename Hit>
+CollisionResult follow(
+    const Step& step, const Obstacles& obstacles, const SurfaceResponse& response,
+    const CollisionOptions& options, Hit hit) {
+    CollisionResult now = {.position = step.from, .velocity = step.velocity};
+    if (!is_finite(step.from) || !is_finite(step.to)) {
+        now.velocity = Vec3(0);
+        return now;
+    }
+    const bool stops = options.action != ContactAction::Bounce;
+    const float skin = skin_of(step.from, step.to, options.skin);
+    Vec3 to = step.to;
+
+    // Inside, or so near that rounding decides: out, which is no bounce.
+    for (std::size_t i = 0; i < obstacles.colliders.size(); ++i) {
+        if (is_far(obstacles, i, now.position, now.position, step.radius, skin)) {
+            continue;
+        }
+        const auto out =
+            find_escape(obstacles.colliders[i], now.position, step.radius + 0.5f * skin);
+        if (!out) {
+            continue;
+        }
+        const bool inside = out->depth > 0.5f * skin;
+        Vec3 way = to - now.position;
+        move_if_clear(now.position, out->point + 0.5f * skin * out->normal, obstacles, step.radius);
+        if (inside && stops) {
+            hit(static_cast<std::uint32_t>(i), now.position, out->normal, now.velocity);
+            ++now.contacts;
+            now.velocity = Vec3(0);
+            return now;
+        }
+        if (inside) {
+            now.velocity -= std::min(glm::dot(now.velocity, out->normal), 0.0f) * out->normal;
+            way -= std::min(glm::dot(way, out->normal), 0.0f) * out->normal;
+        }
+        to = now.position + way;
+    }
+
+    float time = step.dt;
+    while (true) {
+        const auto found = nearest_contact(obstacles, now.position, to, step.radius);
+        if (!found) {
+            now.position = to;
+            break;
+        }
+        const Contact& contact = found->contact;
+        const float length = glm::distance(now.position, to);
+        move_if_clear(now.position, contact.point + skin * contact.normal, obstacles, step.radius);
+        ++now.contacts;
+        const float toward = -glm::dot(now.velocity, contact.normal);
+        const bool rests = !(toward >= options.rest_speed);
+        if (stops || !rests) {
+            hit(found->collider, contact.point, contact.normal, now.velocity);
+        }
+        if (stops || now.contacts >= options.max_bounces || !is_finite(now.velocity)) {
+            now.velocity = Vec3(0);
+            break;
+        }
+        now.velocity = respond(
+            now.velocity, contact.normal, {rests ? 0.0f : response.bounce, response.friction});
+        const float left = 1 - contact.share;
+        time *= left;
+        to = now.position
+             + (options.mode == CollisionOptions::Mode::Time
+                    ? time * now.velocity
+                    : length * left * normalize_or(now.velocity, Vec3(0)));
+    }
+    return now;
+}
+
+void check_sizes(const CollidingParticles& p) {
+    const std::size_t count = p.x.size();
+    LIMN_CHECK(p.x0.size() == count && p.y0.size() == count && p.z0.size() == count);
+    LIMN_CHECK(p.y.size() == count && p.z.size() == count && p.marks.size() == count);
+    LIMN_CHECK(p.vx.size() == count && p.vy.size() == count && p.vz.size() == count);
+    LIMN_CHECK(p.radius.empty() || p.radius.size() == count);
+}
+
+void write(const CollidingParticles& p, std::size_t i, const Vec3& position, const Vec3& velocity) {
+    p.x[i] = position.x;
+    p.y[i] = position.y;
+    p.z[i] = position.z;
+    p.vx[i] = velocity.x;
+    p.vy[i] = velocity.y;
+    p.vz[i] = velocity.z;
+}
+
+Vec3 start_of(const CollidingParticles& p, std::size_t i) {
+    return {p.x0[i], p.y0[i], p.z0[i]};
+}
+
+/// Particles that stopped in earlier steps stay; all other marks are cleared.
+void begin_marks(const CollidingParticles& p, std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i) {
+        p.marks[i] &= kParticleStuck | kParticleKilled;
+        if (p.marks[i] != 0) {
+            write(p, i, start_of(p, i), Vec3(0));
+        }
+    }
+}
+
+}  // namespace
+
+Vec3 respond(const Vec3& velocity, const Vec3& normal, const SurfaceResponse& response) {
+    const Vec3 unit = normalize_or(normal, Vec3(0));
+    const float speed = glm::dot(velocity, unit);
+    if (!(speed < 0)) {
+        return velocity;
+    }
+    const Vec3 across = speed * unit;
+    return std::clamp(response.friction, 0.0f, 1.0f) * (velocity - across)
+           - std::clamp(response.bounce, 0.0f, 1.0f) * across;
+}
+
+CollisionResult move_with_collisions(
+    const Vec3& position, const Vec3& velocity, float dt, std::span<const Collider> colliders,
+    const SurfaceResponse& response, const CollisionOptions& options) {
+    if (!is_finite(velocity * dt) || !(dt >= 0)) {
+        return {.position = position};
+    }
+    return follow(
+        {position, position + velocity * dt, velocity, dt, options.radius}, {colliders, {}},
+        response, options, [](auto&&...) {});
+}
+
+void set_colliders(ColliderSet& set, std::span<const Collider> colliders) {
+    set.colliders.assign(colliders.begin(), colliders.end());
+    set.reach.clear();
+    for (const Collider& collider : colliders) {
+        set.reach.push_back(find_reach(collider));
+    }
+}
+
+void collide_particles(
+    const CollidingParticles& particles, float dt, const ColliderSet& set,
+    const SurfaceResponse& response, const CollisionOptions& options,
+    std::vector<ParticleHit>& hits) {
+    check_sizes(particles);
+    LIMN_CHECK(set.reach.size() == set.colliders.size());
+    const CollidingParticles& p = particles;
+    const ParticleWays ways = {
+        .x0 = p.x0,
+        .y0 = p.y0,
+        .z0 = p.z0,
+        .x1 = p.x,
+        .y1 = p.y,
+        .z1 = p.z,
+        .radius = p.radius,
+        .one_radius = options.radius,
+        .skin = options.skin};
+    const Obstacles obstacles = {set.colliders, set.reach};
+    std::array<std::uint32_t, kBlock + kReachRoom> near;
+    for (std::size_t first = 0; first < p.x.size(); first += kBlock) {
+        const std::size_t count = std::min(kBlock, p.x.size() - first);
+        begin_marks(p, first, count);
+        const std::size_t near_count = find_near(ways, first, count, set.reach, near.data());
+        for (const std::uint32_t i : std::span(near).first(near_count)) {
+            if (p.marks[i] != 0) {
+                continue;
+            }
+            const Step step = {
+                .from = start_of(p, i),
+                .to = {p.x[i], p.y[i], p.z[i]},
+                .velocity = {p.vx[i], p.vy[i], p.vz[i]},
+                .dt = dt,
+                .radius = p.radius.empty() ? options.radius : p.radius[i]};
+            const auto add_hit = [&](std::uint32_t collider, const Vec3& point, const Vec3& normal,
+                                     const Vec3& velocity) {
+                p.marks[i] |= kParticleHit;
+                hits.push_back({p.first + i, collider, point, normal, velocity});
+            };
+            const CollisionResult result = follow(step, obstacles, response, options, add_hit);
+            if (p.marks[i] != 0 && options.action == ContactAction::Stick) {
+                p.marks[i] |= kParticleStuck;
+            }
+            if (p.marks[i] != 0 && options.action == ContactAction::Kill) {
+                p.marks[i] |= kParticleKilled;
+            }
+            write(p, i, result.position, result.velocity);
+        }
+    }
+}
+
+}  // namespace limn

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "systems/particles/collider.h"
+#include "systems/particles/collider_reach.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Particles against static surfaces: the bump and friction response, and the loop that follows a
+// path from contact to contact without losing time or passing through anything (book, chapter 8,
+// "Particle Collisions", and appendix 8.2), for one particle and for the arrays of a pool.
+
+/// Response of a surface, each 0 .. 1, clamped (table 8.1).
+struct SurfaceResponse {
+    float bounce = 0.3f;    ///< share of the normal speed kept, outward; "bump"
+    float friction = 0.8f;  ///< share of the tangential velocity *kept*: 1 is frictionless
+};
+
+/// friction v_t - bounce v_n for a velocity toward the surface; others are unchanged. Never faster
+/// than before. `normal` points outward and is normalized if need be.
+[[nodiscard]] Vec3
+respond(const Vec3& velocity, const Vec3& normal, const SurfaceResponse& response);
+
+/// What a contact does to a particle.
+enum class ContactAction : std::uint8_t {
+    Bounce,  ///< responds and goes on
+    Stick,   ///< stops
+    Kill,    ///< stops and is marked as dead
+};
+
+struct CollisionOptions {
+    /// What a contact leaves: the rest of the time, at the new speed, or the rest of the length as
+    /// in the book, which is as long however much speed was lost.
+    enum class Mode : std::uint8_t { Time, Length };
+
+    int max_bounces = 8;      ///< after this many the particle stops where it is
+    float skin = 1e-4f;       ///< distance kept from surfaces [m]; more far from the origin
+    float radius = 0;         ///< of the particle [m]
+    float rest_speed = 0.2f;  ///< slower toward the surface: no rebound and no hit [m/s]
+    Mode mode = Mode::Time;
+    ContactAction action = ContactAction::Bounce;
+};
+
+struct CollisionResult {
+    Vec3 position = Vec3(0);
+    Vec3 velocity = Vec3(0);
+    int contacts = 0;
+};
+
+/// Moves a particle by velocity * dt, dt >= 0 [s], responding to each contact on the way. Each
+/// straight piece has been tested against all colliders, so that a particle that is outside stays
+/// outside, at any speed and however thin the wall. One that starts inside a solid is pushed out,
+/// and loses its speed into it, but does not bounce. If position, velocity or dt is not finite, it
+/// stays and stops.
+[[nodiscard]] CollisionResult move_with_collisions(
+    const Vec3& position, const Vec3& velocity, float dt, std::span<const Collider> colliders,
+    const SurfaceResponse& response, const CollisionOptions& options = {});
+
+/// Bits of the mark of a particle.
+inline constexpr std::uint8_t kParticleHit = 1;     ///< hit something in this step
+inline constexpr std::uint8_t kParticleStuck = 2;   ///< by ContactAction::Stick
+inline constexpr std::uint8_t kParticleKilled = 4;  ///< by ContactAction::Kill
+
+/// A step of particles, an array per scalar, all of the same size.
+struct CollidingParticles {
+    std::span<const float> x0{}, y0{}, z0{};  ///< where the step began [m]
+    std::span<float> x{}, y{}, z{};           ///< where it ends if nothing is in the way [m]
+    std::span<float> vx{}, vy{}, vz{};        ///< then [m/s]
+    std::span<const float> radius{};          ///< [m]; empty: CollisionOptions::radius for all
+    std::span<std::uint8_t> marks{};          ///< see collide_particles
+    std::uint32_t first = 0;                  ///< number of the first particle, for hits
+};
+
+struct ParticleHit {
+    std::uint32_t particle = 0;
+    std::uint32_t collider = 0;
+    Vec3 point = Vec3(0);     ///< center of the particle
+    Vec3 normal = Vec3(0);    ///< unit, outward
+    Vec3 velocity = Vec3(0);  ///< before the hit [m/s]
+};
+
+/// Colliders and what is needed to leave out quickly those that a particle cannot touch.
+struct ColliderSet {
+    std::vector<Collider> colliders{};
+    std::vector<ColliderReach> reach{};  ///< of each
+};
+
+/// Call it when colliders or heights have changed: takes as long as reading all heights.
+void set_colliders(ColliderSet& set, std::span<const Collider> colliders);
+
+/// As move_with_collisions, for each particle, along the given way first. Those that touch nothing
+/// keep position and velocity. Writes each mark, and appends the hits in the order of particles,
+/// for each as they happen; touches slower than rest_speed are no hits. A particle that starts
+/// inside a solid counts as hit by the actions Stick and Kill only.
+///
+/// Particles that `marks` has as stuck or killed stay so, where they started, at rest: marks must
+/// be 0 at first. Particles do not influence each other: ranges may be processed in any order and
+/// in blocks of any size, with the same bits on every machine. Allocates only to grow `hits`.
+void collide_particles(
+    const CollidingParticles& particles, float dt, const ColliderSet& set,
+    const SurfaceResponse& response, const CollisionOptions& options,
+    std::vector<ParticleHit>& hits);
+
+}  // namespace limn
