@@ -61,6 +61,7 @@ constexpr Need kNeeds[] = {
     {"particle_look", {"particle_emitter", "", ""}},
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
+    {"particle_collision", {"particle_emitter", "", ""}},
 };
 
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics

@@ -56,6 +56,8 @@ void register_all_components() {
     register_component<Lifetime>();
     register_component<ParticleEmitter>();
     register_component<ParticleSource>();
+    register_component<ParticleCollision>();
+    register_component<ParticleCollider>();
     register_component<ParticleMotion>();
     register_component<ParticleLook>();
     register_component<ParticleLight>();

@@ -15,6 +15,7 @@ namespace limn {
 //     ParticleEmitter   when and where particles are born, and with what
 //     ParticleSource    that they are born where particles of another emitter are
 //     ParticleMotion    what moves them
+//     ParticleCollision what happens where they meet a ParticleCollider, on other entities
 //     ParticleLook      how they are drawn
 //     ParticleLight     that they light what is around
 //     ParticlePool      the living ones, kept by the systems: one array per scalar
@@ -172,6 +173,47 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(turbulence_speed, "whirls that come and go in a second", "1/s", 0, 100);
     LIMN_FIELD(vortex, "acceleration around the emitter's y axis", "m/s^2", -1e4, 1e4);
     LIMN_FIELD(attraction, "acceleration toward the emitter's y axis", "m/s^2", -1e4, 1e4);
+}
+
+/// What particles meet, in the entity's local space; they see nothing else.
+enum class ColliderShape : std::uint8_t {
+    Plane,   ///< solid below the local xz plane, without end
+    Sphere,  ///< of radius size.x
+    Box,     ///< of half extents `size`
+};
+
+struct ParticleCollider {
+    ColliderShape shape = ColliderShape::Plane;
+    Vec3 size = {0.5f, 0.5f, 0.5f};
+    bool hollow = false;
+};
+
+LIMN_FIELDS(ParticleCollider) {
+    LIMN_FIELD(shape, .doc = "plane: solid below local y = 0", .values = "plane sphere box");
+    LIMN_FIELD(size, "half extents of a box; its x is the radius of a sphere", "m", 0, 1e5);
+    LIMN_FIELD(hollow, "a sphere that is solid outside");
+}
+
+/// What a collider does to a particle.
+enum class CollisionAction : std::uint8_t {
+    Bounce,
+    Kill,  ///< gives birth to a ParticleSource's particles before, at "hit" and "death"
+};
+
+/// The emitter's particles collide, whatever their speed (particle.plane-response,
+/// particle.collision-loop).
+struct ParticleCollision {
+    CollisionAction action = CollisionAction::Bounce;
+    float bounce = 0.3f;
+    float friction = 0.8f;
+    float radius = 0.005f;
+};
+
+LIMN_FIELDS(ParticleCollision) {
+    LIMN_FIELD(action, .doc = "what a hit does", .values = "bounce kill");
+    LIMN_FIELD(bounce, "share of the speed toward the surface that is kept, outward", "", 0, 1);
+    LIMN_FIELD(friction, "share of the velocity along the surface that is kept", "", 0, 1);
+    LIMN_FIELD(radius, "of the particle, as far as colliders go", "m", 0, 100);
 }
 
 struct ColorKey {

@@ -54,7 +54,7 @@ constexpr Words du;
 constexpr Ints di;
 
 HWY_INLINE void
-move_axis(float* HWY_RESTRICT x, float* HWY_RESTRICT v, V push, V air, V keep, V dt, V half_dt) {
+move_axis(float* HWY_RESTRICT x, float* HWY_RESTRICT v, V push, V air, V keep, V half_dt) {
     const V old = hn::LoadU(d, v);
     const V next = hn::Add(air, hn::Mul(hn::Sub(hn::Add(old, push), air), keep));
     hn::StoreU(next, d, v);
@@ -76,9 +76,9 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
     const V air_z = hn::Set(d, step.air.z);
     std::size_t i = 0;
     for (; i + n <= b.count; i += n) {
-        move_axis(b.x + i, b.vx + i, push_x, air_x, keep, dt, half_dt);
-        move_axis(b.y + i, b.vy + i, push_y, air_y, keep, dt, half_dt);
-        move_axis(b.z + i, b.vz + i, push_z, air_z, keep, dt, half_dt);
+        move_axis(b.x + i, b.vx + i, push_x, air_x, keep, half_dt);
+        move_axis(b.y + i, b.vy + i, push_y, air_y, keep, half_dt);
+        move_axis(b.z + i, b.vz + i, push_z, air_z, keep, half_dt);
         const V age = hn::Add(hn::LoadU(d, b.age + i), dt);
         hn::StoreU(age, d, b.age + i);
         dead += hn::CountTrue(d, hn::Ge(age, hn::LoadU(d, b.life + i)));

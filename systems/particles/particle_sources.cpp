@@ -23,7 +23,7 @@ class Spawns {
         add({now - velocity * since, velocity * inherit_, Vec3(0), since}, count);
     }
     void add_hit(const ParticleHit& hit, double count) {
-        add({hit.point, hit.velocity * inherit_, hit.normal, hit.since}, count);
+        add({hit.point, hit.velocity * inherit_, hit.normal, 0}, count);
     }
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 

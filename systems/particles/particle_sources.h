@@ -3,6 +3,7 @@
 #include "ecs/base/math.h"
 #include "ecs/base/rng.h"
 #include "ecs/components/particles.h"
+#include "systems/particles/particle_collision.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +13,6 @@
 namespace limn {
 
 // Births where particles of another emitter are born, fly, hit or die (ParticleSource).
-
-/// Where a particle met a surface in this step.
-struct ParticleHit {
-    std::uint32_t particle = 0;  ///< its index
-    float since = 0;             ///< until the end of the step [s]
-    Vec3 point = {0, 0, 0};
-    Vec3 normal = {0, 1, 0};    ///< unit, outward
-    Vec3 velocity = {0, 0, 0};  ///< before it
-};
 
 /// A birth by another particle.
 struct ParticleSpawn {

@@ -3,20 +3,25 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
 #include "systems/particles/particle_births.h"
+#include "systems/particles/particle_collision.h"
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_sources.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace limn {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr std::size_t kBlock = 1024;         // particles that move as one piece of work
+constexpr std::uint32_t kBlock = 1024;       // particles that move as one piece of work
 constexpr std::size_t kBlockGrain = 4;       // blocks of one job
 constexpr float kGravity = 9.81f;            // [m/s^2]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
@@ -29,6 +34,8 @@ struct Work {
     const SprayDrops* drops = nullptr;
     const ParticleSource* source = nullptr;
     std::uint32_t parent = kNone;  ///< that source's emitter in the list of works
+    const ParticleCollision* collision = nullptr;
+    std::vector<ParticleHit> hits = {};
     std::vector<ParticleSpawn> spawns = {};
     ParticlePool* pool = nullptr;
     EmitterPlace place;
@@ -44,6 +51,7 @@ struct Block {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
     std::uint32_t dead = 0;
+    std::vector<ParticleHit> hits = {};
 };
 
 Work make_work(
@@ -151,8 +159,8 @@ void find_spawns_of(
     const std::size_t room = work.emitter->capacity > size ? work.emitter->capacity - size : 0;
     Random random(seed, subject_of(work), name_hash("particle sources"), time.frame);
     work.pool->dropped += find_spawns(
-        *work.source, *work.emitter, *works[work.parent].pool, {}, work.step.dt, room, random,
-        work.spawns);
+        *work.source, *work.emitter, *works[work.parent].pool, works[work.parent].hits,
+        work.step.dt, room, random, work.spawns);
 }
 
 std::uint32_t move(const Work& work, const ParticleBlock& block) {
@@ -163,6 +171,85 @@ std::uint32_t move(const Work& work, const ParticleBlock& block) {
         whirl_particles(block, work.vortex, work.step.dt);
     }
     return static_cast<std::uint32_t>(move_particles(block, work.step));
+}
+
+/// Moves a block whose particles collide.
+void move_colliding(const Work& work, const ColliderSet& colliders, Block& block) {
+    ParticlePool& pool = *work.pool;
+    std::array<float, kBlock> start[3];
+    std::array<std::uint8_t, kBlock> marks{};
+    const auto part = [&](std::vector<float>& column) {
+        return std::span(column).subspan(block.first, block.count);
+    };
+    const std::span<float> place[] = {part(pool.x), part(pool.y), part(pool.z)};
+    for (int axis = 0; axis < 3; ++axis) {
+        std::copy(place[axis].begin(), place[axis].end(), start[axis].begin());
+    }
+    block.dead = move(work, particle_block(pool, block.first, block.count));
+    const ParticleCollision& collision = *work.collision;
+    const bool kills = collision.action == CollisionAction::Kill;
+    const auto began = [&](int axis) {
+        return std::span<const float>(start[axis]).first(block.count);
+    };
+    CollisionOptions options;
+    options.radius = finite_or(collision.radius, 0);
+    options.action = kills ? ContactAction::Kill : ContactAction::Bounce;
+    collide_particles(
+        {.x0 = began(0),
+         .y0 = began(1),
+         .z0 = began(2),
+         .x = place[0],
+         .y = place[1],
+         .z = place[2],
+         .vx = part(pool.vx),
+         .vy = part(pool.vy),
+         .vz = part(pool.vz),
+         .marks = std::span(marks).first(block.count),
+         .first = block.first},
+        work.step.dt, colliders, {collision.bounce, collision.friction}, options, block.hits);
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+        const std::uint32_t at = block.first + i;
+        if ((marks[i] & kParticleKilled) != 0 && pool.age[at] < pool.life[at]) {
+            pool.life[at] = pool.age[at];
+            ++block.dead;
+        }
+    }
+}
+
+/// What the level's colliders are in this step.
+ColliderSet find_colliders(const Query<const ParticleCollider, const WorldTransform>& colliders) {
+    std::vector<Collider> found;
+    colliders.each([&](const ParticleCollider& collider, const WorldTransform& transform) {
+        const Vec3 center = transform_point(transform.world, Vec3(0));
+        Vec3 axes[3];
+        Vec3 size = collider.size;
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 unit(0);
+            unit[axis] = 1;
+            const Vec3 reach = transform_vector(transform.world, unit);
+            size[axis] *= glm::length(reach);
+            axes[axis] = normalize_or(reach, unit);
+        }
+        switch (collider.shape) {
+        case ColliderShape::Plane:
+            found.emplace_back(PlaneCollider{axes[1], glm::dot(axes[1], center)});
+            break;
+        case ColliderShape::Sphere:
+            found.emplace_back(SphereCollider{center, size.x, collider.hollow});
+            break;
+        case ColliderShape::Box: {
+            Affine pose{};
+            for (int row = 0; row < 3; ++row) {
+                pose.row[row] = {axes[0][row], axes[1][row], axes[2][row], center[row]};
+            }
+            found.emplace_back(BoxCollider{pose, size});
+            break;
+        }
+        }
+    });
+    ColliderSet set;
+    set_colliders(set, found);
+    return set;
 }
 
 }  // namespace
@@ -177,8 +264,9 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        ParticlePool>
+        Optional<const ParticleCollision>, ParticlePool>
         emitters,
+    Query<const ParticleCollider, const WorldTransform> colliders,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
@@ -187,7 +275,8 @@ void update_particles(
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
-                      const SprayDrops* drops, const ParticleSource* source, ParticlePool& pool) {
+                      const SprayDrops* drops, const ParticleSource* source,
+                      const ParticleCollision* collision, ParticlePool& pool) {
         const Vec4& row = previous.world.row[0];
         const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
         const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
@@ -197,6 +286,7 @@ void update_particles(
         work.emitter = &emitter;
         work.drops = drops;
         work.source = source;
+        work.collision = collision;
         work.pool = &pool;
         works.push_back(work);
     });
@@ -207,20 +297,33 @@ void update_particles(
         }
     });
 
+    const ColliderSet solid = find_colliders(colliders);
     std::vector<Block> blocks;
     for (std::uint32_t w = 0; w < works.size(); ++w) {
         const auto size = static_cast<std::uint32_t>(works[w].pool->size());
         for (std::uint32_t first = 0; first < size; first += kBlock) {
-            blocks.push_back({w, first, std::min<std::uint32_t>(size - first, kBlock)});
+            Block block;
+            block.work = w;
+            block.first = first;
+            block.count = std::min<std::uint32_t>(size - first, kBlock);
+            blocks.push_back(std::move(block));
         }
     }
     parallel_for(blocks.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Block& block = blocks[i];
             const Work& work = works[block.work];
-            block.dead = move(work, particle_block(*work.pool, block.first, block.count));
+            if (work.collision != nullptr && !solid.colliders.empty()) {
+                move_colliding(work, solid, block);
+            } else {
+                block.dead = move(work, particle_block(*work.pool, block.first, block.count));
+            }
         }
     });
+    for (const Block& block : blocks) {
+        std::vector<ParticleHit>& hits = works[block.work].hits;
+        hits.insert(hits.end(), block.hits.begin(), block.hits.end());
+    }
 
     // Children's births wait until the dead are gone: their parents may be children too.
     find_parents(works);

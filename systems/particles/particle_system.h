@@ -35,8 +35,9 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        ParticlePool>
+        Optional<const ParticleCollision>, ParticlePool>
         emitters,
+    Query<const ParticleCollider, const WorldTransform> colliders,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 
