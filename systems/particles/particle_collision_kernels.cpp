@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/particle_collision_kernels.cpp"
@@ -65,9 +66,11 @@ std::size_t field_vector(const ParticleColumns&, const Field&, const Response&) 
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
+using Ints = hn::RebindToSigned<Floats>;
 using V = hn::Vec<Floats>;
 using M = hn::Mask<Floats>;
 constexpr Floats d;
+constexpr Ints ints;
 
 struct V3 {
     V x, y, z;
@@ -165,9 +168,22 @@ sphere_vector(const ParticleColumns& p, const Sphere& sphere, const Response& re
     return i;
 }
 
+/// The heights around each cell. Copying pairs of neighbors takes half the time of four gathers.
+HWY_INLINE void
+load_corners(const Field& field, hn::Vec<Ints> index, V& h00, V& h10, V& h01, V& h11) {
+    HWY_ALIGN std::int32_t first[hn::MaxLanes(d)];
+    HWY_ALIGN float corners[4 * hn::MaxLanes(d)];
+    hn::Store(index, ints, first);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+        const float* const row = field.heights + first[lane];
+        std::memcpy(corners + 4 * lane, row, 2 * sizeof(float));
+        std::memcpy(corners + 4 * lane + 2, row + field.width, 2 * sizeof(float));
+    }
+    hn::LoadInterleaved4(d, corners, h00, h10, h01, h11);
+}
+
 std::size_t field_vector(const ParticleColumns& p, const Field& field, const Response& response) {
     const std::size_t lanes = hn::Lanes(d);
-    const hn::RebindToSigned<Floats> ints;
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, 1.0f);
     std::size_t i = 0;
@@ -187,10 +203,11 @@ std::size_t field_vector(const ParticleColumns& p, const Field& field, const Res
         const V fx = hn::Sub(x, hn::ConvertTo(d, cell_x));
         const V fz = hn::Sub(z, hn::ConvertTo(d, cell_z));
         const auto index = hn::Add(hn::Mul(cell_z, hn::Set(ints, field.width)), cell_x);
-        const V h00 = hn::GatherIndex(d, field.heights, index);
-        const V h10 = hn::GatherIndex(d, field.heights + 1, index);
-        const V h01 = hn::GatherIndex(d, field.heights + field.width, index);
-        const V h11 = hn::GatherIndex(d, field.heights + field.width + 1, index);
+        V h00;
+        V h10;
+        V h01;
+        V h11;
+        load_corners(field, index, h00, h10, h01, h11);
         const V along_x = hn::Sub(h10, h00);
         const V along_z = hn::Sub(h01, h00);
         const V twist = hn::Sub(hn::Sub(h11, h10), along_z);
