@@ -13,6 +13,7 @@
 #include "systems/lens_control_system.h"
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
+#include "systems/particles/gpu_particles.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
 #include "systems/path_system.h"
@@ -91,8 +92,10 @@ void add_water_systems(SystemList& systems) {
 
 void add_particle_systems(SystemList& systems) {
     systems.add<add_particle_pools>(Create, Both);
+    systems.add<add_gpu_particles>(Create, Both);
     systems.add<find_particle_obstacles>(Follow);
     systems.add<update_particles>(Follow);  // after everything that moves emitters
+    systems.add<record_gpu_particles>(Follow);
 }
 
 void add_camera_systems(SystemList& systems) {

@@ -144,7 +144,8 @@ void born(benchmark::State& state) {
     ParticleEmitter emitter;
     emitter.shape = EmitterShape::Ball;
     emitter.capacity = static_cast<std::uint32_t>(state.range(0));
-    const std::vector<float> births(static_cast<std::size_t>(state.range(0)), 0.5f);
+    const std::vector<BirthRun> births = {
+        {.first = 0.5f, .count = static_cast<std::uint32_t>(state.range(0))}};
     ParticlePool pool;
     for (auto _ : state) {
         for (auto* column :

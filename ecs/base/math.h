@@ -43,6 +43,10 @@ template <typename T>
     return x * x;
 }
 
+/// Of a value that scripts may have set to anything.
+[[nodiscard]] inline float finite_or(float value, float otherwise) {
+    return std::isfinite(value) ? value : otherwise;
+}
 /// Whether all components are finite, and their sum is.
 template <glm::length_t n>
 [[nodiscard]] bool is_finite(const glm::vec<n, float>& v) {

@@ -50,6 +50,9 @@ class Random {
         const std::uint64_t key = hash_combine(hash_combine(seed, system), frame >> 32);
         key_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
     }
+    /// With this counter words 1 .. 4 are drawn, for shaders that draw the same; it counts up.
+    [[nodiscard]] constexpr PhiloxCounter counter() const { return counter_; }
+    [[nodiscard]] constexpr PhiloxKey key() const { return key_; }
 
     /// 32 uniformly distributed bits.
     constexpr std::uint32_t word() {

@@ -30,6 +30,7 @@ enum class EmitterShape : std::uint8_t {
     Disc,    ///< within an ellipse in the xz plane
     Circle,  ///< on its edge
     Box,
+    Torus,  ///< around y: evenly along a circle in xz and over a tube of radius size.y
 };
 
 /// Where they fly at first.
@@ -66,8 +67,18 @@ LIMN_FIELDS(CurveKey) {
     LIMN_FIELD(value, "factor", "", 0, 1000);
 }
 
+/// Who moves the particles of an emitter. The same happens to them, but for rounding; on the GPU
+/// they are neither saved nor sorted among each other, have no collisions, sources, drops or
+/// lights, and the capacity holds those of the longest lifetime.
+enum class ParticleExecutor : std::uint8_t {
+    Auto,  ///< the GPU from a capacity of 262,144 on
+    Cpu,
+    Gpu,
+};
+
 struct ParticleEmitter {
     bool active = true;
+    ParticleExecutor executor = ParticleExecutor::Auto;
     float rate = 50;
     float rate_spread = 0;
     std::vector<CurveKey> rate_curve;
@@ -91,6 +102,10 @@ struct ParticleEmitter {
 
 LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(active, "whether particles are born; the living ones go on");
+    LIMN_FIELD(
+        executor,
+        .doc = "who moves them; on the GPU without order, collisions, sources, drops and lights",
+        .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);
     LIMN_FIELD(rate_curve, "factor on the rate over the duration; without one, over a second");
@@ -105,8 +120,11 @@ LIMN_FIELDS(ParticleEmitter) {
         4194304);
     LIMN_FIELD(seed, "random seed; 0: of its own for each entity");
     LIMN_FIELD(
-        shape, .doc = "where particles are born", .values = "point ball sphere disc circle box");
-    LIMN_FIELD(size, "half extents of the shape along the local axes", "m", 0, 1e5);
+        shape, .doc = "where particles are born",
+        .values = "point ball sphere disc circle box torus");
+    LIMN_FIELD(
+        size, "half extents of the shape along the local axes; y of a torus: radius of its tube",
+        "m", 0, 1e5);
     LIMN_FIELD(
         direction, .doc = "initial direction: about local +y, or outward", .values = "cone radial");
     LIMN_FIELD(cone, "half angle of the cone of directions", "rad", 0, 3.1416);
@@ -151,6 +169,13 @@ LIMN_FIELDS(ParticleSource) {
     LIMN_FIELD(inherit, "share of that particle's velocity that is added", "", -10, 10);
 }
 
+/// How a step turns velocities into places (particle.integrator).
+enum class ParticleIntegrator : std::uint8_t {
+    Average,        ///< by the mean of old and new velocity: exact for constant forces
+    ExplicitEuler,  ///< by the old one, as where place and velocity are updated in one pass
+    SemiImplicit,   ///< by the new one
+};
+
 struct ParticleMotion {
     float gravity = 1;
     float drag = 0;
@@ -161,6 +186,9 @@ struct ParticleMotion {
     float turbulence_speed = 0.5f;
     float vortex = 0;
     float attraction = 0;
+    float orbit = 0;
+    float brake = 0;
+    ParticleIntegrator integrator = ParticleIntegrator::Average;
 };
 
 LIMN_FIELDS(ParticleMotion) {
@@ -173,6 +201,15 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(turbulence_speed, "whirls that come and go in a second", "1/s", 0, 100);
     LIMN_FIELD(vortex, "acceleration around the emitter's y axis", "m/s^2", -1e4, 1e4);
     LIMN_FIELD(attraction, "acceleration toward the emitter's y axis", "m/s^2", -1e4, 1e4);
+    LIMN_FIELD(
+        orbit,
+        "how far directions turn into circles around that axis in 1/60 s; between 0 and 1 it "
+        "brakes",
+        "", 0, 1);
+    LIMN_FIELD(brake, "speed that is lost, down to rest", "m/s^2", 0, 1e4);
+    LIMN_FIELD(
+        integrator, .doc = "average: exact for constant forces; the others as in the book",
+        .values = "average explicit_euler semi_implicit");
 }
 
 struct ColorKey {
@@ -262,6 +299,21 @@ LIMN_FIELDS(ParticleLight) {
     LIMN_FIELD(count, "lights at most, of the oldest particles", "", 0, 1024);
 }
 
+/// What an emitter knows of its births; kept by the systems.
+struct EmitterClock {
+    std::uint64_t born = 0;     ///< of all time; numbers of the random sequences
+    std::uint64_t dropped = 0;  ///< births for which there was no room
+    double time = 0;            ///< the emitter's own [s]
+    double carry = 0;           ///< a share of a birth that is due
+};
+
+LIMN_FIELDS(EmitterClock) {
+    LIMN_FIELD(born, "births of all time");
+    LIMN_FIELD(dropped, "births over capacity");
+    LIMN_FIELD(time, "of the emitter", "s");
+    LIMN_FIELD(carry, "share of a birth that is due");
+}
+
 /// The particles of an emitter, oldest first; kept by the systems. World space.
 struct ParticlePool {
     std::vector<float> x, y, z;        ///< position [m]
@@ -269,11 +321,8 @@ struct ParticlePool {
     std::vector<float> age, life;      ///< [s]; dead at age >= life
     std::vector<std::uint32_t> look;   ///< random bits: size, angle, spin
     std::vector<std::uint32_t> stuck;  ///< 1: sticks to a surface; shorter: the rest does not
-    std::uint64_t born = 0;            ///< of all time; numbers of the random sequences
-    std::uint64_t dropped = 0;         ///< births for which there was no room
-    double time = 0;                   ///< the emitter's own [s]
-    double carry = 0;                  ///< a share of a birth that is due
-    std::uint64_t fresh = 0;           ///< of the youngest, how many have not moved yet
+    EmitterClock clock;
+    std::uint64_t fresh = 0;  ///< of the youngest, how many have not moved yet
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
@@ -289,11 +338,14 @@ LIMN_FIELDS(ParticlePool) {
     LIMN_FIELD(life, "ages at death", "s");
     LIMN_FIELD(look, "random bits of each");
     LIMN_FIELD(stuck, "1 for those that stick to a surface");
-    LIMN_FIELD(born, "births of all time");
-    LIMN_FIELD(dropped, "births over capacity");
-    LIMN_FIELD(time, "of the emitter", "s");
-    LIMN_FIELD(carry, "share of a birth that is due");
+    LIMN_FIELD(clock, "births so far, and the emitter's time");
     LIMN_FIELD(fresh, "births that have not moved yet");
+}
+
+[[nodiscard]] inline bool runs_on_gpu(const ParticleEmitter& emitter) {
+    constexpr std::uint32_t kMany = 262144;
+    return emitter.executor == ParticleExecutor::Gpu
+           || (emitter.executor == ParticleExecutor::Auto && emitter.capacity >= kMany);
 }
 
 /// Copies of a prefab start without particles.

@@ -1,5 +1,6 @@
 #include "render/passes/particle_pass.h"
 
+#include "ecs/components/gpu_particles.h"
 #include "ecs/components/time.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
@@ -42,6 +43,12 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
     return record;
 }
 
+float particle_lag(const FrameData& frame) {
+    const auto* const time = frame.world->find_resource<FrameTime>();
+    const float step = time != nullptr ? time->step : FrameTime{}.step;
+    return (1.0f - frame.camera.alpha) * step;
+}
+
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances) {
@@ -73,8 +80,10 @@ void order_by_distance(
 }
 
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
-    return ParticleEffect{
+    ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"})};
+    effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
+    return effect;
 }
 
 bool ParticleEffect::is_used(const FrameData& frame) {
@@ -82,26 +91,35 @@ bool ParticleEffect::is_used(const FrameData& frame) {
 }
 
 void ParticleEffect::collect(FrameData& frame) {
-    const auto* const time = frame.world->find_resource<FrameTime>();
-    const float step = time != nullptr ? time->step : FrameTime{}.step;
-    const float back = (1.0f - frame.camera.alpha) * step;
+    const float back = particle_lag(frame);
     const ImagePool& pool = frame.materials->images();
     looks.clear();
     arrays.clear();
     instances.clear();
     lit = images = false;
+    // The number of its record.
+    const auto add_look = [&](const ParticleLook& look) {
+        const bool has_image = frame.assets->images.size() > look.image.index;
+        const ImageLayer place = has_image ? pool.find(look.image) : ImageLayer{};
+        looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
+        arrays.push_back(place.array);
+        lit = lit || look.lit > 0;
+        images = images || has_image;
+        return static_cast<std::uint32_t>(looks.size() - 1);
+    };
     frame.world->query<const ParticleLook, const ParticlePool>().each(
         [&](const ParticleLook& look, const ParticlePool& particles) {
-            if (looks.size() >= kMaxLooks) {
-                return;
+            if (looks.size() < kMaxLooks) {
+                append_particles(particles, add_look(look), back, instances);
             }
-            const bool has_image = frame.assets->images.size() > look.image.index;
-            const ImageLayer place = has_image ? pool.find(look.image) : ImageLayer{};
-            append_particles(particles, static_cast<std::uint32_t>(looks.size()), back, instances);
-            looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
-            arrays.push_back(place.array);
-            lit = lit || look.lit > 0;
-            images = images || has_image;
+        });
+    gpu.begin_frame();
+    frame.world->query<const ParticleLook, const ParticleEmitter, const GpuParticles>().each(
+        [&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
+            const GpuParticles& particles) {
+            if (looks.size() < kMaxLooks) {
+                gpu.add(frame, entity, emitter, particles, add_look(look));
+            }
         });
     if (frame.warm_up && instances.empty() && !looks.empty()) {
         instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
@@ -128,12 +146,19 @@ void ParticleEffect::collect(FrameData& frame) {
     look_texels.upload(*frame.ring, looks);
 }
 
+void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    gpu.update(graph, particle_lag(frame));
+}
+
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    if (runs.empty()) {
+    if (runs.empty() && gpu.pools().empty()) {
         return;
     }
-    const std::vector<Use> reads = lighting_reads(
+    std::vector<Use> reads = lighting_reads(
         view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
+    for (const auto& [entity, pool] : gpu.pools()) {
+        reads.emplace_back(graph.import("particles", pool->instances));
+    }
     const Use writes[] = {view.radiance};
     graph.add_pass(
         "particles", std::span(reads), writes, [this, &frame, &view](PassContext& context) {
@@ -162,6 +187,17 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
                     device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
                 }
                 device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
+            }
+            program->set("first", 0);
+            for (const auto& [entity, pool] : gpu.pools()) {
+                if (images) {
+                    device.bind_texture(
+                        kImagesUnit, frame.materials->images().array(arrays[pool->look]));
+                }
+                pool->texels.bind(device, kParticlesUnit);
+                if (pool->count > 0) {
+                    device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(pool->count));
+                }
             }
         });
 }

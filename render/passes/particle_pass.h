@@ -4,6 +4,7 @@
 #include "ecs/components/particles.h"
 #include "render/buffer_texture.h"
 #include "render/effect.h"
+#include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
 #include "render/shaders/particle_gpu.h"
 
@@ -34,6 +35,9 @@ struct ParticleInstance {
     std::uint32_t unused = 0;
 };
 static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
+
+/// Time of the frame before the end of the last step [s].
+[[nodiscard]] float particle_lag(const FrameData& frame);
 
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
@@ -73,6 +77,7 @@ struct ParticleEffect {
     ParticleOrder order = {};
     std::vector<ParticleInstance> sorted = {};
     std::vector<Run> runs = {};
+    GpuParticlePools gpu = {};  ///< drawn after the others, each in the order of births
     bool lit = false;
     bool images = false;
     BufferTexture particle_texels = BufferTexture("particles", GL_RGBA32UI);
@@ -81,6 +86,7 @@ struct ParticleEffect {
     [[nodiscard]] static Result<ParticleEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     void collect(FrameData& frame);
+    void draw_shared(FrameGraph& graph, const FrameData& frame);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 };
 

@@ -158,8 +158,8 @@ void main() {
     frames = vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy);
     next_frame = vec2(mod(next, book.x), floor(next / book.x)) / book.xy;
     blend = vec4(glow.z, streak.z, count > 1.0 ? fract(shown) : 0.0, book.w);
-    // Too small to draw, or behind the camera.
-    if (size <= 0.0 || color.a <= 0.0) {
+    // Too small to draw, transparent or dead.
+    if (size <= 0.0 || color.a <= 0.0 || rest.w != 0u) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }
 }

@@ -8,7 +8,7 @@ namespace limn::layout {
 
 // A particle: texels of four words.
 //   0  position xyz [m] as floats; share of the life (16 bits) below the index of its look
-//   1  velocity [m/s] and age [s] as four halfs; random bits; 0
+//   1  velocity [m/s] and age [s] as four halfs; random bits; 1: dead
 const uint kParticleTexels = 2u;
 
 // A look: texels of four floats.
@@ -22,6 +22,26 @@ const uint kLookSamples = 32u;  // evenly over the life, the first at its beginn
 const uint kLookSizes = 4u;
 const uint kLookColors = 12u;
 const uint kLookTexels = 44u;
+
+// Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
+//   0  seed of the random numbers: key (2 words); subject (2 words)
+//   1  high word of the number of the oldest particle; shape, direction (words); cosine of the cone
+//   2  size of the shape; speed
+//   3  speed, give or take; lifetime, give or take; 0
+// then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (shares of the step), number.
+const uint kEmitterTexels = 4u;
+//   0  number of its first birth (low word), births, first run, runs (words)
+//   1  acceleration times dt; dt
+//   2  velocity of the air; share of the velocity that is kept
+//   3  rows of the emitter's matrix at the beginning, 6 at the end
+//   9  velocity that is added at birth; share of the step in which the old velocity counts
+//  10  drift a of the turbulence; its strength times dt
+//  11  drift b; 1 / size
+//  12  origin of axis; acceleration around it times dt
+//  13  axis; acceleration toward it times dt
+//  14  orbit; loss of speed; seed of the turbulence (word); 0
+const uint kStepTexels = 15u;
+const uint kParticleGroup = 128u;  // particles of a work group
 
 #ifdef __cplusplus
 }  // namespace limn::layout

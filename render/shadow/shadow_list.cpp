@@ -19,10 +19,6 @@ constexpr float kMinNear = 0.02f;  ///< of a view from a light [m]
 /// Fraction of a cascade over which it blends into the next one.
 constexpr float kCascadeBlend = 0.1f;  // as in lib/shadow.glsl
 
-float finite_or(float x, float fallback) {
-    return std::isfinite(x) ? x : fallback;
-}
-
 /// Border texels that the filter of a view may sample.
 int guard_of(const Shadow& shadow) {
     switch (shadow.filter) {

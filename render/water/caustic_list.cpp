@@ -58,10 +58,6 @@ float distance_to(const layout::WaterRecord& body, const Vec3& camera) {
     return glm::length(out);
 }
 
-float finite_or(float x, float fallback) {
-    return std::isfinite(x) ? x : fallback;
-}
-
 std::int32_t power_of_two(std::int32_t side, std::int32_t min_side) {
     return static_cast<std::int32_t>(
         std::bit_ceil(static_cast<unsigned>(std::clamp(side, min_side, 1024))));

@@ -1,5 +1,7 @@
 #include "systems/particles/particle_births.h"
 
+#include "systems/particles/emitter_place.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -101,21 +103,19 @@ struct Piece {
 
 class Births {
   public:
-    Births(float dt, std::size_t room, ParticlePool& pool, std::vector<float>& births)
-        : dt_(dt), room_(room), pool_(pool), births_(births) {}
+    Births(float dt, std::size_t room, EmitterClock& clock, std::vector<BirthRun>& runs)
+        : dt_(static_cast<double>(dt)), room_(static_cast<double>(room)), clock_(clock),
+          runs_(runs) {}
 
     void add_rate(const Piece& piece, double rate) {
         if (!(rate > 0)) {
             return;
         }
         rate = std::min(rate, kMostBirths);
-        const double due = pool_.carry + rate * piece.length;
+        const double due = clock_.carry + rate * piece.length;
         const double whole = std::floor(due + kSlack);
-        for (double i = 1; i <= whole && births_.size() < room_; ++i) {
-            add(piece.offset + (i - pool_.carry) / rate);
-        }
-        drop(whole);
-        pool_.carry = std::max(due - whole, 0.0);
+        add(piece.offset + (1 - clock_.carry) / rate, 1 / rate, whole);
+        clock_.carry = std::max(due - whole, 0.0);
     }
 
     void add_burst(const Piece& piece, const ParticleBurst& burst, Random& random) {
@@ -126,54 +126,49 @@ class Births {
             if (at >= piece.length) {
                 break;
             }
-            asked_ = births_.size();
             const auto asked = static_cast<double>(spread(burst.count, burst.spread, random));
-            const double count = std::min(std::round(asked), kMostBirths);
-            for (double i = 0; i < count && births_.size() < room_; ++i) {
-                add(piece.offset + at);
-            }
-            drop(count);
+            add(piece.offset + at, 0, std::min(std::round(asked), kMostBirths));
         }
     }
 
-    void begin() { asked_ = births_.size(); }
-
   private:
-    void add(double at) { births_.push_back(std::clamp(static_cast<float>(at) / dt_, 0.0f, 1.0f)); }
-    /// Of the `wanted` births since begin(), those that were not added.
-    void drop(double wanted) {
-        const auto added = static_cast<double>(births_.size() - asked_);
-        pool_.dropped += wanted > added ? static_cast<std::uint64_t>(wanted - added) : 0;
+    void add(double first, double spacing, double wanted) {
+        const double count = std::min(wanted, room_);
+        if (count > 0) {
+            runs_.push_back(
+                {static_cast<float>(first / dt_), static_cast<float>(spacing / dt_),
+                 static_cast<std::uint32_t>(count)});
+            room_ -= count;
+        }
+        clock_.dropped += wanted > count ? static_cast<std::uint64_t>(wanted - count) : 0;
     }
 
-    float dt_;
-    std::size_t room_;
-    std::size_t asked_ = 0;
-    ParticlePool& pool_;
-    std::vector<float>& births_;
+    double dt_;
+    double room_;
+    EmitterClock& clock_;
+    std::vector<BirthRun>& runs_;
 };
 
 }  // namespace
 
 void find_births(
     const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
-    ParticlePool& pool, std::vector<float>& births) {
+    EmitterClock& clock, std::vector<BirthRun>& births) {
     const float rate =
         scale * spread(finite_or(emitter.rate, 0), finite_or(emitter.rate_spread, 0), random);
     const double asked = static_cast<double>(finite_or(emitter.duration, 0));
     const double duration = asked > 0 ? std::max(asked, kMinDuration) : 0;
-    Births found(dt, room, pool, births);
+    Births found(dt, room, clock, births);
     double left = static_cast<double>(dt);
     while (left > 0) {
-        const double rest = duration > 0 ? duration - pool.time : left;
+        const double rest = duration > 0 ? duration - clock.time : left;
         if (rest <= 0 && !emitter.loop) {
-            pool.carry = 0;
+            clock.carry = 0;
             break;
         }
         const Piece piece = {
-            pool.time, std::min(left, std::max(rest, 0.0)), static_cast<double>(dt) - left};
+            clock.time, std::min(left, std::max(rest, 0.0)), static_cast<double>(dt) - left};
         if (emitter.active) {
-            found.begin();
             // Of its middle: exact for straight lines.
             const double period = duration > 0 ? duration : 1.0;
             const double at = std::fmod((piece.begin + 0.5 * piece.length) / period, 1.0);
@@ -184,8 +179,8 @@ void find_births(
             }
         }
         left -= piece.length;
-        pool.time =
-            duration > 0 && rest <= piece.length && emitter.loop ? 0.0 : pool.time + piece.length;
+        clock.time =
+            duration > 0 && rest <= piece.length && emitter.loop ? 0.0 : clock.time + piece.length;
     }
 }
 
@@ -203,8 +198,10 @@ Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {
     switch (shape) {
     case EmitterShape::Point:
         break;
-    case EmitterShape::Ball:
-        return size * (random.direction() * std::cbrt(random.uniform()));
+    case EmitterShape::Ball: {
+        const float radius = std::cbrt(random.uniform());
+        return size * (random.direction() * radius);
+    }
     case EmitterShape::Sphere:
         return size * random.direction();
     case EmitterShape::Disc: {
@@ -220,6 +217,13 @@ Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {
         const float y = random.uniform(-1.0f, 1.0f);
         return size * Vec3(x, y, random.uniform(-1.0f, 1.0f));
     }
+    case EmitterShape::Torus: {
+        const Vec2 tube = size.y * random.in_disc();
+        const float angle = 2.0f * kPi * random.uniform();
+        const float cosine = std::cos(angle);
+        const float sine = std::sin(angle);
+        return {(size.x + tube.x) * cosine, tube.y, (size.z + tube.x) * sine};
+    }
     }
     return Vec3(0);
 }
@@ -232,20 +236,33 @@ Vec3 sample_cone(float cone, Random& random) {
     return {radius * std::cos(angle), y, radius * std::sin(angle)};
 }
 
-void add_particles(
-    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
-    std::uint64_t subject, const std::vector<float>& births, ParticlePool& pool) {
+Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt) {
     const auto origin = [](const Affine& world) { return transform_point(world, Vec3(0)); };
     const Vec3 moved = (origin(place.now) - origin(place.before)) / dt;
-    const Vec3 inherited = moved * finite_or(emitter.inherit, 0);
-    make_room(emitter, births.size(), pool);
-    for (const float at : births) {
-        Random random(seed, subject, name_hash("particles"), pool.born++);
+    return moved * finite_or(emitter.inherit, 0);
+}
+
+void add_particles(
+    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
+    std::uint64_t subject, const std::vector<BirthRun>& births, ParticlePool& pool) {
+    const Vec3 inherited = inherited_velocity(emitter, place, dt);
+    std::size_t count = 0;
+    for (const BirthRun& run : births) {
+        count += run.count;
+    }
+    make_room(emitter, count, pool);
+    const auto add = [&](float at) {
+        Random random = attributes_random(seed, subject, pool.clock.born++);
         const Affine world = between(place.before, place.now, at);
         const Attributes its = draw_attributes(emitter, world, random);
         const Vec3 velocity = its.velocity + inherited;
         const Vec3 position = transform_point(world, its.local) - velocity * (at * dt);
         add_particle(pool, position, velocity, at * dt, its.life, its.look);
+    };
+    for (const BirthRun& run : births) {
+        for (std::uint32_t i = 0; i < run.count; ++i) {
+            add(run.at(i));
+        }
     }
 }
 
@@ -254,7 +271,7 @@ void add_spawns(
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
     make_room(emitter, spawns.size(), pool);
     for (const ParticleSpawn& spawn : spawns) {
-        Random random(seed, subject, name_hash("particles"), pool.born++);
+        Random random = attributes_random(seed, subject, pool.clock.born++);
         const Affine place = spawn.axis == Vec3(0) ? world : with_up(world, spawn.axis);
         const Attributes its = draw_attributes(emitter, place, random);
         const Vec3 velocity = its.velocity + spawn.velocity;
@@ -269,10 +286,10 @@ void add_drops(
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
     const std::size_t count = std::min(drops.size(), room);
-    pool.dropped += drops.size() - count;
+    pool.clock.dropped += drops.size() - count;
     make_room(emitter, count, pool);
     for (std::size_t i = 0; i < count; ++i) {
-        Random random(seed, subject, name_hash("particles"), pool.born++);
+        Random random = attributes_random(seed, subject, pool.clock.born++);
         const float ahead = random.uniform() * dt;
         const float life = spread(emitter.life, emitter.life_spread, random);
         const Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);

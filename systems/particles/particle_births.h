@@ -2,10 +2,12 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/rng.h"
+#include "ecs/components/gpu_particles.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/water_spray.h"
 #include "systems/particles/particle_sources.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -15,18 +17,12 @@ namespace limn {
 // When and where particles are born. All random numbers are keyed by the emitter and the number of
 // the birth, so they depend neither on the frame rate nor on what else is born.
 
-/// Of a value that scripts may have set to anything.
-[[nodiscard]] inline float finite_or(float value, float otherwise) {
-    return std::isfinite(value) ? value : otherwise;
-}
-
-/// The instants of births in a step, as shares 0 .. 1 of it: those of the rate in equal intervals
-/// that go on across steps, then those of bursts. Advances the pool's time and carry. `random`
-/// decides the spreads; `scale` is a factor on the rate. At most `room` births; the others are
-/// added to `pool.dropped`.
+/// The births of a step: those of the rate in equal intervals that go on across steps, then those
+/// of bursts. Advances the clock. `random` decides the spreads; `scale` is a factor on the rate. At
+/// most `room` births; the others are added to `clock.dropped`.
 void find_births(
     const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
-    ParticlePool& pool, std::vector<float>& births);
+    EmitterClock& clock, std::vector<BirthRun>& births);
 
 /// Share 0 .. 1 of an image of 16 : 9 that a ball covers in its middle, seen from `distance` with
 /// the vertical field of view `fov_y` [rad]; 1 from inside.
@@ -44,17 +40,15 @@ void add_drops(
     const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, float dt,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
-/// An emitter's place at the ends of a step.
-struct EmitterPlace {
-    Affine before;
-    Affine now;
-};
+/// The share of the emitter's own velocity that is added at birth [m/s].
+[[nodiscard]] Vec3
+inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt);
 
 /// Adds a particle for every birth, at the emitter's place of that instant, as far back on its way
 /// as a whole step will bring it forward.
 void add_particles(
     const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
-    std::uint64_t subject, const std::vector<float>& births, ParticlePool& pool);
+    std::uint64_t subject, const std::vector<BirthRun>& births, ParticlePool& pool);
 
 /// Adds a particle for every birth by another one (ParticleSource), where it is at the end of the
 /// step. `world` turns and scales the emitter's shape.

@@ -56,18 +56,20 @@ constexpr Words du;
 constexpr Ints di;
 
 HWY_INLINE void
-move_axis(float* HWY_RESTRICT x, float* HWY_RESTRICT v, V push, V air, V keep, V half_dt) {
+move_axis(float* HWY_RESTRICT x, float* HWY_RESTRICT v, V push, V air, V keep, V old_dt, V new_dt) {
     const V old = hn::LoadU(d, v);
     const V next = hn::Add(air, hn::Mul(hn::Sub(hn::Add(old, push), air), keep));
     hn::StoreU(next, d, v);
-    hn::StoreU(hn::Add(hn::LoadU(d, x), hn::Mul(hn::Add(old, next), half_dt)), d, x);
+    const V way = hn::Add(hn::Mul(old, old_dt), hn::Mul(next, new_dt));
+    hn::StoreU(hn::Add(hn::LoadU(d, x), way), d, x);
 }
 
 std::size_t
 move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::size_t& dead) {
     const std::size_t n = hn::Lanes(d);
     const V dt = hn::Set(d, step.dt);
-    const V half_dt = hn::Set(d, 0.5f * step.dt);
+    const V old_dt = hn::Set(d, step.old_dt());
+    const V new_dt = hn::Set(d, step.new_dt());
     const V keep = hn::Set(d, step.keep);
     const Vec3 push = step.gravity * step.dt;
     const V push_x = hn::Set(d, push.x);
@@ -78,9 +80,9 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
     const V air_z = hn::Set(d, step.air.z);
     std::size_t i = 0;
     for (; i + n <= b.count; i += n) {
-        move_axis(b.x + i, b.vx + i, push_x, air_x, keep, half_dt);
-        move_axis(b.y + i, b.vy + i, push_y, air_y, keep, half_dt);
-        move_axis(b.z + i, b.vz + i, push_z, air_z, keep, half_dt);
+        move_axis(b.x + i, b.vx + i, push_x, air_x, keep, old_dt, new_dt);
+        move_axis(b.y + i, b.vy + i, push_y, air_y, keep, old_dt, new_dt);
+        move_axis(b.z + i, b.vz + i, push_z, air_z, keep, old_dt, new_dt);
         const V age = hn::Add(hn::LoadU(d, b.age + i), dt);
         hn::StoreU(age, d, b.age + i);
         dead += hn::CountTrue(d, hn::Ge(age, hn::LoadU(d, b.life + i)));
@@ -301,7 +303,6 @@ ParticleBlock particle_block(ParticlePool& pool, std::size_t first, std::size_t 
 
 std::size_t move_particles_scalar(const ParticleBlock& b, const ParticleStep& step) {
     const Vec3 push = step.gravity * step.dt;
-    const float half_dt = 0.5f * step.dt;
     std::size_t dead = 0;
     float* const places[] = {b.x, b.y, b.z};
     float* const speeds[] = {b.vx, b.vy, b.vz};
@@ -310,7 +311,7 @@ std::size_t move_particles_scalar(const ParticleBlock& b, const ParticleStep& st
             const float old = speeds[axis][i];
             const float next = step.air[axis] + (old + push[axis] - step.air[axis]) * step.keep;
             speeds[axis][i] = next;
-            places[axis][i] = places[axis][i] + (old + next) * half_dt;
+            places[axis][i] = places[axis][i] + (old * step.old_dt() + next * step.new_dt());
         }
     }
     for (std::size_t i = 0; i < b.count; ++i) {
@@ -409,6 +410,28 @@ void whirl_particles(const ParticleBlock& b, const Vortex& vortex, float dt) {
         b.vx[i] += share * (vortex.around * tangent.x - vortex.toward * out.x);
         b.vy[i] += share * (vortex.around * tangent.y - vortex.toward * out.y);
         b.vz[i] += share * (vortex.around * tangent.z - vortex.toward * out.z);
+    }
+}
+
+void steer_particles(const ParticleBlock& b, const Steering& steering) {
+    const Vec3& a = steering.axis;
+    for (std::size_t i = 0; i < b.count; ++i) {
+        const Vec3 velocity = {b.vx[i], b.vy[i], b.vz[i]};
+        const float speed =
+            std::sqrt(velocity.x * velocity.x + velocity.y * velocity.y + velocity.z * velocity.z);
+        const Vec3 offset = Vec3(b.x[i], b.y[i], b.z[i]) - steering.origin;
+        const Vec3 tangent = {
+            a.y * offset.z - a.z * offset.y, a.z * offset.x - a.x * offset.z,
+            a.x * offset.y - a.y * offset.x};
+        const float reach =
+            std::sqrt(tangent.x * tangent.x + tangent.y * tangent.y + tangent.z * tangent.z);
+        const float orbit = reach > 0 ? steering.orbit : 0.0f;
+        const float left = std::max(speed - steering.loss, 0.0f);
+        const float along = speed > 0 ? (1.0f - orbit) * left / speed : 0.0f;
+        const float around = reach > 0 ? orbit * left / reach : 0.0f;
+        b.vx[i] = along * velocity.x + around * tangent.x;
+        b.vy[i] = along * velocity.y + around * tangent.y;
+        b.vz[i] = along * velocity.z + around * tangent.z;
     }
 }
 

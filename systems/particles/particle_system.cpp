@@ -2,9 +2,11 @@
 
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
+#include "systems/particles/emitter_place.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_collision.h"
 #include "systems/particles/particle_kernels.h"
+#include "systems/particles/particle_motion.h"
 #include "systems/particles/particle_sources.h"
 #include "systems/particles/water_surface_hits.h"
 
@@ -22,12 +24,9 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr std::uint32_t kBlock = 1024;       // particles that move as one piece of work
-constexpr std::size_t kBlockGrain = 4;       // blocks of one job
-constexpr float kGravity = 9.81f;            // [m/s^2]
-constexpr float kDry = 1e-3f;                // kept above water by what bounces off or sticks [m]
-const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
-const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
+constexpr std::uint32_t kBlock = 1024;  // particles that move as one piece of work
+constexpr std::size_t kBlockGrain = 4;  // blocks of one job
+constexpr float kDry = 1e-3f;           // kept above water by what bounces off or sticks [m]
 
 /// An emitter in this step.
 struct Work {
@@ -42,9 +41,7 @@ struct Work {
     ParticlePool* pool = nullptr;
     EmitterPlace place;
     float scale = 1;  ///< of its rate
-    ParticleStep step = {};
-    Turbulence turbulence = {};
-    Vortex vortex = {};
+    MotionStep motion = {};
 };
 
 /// A part of the particles of an emitter.
@@ -56,67 +53,8 @@ struct Block {
     std::vector<ParticleHit> hits = {};
 };
 
-Work make_work(
-    Entity entity, const ParticleMotion& asked, const EmitterPlace& place, const Vec3& weather,
-    float dt, const FrameTime& time) {
-    ParticleMotion motion = asked;
-    for (float* const field :
-         {&motion.gravity, &motion.drag, &motion.wind.x, &motion.wind.y, &motion.wind.z,
-          &motion.weather, &motion.turbulence, &motion.turbulence_size, &motion.turbulence_speed,
-          &motion.vortex, &motion.attraction}) {
-        *field = finite_or(*field, 0);
-    }
-    Work work{.entity = entity, .place = place};
-    work.step = {
-        .gravity = {0, -kGravity * motion.gravity, 0},
-        .air = motion.wind + motion.weather * weather,
-        .keep = std::exp(-std::max(motion.drag, 0.0f) * dt),
-        .dt = dt};
-    // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
-    // whirls.
-    const auto turns = static_cast<float>(
-        std::fmod(static_cast<double>(motion.turbulence_speed) * time.time, 4096.0));
-    work.turbulence = {
-        .strength = motion.turbulence,
-        .size = std::max(motion.turbulence_size, 1e-3f),
-        .drift_a = kDriftA * turns,
-        .drift_b = kDriftB * turns};
-    work.vortex = {
-        .origin = transform_point(place.now, Vec3(0)),
-        .axis = normalize_or(transform_vector(place.now, Vec3(0, 1, 0)), Vec3(0, 1, 0)),
-        .around = motion.vortex,
-        .toward = motion.attraction};
-    return work;
-}
-
-/// The camera that decides how large an emitter appears.
-struct Eye {
-    Vec3 place = {0, 0, 0};
-    float fov_y = 1;
-};
-Eye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
-    Eye eye;
-    bool found = false;
-    cameras.each([&](const Camera& camera, const WorldTransform& transform) {
-        if (camera.active && !found) {
-            eye = {transform_point(transform.world, Vec3(0)), camera.fov_y};
-            found = true;
-        }
-    });
-    return eye;
-}
-
-float seen_share(const ParticleEmitter& emitter, const Affine& world, const Eye& eye) {
-    const Vec3 reach = transform_vector(world, {emitter.size.x, 0, 0});
-    const Vec3 side = transform_vector(world, {0, emitter.size.y, 0});
-    const Vec3 depth = transform_vector(world, {0, 0, emitter.size.z});
-    const float radius = std::max({glm::length(reach), glm::length(side), glm::length(depth)});
-    return screen_share(
-        radius, glm::distance(transform_point(world, Vec3(0)), eye.place), eye.fov_y);
-}
-
 std::uint64_t subject_of(const Work& work) {
-    return work.emitter->seed != 0 ? work.emitter->seed : work.entity.bits();
+    return subject_of(*work.emitter, work.entity);
 }
 
 void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
@@ -126,14 +64,14 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
         return;
     }
     const std::uint64_t subject = subject_of(work);
-    Random random(seed, subject, name_hash("particle births"), time.frame);
+    Random random = births_random(seed, subject, time.frame);
     const std::size_t before = pool.size();
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
-    std::vector<float> births;
-    find_births(emitter, work.scale, work.step.dt, room, random, pool, births);
-    add_particles(emitter, work.place, work.step.dt, seed, subject, births, pool);
+    std::vector<BirthRun> births;
+    find_births(emitter, work.scale, work.motion.step.dt, room, random, pool.clock, births);
+    add_particles(emitter, work.place, work.motion.step.dt, seed, subject, births, pool);
     if (work.drops != nullptr && emitter.active) {
-        add_drops(emitter, work.drops->drops, work.step.dt, seed, subject, pool);
+        add_drops(emitter, work.drops->drops, work.motion.step.dt, seed, subject, pool);
     }
     pool.fresh = pool.size() - before;
 }
@@ -160,19 +98,14 @@ void find_spawns_of(
     const std::size_t size = work.pool->size();
     const std::size_t room = work.emitter->capacity > size ? work.emitter->capacity - size : 0;
     Random random(seed, subject_of(work), name_hash("particle sources"), time.frame);
-    work.pool->dropped += find_spawns(
+    work.pool->clock.dropped += find_spawns(
         *work.source, *work.emitter, *works[work.parent].pool, works[work.parent].hits,
-        work.step.dt, room, random, work.spawns);
+        work.motion.step.dt, room, random, work.spawns);
 }
 
-std::uint32_t move(const Work& work, const ParticleBlock& block) {
-    if (work.turbulence.strength != 0) {
-        stir_particles(block, work.turbulence, work.step.dt);
-    }
-    if (work.vortex.around != 0 || work.vortex.toward != 0) {
-        whirl_particles(block, work.vortex, work.step.dt);
-    }
-    return static_cast<std::uint32_t>(move_particles(block, work.step));
+std::uint32_t move_alone(const Work& work, const Block& block) {
+    return static_cast<std::uint32_t>(
+        move_block(work.motion, particle_block(*work.pool, block.first, block.count)));
 }
 
 /// Everything that colliding particles may meet.
@@ -271,7 +204,7 @@ void hit_water(
         if (collision.action == CollisionAction::Bounce) {
             after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
         }
-        const float rest = (1 - contact.share) * work.step.dt;
+        const float rest = (1 - contact.share) * work.motion.step.dt;
         paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
         paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
                          : collision.action == CollisionAction::Stick ? kParticleStuck
@@ -284,7 +217,7 @@ void move_colliding(const Work& work, const Around& around, Block& block) {
     ParticlePool& pool = *work.pool;
     Paths paths;
     begin_paths(work, block, paths);
-    block.dead = move(work, particle_block(pool, block.first, block.count));
+    block.dead = move_alone(work, block);
     const ParticleCollision& collision = *work.collision;
     CollisionOptions options;
     options.radius = finite_or(collision.radius, 0);
@@ -294,7 +227,7 @@ void move_colliding(const Work& work, const Around& around, Block& block) {
     std::vector<Entry> entries;
     stop_at_water(paths, around.waters, entries);
     collide_particles(
-        paths.particles, work.step.dt, *around.solid, {collision.bounce, collision.friction},
+        paths.particles, work.motion.step.dt, *around.solid, {collision.bounce, collision.friction},
         options, block.hits);
     hit_water(paths, work, around, entries, block);
     for (std::uint32_t i = 0; i < block.count; ++i) {
@@ -341,9 +274,18 @@ void add_dents(const Block& block, const Around& around, Query<RippleState>& rip
 }  // namespace
 
 void add_particle_pools(
-    Query<const ParticleEmitter, Without<ParticlePool>> emitters, Commands commands) {
-    emitters.each(
-        [&](Entity entity, const ParticleEmitter&) { commands.add(entity, ParticlePool{}); });
+    Query<const ParticleEmitter, Without<ParticlePool>> emitters,
+    Query<const ParticleEmitter, const ParticlePool> pools, Commands commands) {
+    emitters.each([&](Entity entity, const ParticleEmitter& emitter) {
+        if (!runs_on_gpu(emitter)) {
+            commands.add(entity, ParticlePool{});
+        }
+    });
+    pools.each([&](Entity entity, const ParticleEmitter& emitter, const ParticlePool&) {
+        if (runs_on_gpu(emitter)) {
+            commands.remove<ParticlePool>(entity);
+        }
+    });
 }
 
 void update_particles(
@@ -358,18 +300,17 @@ void update_particles(
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
-    const Eye eye = find_eye(cameras);
+    const EmitterEye eye = find_eye(cameras);
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
                       const ParticleCollision* collision, ParticlePool& pool) {
-        const Vec4& row = previous.world.row[0];
-        const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
-        const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
+        const EmitterPlace place = place_of(now, previous);
         static const ParticleMotion kStill;
-        Work work = make_work(entity, motion != nullptr ? *motion : kStill, place, wind, dt, *time);
-        work.scale = emitter.by_screen_area ? seen_share(emitter, now.world, eye) : 1.0f;
+        Work work{.entity = entity, .place = place};
+        work.motion = find_motion(motion != nullptr ? *motion : kStill, now.world, wind, dt, *time);
+        work.scale = seen_share(emitter, now.world, eye);
         work.emitter = &emitter;
         work.drops = drops;
         work.source = source;
@@ -407,7 +348,7 @@ void update_particles(
             if (work.collision != nullptr && !around.is_empty()) {
                 move_colliding(work, around, block);
             } else {
-                block.dead = move(work, particle_block(*work.pool, block.first, block.count));
+                block.dead = move_alone(work, block);
             }
         }
     });

@@ -29,10 +29,11 @@ namespace limn {
 /// Longest step that is simulated [s]; in a longer one particles move so much only.
 inline constexpr float kMaxParticleStep = 0.1f;
 
-/// Adds a ParticlePool to every ParticleEmitter that lacks one. Before update_particles, with a
-/// sync point in between.
+/// Adds a ParticlePool to every ParticleEmitter that runs on the CPU and lacks one, and takes it
+/// from the others. Before update_particles, with a sync point in between.
 void add_particle_pools(
-    Query<const ParticleEmitter, Without<ParticlePool>> emitters, Commands commands);
+    Query<const ParticleEmitter, Without<ParticlePool>> emitters,
+    Query<const ParticleEmitter, const ParticlePool> pools, Commands commands);
 
 /// A step of all particles, and the ripples that they leave in water, from the next step on. After
 /// update_transforms.

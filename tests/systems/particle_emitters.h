@@ -60,6 +60,7 @@ inline ParticleEmitter steady(float rate) {
     emitter.life = 1000;
     emitter.life_spread = 0;
     emitter.capacity = 1000000;
+    emitter.executor = ParticleExecutor::Cpu;
     return emitter;
 }
 

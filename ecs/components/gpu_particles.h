@@ -1,0 +1,123 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/base/rng.h"
+#include "ecs/components/particles.h"
+#include "ecs/reflect.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// Particles that the GPU moves (particle.gpu-state, particle.circular-list). The systems decide
+// when how many are born and what moves them, and write it down, step by step; the renderer lets
+// the GPU do it (render/gpu_particle_pools.h), whenever it draws, for all steps that it has not
+// done yet. Everyone alive was born in one of the steps that are kept: so the GPU may begin anew at
+// any time.
+
+/// What moves all particles of an emitter alike in a step.
+struct ParticleStep {
+    Vec3 gravity = {0, 0, 0};  ///< acceleration [m/s^2]
+    Vec3 air = {0, 0, 0};      ///< velocity that drag leads to [m/s]
+    float keep = 1;  ///< share of the velocity relative to the air that is left: exp(-drag dt)
+    float dt = 0;    ///< [s]
+    float old_share = 0.5f;  ///< of the step in which the old velocity counts, not the new one
+
+    [[nodiscard]] float old_dt() const { return dt * old_share; }
+    [[nodiscard]] float new_dt() const { return dt - old_dt(); }
+};
+
+/// Curl noise (Bridson et al. 2007 in the form grad a x grad b, which is free of divergence).
+struct Turbulence {
+    float strength = 1;  ///< acceleration [m/s^2], about its root mean square
+    float size = 1;      ///< extent of a whirl [m]
+    Vec3 drift_a = {
+        0, 0, 0};  ///< of the two fields, in whirls: their relative motion renews the whirls
+    Vec3 drift_b = {0, 0, 0};
+    std::uint32_t seed = 0;
+};
+
+/// Accelerations around an axis and toward it.
+struct Vortex {
+    Vec3 origin = {0, 0, 0};
+    Vec3 axis = {0, 1, 0};  ///< unit
+    float around = 0;       ///< [m/s^2]
+    float toward = 0;       ///< [m/s^2]
+};
+
+/// Turns directions into circles around an axis, and takes speed (particle.gpu-update).
+struct Steering {
+    Vec3 origin = {0, 0, 0};
+    Vec3 axis = {0, 1, 0};  ///< unit
+    float orbit = 0;        ///< 0 .. 1
+    float loss = 0;         ///< [m/s]
+};
+
+/// What moves the particles of an emitter in a step: a ParticleMotion at an instant.
+struct MotionStep {
+    ParticleStep step{};
+    Turbulence turbulence{};
+    Vortex vortex{};
+    Steering steering{};
+};
+
+/// Births at equal intervals.
+struct BirthRun {
+    float first = 0;    ///< instant, as a share 0 .. 1 of the step
+    float spacing = 0;  ///< likewise
+    std::uint32_t count = 0;
+
+    [[nodiscard]] float at(std::uint32_t i) const {
+        return std::clamp(first + static_cast<float>(i) * spacing, 0.0f, 1.0f);
+    }
+};
+
+/// An emitter's place at the ends of a step.
+struct EmitterPlace {
+    Affine before;
+    Affine now;
+};
+
+/// A step for the GPU.
+struct GpuParticleStep {
+    std::uint64_t first = 0;  ///< number of its first birth, of all time
+    std::uint32_t count = 0;  ///< births
+    std::vector<BirthRun> births{};
+    EmitterPlace place{};
+    Vec3 inherited = {0, 0, 0};  ///< velocity that is added at birth [m/s]
+    MotionStep motion{};
+};
+
+/// With a ParticleEmitter that runs on the GPU, instead of a ParticlePool. Of particle n the slot
+/// is n modulo the capacity.
+struct GpuParticles {
+    EmitterClock clock{};
+    std::vector<GpuParticleStep> steps{};  ///< the first `forgotten` of them are of no use
+    std::size_t forgotten = 0;
+    std::uint64_t step = 0;   ///< number of the step after the last of `steps`
+    PhiloxCounter counter{};  ///< of the attributes of the oldest particle; its number counts
+    PhiloxKey key{};          ///< likewise
+
+    /// Those in which particles that may live were born, and all after them.
+    [[nodiscard]] std::span<const GpuParticleStep> kept() const {
+        return std::span(steps).subspan(forgotten);
+    }
+    /// The oldest particle that may be alive.
+    [[nodiscard]] std::uint64_t oldest() const {
+        return kept().empty() ? clock.born : kept().front().first;
+    }
+};
+
+/// Derived from the emitter while it runs.
+template <>
+struct ComponentTraits<GpuParticles> : DefaultTraits {
+    static constexpr bool saved = false;
+    static constexpr bool hashed = false;
+    static constexpr bool in_prefabs = false;
+};
+
+}  // namespace limn

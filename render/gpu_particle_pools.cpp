@@ -1,0 +1,166 @@
+#include "render/gpu_particle_pools.h"
+
+#include "ecs/components/gpu_particles.h"
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/shaders/particle_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <span>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kStepsUnit = 0;
+constexpr unsigned kStateBinding = 0;
+constexpr unsigned kBitsBinding = 1;
+constexpr unsigned kInstancesBinding = 2;
+
+float word(std::uint64_t bits) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+}
+
+void pack_emitter(
+    const ParticleEmitter& emitter, const GpuParticles& particles, std::vector<Vec4>& texels) {
+    const PhiloxKey& key = particles.key;
+    const PhiloxCounter& counter = particles.counter;
+    const float cone = std::clamp(finite_or(emitter.cone, 0), 0.0f, kPi);
+    texels.emplace_back(word(key[0]), word(key[1]), word(counter[2]), word(counter[3]));
+    texels.emplace_back(
+        0.0f, word(static_cast<std::uint32_t>(emitter.shape)),
+        word(static_cast<std::uint32_t>(emitter.direction)), std::cos(cone));
+    texels.emplace_back(emitter.size, emitter.speed);
+    texels.emplace_back(emitter.speed_spread, emitter.life, emitter.life_spread, 0.0f);
+}
+
+void pack_step(const GpuParticleStep& step, std::uint32_t first_run, std::vector<Vec4>& texels) {
+    const MotionStep& motion = step.motion;
+    const float dt = motion.step.dt;
+    texels.emplace_back(
+        word(step.first), word(step.count), word(first_run), word(step.births.size()));
+    texels.emplace_back(motion.step.gravity * dt, dt);
+    texels.emplace_back(motion.step.air, motion.step.keep);
+    for (const Affine* const place : {&step.place.before, &step.place.now}) {
+        texels.insert(texels.end(), std::begin(place->row), std::end(place->row));
+    }
+    texels.emplace_back(step.inherited, motion.step.old_share);
+    texels.emplace_back(motion.turbulence.drift_a, motion.turbulence.strength * dt);
+    texels.emplace_back(motion.turbulence.drift_b, 1 / motion.turbulence.size);
+    texels.emplace_back(motion.vortex.origin, motion.vortex.around * dt);
+    texels.emplace_back(motion.vortex.axis, motion.vortex.toward * dt);
+    texels.emplace_back(
+        motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
+}
+
+void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
+    const std::size_t slots = std::max(capacity, 1u);
+    pool.state = gpu::Buffer("particle state", slots * 2 * sizeof(Vec4), gpu::BufferUse::GpuOnly);
+    pool.bits =
+        gpu::Buffer("particle bits", slots * sizeof(std::uint32_t), gpu::BufferUse::GpuOnly);
+    pool.instances = gpu::Buffer(
+        "particle instances", slots * layout::kParticleTexels * sizeof(Vec4),
+        gpu::BufferUse::GpuOnly);
+    pool.texels.set(pool.instances);
+    pool.capacity = static_cast<std::uint32_t>(slots);
+    pool.done = 0;
+}
+
+}  // namespace
+
+std::vector<Vec4> pack_particle_steps(
+    const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
+    int& runs) {
+    const std::span<const GpuParticleStep> kept = particles.kept();
+    const std::uint64_t first_kept = particles.step - kept.size();
+    const std::size_t skipped = std::min<std::size_t>(
+        from > first_kept ? static_cast<std::size_t>(from - first_kept) : 0, kept.size());
+    std::vector<Vec4> texels;
+    pack_emitter(emitter, particles, texels);
+    std::uint32_t run = 0;
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        pack_step(step, run, texels);
+        run += static_cast<std::uint32_t>(step.births.size());
+    }
+    steps = static_cast<int>(kept.size() - skipped);
+    runs = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        for (const BirthRun& births : step.births) {
+            texels.emplace_back(births.first, births.spacing, word(births.count), 0.0f);
+        }
+    }
+    return texels;
+}
+
+Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
+    GpuParticlePools pools;
+    pools.program_ = LIMN_TRY(device.shaders().load({.compute = "particle_update.comp"}));
+    return pools;
+}
+
+void GpuParticlePools::begin_frame() {
+    std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
+    for (auto& [entity, pool] : pools_) {
+        pool->used = false;
+    }
+}
+
+void GpuParticlePools::add(
+    FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
+    std::uint32_t look) {
+    std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
+    if (found == nullptr) {
+        found = std::make_unique<GpuParticlePool>();
+    }
+    GpuParticlePool& pool = *found;
+    const std::uint64_t window = particles.clock.born - particles.oldest();
+    // A smaller capacity than there are particles counts when those have died.
+    const auto slots =
+        static_cast<std::uint32_t>(std::max<std::uint64_t>(emitter.capacity, window));
+    const std::uint64_t first_kept = particles.step - particles.kept().size();
+    if (pool.capacity != std::max(slots, 1u) || pool.done > particles.step
+        || pool.done < first_kept) {
+        make_buffers(slots, pool);  // and all steps again
+    }
+    pool.steps.upload(
+        *frame.ring,
+        pack_particle_steps(emitter, particles, pool.done, pool.step_count, pool.runs));
+    pool.done = particles.step;
+    pool.used = true;
+    pool.look = look;
+    pool.first = static_cast<std::uint32_t>(particles.oldest());
+    pool.count = static_cast<std::uint32_t>(window);
+}
+
+void GpuParticlePools::update(FrameGraph& graph, float back) {
+    if (pools_.empty()) {
+        return;
+    }
+    std::vector<Use> writes;
+    for (const auto& [entity, pool] : pools_) {
+        for (const gpu::Buffer* const buffer : {&pool->state, &pool->bits, &pool->instances}) {
+            writes.emplace_back(graph.import("particles", *buffer));
+        }
+    }
+    graph.add_pass("move particles", {}, writes, [this, back](PassContext& context) {
+        gpu::Device& device = context.device();
+        device.use(*program_);
+        for (const auto& [entity, pool] : pools_) {
+            pool->steps.bind(device, kStepsUnit);
+            device.bind_storage(kStateBinding, pool->state);
+            device.bind_storage(kBitsBinding, pool->bits);
+            device.bind_storage(kInstancesBinding, pool->instances);
+            program_->set("first", pool->first);
+            program_->set("count", pool->count);
+            program_->set("capacity", pool->capacity);
+            program_->set("step_count", pool->step_count);
+            program_->set("runs", pool->runs);
+            program_->set("look", pool->look);
+            program_->set("back", back);
+            device.dispatch((pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+        }
+    });
+}
+
+}  // namespace limn

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "ecs/entity.h"
+#include "render/buffer_texture.h"
+#include "render/frame_data.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/program.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace limn {
+
+struct GpuParticles;
+struct ParticleEmitter;
+
+// Particles that the GPU moves (particle.gpu-state, particle.gpu-update): for each emitter a ring
+// of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
+// systems have written down (systems/particles/gpu_particles.h), and a list of what to draw, oldest
+// first.
+
+struct GpuParticlePool {
+    gpu::Buffer state{};      ///< two vec4 a slot
+    gpu::Buffer bits{};       ///< a word a slot
+    gpu::Buffer instances{};  ///< as ParticleInstance
+    BufferTexture steps = BufferTexture("particle steps", GL_RGBA32F);
+    BufferTexture texels = BufferTexture("particles", GL_RGBA32UI);  ///< of `instances`
+    std::uint32_t capacity = 0;
+    std::uint64_t done = 0;  ///< number of the first step that is not done
+
+    // Of this frame.
+    bool used = false;
+    std::uint32_t look = 0;
+    std::uint32_t first = 0;  ///< number of the oldest particle, low word
+    std::uint32_t count = 0;  ///< to draw
+    int step_count = 0;
+    int runs = 0;  ///< texel of the first run of births
+};
+
+/// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
+/// beyond. `steps` and `runs` become how many steps there are and where their births begin.
+[[nodiscard]] std::vector<Vec4> pack_particle_steps(
+    const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
+    int& runs);
+
+class GpuParticlePools {
+  public:
+    [[nodiscard]] static Result<GpuParticlePools> create(gpu::Device& device);
+
+    /// Once a frame: forgets pools that nobody has added since.
+    void begin_frame();
+    /// An emitter's particles, drawn with the look of this number.
+    void
+    add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
+        const GpuParticles& particles, std::uint32_t look);
+    /// Adds the pass that moves them; `back`: how long before the end of the last step they are
+    /// seen [s].
+    void update(FrameGraph& graph, float back);
+
+    [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
+        return pools_;
+    }
+
+  private:
+    const gpu::Program* program_ = nullptr;
+    std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
+};
+
+}  // namespace limn

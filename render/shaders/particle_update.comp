@@ -1,0 +1,288 @@
+// Births and motion of particles, one invocation each: all steps since it last ran (particle.gpu-init,
+// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp.
+#version 450
+#include "particle_gpu.h"
+
+layout(local_size_x = 128) in;  // kParticleGroup
+layout(binding = 0) uniform samplerBuffer steps;
+layout(std430, binding = 0) buffer State {
+    vec4 state[];  // of each slot: place, age; velocity, lifetime
+};
+layout(std430, binding = 1) buffer Bits {
+    uint bits[];  // of each slot: random
+};
+layout(std430, binding = 2) writeonly buffer Instances {
+    uvec4 instances[];  // of each particle, oldest first: as particle.vert reads them
+};
+
+uniform uint first;       // number of the oldest particle, low word
+uniform uint count;       // of particles that may be alive
+uniform uint capacity;    // slots
+uniform int step_count;   // steps to do
+uniform int runs;         // texel of the first run of births
+uniform uint look;
+uniform float back;       // how long before the end of the last step the particles are seen [s]
+
+const float kPi = 3.14159265358979;
+// As in particle_kernels.cpp.
+const uint kHashX = 0x8da6b343u, kHashY = 0xd8163841u, kHashZ = 0xcb1ab31fu;
+const uint kHashMix = 0x7feb352du, kSeedB = 0x68bc21ebu;
+const float kCurlScale = 0.887;
+const uint kPoint = 0u, kBall = 1u, kSphere = 2u, kDisc = 3u, kCircle = 4u, kBox = 5u, kTorus = 6u;
+const uint kRadial = 1u;
+
+struct Particle {
+    vec3 place;
+    float age;
+    vec3 velocity;
+    float life;
+    uint look_bits;
+};
+
+// ---- random numbers: ecs/base/rng.h
+
+struct Random {
+    uvec4 counter;
+    uvec2 key;
+    uvec4 words;
+    uint left;
+};
+
+uvec4 philox(uvec4 counter, uvec2 key) {
+    for (int i = 0; i < 10; ++i) {
+        uint a_high, a_low, b_high, b_low;
+        umulExtended(0xd2511f53u, counter.x, a_high, a_low);
+        umulExtended(0xcd9e8d57u, counter.z, b_high, b_low);
+        counter = uvec4(b_high ^ counter.y ^ key.x, b_low, a_high ^ counter.w ^ key.y, a_low);
+        key += uvec2(0x9e3779b9u, 0xbb67ae85u);
+    }
+    return counter;
+}
+
+uint next_word(inout Random random) {
+    if (random.left == 0u) {
+        random.words = philox(random.counter, random.key);
+        ++random.counter.x;
+        random.left = 4u;
+    }
+    uint word = random.words[4u - random.left];
+    --random.left;
+    return word;
+}
+float next_share(inout Random random) {
+    return float(next_word(random) >> 8) * (1.0 / 16777216.0);
+}
+float next_signed(inout Random random) {
+    return -1.0 + 2.0 * next_share(random);
+}
+
+// ---- births: particle_births.cpp
+
+vec3 sample_direction(inout Random random) {
+    float y = next_signed(random);
+    float angle = 2.0 * kPi * next_share(random);
+    float radius = sqrt(max(1.0 - y * y, 0.0));
+    return vec3(radius * cos(angle), y, radius * sin(angle));
+}
+
+vec3 sample_shape(uint shape, vec3 size, inout Random random) {
+    if (shape == kTorus) {
+        float radius = size.y * sqrt(next_share(random));
+        float turn = 2.0 * kPi * next_share(random);
+        float angle = 2.0 * kPi * next_share(random);
+        vec2 tube = radius * vec2(cos(turn), sin(turn));
+        return vec3((size.x + tube.x) * cos(angle), tube.y, (size.z + tube.x) * sin(angle));
+    }
+    if (shape == kBall) {
+        float radius = pow(next_share(random), 1.0 / 3.0);
+        return size * (sample_direction(random) * radius);
+    }
+    if (shape == kSphere) {
+        return size * sample_direction(random);
+    }
+    if (shape == kDisc) {
+        float radius = sqrt(next_share(random));
+        float angle = 2.0 * kPi * next_share(random);
+        return size * vec3(radius * cos(angle), 0.0, radius * sin(angle));
+    }
+    if (shape == kCircle) {
+        float angle = 2.0 * kPi * next_share(random);
+        return size * vec3(cos(angle), 0.0, sin(angle));
+    }
+    if (shape == kBox) {
+        float x = next_signed(random);
+        float y = next_signed(random);
+        return size * vec3(x, y, next_signed(random));
+    }
+    return vec3(0.0);
+}
+
+vec3 sample_cone(float lowest, inout Random random) {
+    float y = 1.0 - next_share(random) * (1.0 - lowest);
+    float angle = 2.0 * kPi * next_share(random);
+    float radius = sqrt(max(1.0 - y * y, 0.0));
+    return vec3(radius * cos(angle), y, radius * sin(angle));
+}
+
+struct Rows {
+    vec4 row[3];
+};
+Rows place_at(int texel, float at) {
+    Rows rows;
+    for (int i = 0; i < 3; ++i) {
+        vec4 a = texelFetch(steps, texel + 3 + i);
+        rows.row[i] = a + (texelFetch(steps, texel + 6 + i) - a) * at;
+    }
+    return rows;
+}
+vec3 transform_vector(Rows m, vec3 v) {
+    return vec3(dot(m.row[0].xyz, v), dot(m.row[1].xyz, v), dot(m.row[2].xyz, v));
+}
+
+// Particle `number` (low word), the birth `index` of the step at `texel`.
+Particle give_birth(uint number, uint index, int texel, uvec4 births) {
+    vec4 run = vec4(0.0);
+    for (uint i = 0u; i < births.w; ++i) {
+        run = texelFetch(steps, runs + int(births.z + i));
+        uint its = floatBitsToUint(run.z);
+        if (index < its) {
+            break;
+        }
+        index -= its;
+    }
+    float at = clamp(run.x + float(index) * run.y, 0.0, 1.0);
+
+    uvec4 seed = floatBitsToUint(texelFetch(steps, 0));
+    vec4 form = texelFetch(steps, 1);
+    vec4 size_speed = texelFetch(steps, 2);
+    vec4 rest = texelFetch(steps, 3);
+    Random random = Random(uvec4(0u, number, seed.zw), seed.xy, uvec4(0u), 0u);
+    Rows place = place_at(texel, at);
+    vec3 local = sample_shape(floatBitsToUint(form.y), size_speed.xyz, random);
+    bool is_radial = floatBitsToUint(form.z) == kRadial;
+    vec3 direction =
+        is_radial && local != vec3(0.0) ? normalize(local) : sample_cone(is_radial ? -1.0 : form.w, random);
+    vec3 aim = transform_vector(place, direction);
+    float length_of_aim = length(aim);
+    aim = length_of_aim > 0.0 ? aim / length_of_aim : vec3(0.0, 1.0, 0.0);
+
+    Particle p;
+    p.velocity = aim * (size_speed.w + rest.x * next_signed(random)) + texelFetch(steps, texel + 9).xyz;
+    p.life = rest.y + rest.z * next_signed(random);
+    p.look_bits = next_word(random);
+    float ahead = at * texelFetch(steps, texel + 1).w;
+    p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w) - p.velocity * ahead;
+    p.age = -ahead;
+    return p;
+}
+
+// ---- motion: particle_kernels.cpp
+
+float lattice_value(uvec3 products) {
+    uint h = products.x ^ products.y ^ products.z;
+    h = (h ^ (h >> 15)) * kHashMix;
+    h ^= h >> 13;
+    return float(h >> 8) * (1.0 / 8388608.0) - 1.0;
+}
+
+vec3 noise_gradient(vec3 at, uint seed) {
+    vec3 cell = floor(at);
+    vec3 t = at - cell;
+    vec3 w = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    vec3 slope = 30.0 * (t * t) * ((t - 1.0) * (t - 1.0));
+    uvec3 low = uvec3(ivec3(cell));
+    uvec3 a = low * uvec3(kHashX, kHashY, kHashZ);
+    uvec3 b = (low + 1u) * uvec3(kHashX, kHashY, kHashZ);
+    a.x ^= seed;
+    b.x ^= seed;
+    float v000 = lattice_value(a);
+    float v100 = lattice_value(uvec3(b.x, a.yz));
+    float v010 = lattice_value(uvec3(a.x, b.y, a.z));
+    float v110 = lattice_value(uvec3(b.xy, a.z));
+    float v001 = lattice_value(uvec3(a.xy, b.z));
+    float v101 = lattice_value(uvec3(b.x, a.y, b.z));
+    float v011 = lattice_value(uvec3(a.x, b.yz));
+    float v111 = lattice_value(b);
+    float x00 = mix(v000, v100, w.x);
+    float x10 = mix(v010, v110, w.x);
+    float x01 = mix(v001, v101, w.x);
+    float x11 = mix(v011, v111, w.x);
+    float dx0 = mix(v100 - v000, v110 - v010, w.y);
+    float dx1 = mix(v101 - v001, v111 - v011, w.y);
+    return vec3(mix(dx0, dx1, w.z), mix(x10 - x00, x11 - x01, w.z), mix(x01, x11, w.y) - mix(x00, x10, w.y)) * slope;
+}
+
+void stir(inout Particle p, int texel) {
+    vec4 a = texelFetch(steps, texel + 10);
+    if (a.w != 0.0) {
+        vec4 b = texelFetch(steps, texel + 11);
+        uint seed = floatBitsToUint(texelFetch(steps, texel + 14).z);
+        vec3 place = p.place * b.w;
+        p.velocity += cross(noise_gradient(place + a.xyz, seed), noise_gradient(place + b.xyz, seed ^ kSeedB))
+                      * (a.w * kCurlScale);
+    }
+}
+
+void whirl_and_steer(inout Particle p, int texel) {
+    vec4 origin = texelFetch(steps, texel + 12);
+    vec4 axis = texelFetch(steps, texel + 13);
+    vec4 steering = texelFetch(steps, texel + 14);
+    vec3 offset = p.place - origin.xyz;
+    vec3 tangent = cross(axis.xyz, offset);
+    float reach = length(tangent);
+    if (reach > 0.0) {
+        p.velocity += (origin.w * tangent - axis.w * (offset - dot(offset, axis.xyz) * axis.xyz)) / reach;
+    }
+    if (steering.x > 0.0 || steering.y > 0.0) {
+        float speed = length(p.velocity);
+        float orbit = reach > 0.0 ? steering.x : 0.0;
+        float left = max(speed - steering.y, 0.0);
+        p.velocity = (speed > 0.0 ? (1.0 - orbit) * left / speed : 0.0) * p.velocity
+                     + (reach > 0.0 ? orbit * left / reach : 0.0) * tangent;
+    }
+}
+
+void move(inout Particle p, int texel) {
+    vec4 push = texelFetch(steps, texel + 1);
+    vec4 air = texelFetch(steps, texel + 2);
+    float old_share = texelFetch(steps, texel + 9).w;
+    vec3 start = p.velocity;
+    stir(p, texel);
+    whirl_and_steer(p, texel);
+    vec3 old = old_share == 1.0 ? start : p.velocity;
+    p.velocity = air.xyz + (p.velocity + push.xyz - air.xyz) * air.w;
+    p.place += old * (push.w * old_share) + p.velocity * (push.w - push.w * old_share);
+    p.age += push.w;
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= count) {
+        return;
+    }
+    uint number = first + index;
+    uint slot = number % capacity;
+    Particle p = Particle(state[2u * slot].xyz, state[2u * slot].w, state[2u * slot + 1u].xyz, state[2u * slot + 1u].w, bits[slot]);
+    for (int i = 0; i < step_count; ++i) {
+        int texel = int(kEmitterTexels) + i * int(kStepTexels);
+        uvec4 births = floatBitsToUint(texelFetch(steps, texel));
+        int since = int(number - births.x);  // wraps
+        if (since >= int(births.y)) {
+            continue;  // not born yet
+        }
+        if (since >= 0) {
+            p = give_birth(number, uint(since), texel, births);
+        }
+        move(p, texel);
+    }
+    state[2u * slot] = vec4(p.place, p.age);
+    state[2u * slot + 1u] = vec4(p.velocity, p.life);
+    bits[slot] = p.look_bits;
+
+    float age = p.age - back;
+    bool is_alive = p.age < p.life && age >= 0.0;
+    float share = clamp(age / max(p.life, 1e-6), 0.0, 1.0);
+    instances[2u * index] = uvec4(floatBitsToUint(p.place - p.velocity * back), look << 16 | uint(share * 65535.0));
+    instances[2u * index + 1u] =
+        uvec4(packHalf2x16(p.velocity.xy), packHalf2x16(vec2(p.velocity.z, age)), p.look_bits, is_alive ? 0u : 1u);
+}

@@ -1,0 +1,51 @@
+#include "systems/particles/emitter_place.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace limn {
+
+EmitterPlace place_of(const WorldTransform& now, const PreviousWorldTransform& previous) {
+    const Vec4& row = previous.world.row[0];
+    const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
+    return {is_new ? now.world : previous.world, now.world};
+}
+
+EmitterEye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
+    EmitterEye eye;
+    bool found = false;
+    cameras.each([&](const Camera& camera, const WorldTransform& transform) {
+        if (camera.active && !found) {
+            eye = {transform_point(transform.world, Vec3(0)), camera.fov_y};
+            found = true;
+        }
+    });
+    return eye;
+}
+
+float seen_share(const ParticleEmitter& emitter, const Affine& world, const EmitterEye& eye) {
+    if (!emitter.by_screen_area) {
+        return 1;
+    }
+    const Vec3 reach = transform_vector(world, {emitter.size.x, 0, 0});
+    const Vec3 side = transform_vector(world, {0, emitter.size.y, 0});
+    const Vec3 depth = transform_vector(world, {0, 0, emitter.size.z});
+    const float radius = std::max({glm::length(reach), glm::length(side), glm::length(depth)});
+    return screen_share(
+        radius, glm::distance(transform_point(world, Vec3(0)), eye.place), eye.fov_y);
+}
+
+std::uint64_t subject_of(const ParticleEmitter& emitter, Entity entity) {
+    return emitter.seed != 0 ? emitter.seed : entity.bits();
+}
+
+Random births_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t frame) {
+    return {seed, subject, name_hash("particle births"), frame};
+}
+
+Random attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
+    return {seed, subject, name_hash("particles"), number};
+}
+
+}  // namespace limn

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "ecs/base/rng.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/transform.h"
+#include "ecs/entity.h"
+#include "ecs/query.h"
+#include "systems/particles/particle_births.h"
+
+#include <cstdint>
+
+namespace limn {
+
+// Where an emitter is in a step, how large it appears, and whose random numbers it draws: the same
+// for both executors.
+
+/// One that is new has not moved.
+[[nodiscard]] EmitterPlace
+place_of(const WorldTransform& now, const PreviousWorldTransform& previous);
+
+/// The camera that decides how large an emitter appears.
+struct EmitterEye {
+    Vec3 place = {0, 0, 0};
+    float fov_y = 1;
+};
+[[nodiscard]] EmitterEye find_eye(const Query<const Camera, const WorldTransform>& cameras);
+
+/// Share 0 .. 1 of its image that the emitter's shape covers; 1 if that does not count.
+[[nodiscard]] float
+seen_share(const ParticleEmitter& emitter, const Affine& world, const EmitterEye& eye);
+
+[[nodiscard]] std::uint64_t subject_of(const ParticleEmitter& emitter, Entity entity);
+
+/// Of how many are born in a step.
+[[nodiscard]] Random births_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t frame);
+
+/// Of the attributes of a birth, by its number.
+[[nodiscard]] Random
+attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number);
+
+}  // namespace limn

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/camera.h"
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/weather.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+namespace limn {
+
+/// Adds GpuParticles to every emitter that runs on the GPU and has none, and takes them from
+/// others.
+void add_gpu_particles(
+    Query<const ParticleEmitter, Without<GpuParticles>> bare,
+    Query<const ParticleEmitter, const GpuParticles> emitters, Commands commands);
+
+/// Writes down a step. After update_transforms.
+void record_gpu_particles(
+    Query<
+        const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
+        const PreviousWorldTransform, GpuParticles>
+        emitters,
+    Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
+    OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
+
+}  // namespace limn

@@ -1,0 +1,105 @@
+#include "systems/particles/particle_motion.h"
+
+#include "systems/particles/particle_births.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr float kGravity = 9.81f;            // [m/s^2]
+constexpr float kOrbitRate = 60.0f;          // in which `orbit` is what a step turns [1/s]
+const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
+const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
+
+}  // namespace
+
+MotionStep find_motion(
+    const ParticleMotion& asked, const Affine& world, const Vec3& weather, float dt,
+    const FrameTime& time) {
+    ParticleMotion motion = asked;
+    for (float* const field :
+         {&motion.gravity, &motion.drag, &motion.wind.x, &motion.wind.y, &motion.wind.z,
+          &motion.weather, &motion.turbulence, &motion.turbulence_size, &motion.turbulence_speed,
+          &motion.vortex, &motion.attraction, &motion.orbit, &motion.brake}) {
+        *field = finite_or(*field, 0);
+    }
+    MotionStep found;
+    found.step = {
+        .gravity = {0, -kGravity * motion.gravity, 0},
+        .air = motion.wind + motion.weather * weather,
+        .keep = std::exp(-std::max(motion.drag, 0.0f) * dt),
+        .dt = dt,
+        .old_share = motion.integrator == ParticleIntegrator::ExplicitEuler  ? 1.0f
+                     : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
+                                                                             : 0.5f};
+    // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
+    // whirls.
+    const auto turns = static_cast<float>(
+        std::fmod(static_cast<double>(motion.turbulence_speed) * time.time, 4096.0));
+    found.turbulence = {
+        .strength = motion.turbulence,
+        .size = std::max(motion.turbulence_size, 1e-3f),
+        .drift_a = kDriftA * turns,
+        .drift_b = kDriftB * turns};
+    found.vortex = {
+        .origin = transform_point(world, Vec3(0)),
+        .axis = normalize_or(transform_vector(world, Vec3(0, 1, 0)), Vec3(0, 1, 0)),
+        .around = motion.vortex,
+        .toward = motion.attraction};
+    found.steering = {
+        .origin = found.vortex.origin,
+        .axis = found.vortex.axis,
+        .orbit = 1 - std::pow(1 - std::clamp(motion.orbit, 0.0f, 1.0f), kOrbitRate * dt),
+        .loss = std::max(motion.brake, 0.0f) * dt};
+    return found;
+}
+
+namespace {
+
+void change_velocities(const MotionStep& motion, const ParticleBlock& block) {
+    const float dt = motion.step.dt;
+    if (motion.turbulence.strength != 0) {
+        stir_particles(block, motion.turbulence, dt);
+    }
+    if (motion.vortex.around != 0 || motion.vortex.toward != 0) {
+        whirl_particles(block, motion.vortex, dt);
+    }
+    if (motion.steering.orbit > 0 || motion.steering.loss > 0) {
+        steer_particles(block, motion.steering);
+    }
+}
+
+/// Places by the velocities of the beginning, which everything else changes.
+std::size_t move_by_old_velocities(const MotionStep& motion, const ParticleBlock& block) {
+    std::array<std::vector<float>, 3> ends;
+    float* const places[] = {block.x, block.y, block.z};
+    const float* const speeds[] = {block.vx, block.vy, block.vz};
+    for (int axis = 0; axis < 3; ++axis) {
+        ends[axis].resize(block.count);
+        for (std::size_t i = 0; i < block.count; ++i) {
+            ends[axis][i] = places[axis][i] + speeds[axis][i] * motion.step.dt;
+        }
+    }
+    change_velocities(motion, block);
+    const std::size_t dead = move_particles(block, motion.step);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::copy(ends[axis].begin(), ends[axis].end(), places[axis]);
+    }
+    return dead;
+}
+
+}  // namespace
+
+std::size_t move_block(const MotionStep& motion, const ParticleBlock& block) {
+    if (motion.step.old_share == 1) {
+        return move_by_old_velocities(motion, block);
+    }
+    change_velocities(motion, block);
+    return move_particles(block, motion.step);
+}
+
+}  // namespace limn

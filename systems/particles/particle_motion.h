@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "systems/particles/particle_kernels.h"
+
+#include <cstddef>
+
+namespace limn {
+
+/// `world` is the emitter's, `weather` the velocity of the wind [m/s], `dt` the step [s]. Numbers
+/// that are not finite count as 0.
+[[nodiscard]] MotionStep find_motion(
+    const ParticleMotion& motion, const Affine& world, const Vec3& weather, float dt,
+    const FrameTime& time);
+
+/// Moves particles by a step; returns how many have reached the end of life.
+std::size_t move_block(const MotionStep& motion, const ParticleBlock& block);
+
+}  // namespace limn

@@ -1,0 +1,251 @@
+// The two executors of particles: the same happens on the GPU as on the CPU.
+
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/weather.h"
+#include "render/gpu_particle_pools.h"
+#include "systems/particles/gpu_particles.h"
+#include "systems/particles/particle_obstacles.h"
+#include "systems/particles/particle_system.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+struct GpuParticle {
+    Vec4 place_age;
+    Vec4 velocity_life;
+};
+
+/// The same emitter twice, moved by the CPU and by the GPU.
+struct Executors : Scene {
+    Entity cpu;
+    Entity gpu;
+    GpuParticlePools pools = *GpuParticlePools::create(device());
+    FrameGraph graph{device()};
+
+    Executors(ParticleEmitter emitter, const ParticleMotion& motion) {
+        world.insert_resource(FrameTime{});
+        world.insert_resource(RandomSeed{});
+        world.insert_resource(WeatherState{});
+        world.insert_resource(ParticleObstacles{});
+        emitter.seed = 5;  // of both
+        const Affine at = affine_from({1, 2, 3}, Quat(0.9f, 0.1f, 0.2f, -0.3f), Vec3(1));
+        for (Entity* const entity : {&cpu, &gpu}) {
+            emitter.executor = entity == &cpu ? ParticleExecutor::Cpu : ParticleExecutor::Gpu;
+            *entity = world.create(emitter, motion, WorldTransform{at}, PreviousWorldTransform{at});
+        }
+        world.run(add_particle_pools);
+        world.run(add_gpu_particles);
+    }
+    void step(int steps = 1) {
+        for (int i = 0; i < steps; ++i) {
+            FrameTime& time = world.resource<FrameTime>();
+            time.time += static_cast<double>(time.step);
+            ++time.frame;
+            world.run(find_particle_obstacles);
+            world.run(update_particles);
+            world.run(record_gpu_particles);
+        }
+    }
+    GpuParticles& recorded() { return world.get<GpuParticles>(gpu); }
+    const ParticlePool& pool() { return world.get<const ParticlePool>(cpu); }
+    /// Lets the GPU catch up, and reads those that may be alive, oldest first.
+    std::vector<GpuParticle> read() {
+        FrameData frame;
+        frame.ring = &ring;
+        ring.begin_frame();
+        pools.begin_frame();
+        pools.add(frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0);
+        graph.begin_frame();
+        pools.update(graph, 0);
+        graph.execute();
+        ring.end_frame();
+        const GpuParticlePool& its = *pools.pools().begin()->second;
+        std::vector<GpuParticle> slots(its.capacity);
+        its.state.read(0, std::as_writable_bytes(std::span(slots)));
+        std::vector<GpuParticle> alive;
+        for (std::uint32_t i = 0; i < its.count; ++i) {
+            const GpuParticle& one = slots[(its.first + i) % its.capacity];
+            if (one.place_age.w < one.velocity_life.w) {
+                alive.push_back(one);
+            }
+        }
+        return alive;
+    }
+    gpu::RingBuffer ring{device().caps(), "steps", 1 << 20};
+};
+
+/// Largest distance between particles of the same number, as a share of how far they may have come.
+float largest_difference(const std::vector<GpuParticle>& gpu, const ParticlePool& cpu, float way) {
+    float largest = 0;
+    for (std::size_t i = 0; i < gpu.size(); ++i) {
+        const Vec3 place = {cpu.x[i], cpu.y[i], cpu.z[i]};
+        largest = std::max(largest, glm::distance(Vec3(gpu[i].place_age), place) / way);
+    }
+    return largest;
+}
+
+ParticleEmitter fountain() {
+    ParticleEmitter emitter;
+    emitter.rate = 400;
+    emitter.capacity = 4096;
+    emitter.life = 12;
+    emitter.life_spread = 0;
+    emitter.speed = 3;
+    return emitter;
+}
+
+}  // namespace
+
+TEST_CASE("gpu particles: for ten seconds they are where the CPU has them") {
+    for (const EmitterShape shape :
+         {EmitterShape::Point, EmitterShape::Ball, EmitterShape::Sphere, EmitterShape::Disc,
+          EmitterShape::Circle, EmitterShape::Box, EmitterShape::Torus}) {
+        CAPTURE(static_cast<int>(shape));
+        ParticleEmitter emitter = fountain();
+        emitter.shape = shape;
+        emitter.direction =
+            shape == EmitterShape::Ball ? EmitterDirection::Radial : EmitterDirection::Cone;
+        ParticleMotion motion;
+        motion.drag = 0.4f;
+        motion.wind = {1, 0, 0.5f};
+        Executors both(emitter, motion);
+        both.step(600);
+        const std::vector<GpuParticle> gpu = both.read();
+        REQUIRE(gpu.size() == 4000);
+        REQUIRE(both.pool().size() == 4000);
+        CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+    }
+}
+
+TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::Average, ParticleIntegrator::ExplicitEuler,
+          ParticleIntegrator::SemiImplicit}) {
+        CAPTURE(static_cast<int>(integrator));
+        ParticleMotion motion;
+        motion.gravity = -0.02f;
+        motion.drag = 1.5f;
+        motion.turbulence = 0.6f;
+        motion.turbulence_size = 1.5f;
+        motion.vortex = 0.7f;
+        motion.attraction = 0.5f;
+        motion.orbit = 0.02f;
+        motion.brake = 0.1f;
+        motion.integrator = integrator;
+        ParticleEmitter emitter = fountain();
+        emitter.life = 3;
+        emitter.shape =
+            EmitterShape::Sphere;  // not on the axis, where rounding would choose a side
+        emitter.size = Vec3(0.5f);
+        Executors both(emitter, motion);
+        both.step(300);
+        const std::vector<GpuParticle> gpu = both.read();
+        REQUIRE(gpu.size() == both.pool().size());
+        CHECK(gpu.size() >= 1200);
+        CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+    }
+}
+
+TEST_CASE("gpu particles: how often they are drawn changes nothing") {
+    ParticleEmitter emitter = fountain();
+    emitter.rate = 60;
+    emitter.bursts = {{.time = 0.4f, .count = 500, .spread = 100, .interval = 1, .repeats = 9}};
+    emitter.life = 2;
+    emitter.life_spread = 1.5f;
+    Executors seldom(emitter, {});
+    Executors often(emitter, {});
+    for (int i = 0; i < 50; ++i) {
+        seldom.step(5);
+        for (int k = 0; k < 5; ++k) {
+            often.step();
+            if (k != 2) {
+                (void)often.read();
+            }
+        }
+    }
+    const std::vector<GpuParticle> a = seldom.read();
+    const std::vector<GpuParticle> b = often.read();
+    REQUIRE(a.size() == b.size());
+    REQUIRE(a.size() > 500);
+    CHECK(a.size() == seldom.pool().size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK(a[i].place_age == b[i].place_age);
+        CHECK(a[i].velocity_life == b[i].velocity_life);
+    }
+}
+
+TEST_CASE("gpu particles: a ring keeps order, refuses births when full and counts them") {
+    ParticleEmitter emitter = fountain();
+    emitter.capacity = 1000;
+    emitter.rate = 6000;
+    emitter.life = 0.5f;
+    Executors both(emitter, {});
+    std::uint64_t last = 0;
+    for (int i = 0; i < 200; ++i) {
+        both.step();
+        const std::uint64_t window = both.recorded().clock.born - both.recorded().oldest();
+        REQUIRE(window <= 1000);
+        REQUIRE(both.recorded().oldest() >= last);
+        last = both.recorded().oldest();
+        if (i % 37 == 0) {
+            const std::vector<GpuParticle> alive = both.read();
+            CHECK(alive.size() <= window);
+            CHECK(std::is_sorted(alive.begin(), alive.end(), [](const auto& a, const auto& b) {
+                return a.place_age.w > b.place_age.w;  // oldest first
+            }));
+        }
+    }
+    const EmitterClock& clock = both.recorded().clock;
+    CHECK(clock.dropped > 0);
+    CHECK(clock.born + clock.dropped == 20000);
+    CHECK(both.recorded().kept().size() <= 32);
+}
+
+TEST_CASE("gpu particles: initial values are within their spread, their mean is the mean") {
+    ParticleEmitter emitter = fountain();
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = 1 << 20}};
+    emitter.capacity = 1 << 20;
+    emitter.shape = EmitterShape::Box;
+    emitter.size = {10, 1, 10};
+    emitter.speed = 3;
+    emitter.speed_spread = 1;
+    emitter.life = 10;
+    emitter.life_spread = 2;
+    ParticleMotion still;
+    still.gravity = 0;
+    Executors both(emitter, still);
+    both.world.destroy(both.cpu);
+    both.step();
+    const std::vector<GpuParticle> all = both.read();
+    REQUIRE(all.size() == 1u << 20);
+    double life = 0;
+    double speed = 0;
+    double product = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const float its = glm::length(Vec3(all[i].velocity_life));
+        REQUIRE(std::abs(its - 3) <= 1.001f);
+        REQUIRE(std::abs(all[i].velocity_life.w - 10) <= 2.001f);
+        life += static_cast<double>(all[i].velocity_life.w);
+        speed += static_cast<double>(its);
+        product += static_cast<double>(all[i].velocity_life.w - 10)
+                   * static_cast<double>(all[(i + 1) % all.size()].velocity_life.w - 10);
+    }
+    const auto count = static_cast<double>(all.size());
+    CHECK(life / count == near(10).epsilon(0.005));
+    CHECK(speed / count == near(3).epsilon(0.005));
+    CHECK(std::abs(product / count / (4.0 / 3)) < 0.01);  // of neighbors: no correlation
+}
+
+}  // namespace limn::test
