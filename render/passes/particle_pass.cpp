@@ -33,6 +33,8 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
     record[3] = {
         static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
         look.frame_rate, static_cast<float>(layer)};
+    record[layout::kLookMore] = {
+        static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -44,7 +46,7 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
 
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
-    std::vector<ParticleInstance>& instances) {
+    std::vector<ParticleInstance>& instances, const Vec3& observer) {
     for (std::size_t i = 0; i < pool.size(); ++i) {
         const float age = pool.age[i] - back;
         if (age < 0) {
@@ -55,9 +57,19 @@ void append_particles(
         instances.push_back(
             {.position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
              .look_and_share = look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
-             .velocity_and_age = glm::packHalf4x16(Vec4(velocity, age)),
+             .velocity_and_age = glm::packHalf4x16(Vec4(velocity - observer, age)),
              .random = pool.look[i]});
     }
+}
+
+Vec3 camera_velocity(const World& world, Entity camera, float step) {
+    const auto* const now = world.find<WorldTransform>(camera);
+    const auto* const previous = world.find<PreviousWorldTransform>(camera);
+    if (now == nullptr || previous == nullptr || step <= 0 || is_cut(previous->world, now->world)) {
+        return Vec3(0);
+    }
+    return (transform_point(now->world, Vec3(0)) - transform_point(previous->world, Vec3(0)))
+           / step;
 }
 
 void order_by_distance(
@@ -86,6 +98,7 @@ void ParticleEffect::collect(FrameData& frame) {
     const float step = time != nullptr ? time->step : FrameTime{}.step;
     const float back = (1.0f - frame.camera.alpha) * step;
     const ImagePool& pool = frame.materials->images();
+    const Vec3 eye_velocity = camera_velocity(*frame.world, frame.camera.entity, step);
     looks.clear();
     arrays.clear();
     instances.clear();
@@ -97,7 +110,9 @@ void ParticleEffect::collect(FrameData& frame) {
             }
             const bool has_image = frame.assets->images.size() > look.image.index;
             const ImageLayer place = has_image ? pool.find(look.image) : ImageLayer{};
-            append_particles(particles, static_cast<std::uint32_t>(looks.size()), back, instances);
+            append_particles(
+                particles, static_cast<std::uint32_t>(looks.size()), back, instances,
+                look.camera_streak * eye_velocity);
             looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
             arrays.push_back(place.array);
             lit = lit || look.lit > 0;

@@ -18,10 +18,12 @@ const uint kParticleTexels = 2u;
 //   3  columns, rows; frames per second; layer of the image, -1: a soft disc
 //   4  factors on the size, four samples a texel
 //  12  color and opacity, a sample a texel
+//  44  frames of the flipbook; near and far fade [m]; tumble [rad/s]
 const uint kLookSamples = 32u;  // evenly over the life, the first at its beginning and the last at its end
 const uint kLookSizes = 4u;
 const uint kLookColors = 12u;
-const uint kLookTexels = 44u;
+const uint kLookMore = 44u;
+const uint kLookTexels = 45u;
 
 #ifdef __cplusplus
 }  // namespace limn::layout

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr std::uint32_t kBlock = 1024;       // particles that move as one piece of work
+constexpr float kMaxPrewarm = 60;            // [s]
 constexpr std::size_t kBlockGrain = 4;       // blocks of one job
 constexpr float kGravity = 9.81f;            // [m/s^2]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
@@ -43,6 +44,8 @@ struct Work {
     ParticleStep step = {};
     Turbulence turbulence = {};
     Vortex vortex = {};
+    Vec3 wrap = {0, 0, 0};  ///< extents of the box about `eye`
+    Vec3 eye = {0, 0, 0};
 };
 
 /// A part of the particles of an emitter.
@@ -117,11 +120,49 @@ std::uint64_t subject_of(const Work& work) {
     return work.emitter->seed != 0 ? work.emitter->seed : work.entity.bits();
 }
 
+std::uint32_t move(const Work& work, const ParticleBlock& block) {
+    if (work.turbulence.strength != 0) {
+        stir_particles(block, work.turbulence, work.step.dt);
+    }
+    if (work.vortex.around != 0 || work.vortex.toward != 0) {
+        whirl_particles(block, work.vortex, work.step.dt);
+    }
+    const std::size_t dead = move_particles(block, work.step);
+    wrap_particles(block, work.eye, work.wrap);
+    return static_cast<std::uint32_t>(dead);
+}
+
+/// The steps before the first one, at the places of that.
+void prewarm(const Work& work, std::uint64_t seed) {
+    const ParticleEmitter& emitter = *work.emitter;
+    ParticlePool& pool = *work.pool;
+    const float dt = work.step.dt;
+    const int steps =
+        dt > 0 ? static_cast<int>(std::min(finite_or(emitter.prewarm, 0), kMaxPrewarm) / dt + 0.5f)
+               : 0;
+    std::vector<float> births;
+    for (int i = 0; i < steps; ++i) {
+        Random random(
+            seed, subject_of(work), name_hash("particle prewarm"), static_cast<std::uint64_t>(i));
+        const std::size_t room =
+            emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+        births.clear();
+        find_births(emitter, work.scale, dt, room, random, pool, births);
+        add_particles(emitter, work.place, dt, seed, subject_of(work), births, pool);
+        if (move(work, particle_block(pool, 0, pool.size())) > 0) {
+            remove_dead(pool, 0);
+        }
+    }
+}
+
 void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
     if (work.source != nullptr) {
         return;
+    }
+    if (emitter.prewarm > 0 && pool.born == 0 && pool.time == 0) {
+        prewarm(work, seed);
     }
     const std::uint64_t subject = subject_of(work);
     Random random(seed, subject, name_hash("particle births"), time.frame);
@@ -161,16 +202,6 @@ void find_spawns_of(
     work.pool->dropped += find_spawns(
         *work.source, *work.emitter, *works[work.parent].pool, works[work.parent].hits,
         work.step.dt, room, random, work.spawns);
-}
-
-std::uint32_t move(const Work& work, const ParticleBlock& block) {
-    if (work.turbulence.strength != 0) {
-        stir_particles(block, work.turbulence, work.step.dt);
-    }
-    if (work.vortex.around != 0 || work.vortex.toward != 0) {
-        whirl_particles(block, work.vortex, work.step.dt);
-    }
-    return static_cast<std::uint32_t>(move_particles(block, work.step));
 }
 
 /// Moves a block whose particles collide.
@@ -264,7 +295,7 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        Optional<const ParticleCollision>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
     Query<const ParticleCollider, const WorldTransform> colliders,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
@@ -276,7 +307,8 @@ void update_particles(
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
-                      const ParticleCollision* collision, ParticlePool& pool) {
+                      const ParticleCollision* collision, const ParticleWrap* wrap,
+                      ParticlePool& pool) {
         const Vec4& row = previous.world.row[0];
         const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
         const EmitterPlace place = {is_new ? now.world : previous.world, now.world};
@@ -286,7 +318,9 @@ void update_particles(
         work.emitter = &emitter;
         work.drops = drops;
         work.source = source;
-        work.collision = collision;
+        work.collision = wrap == nullptr ? collision : nullptr;
+        work.wrap = wrap != nullptr ? wrap->size : Vec3(0);
+        work.eye = eye.place;
         work.pool = &pool;
         works.push_back(work);
     });

@@ -35,7 +35,7 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        Optional<const ParticleCollision>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
     Query<const ParticleCollider, const WorldTransform> colliders,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
