@@ -52,6 +52,8 @@ void pack_step(const GpuParticleStep& step, std::uint32_t first_run, std::vector
     texels.emplace_back(motion.vortex.axis, motion.vortex.toward * dt);
     texels.emplace_back(
         motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
+    texels.emplace_back(motion.wrap_center, 0.0f);
+    texels.emplace_back(motion.wrap_size, 0.0f);
 }
 
 void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {

@@ -374,13 +374,26 @@ std::span<const PatternKind> pattern_kinds() {
             "brushed_metal", "metal with fine streaks along u"),
         pattern_kind<CheckerPattern, make_checker>("checker", "two colors in squares, polished"),
         pattern_kind<ConcretePattern, make_concrete>("concrete", "stained gray with pores"),
+        pattern_kind<ConfettiPattern, make_confetti>(
+            "confetti", "a flipbook of cut paper in bright colors"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
+        pattern_kind<FirePattern, make_fire>(
+            "fire", "a flipbook of fire from a simulation, in color"),
+        pattern_kind<FireballPattern, make_fireball>(
+            "fireball", "a flipbook of a burst of fire that turns to soot, in color"),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
+        pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
+        pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
         pattern_kind<RoseWindowPattern, make_rose_window>(
             "rose_window", "a round window of stained glass; black outside of the glass"),
         pattern_kind<RustPattern, make_rust>("rust", "scratched metal under patches of rust"),
+        pattern_kind<ShardPattern, make_shard>(
+            "shard", "a flipbook of splinters, each another one"),
         pattern_kind<SmokePattern, make_smoke>("smoke", "a flipbook of a puff"),
+        pattern_kind<SnowflakePattern, make_snowflake>(
+            "snowflake", "a flipbook of crystals, each another one"),
+        pattern_kind<SplashPattern, make_splash>("splash", "a flipbook of water that breaks up"),
         pattern_kind<StainedGlassPattern, make_stained_glass>(
             "stained_glass", "leaded diamonds between two borders; black at the lead"),
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),

@@ -1,6 +1,7 @@
 #include "content/make/sprite_patterns.h"
 
 #include "content/make/pattern_tools.h"
+#include "content/make/sprite_fluid.h"
 
 #include <glm/geometric.hpp>
 
@@ -16,8 +17,9 @@ struct FramePoint {
     float time;
 };
 
-template <typename Opacity>
-PatternMaps make_flipbook(const PatternSize& image, int frames, Opacity&& opacity) {
+/// `texel`: color and opacity of a FramePoint.
+template <typename Texel>
+PatternMaps make_shaded_flipbook(const PatternSize& image, int frames, Texel&& texel) {
     const float side = static_cast<float>(frames);
     return make_pattern_maps(image.size, [&](const Vec2& uv) {
         const Vec2 cell = glm::floor(uv * side);
@@ -26,9 +28,18 @@ PatternMaps make_flipbook(const PatternSize& image, int frames, Opacity&& opacit
             {inside.x, -inside.y}, (cell.y * side + cell.x) / std::max(side * side - 1.0f, 1.0f)};
         // Nothing at the border, over which filters read the neighboring frames.
         const float edge = std::max(std::abs(inside.x), std::abs(inside.y));
+        PatternTexel t = texel(at);
+        t.opacity = std::clamp(t.opacity, 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.85f, edge);
+        return t;
+    });
+}
+
+template <typename Opacity>
+PatternMaps make_flipbook(const PatternSize& image, int frames, Opacity&& opacity) {
+    return make_shaded_flipbook(image, frames, [&](const FramePoint& at) {
         PatternTexel t;
         t.color = {1, 1, 1};
-        t.opacity = std::clamp(opacity(at), 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.85f, edge);
+        t.opacity = opacity(at);
         return t;
     });
 }
@@ -40,11 +51,182 @@ float moving_noise(const Vec2& p, const Vec2& drift, std::uint32_t seed, int oct
               + fbm(p - 0.7f * drift + 7.3f, seed + 50, {0, 0}, octaves));
 }
 
+// ---- from simulations --------------------------------------------------------------------------
+
+constexpr int kMaxFluidSide = 128;
+constexpr int kFluidSteps = 3;  // between frames
+
+/// Color of soot by its heat, 0 .. 1: from dark red through orange to a yellowish white, as a black
+/// body's between 800 and 2500 K.
+Vec3 heat_color(float heat) {
+    struct Key {
+        float at;
+        Vec3 color;
+    };
+    constexpr Key kKeys[] = {
+        {0.0f, {0.16f, 0.005f, 0.0f}},
+        {0.3f, {0.85f, 0.075f, 0.004f}},
+        {0.55f, {1.0f, 0.30f, 0.03f}},
+        {0.8f, {1.0f, 0.62f, 0.17f}},
+        {1.0f, {1.0f, 0.88f, 0.55f}}};
+    for (std::size_t i = 1; i < std::size(kKeys); ++i) {
+        if (heat <= kKeys[i].at) {
+            const float share = (heat - kKeys[i - 1].at) / (kKeys[i].at - kKeys[i - 1].at);
+            return glm::mix(kKeys[i - 1].color, kKeys[i].color, std::max(share, 0.0f));
+        }
+    }
+    return kKeys[std::size(kKeys) - 1].color;
+}
+
+float sample_field(const std::vector<float>& field, int side, const Vec2& at) {
+    const Vec2 place = glm::clamp(
+        at * static_cast<float>(side) - 0.5f, Vec2(0.0f), Vec2(static_cast<float>(side - 1)));
+    const IVec2 cell = glm::min(IVec2(place), IVec2(side - 2));
+    const Vec2 f = place - Vec2(cell);
+    const float* const p = field.data() + cell.y * side + cell.x;
+    return glm::mix(glm::mix(p[0], p[1], f.x), glm::mix(p[side], p[side + 1], f.x), f.y);
+}
+
+struct FluidFrame {
+    std::vector<float> heat;
+    std::vector<float> soot;
+};
+
+/// `texel(heat, soot, frame point)`, bilinear between the cells of the frame.
+template <typename Texel>
+PatternMaps render_frames(
+    const PatternSize& image, int frames, int side, const std::vector<FluidFrame>& film,
+    Texel&& texel) {
+    const float count = static_cast<float>(frames);
+    return make_pattern_maps(image.size, [&](const Vec2& uv) {
+        const Vec2 cell = glm::min(glm::floor(uv * count), Vec2(count - 1.0f));
+        const Vec2 inside = uv * count - cell;
+        const auto number = static_cast<std::size_t>(cell.y * count + cell.x);
+        const Vec2 at = {inside.x, 1.0f - inside.y};
+        const float edge = 2.0f * std::max(std::abs(inside.x - 0.5f), std::abs(inside.y - 0.5f));
+        PatternTexel t = texel(
+            sample_field(film[number].heat, side, at), sample_field(film[number].soot, side, at),
+            at);
+        t.opacity = std::clamp(t.opacity, 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.88f, edge);
+        return t;
+    });
+}
+
+int fluid_side(const PatternSize& image, int frames) {
+    return std::clamp(image.size / std::max(frames, 1), 8, kMaxFluidSide);
+}
+
 }  // namespace
+
+PatternMaps make_fire(const FirePattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int side = fluid_side(pattern.image, pattern.frames);
+    const int count = pattern.frames * pattern.frames;
+    const int overlap = std::max(count / 4, 1);  // frames that blend into the beginning of the loop
+    constexpr int kWarmUp = 70;                  // steps
+    FluidGrid fluid = make_fluid(side);
+    FluidStep step;
+    step.rise = pattern.rise;
+    step.cooling = pattern.cooling;
+    step.whirls = pattern.whirls;
+    step.drag = 1.0f;
+    std::vector<FluidFrame> film;
+    for (int i = 0; i < kWarmUp + (count + overlap) * kFluidSteps; ++i) {
+        const float time = static_cast<float>(i) * step.dt;
+        for (int y = 1; y < side / 8 + 2; ++y) {
+            for (int x = 1; x + 1 < side; ++x) {
+                const Vec2 at = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f)
+                                / static_cast<float>(side);
+                const float away = std::abs(at.x - 0.5f) / (0.5f * pattern.width);
+                const float high = at.y / 0.09f;
+                const float body = glm::smoothstep(1.0f, 0.5f, away * away + high * high * 0.6f);
+                const float flicker =
+                    0.85f + 1.1f * fbm(Vec2(at.x * 9.0f, time * 5.0f), seed, {0, 0}, 3);
+                const std::size_t cell = fluid.at(x, y);
+                fluid.heat[cell] =
+                    std::max(fluid.heat[cell], body * std::clamp(flicker, 0.0f, 1.1f));
+                fluid.u[cell] += body * 6.0f * step.dt
+                                 * fbm(Vec2(time * 2.5f, at.x * 5.0f), seed + 77, {0, 0}, 2);
+            }
+        }
+        step_fluid(fluid, step);
+        if (i >= kWarmUp && (i - kWarmUp) % kFluidSteps == kFluidSteps - 1) {
+            film.push_back({fluid.heat, {}});
+        }
+    }
+    for (int i = 0; i < overlap; ++i) {  // the last frames fade to those before the first
+        const float share = (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
+        std::vector<float>& late = film[static_cast<std::size_t>(count + i)].heat;
+        std::vector<float>& early = film[static_cast<std::size_t>(i)].heat;
+        for (std::size_t cell = 0; cell < late.size(); ++cell) {
+            early[cell] = glm::mix(late[cell], early[cell], share);
+        }
+    }
+    for (FluidFrame& frame : film) {
+        frame.soot = frame.heat;
+    }
+    return render_frames(
+        pattern.image, pattern.frames, side, film, [](float heat, float, const Vec2&) {
+            PatternTexel t;
+            t.color = heat_color(1.25f * heat);
+            t.opacity = glm::smoothstep(0.04f, 0.42f, heat);
+            return t;
+        });
+}
+
+PatternMaps make_fireball(const FireballPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int side = fluid_side(pattern.image, pattern.frames);
+    const int count = pattern.frames * pattern.frames;
+    FluidGrid fluid = make_fluid(side);
+    FluidStep step;
+    constexpr float kStir = 0.09f;  // [sides^2/s]
+    step.dt = 1.0f / 90;
+    step.rise = 3.5f;
+    step.cooling = pattern.cooling;
+    step.whirls = pattern.whirls;
+    step.expansion = pattern.burst;
+    step.drag = 2.5f;
+    step.has_floor = false;
+    for (int y = 1; y + 1 < side; ++y) {
+        for (int x = 1; x + 1 < side; ++x) {
+            const Vec2 at = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f)
+                            / static_cast<float>(side);
+            const Vec2 out = at - Vec2(0.5f, 0.46f);
+            const float lumps = fbm(9.0f * at, seed, {0, 0}, 4);
+            const float away = glm::length(out) * (1.0f - 0.9f * lumps);
+            const std::size_t cell = fluid.at(x, y);
+            const float body = glm::smoothstep(0.16f, 0.06f, away);
+            fluid.heat[cell] = body * (1.0f + 1.2f * fbm(12.0f * at, seed + 9, {0, 0}, 3));
+            fluid.soot[cell] = body;
+            // Whirls without sources: the curl of noise.
+            const auto stream = [&](const Vec2& p) { return fbm(10.0f * p, seed + 30, {0, 0}, 3); };
+            constexpr float kStep = 0.01f;
+            const float here = stream(at);
+            fluid.u[cell] = kStir * (stream(at + Vec2(0, kStep)) - here) / kStep;
+            fluid.v[cell] = -kStir * (stream(at + Vec2(kStep, 0)) - here) / kStep;
+        }
+    }
+    std::vector<FluidFrame> film;
+    for (int i = 0; i < count; ++i) {
+        film.push_back({fluid.heat, fluid.soot});
+        for (int k = 0; k < kFluidSteps + i / 3; ++k) {  // fast at first
+            step_fluid(fluid, step);
+            step.expansion *= 0.8f;
+        }
+    }
+    return render_frames(
+        pattern.image, pattern.frames, side, film, [](float heat, float soot, const Vec2&) {
+            PatternTexel t;
+            t.color = heat_color(1.3f * heat) * glm::smoothstep(0.0f, 0.25f, heat);
+            t.opacity = glm::smoothstep(0.02f, 0.3f, soot);
+            return t;
+        });
+}
 
 PatternMaps make_smoke(const SmokePattern& pattern) {
     const std::uint32_t seed = seed_of(pattern.image);
-    return make_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
+    const auto plain = [&](const FramePoint& at) {
         const Vec2 drift = at.time * Vec2(0.5f, -0.8f);
         const Vec2 warp = {
             moving_noise(1.4f * at.p, drift, seed, 4),
@@ -55,6 +237,37 @@ PatternMaps make_smoke(const SmokePattern& pattern) {
         const float frayed =
             glm::smoothstep(-0.55f + 0.3f * at.time, 0.65f, billows + 0.6f * body - 0.25f);
         return body * glm::mix(1.0f, frayed * 1.3f, pattern.detail);
+    };
+    if (pattern.billow <= 0) {
+        return make_flipbook(pattern.image, pattern.frames, plain);
+    }
+    // Depth toward the viewer: lumps on lumps, each a dent turned outward (cell noise).
+    const auto depth = [&](const FramePoint& at) {
+        const Vec2 drift = at.time * Vec2(0.35f, -0.55f);
+        const Vec2 warp = {
+            moving_noise(1.2f * at.p, drift, seed, 3),
+            moving_noise(1.2f * at.p + 31.0f, drift, seed, 3)};
+        const Vec2 p = at.p + 0.13f * warp;
+        const float ball = 1.2f - 1.2f * glm::dot(p, p) / square(0.72f + 0.06f * at.time);
+        const float large = 0.6f - square(cell_noise(2.6f * p + drift, seed + 400, 0.8f).nearest);
+        const float small =
+            0.6f - square(cell_noise(5.7f * p + 1.4f * drift, seed + 500, 0.8f).nearest);
+        const float fine = fbm(9.0f * p - drift, seed + 600, {0, 0}, 3);
+        return ball + pattern.billow * (0.8f * large + 0.3f * small + 0.1f * fine - 0.2f);
+    };
+    return make_shaded_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
+        constexpr float kStep = 0.03f;
+        const float here = depth(at);
+        const float right = depth({at.p + Vec2(kStep, 0), at.time});
+        const float above = depth({at.p + Vec2(0, kStep), at.time});
+        const Vec3 normal = glm::normalize(Vec3(here - right, here - above, 2.2f * kStep));
+        const float lit = glm::dot(normal, glm::normalize(Vec3(-0.25f, 0.85f, 0.45f)));
+        const float light = glm::mix(1.0f, 0.5f + 0.5f * lit, pattern.shade);
+        PatternTexel t;
+        t.color = Vec3(std::clamp(light, 0.0f, 1.0f));
+        const float frayed = glm::mix(1.0f, plain(at), pattern.detail);
+        t.opacity = glm::smoothstep(-0.05f, 0.5f, here) * frayed;
+        return t;
     });
 }
 
@@ -65,7 +278,7 @@ PatternMaps make_flame(const FlamePattern& pattern) {
         const float height = 0.5f * (at.p.y + 1.0f);
         const float sway = moving_noise(Vec2(0.9f, 1.3f) * at.p, rise, seed, 3);
         const float lick = moving_noise(Vec2(2.4f, 1.7f) * at.p, 1.3f * rise, seed + 200, 4);
-        const float x = at.p.x + 0.75f * height * sway;
+        const float x = at.p.x + pattern.sway * height * sway;
         // Widest at a quarter of the height, a point at the top.
         const float width = 0.62f * std::pow(std::max(1.0f - height, 0.0f), 0.75f)
                             * glm::smoothstep(-0.02f, 0.3f, height);
@@ -73,6 +286,205 @@ PatternMaps make_flame(const FlamePattern& pattern) {
         const float torn =
             glm::smoothstep(-0.5f, 0.45f, lick + 0.55f - 0.9f * height * (0.6f + 0.6f * at.time));
         return body * glm::mix(1.0f, torn, pattern.detail);
+    });
+}
+
+// ---- single things, one in each frame ----------------------------------------------------------
+
+namespace {
+
+/// 0 .. 1, of a frame.
+float frame_random(const FramePoint& at, int frames, std::uint32_t seed, std::uint32_t index) {
+    const float last = static_cast<float>(frames * frames - 1);
+    const auto number = static_cast<std::uint32_t>(at.time * last + 0.5f);
+    std::uint32_t h = (number * 64u + index + seed) * 0x9e3779b9u;
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return static_cast<float>((h ^ (h >> 16)) >> 8) * 0x1p-24f;
+}
+
+float length_of(const Vec2& p) {
+    return glm::length(p);
+}
+
+/// The point folded into one of twelve mirrored wedges about the middle, that along +x.
+Vec2 fold_sixfold(Vec2 p) {
+    p = glm::abs(p);
+    constexpr Vec2 kNormal = {0.5f, -0.8660254f};  // of the line at 30 degrees
+    const float beyond = std::min(glm::dot(p, kNormal), 0.0f);
+    p -= 2.0f * beyond * kNormal;
+    p.y = std::abs(p.y);
+    return p;
+}
+
+float line_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 along = b - a;
+    const float t = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0f, 1.0f);
+    return length_of(p - a - t * along);
+}
+
+}  // namespace
+
+PatternMaps make_leaf(const LeafPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    const float soft = 3.0f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
+    return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
+        const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
+        const float slim = 0.30f + 0.22f * random(0);
+        const float bend = 0.5f * (random(1) - 0.5f);
+        const float along = (at.p.y + 0.62f) / 1.4f;  // 0 at the foot, 1 at the tip
+        const float side = at.p.x - bend * (at.p.y * at.p.y - 0.3f);
+        // Widest at two fifths, with a pointed tip and teeth.
+        const float u = std::clamp(along, 0.0f, 1.0f);
+        const float teeth = 0.03f * std::abs(2.0f * (14.0f * u - std::floor(14.0f * u)) - 1.0f);
+        const float width = slim * 2.9f * std::sqrt(u) * (1.0f - u) * (0.75f + 0.4f * u) - teeth;
+        const float blade =
+            along > 0 && along < 1 ? glm::smoothstep(soft, -soft, std::abs(side) - width) : 0.0f;
+        const float stalk = at.p.y < -0.5f && at.p.y > -0.88f
+                                ? glm::smoothstep(0.035f + soft, 0.02f, std::abs(side))
+                                : 0.0f;
+        const float rib = glm::smoothstep(0.03f + soft, 0.0f, std::abs(side));
+        const float run = 8.0f * (u - 0.55f * std::abs(side));
+        const float vein =
+            glm::smoothstep(0.85f, 1.0f, std::abs(2.0f * (run - std::floor(run)) - 1.0f));
+        const float spots = fbm(6.0f * at.p + 10.0f * random(5), seed + 3, {0, 0}, 4);
+        const Vec3 warm = glm::mix(pattern.color, pattern.second_color, random(2));
+        Vec3 color = warm * (0.85f + 0.3f * random(3)) * (1.0f + 0.5f * spots);
+        color =
+            glm::mix(color, pattern.second_color * 0.5f, glm::smoothstep(0.1f, 0.5f, spots) * 0.5f);
+        color = glm::mix(color, color * 1.45f, std::max(rib, 0.5f * vein));
+        const bool is_near = std::abs(side) < width + 4.0f * soft;
+        color *= at.p.x < 0 && is_near ? 0.82f : 1.0f;  // folded along the rib
+        PatternTexel t;
+        t.color = glm::clamp(color, Vec3(0), Vec3(1));
+        t.opacity = std::max(blade, stalk);
+        return t;
+    });
+}
+
+PatternMaps make_confetti(const ConfettiPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    const float soft = 3.0f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
+    constexpr Vec3 kColors[] = {{0.85f, 0.02f, 0.05f}, {0.95f, 0.28f, 0.01f}, {0.95f, 0.68f, 0.02f},
+                                {0.05f, 0.55f, 0.08f}, {0.01f, 0.33f, 0.80f}, {0.35f, 0.05f, 0.70f},
+                                {0.90f, 0.08f, 0.42f}, {0.02f, 0.60f, 0.60f}};
+    return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
+        const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
+        const float last = static_cast<float>(frames * frames - 1);
+        const auto number = static_cast<std::size_t>(at.time * last + 0.5f);
+        const Vec2 half = {0.35f + 0.2f * random(0), 0.55f + 0.15f * random(1)};
+        const Vec2 beyond = glm::max(glm::abs(at.p) - half, Vec2(0));
+        const float fold = 0.12f * (random(2) - 0.5f) + 0.1f * at.p.x;
+        PatternTexel t;
+        t.color = glm::clamp(
+            kColors[number % std::size(kColors)] * (at.p.y > fold ? 1.0f : 0.72f), Vec3(0),
+            Vec3(1));
+        t.opacity = glm::smoothstep(soft, 0.0f, length_of(beyond));
+        return t;
+    });
+}
+
+PatternMaps make_snowflake(const SnowflakePattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    const float soft = 2.5f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
+    return make_flipbook(pattern.image, frames, [&](const FramePoint& at) {
+        const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
+        const float away = length_of(at.p);
+        const Vec2 p = fold_sixfold(at.p);
+        const float thick = 0.035f + 0.02f * random(0);
+        float nearest = line_distance(p, {0, 0}, {0.8f, 0}) - thick;
+        for (std::uint32_t i = 0; i < 4; ++i) {  // side branches, at 60 degrees
+            const float from = 0.16f + 0.17f * static_cast<float>(i) + 0.08f * random(1 + i);
+            const float reach = (0.10f + 0.22f * random(6 + i)) * (1.0f - 0.6f * from);
+            const Vec2 foot = {from, 0};
+            nearest = std::min(
+                nearest, line_distance(p, foot, foot + reach * Vec2(0.5f, 0.866f)) - 0.75f * thick);
+        }
+        const float core = away - 0.10f - 0.12f * random(11);
+        nearest = std::min(nearest, core);
+        const float crystal = glm::smoothstep(soft + 0.03f, -soft, nearest);
+        const float halo = 0.35f * glm::smoothstep(0.85f, 0.0f, away);
+        return std::max(crystal, halo * halo * 1.6f);
+    });
+}
+
+PatternMaps make_shard(const ShardPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    const float soft = 2.5f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
+    return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
+        const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
+        // The polygon between six lines, with facets that meet at a point off the middle.
+        const Vec2 peak = 0.3f * Vec2(random(30) - 0.5f, random(31) - 0.5f);
+        float outside = -1;
+        float facet = -1;
+        float light = 0.5f;
+        for (std::uint32_t i = 0; i < 6; ++i) {
+            Vec2 normal = {2.0f * random(3 * i) - 1.0f, 2.0f * random(3 * i + 1) - 1.0f};
+            constexpr Vec2 kAround[] = {{1, 0},  {0.5f, 0.87f},   {-0.5f, 0.87f},
+                                        {-1, 0}, {-0.5f, -0.87f}, {0.5f, -0.87f}};
+            normal = glm::normalize(normal * 0.55f + kAround[i]);
+            const float reach = 0.36f + 0.34f * random(3 * i + 2);
+            outside = std::max(outside, glm::dot(at.p, normal) - reach);
+            const float height = glm::dot(at.p - peak, normal) / reach;
+            if (height > facet) {
+                facet = height;
+                light = 0.62f + 0.38f * normal.y - 0.15f * normal.x;
+            }
+        }
+        const float rough = 0.06f * fbm(7.0f * at.p + 9.0f * random(40), seed, {0, 0}, 3);
+        const float grain = fbm(13.0f * at.p, seed + 7, {0, 0}, 3);
+        PatternTexel t;
+        t.color = glm::clamp(pattern.color * light * (1.0f + 0.5f * grain), Vec3(0), Vec3(1));
+        t.opacity = glm::smoothstep(soft, -soft, outside + rough);
+        return t;
+    });
+}
+
+PatternMaps make_splash(const SplashPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
+        // Sheets that tear into threads and drops, which fly apart.
+        const float spread = 0.5f + 0.5f * std::sqrt(at.time);
+        const Vec2 warp = {
+            fbm(2.2f * at.p, seed + 20, {0, 0}, 2), fbm(2.2f * at.p + 9.0f, seed + 20, {0, 0}, 2)};
+        const float away = length_of(at.p) / spread;
+        const Vec2 p = at.p / spread;
+        const float sheet_noise = fbm(2.6f * (p + 0.5f * warp), seed + 9, {0, 0}, 4);
+        const float sheet = glm::smoothstep(
+            0.02f + 0.4f * at.time, 0.22f + 0.4f * at.time, 0.75f - away + 0.9f * sheet_noise);
+        float drops = 0;
+        for (const float cells : {3.2f, 6.1f}) {
+            const CellSample drop = cell_noise(
+                cells * (p + 0.2f * warp), seed + static_cast<std::uint32_t>(cells * 10), 0.9f);
+            const float size = 0.10f + 0.2f * static_cast<float>(drop.cell & 255u) / 255.0f;
+            drops = std::max(drops, glm::smoothstep(size, 0.4f * size, drop.nearest));
+        }
+        const float edge = glm::smoothstep(0.98f, 0.6f, away);
+        PatternTexel t;
+        t.color = Vec3(glm::mix(0.7f, 1.0f, std::max(drops, sheet * (0.5f + sheet_noise))));
+        t.opacity = edge * std::max(drops * 0.9f, 0.7f * sheet * (1.0f - 0.5f * at.time));
+        return t;
+    });
+}
+
+PatternMaps make_ring(const RingPattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    return make_flipbook(pattern.image, pattern.frames, [&](const FramePoint& at) {
+        const float away = length_of(at.p);
+        // Noise around the middle that turns: sampled on the unit circle, so without a seam.
+        const Vec2 around = at.p / std::max(away, 1e-3f);
+        const float wisps = fbm(
+            3.0f * around + Vec2(2.5f * away - 1.2f * at.time, 0.8f * at.time), seed, {0, 0}, 4);
+        const float place = (away - 0.72f - 0.10f * wisps) / std::max(pattern.width, 0.01f);
+        const float ring = 1.0f / (1.0f + 9.0f * place * place);
+        const float inner = place < 0 ? 0.35f * glm::smoothstep(-3.0f, 0.0f, place) : 0.0f;
+        const float torn = glm::mix(1.0f, glm::smoothstep(-0.4f, 0.4f, wisps), pattern.detail);
+        return (ring * torn + inner * torn * torn) * glm::smoothstep(0.98f, 0.8f, away);
     });
 }
 

@@ -60,6 +60,7 @@ void register_all_components() {
     register_component<ParticleCollision>();
     register_component<ParticleCollider>();
     register_component<ParticleMotion>();
+    register_component<ParticleWrap>();
     register_component<ParticleLook>();
     register_component<ParticleLight>();
     register_component<ParticlePool>();

@@ -63,6 +63,8 @@ struct MotionStep {
     Turbulence turbulence{};
     Vortex vortex{};
     Steering steering{};
+    Vec3 wrap_center = {0, 0, 0};
+    Vec3 wrap_size = {0, 0, 0};  ///< as ParticleWrap; 0: none [m]
 };
 
 /// Births at equal intervals.
@@ -92,23 +94,30 @@ struct GpuParticleStep {
     MotionStep motion{};
 };
 
+/// Particles born in one step.
+struct ParticleCohort {
+    std::uint64_t first = 0;  ///< number of the first
+    double born = 0;          ///< end of that step, on the clock of GpuParticles [s]
+};
+
 /// With a ParticleEmitter that runs on the GPU, instead of a ParticlePool. Of particle n the slot
 /// is n modulo the capacity.
 struct GpuParticles {
     EmitterClock clock{};
-    std::vector<GpuParticleStep> steps{};  ///< the first `forgotten` of them are of no use
+    double time = 0;                        ///< of all steps [s]
+    std::vector<ParticleCohort> cohorts{};  ///< those that may live, oldest first
+    std::vector<GpuParticleStep> steps{};   ///< the first `forgotten` of them are of no use
     std::size_t forgotten = 0;
     std::uint64_t step = 0;   ///< number of the step after the last of `steps`
     PhiloxCounter counter{};  ///< of the attributes of the oldest particle; its number counts
     PhiloxKey key{};          ///< likewise
 
-    /// Those in which particles that may live were born, and all after them.
     [[nodiscard]] std::span<const GpuParticleStep> kept() const {
         return std::span(steps).subspan(forgotten);
     }
     /// The oldest particle that may be alive.
     [[nodiscard]] std::uint64_t oldest() const {
-        return kept().empty() ? clock.born : kept().front().first;
+        return cohorts.empty() ? clock.born : cohorts.front().first;
     }
 };
 

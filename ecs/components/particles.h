@@ -16,6 +16,7 @@ namespace limn {
 //     ParticleSource    that they are born where particles of another emitter are
 //     ParticleMotion    what moves them
 //     ParticleCollision what happens where they meet a ParticleCollider (particle_collider.h)
+//     ParticleWrap      that they stay about the camera
 //     ParticleLook      how they are drawn
 //     ParticleLight     that they light what is around
 //     ParticlePool      the living ones, kept by the systems: one array per scalar
@@ -86,6 +87,7 @@ struct ParticleEmitter {
     std::vector<ParticleBurst> bursts;
     float duration = 0;
     bool loop = true;
+    float prewarm = 0;
     std::uint32_t capacity = 4096;
     std::uint32_t seed = 0;
     EmitterShape shape = EmitterShape::Point;
@@ -115,6 +117,9 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(bursts, "many births at one instant");
     LIMN_FIELD(duration, "how long it emits; 0: forever", "s", 0, 1e6);
     LIMN_FIELD(loop, "starts again after the duration, bursts included");
+    LIMN_FIELD(
+        prewarm, "how long it has emitted when it starts; without sources, sprays and colliders",
+        "s", 0, 60);
     LIMN_FIELD(
         capacity, "living particles at most; further births are dropped and counted", "", 0,
         4194304);
@@ -212,6 +217,16 @@ LIMN_FIELDS(ParticleMotion) {
         .values = "average explicit_euler semi_implicit");
 }
 
+/// Particles fill a box about the camera, wherever it goes: who leaves at one side comes in at the
+/// other (engine.space-dust). They do not collide.
+struct ParticleWrap {
+    Vec3 size = {20, 20, 20};
+};
+
+LIMN_FIELDS(ParticleWrap) {
+    LIMN_FIELD(size, "extents of the box along the world's axes; 0: unbounded", "m", 0, 1e5);
+}
+
 struct ColorKey {
     float at = 0;
     Vec3 color = {1, 1, 1};
@@ -235,10 +250,18 @@ enum class ParticleFacing : std::uint8_t {
     Ground,    ///< flat on the world's xz plane
 };
 
+/// Which frames of its flipbook a particle shows.
+enum class ParticleFrames : std::uint8_t {
+    Play,     ///< from the first
+    Shuffle,  ///< from one by chance
+    Pick,     ///< one by chance, for life
+};
+
 struct ParticleLook {
     ImageId image;
     std::uint32_t columns = 1;
     std::uint32_t rows = 1;
+    ParticleFrames frames = ParticleFrames::Play;
     float frame_rate = 0;
     float size = 0.1f;
     float size_spread = 0;
@@ -250,16 +273,23 @@ struct ParticleLook {
     float forward = 0;
     ParticleFacing facing = ParticleFacing::Camera;
     float stretch = 0.02f;
+    float camera_streak = 0;
     float turn_spread = 3.1416f;
     float spin = 0;
     float spin_spread = 0;
+    float tumble = 0;
     float softness = 0.2f;
+    float near_fade = 0;
+    float far_fade = 0;
 };
 
 LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(image, "an image of the level with opacity; none: a soft disc");
     LIMN_FIELD(columns, "of a flipbook: frames side by side in the image", "", 1, 64);
     LIMN_FIELD(rows, "of a flipbook, the first at the top", "", 1, 64);
+    LIMN_FIELD(
+        frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
+        .values = "play shuffle pick");
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
@@ -274,10 +304,20 @@ LIMN_FIELDS(ParticleLook) {
         -0.95, 0.95);
     LIMN_FIELD(facing, .doc = "how the quad is turned", .values = "camera velocity ground");
     LIMN_FIELD(stretch, "length of a streak: the way of so much time; facing velocity", "s", 0, 10);
+    LIMN_FIELD(
+        camera_streak, "share of the camera's own velocity that streaks show; facing velocity", "",
+        0, 10);
     LIMN_FIELD(turn_spread, "initial angle, give or take", "rad", 0, 3.1416);
     LIMN_FIELD(spin, "rotation", "rad/s", -1000, 1000);
     LIMN_FIELD(spin_spread, "give or take", "rad/s", 0, 1000);
+    LIMN_FIELD(
+        tumble, "rotation about the quad's own up, so that it is seen edge-on: leaves", "rad/s", 0,
+        1000);
     LIMN_FIELD(softness, "depth over which it fades where it meets a surface", "m", 0, 100);
+    LIMN_FIELD(near_fade, "distance of the camera below which it fades", "m", 0, 1000);
+    LIMN_FIELD(
+        far_fade, "distance beyond which it is not seen, fading from 0.6 of it; 0: none", "m", 0,
+        1e5);
 }
 
 /// Particles light surfaces and each other, as small lights without shadows.

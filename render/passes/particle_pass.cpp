@@ -34,6 +34,8 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
     record[3] = {
         static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
         look.frame_rate, static_cast<float>(layer)};
+    record[layout::kLookMore] = {
+        static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -43,15 +45,18 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
     return record;
 }
 
-float particle_lag(const FrameData& frame) {
+float particle_step(const FrameData& frame) {
     const auto* const time = frame.world->find_resource<FrameTime>();
-    const float step = time != nullptr ? time->step : FrameTime{}.step;
-    return (1.0f - frame.camera.alpha) * step;
+    return time != nullptr ? time->step : FrameTime{}.step;
+}
+
+float particle_lag(const FrameData& frame) {
+    return (1.0f - frame.camera.alpha) * particle_step(frame);
 }
 
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
-    std::vector<ParticleInstance>& instances) {
+    std::vector<ParticleInstance>& instances, const Vec3& observer) {
     for (std::size_t i = 0; i < pool.size(); ++i) {
         const float age = pool.age[i] - back;
         if (age < 0) {
@@ -62,9 +67,19 @@ void append_particles(
         instances.push_back(
             {.position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
              .look_and_share = look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
-             .velocity_and_age = glm::packHalf4x16(Vec4(velocity, age)),
+             .velocity_and_age = glm::packHalf4x16(Vec4(velocity - observer, age)),
              .random = pool.look[i]});
     }
+}
+
+Vec3 camera_velocity(const World& world, Entity camera, float step) {
+    const auto* const now = world.find<WorldTransform>(camera);
+    const auto* const previous = world.find<PreviousWorldTransform>(camera);
+    if (now == nullptr || previous == nullptr || step <= 0 || is_cut(previous->world, now->world)) {
+        return Vec3(0);
+    }
+    return (transform_point(now->world, Vec3(0)) - transform_point(previous->world, Vec3(0)))
+           / step;
 }
 
 void order_by_distance(
@@ -93,6 +108,8 @@ bool ParticleEffect::is_used(const FrameData& frame) {
 void ParticleEffect::collect(FrameData& frame) {
     const float back = particle_lag(frame);
     const ImagePool& pool = frame.materials->images();
+    const Vec3 eye_velocity =
+        camera_velocity(*frame.world, frame.camera.entity, particle_step(frame));
     looks.clear();
     arrays.clear();
     instances.clear();
@@ -110,7 +127,8 @@ void ParticleEffect::collect(FrameData& frame) {
     frame.world->query<const ParticleLook, const ParticlePool>().each(
         [&](const ParticleLook& look, const ParticlePool& particles) {
             if (looks.size() < kMaxLooks) {
-                append_particles(particles, add_look(look), back, instances);
+                append_particles(
+                    particles, add_look(look), back, instances, look.camera_streak * eye_velocity);
             }
         });
     gpu.begin_frame();

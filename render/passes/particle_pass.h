@@ -36,6 +36,8 @@ struct ParticleInstance {
 };
 static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
 
+/// Length of a step [s].
+[[nodiscard]] float particle_step(const FrameData& frame);
 /// Time of the frame before the end of the last step [s].
 [[nodiscard]] float particle_lag(const FrameData& frame);
 
@@ -46,9 +48,13 @@ using LookRecord = std::array<Vec4, layout::kLookTexels>;
 [[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
 
 /// Appends the particles that exist `back` seconds before the end of the step, where they are then.
+/// Streaks show velocities relative to `observer` [m/s].
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
-    std::vector<ParticleInstance>& instances);
+    std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
+
+/// Of the last step [m/s]; 0 after a cut.
+[[nodiscard]] Vec3 camera_velocity(const World& world, Entity camera, float step);
 
 /// Keeps its memory from frame to frame.
 struct ParticleOrder {

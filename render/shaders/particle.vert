@@ -21,6 +21,8 @@ layout(location = 5) out float distance_ahead;         // along the view axis [m
 
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
+const int kFramesShuffle = 1;
+const int kFramesPick = 2;
 const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
 
 float random_share(uint bits, uint index) {  // -1 .. 1
@@ -85,7 +87,8 @@ struct Quad {
     vec3 right;
     vec3 up;
 };
-Quad quad_of(vec4 shape, vec4 streak, vec3 position, vec3 velocity, int facing, uint random, float size, float age) {
+Quad quad_of(vec4 shape, vec4 streak, float tumble, vec3 position, vec3 velocity, int facing, uint random, float size,
+             float age) {
     float angle = shape.z * random_share(random, 1u) + (shape.w + streak.x * random_share(random, 2u)) * age;
     vec3 to_camera = normalize(view.camera_ws.xyz - position);
     vec3 right = normalize(view.ray_right.xyz);
@@ -107,6 +110,10 @@ Quad quad_of(vec4 shape, vec4 streak, vec3 position, vec3 velocity, int facing, 
         across = seen > 1e-3 ? across / seen : right;
         return Quad(half_size * across, (half_size + 0.5 * streak.y * speed) * along);
     }
+    if (tumble > 0.0) {
+        float lean = tumble * (0.6 + 0.4 * random_share(random, 3u)) * age + 3.14159 * random_share(random, 4u);
+        right = cos(lean) * right + sin(lean) * cross(right, up);
+    }
     return Quad(half_size * right, half_size * up);
 }
 
@@ -126,12 +133,16 @@ void main() {
     vec4 streak = look_texel(look, 1u);
     vec4 glow = look_texel(look, 2u);
     vec4 book = look_texel(look, 3u);
+    vec4 more = look_texel(look, kLookMore);
     float at = share * float(kLookSamples - 1u);
     float size = max(shape.x + shape.y * random_share(rest.z, 0u), 0.0) * size_factor(look, at);
     vec4 color = color_at(look, at);
+    float away = distance(position, view.camera_ws.xyz);
+    color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
+    color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
 
     corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    Quad quad = quad_of(shape, streak, position, velocity, int(glow.w), rest.z, size, age);
+    Quad quad = quad_of(shape, streak, more.w, position, velocity, int(glow.w), rest.z, size, age);
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
     vec3 corner_ws = position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
@@ -153,8 +164,12 @@ void main() {
 
     float count = book.x * book.y;
     float shown = book.z > 0.0 ? age * book.z : share * (count - 1.0);
+    int frames_shown = int(more.x);
+    float chance = floor((0.5 + 0.5 * random_share(rest.z, 5u)) * count);
+    shown = frames_shown == kFramesPick ? chance : frames_shown == kFramesShuffle ? shown + chance : shown;
+    bool loops = book.z > 0.0 || frames_shown == kFramesShuffle;
     float frame = mod(floor(shown), count);
-    float next = book.z > 0.0 ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
+    float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
     frames = vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy);
     next_frame = vec2(mod(next, book.x), floor(next / book.x)) / book.xy;
     blend = vec4(glow.z, streak.z, count > 1.0 ? fract(shown) : 0.0, book.w);

@@ -18,10 +18,12 @@ const uint kParticleTexels = 2u;
 //   3  columns, rows; frames per second; layer of the image, -1: a soft disc
 //   4  factors on the size, four samples a texel
 //  12  color and opacity, a sample a texel
+//  44  frames of the flipbook; near and far fade [m]; tumble [rad/s]
 const uint kLookSamples = 32u;  // evenly over the life, the first at its beginning and the last at its end
 const uint kLookSizes = 4u;
 const uint kLookColors = 12u;
-const uint kLookTexels = 44u;
+const uint kLookMore = 44u;
+const uint kLookTexels = 45u;
 
 // Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
 //   0  seed of the random numbers: key (2 words); subject (2 words)
@@ -40,7 +42,9 @@ const uint kEmitterTexels = 4u;
 //  12  origin of axis; acceleration around it times dt
 //  13  axis; acceleration toward it times dt
 //  14  orbit; loss of speed; seed of the turbulence (word); 0
-const uint kStepTexels = 15u;
+//  15  middle of the box that particles stay in; 0
+//  16  its extents; 0
+const uint kStepTexels = 17u;
 const uint kParticleGroup = 128u;  // particles of a work group
 
 #ifdef __cplusplus

@@ -253,6 +253,9 @@ void move(inout Particle p, int texel) {
     p.velocity = air.xyz + (p.velocity + push.xyz - air.xyz) * air.w;
     p.place += old * (push.w * old_share) + p.velocity * (push.w - push.w * old_share);
     p.age += push.w;
+    vec3 box = texelFetch(steps, texel + 16).xyz;
+    vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
+    p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
 }
 
 void main() {

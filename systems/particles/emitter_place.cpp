@@ -44,6 +44,20 @@ Random births_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t fr
     return {seed, subject, name_hash("particle births"), frame};
 }
 
+bool is_unused(const EmitterClock& clock) {
+    return clock.born == 0 && clock.time == 0;
+}
+
+int prewarm_steps(const ParticleEmitter& emitter, float dt) {
+    constexpr float kMost = 60;  // [s]
+    const float time = std::clamp(finite_or(emitter.prewarm, 0), 0.0f, kMost);
+    return dt > 0 ? static_cast<int>(time / dt + 0.5f) : 0;
+}
+
+Random prewarm_random(std::uint64_t seed, std::uint64_t subject, int i) {
+    return {seed, subject, name_hash("particle prewarm"), static_cast<std::uint64_t>(i)};
+}
+
 Random attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
     return {seed, subject, name_hash("particles"), number};
 }

@@ -35,6 +35,12 @@ seen_share(const ParticleEmitter& emitter, const Affine& world, const EmitterEye
 /// Of how many are born in a step.
 [[nodiscard]] Random births_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t frame);
 
+/// Whether nothing has happened yet: then it is prewarmed.
+[[nodiscard]] bool is_unused(const EmitterClock& clock);
+/// Steps before the first one, at most a minute of them, and the numbers of births in step i.
+[[nodiscard]] int prewarm_steps(const ParticleEmitter& emitter, float dt);
+[[nodiscard]] Random prewarm_random(std::uint64_t seed, std::uint64_t subject, int i);
+
 /// Of the attributes of a birth, by its number.
 [[nodiscard]] Random
 attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number);

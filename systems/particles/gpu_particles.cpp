@@ -13,27 +13,54 @@
 namespace limn {
 namespace {
 
-constexpr std::size_t kMostSteps = 65536;  // that are kept, however long particles live
+constexpr double kMemory = 60;  // for which steps are kept, if particles live so long [s]
 
-/// Forgets the steps whose particles are all dead at the end of the one to come.
-void drop_old_steps(const ParticleEmitter& emitter, float dt, GpuParticles& particles) {
-    const float longest = finite_or(emitter.life, 0) + std::abs(finite_or(emitter.life_spread, 0));
-    float age = dt;
-    for (const GpuParticleStep& step : particles.kept()) {
-        age += step.motion.step.dt;
+/// Forgets whom the end of the step to come finds dead, and the steps that nobody needs.
+void forget_old(const ParticleEmitter& emitter, float dt, GpuParticles& particles) {
+    const auto longest = static_cast<double>(
+        finite_or(emitter.life, 0) + std::abs(finite_or(emitter.life_spread, 0)));
+    const double end = particles.time;  // a step late, so that rounding buries nobody alive
+    const auto alive = std::find_if(
+        particles.cohorts.begin(), particles.cohorts.end(),
+        [&](const ParticleCohort& cohort) { return end - cohort.born <= longest; });
+    particles.cohorts.erase(particles.cohorts.begin(), alive);
+
+    const double memory = std::min(longest, kMemory);
+    double age = static_cast<double>(dt);
+    std::size_t kept = 0;
+    while (kept < particles.kept().size() && age <= memory + static_cast<double>(dt)) {
+        age +=
+            static_cast<double>(particles.steps[particles.steps.size() - 1 - kept].motion.step.dt);
+        ++kept;
     }
-    while (!particles.kept().empty()) {
-        age -= particles.kept().front().motion.step.dt;
-        if (age <= longest && particles.kept().size() < kMostSteps) {
-            break;
-        }
-        ++particles.forgotten;
-    }
-    if (particles.forgotten > particles.kept().size()) {
+    particles.forgotten = particles.steps.size() - kept;
+    if (particles.forgotten > kept) {
         const auto begin = particles.steps.begin();
         particles.steps.erase(begin, begin + static_cast<std::ptrdiff_t>(particles.forgotten));
         particles.forgotten = 0;
     }
+}
+
+/// Writes a step down, with its births.
+void add_step(
+    const ParticleEmitter& emitter, float scale, GpuParticleStep step, Random random,
+    GpuParticles& particles) {
+    const float dt = step.motion.step.dt;
+    forget_old(emitter, dt, particles);
+    const std::uint64_t window = particles.clock.born - particles.oldest();
+    const std::uint64_t room = emitter.capacity > window ? emitter.capacity - window : 0;
+    step.first = particles.clock.born;
+    find_births(emitter, scale, dt, room, random, particles.clock, step.births);
+    for (const BirthRun& run : step.births) {
+        step.count += run.count;
+    }
+    particles.time += static_cast<double>(dt);
+    if (step.count > 0) {
+        particles.cohorts.push_back({step.first, particles.time});
+    }
+    particles.clock.born += step.count;
+    particles.steps.push_back(std::move(step));
+    ++particles.step;
 }
 
 }  // namespace
@@ -56,7 +83,7 @@ void add_gpu_particles(
 void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, GpuParticles>
+        const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
@@ -65,30 +92,27 @@ void record_gpu_particles(
     const EmitterEye eye = find_eye(cameras);
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
-                      GpuParticles& particles) {
+                      const ParticleWrap* wrap, GpuParticles& particles) {
         static const ParticleMotion kStill;
-        drop_old_steps(emitter, dt, particles);
         const std::uint64_t subject = subject_of(emitter, entity);
-        const Random oldest = attributes_random(seed->seed, subject, particles.oldest());
-        particles.counter = oldest.counter();
-        particles.key = oldest.key();
         GpuParticleStep step;
-        step.first = particles.clock.born;
         step.place = place_of(now, previous);
         step.inherited = inherited_velocity(emitter, step.place, dt);
         step.motion = find_motion(motion != nullptr ? *motion : kStill, now.world, wind, dt, *time);
-        const std::uint64_t window = particles.clock.born - particles.oldest();
-        const std::uint64_t room = emitter.capacity > window ? emitter.capacity - window : 0;
-        Random random = births_random(seed->seed, subject, time->frame);
-        find_births(
-            emitter, seen_share(emitter, now.world, eye), dt, room, random, particles.clock,
-            step.births);
-        for (const BirthRun& run : step.births) {
-            step.count += run.count;
+        if (wrap != nullptr) {
+            step.motion.wrap_size = wrap->size;
+            step.motion.wrap_center = eye.place;
         }
-        particles.clock.born += step.count;
-        particles.steps.push_back(std::move(step));
-        ++particles.step;
+        const float scale = seen_share(emitter, now.world, eye);
+        if (is_unused(particles.clock)) {
+            for (int i = 0; i < prewarm_steps(emitter, dt); ++i) {
+                add_step(emitter, scale, step, prewarm_random(seed->seed, subject, i), particles);
+            }
+        }
+        add_step(emitter, scale, step, births_random(seed->seed, subject, time->frame), particles);
+        const Random oldest = attributes_random(seed->seed, subject, particles.oldest());
+        particles.counter = oldest.counter();
+        particles.key = oldest.key();
     });
 }
 

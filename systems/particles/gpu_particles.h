@@ -22,7 +22,7 @@ void add_gpu_particles(
 void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, GpuParticles>
+        const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
         emitters,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);

@@ -39,6 +39,9 @@ std::size_t move_particles_vector(const ParticleBlock&, const ParticleStep&, std
 std::size_t stir_particles_vector(const ParticleBlock&, const Turbulence&, float) {
     return 0;
 }
+std::size_t wrap_axis_vector(float*, std::size_t, float, float) {
+    return 0;
+}
 std::size_t compact_vector(std::uint32_t*, const float*, const float*, std::size_t, std::size_t&) {
     return 0;
 }
@@ -190,6 +193,21 @@ std::size_t stir_particles_vector(const ParticleBlock& b, const Turbulence& t, f
     return i;
 }
 
+std::size_t wrap_axis_vector(float* x, std::size_t count, float center, float size) {
+    const std::size_t n = hn::Lanes(d);
+    const V middle = hn::Set(d, center);
+    const V extent = hn::Set(d, size);
+    const V per_size = hn::Set(d, 1.0f / size);
+    const V half = hn::Set(d, 0.5f);
+    std::size_t i = 0;
+    for (; i + n <= count; i += n) {
+        const V old = hn::LoadU(d, x + i);
+        const V turns = hn::Floor(hn::Add(hn::Mul(hn::Sub(old, middle), per_size), half));
+        hn::StoreU(hn::Sub(old, hn::Mul(turns, extent)), d, x + i);
+    }
+    return i;
+}
+
 /// Moves those of one array that live to its beginning; `kept`: where the next one goes. Compress
 /// and store: CompressStore is ten times as slow on some processors.
 std::size_t compact_vector(
@@ -216,6 +234,7 @@ namespace limn {
 
 HWY_EXPORT(move_particles_vector);
 HWY_EXPORT(stir_particles_vector);
+HWY_EXPORT(wrap_axis_vector);
 HWY_EXPORT(compact_vector);
 
 namespace {
@@ -432,6 +451,38 @@ void steer_particles(const ParticleBlock& b, const Steering& steering) {
         b.vx[i] = along * velocity.x + around * tangent.x;
         b.vy[i] = along * velocity.y + around * tangent.y;
         b.vz[i] = along * velocity.z + around * tangent.z;
+    }
+}
+
+namespace {
+
+void wrap_axis(float* x, std::size_t count, float center, float size) {
+    const float per_size = 1.0f / size;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float turns = std::floor((x[i] - center) * per_size + 0.5f);
+        x[i] = x[i] - turns * size;
+    }
+}
+
+}  // namespace
+
+void wrap_particles_scalar(const ParticleBlock& b, const Vec3& center, const Vec3& size) {
+    float* const places[] = {b.x, b.y, b.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > 0 && std::isfinite(center[axis])) {
+            wrap_axis(places[axis], b.count, center[axis], size[axis]);
+        }
+    }
+}
+
+void wrap_particles(const ParticleBlock& b, const Vec3& center, const Vec3& size) {
+    float* const places[] = {b.x, b.y, b.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > 0 && std::isfinite(center[axis])) {
+            const std::size_t done = HWY_DYNAMIC_DISPATCH(wrap_axis_vector)(
+                places[axis], b.count, center[axis], size[axis]);
+            wrap_axis(places[axis] + done, b.count - done, center[axis], size[axis]);
+        }
     }
 }
 

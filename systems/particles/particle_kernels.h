@@ -50,6 +50,10 @@ void whirl_particles(const ParticleBlock& block, const Vortex& vortex, float dt)
 
 /// v' = mix(v / |v|, tangent, orbit) max(|v| - loss, 0); v' = 0 at rest, no turn on the axis.
 void steer_particles(const ParticleBlock& block, const Steering& steering);
+/// Puts particles that have left the box of extents `size` about `center` in at the other side
+/// (engine.space-dust); an extent of 0 is unbounded.
+void wrap_particles(const ParticleBlock& block, const Vec3& center, const Vec3& size);
+void wrap_particles_scalar(const ParticleBlock& block, const Vec3& center, const Vec3& size);
 
 /// Removes the particles with age >= life from `first` on; the others keep their order. Returns how
 /// many are left.

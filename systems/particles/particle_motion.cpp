@@ -95,11 +95,17 @@ std::size_t move_by_old_velocities(const MotionStep& motion, const ParticleBlock
 }  // namespace
 
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block) {
+    std::size_t dead = 0;
     if (motion.step.old_share == 1) {
-        return move_by_old_velocities(motion, block);
+        dead = move_by_old_velocities(motion, block);
+    } else {
+        change_velocities(motion, block);
+        dead = move_particles(block, motion.step);
     }
-    change_velocities(motion, block);
-    return move_particles(block, motion.step);
+    if (motion.wrap_size != Vec3(0)) {
+        wrap_particles(block, motion.wrap_center, motion.wrap_size);
+    }
+    return dead;
 }
 
 }  // namespace limn

@@ -57,11 +57,33 @@ std::uint64_t subject_of(const Work& work) {
     return subject_of(*work.emitter, work.entity);
 }
 
+/// The steps before the first one, at the places of that.
+void prewarm(const Work& work, std::uint64_t seed) {
+    const ParticleEmitter& emitter = *work.emitter;
+    ParticlePool& pool = *work.pool;
+    const float dt = work.motion.step.dt;
+    std::vector<BirthRun> births;
+    for (int i = 0; i < prewarm_steps(emitter, dt); ++i) {
+        Random random = prewarm_random(seed, subject_of(work), i);
+        const std::size_t room =
+            emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+        births.clear();
+        find_births(emitter, work.scale, dt, room, random, pool.clock, births);
+        add_particles(emitter, work.place, dt, seed, subject_of(work), births, pool);
+        if (move_block(work.motion, particle_block(pool, 0, pool.size())) > 0) {
+            remove_dead(pool, 0);
+        }
+    }
+}
+
 void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const ParticleEmitter& emitter = *work.emitter;
     ParticlePool& pool = *work.pool;
     if (work.source != nullptr) {
         return;
+    }
+    if (is_unused(pool.clock)) {
+        prewarm(work, seed);
     }
     const std::uint64_t subject = subject_of(work);
     Random random = births_random(seed, subject, time.frame);
@@ -292,7 +314,7 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        Optional<const ParticleCollision>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
@@ -305,7 +327,8 @@ void update_particles(
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
-                      const ParticleCollision* collision, ParticlePool& pool) {
+                      const ParticleCollision* collision, const ParticleWrap* wrap,
+                      ParticlePool& pool) {
         const EmitterPlace place = place_of(now, previous);
         static const ParticleMotion kStill;
         Work work{.entity = entity, .place = place};
@@ -314,7 +337,11 @@ void update_particles(
         work.emitter = &emitter;
         work.drops = drops;
         work.source = source;
-        work.collision = collision;
+        work.collision = wrap == nullptr ? collision : nullptr;
+        if (wrap != nullptr) {
+            work.motion.wrap_size = wrap->size;
+            work.motion.wrap_center = eye.place;
+        }
         work.pool = &pool;
         works.push_back(work);
     });

@@ -41,7 +41,7 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
-        Optional<const ParticleCollision>, ParticlePool>
+        Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,

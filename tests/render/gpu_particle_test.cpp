@@ -210,6 +210,40 @@ TEST_CASE("gpu particles: a ring keeps order, refuses births when full and count
     CHECK(clock.dropped > 0);
     CHECK(clock.born + clock.dropped == 20000);
     CHECK(both.recorded().kept().size() <= 32);
+    CHECK(both.recorded().cohorts.size() <= 32);
+}
+
+TEST_CASE("gpu particles: when the GPU begins anew they are where they were") {
+    ParticleEmitter emitter = fountain();
+    emitter.prewarm = 1;
+    emitter.life = 2.5f;
+    Executors both(emitter, {});
+    both.step(90);
+    const std::vector<GpuParticle> before = both.read();
+    both.pools = *GpuParticlePools::create(RenderTest::device());
+    const std::vector<GpuParticle> after = both.read();
+    REQUIRE(before.size() == 1000);
+    REQUIRE(after.size() == before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        CHECK(after[i].place_age == before[i].place_age);
+    }
+    // Of those that live longer, steps are kept for a minute.
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = 10}};
+    emitter.prewarm = 0;
+    emitter.life = 1e5f;
+    Executors eternal(emitter, {});
+    eternal.step(5000);
+    CHECK(eternal.recorded().kept().size() <= 3601);
+    CHECK(eternal.recorded().steps.size() <= 7205);
+    CHECK(eternal.read().size() == 0);  // nobody has seen them be born
+    Executors seen(emitter, {});
+    seen.step(10);
+    CHECK(seen.read().size() == 10);
+    seen.step(3000);
+    (void)seen.read();
+    seen.step(3000);
+    CHECK(seen.read().size() == 10);
 }
 
 TEST_CASE("gpu particles: initial values are within their spread, their mean is the mean") {

@@ -7,6 +7,7 @@
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,51 @@ TEST_CASE("particle pass: between steps they are back on their way, and not ther
     CHECK(instances[0].position.x == test::near(2));
     CHECK((instances[0].look_and_share >> 16) == 5);
     CHECK((instances[0].look_and_share & 0xffff) / 65535.0 == test::near(0.2).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "particle pass: streaks show velocities relative to the camera, which has none after a cut") {
+    World world;
+    const Affine from = affine_from({1, 2, 3}, Quat(1, 0, 0, 0), Vec3(1));
+    const Affine to = affine_from({1, 2, 2}, Quat(1, 0, 0, 0), Vec3(1));
+    const Affine far = affine_from({1, 2, 900}, Quat(1, 0, 0, 0), Vec3(1));
+    const Entity moving = world.create(WorldTransform{to}, PreviousWorldTransform{from});
+    const Entity cut = world.create(WorldTransform{to}, PreviousWorldTransform{far});
+    CHECK(camera_velocity(world, moving, 0.1f).z == near(-10));
+    CHECK(camera_velocity(world, cut, 0.1f) == Vec3(0));
+    CHECK(camera_velocity(world, Entity{}, 0.1f) == Vec3(0));
+    ParticlePool pool;
+    for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.life}) {
+        column->push_back(1);
+    }
+    pool.age.push_back(0);
+    pool.look.push_back(0);
+    std::vector<ParticleInstance> instances;
+    append_particles(pool, 0, 0, instances, {0, 0, -10});
+    REQUIRE(instances.size() == 1);
+    CHECK(glm::unpackHalf4x16(instances[0].velocity_and_age).z == near(11));
+    CHECK(instances[0].position.z == 1);
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: they fade near the camera and far from it, and in between not") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    emit({{0, 0, 0}}, look);
+    const float plain = middle().x;
+    world.clear();
+    look.near_fade = 0.9f;  // the camera is 1 m away
+    look.far_fade = 2;
+    emit({{0, 0, 0}}, look);
+    CHECK(middle().x == near(plain));
+    world.clear();
+    look.near_fade = 2;
+    emit({{0, 0, 0}}, look);
+    CHECK(middle().x == near(0.5f * plain).epsilon(0.01));
+    world.clear();
+    look.near_fade = 0;
+    look.far_fade = 1.25f;  // midway between 0.75 and 1.25
+    emit({{0, 0, 0}}, look);
+    CHECK(middle().x == near(0.5f * plain).epsilon(0.01));
 }
 
 TEST_CASE_FIXTURE(
@@ -250,6 +296,59 @@ TEST_CASE_FIXTURE(
     const Vec3 color = middle();
     CHECK(color.y == near(0.75f).epsilon(0.02));
     CHECK(color.x == near(0.25f).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a picked frame stays and is not mixed; shuffled ones play on") {
+    ImageData image;
+    image.width = 8;
+    image.height = 4;
+    for (int i = 0; i < 8 * 4; ++i) {
+        for (const int value : {i % 8 < 4 ? 255 : 0, i % 8 < 4 ? 0 : 255, 0, 255}) {
+            image.pixels.push_back(static_cast<std::uint8_t>(value));
+        }
+    }
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.image = add(image);
+    look.columns = 2;
+    look.turn_spread = 0;
+    look.frame_rate = 2.5f;
+    look.frames = ParticleFrames::Pick;
+    emit({{0, 0, 0}}, look);
+    const Vec3 picked = middle();
+    CHECK(std::max(picked.x, picked.y) == near(1).epsilon(0.02));
+    CHECK(std::min(picked.x, picked.y) == near(0));
+    world.clear();
+    look.frames = ParticleFrames::Shuffle;
+    emit({{0, 0, 0}}, look);  // a quarter on the way to the other frame
+    const Vec3 shuffled = middle();
+    const bool is_second_first = picked.y > 0.5f;
+    CHECK(shuffled.y == near(is_second_first ? 0.25f : 0.75f).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(ParticleScene, "particle pass: what tumbles is at times seen edge-on") {
+    ParticleLook look = disc({1, 1, 1}, 1, 0);
+    look.turn_spread = 0;
+    const auto lit_pixels = [&] {
+        int count = 0;
+        const gpu::FloatImage image = radiance(this->look({0, 0, 1}, {0, 0, 0}, 33, 33));
+        for (int x = 0; x < 33; ++x) {
+            count += rgb_at(image, x, 16).x > 0.01f ? 1 : 0;
+        }
+        return count;
+    };
+    emit({{0, 0, 0}}, look);
+    const int whole = lit_pixels();
+    int narrowest = whole;
+    for (const float speed : {2.0f, 4.0f, 6.0f, 8.0f, 10.0f, 12.0f}) {
+        world.clear();
+        look.tumble = speed;
+        emit({{0, 0, 0}}, look);
+        const int seen = lit_pixels();
+        CHECK(seen <= whole + 4);  // the near half looms
+        narrowest = std::min(narrowest, seen);
+    }
+    CHECK(narrowest < whole / 2);
 }
 
 TEST_CASE(

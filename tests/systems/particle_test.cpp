@@ -612,6 +612,51 @@ TEST_CASE("particle source: no births of itself, of nothing, or over capacity, w
     CHECK(scene.pool(1).size() == 150);
 }
 
+TEST_CASE("particles: a box about the camera keeps them, evenly, wherever it goes") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(4000);
+    emitter.shape = EmitterShape::Box;
+    emitter.size = {5, 5, 5};
+    emitter.speed = 0;
+    scene.add(emitter, falling(0));
+    scene.world.add(scene.entities[0], ParticleWrap{.size = {10, 10, 0}});
+    const Entity camera = scene.world.create(Camera{}, WorldTransform{});
+    for (const Vec3& eye : {Vec3(0), Vec3(3, 1, 200), Vec3(-1234.5f, 77, 0)}) {
+        scene.world.get<WorldTransform>(camera).world = affine_from(eye, Quat(1, 0, 0, 0), Vec3(1));
+        scene.run();
+        const ParticlePool& pool = scene.pool();
+        REQUIRE(pool.size() == 4000);
+        double octants[4] = {};
+        for (std::size_t i = 0; i < pool.size(); ++i) {
+            CHECK(std::abs(pool.x[i] - eye.x) <= 5.001f);
+            CHECK(std::abs(pool.y[i] - eye.y) <= 5.001f);
+            CHECK(std::abs(pool.z[i]) <= 5.001f);
+            ++octants[(pool.x[i] > eye.x ? 1 : 0) + (pool.y[i] > eye.y ? 2 : 0)];
+        }
+        for (const double count : octants) {
+            CHECK(count == test::near(1000).epsilon(0.1));
+        }
+    }
+}
+
+TEST_CASE("particles: a prewarmed emitter starts as another is after that time") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(60);
+    emitter.life = 1;
+    scene.add(emitter, falling());
+    emitter.prewarm = 3;
+    scene.add(emitter, falling());
+    scene.run();
+    CHECK(scene.pool(0).size() == 1);
+    CHECK(scene.pool(1).size() == test::near(60).epsilon(0.04));
+    CHECK(scene.pool(1).clock.time == test::near(3 + 1.0 / 60).epsilon(1e-3));
+    scene.run(240);
+    CHECK(
+        scene.pool(0).size()
+        == test::near(static_cast<double>(scene.pool(1).size())).epsilon(0.04));
+    CHECK(scene.pool(1).clock.born == test::near(60 * 7).epsilon(0.02));
+}
+
 TEST_CASE("particles: vectors give the bits of the plain loops, for any number") {
     for (const std::size_t count : {1u, 7u, 16u, 33u, 1000u}) {
         CAPTURE(count);
@@ -756,6 +801,23 @@ TEST_CASE("particles: threads do not change the bits, nor does a snapshot in bet
         }
     }
     set_thread_count(threads);
+}
+
+TEST_CASE("particles: wrapping by vectors gives the bits of the plain loop") {
+    for (const std::size_t count : {0u, 1u, 7u, 16u, 33u, 100u}) {
+        ParticlePool plain = random_pool(count);
+        ParticlePool pool = plain;
+        wrap_particles_scalar(particle_block(plain, 0, count), {3, 4, 5}, {7, 0, 2.5f});
+        wrap_particles(particle_block(pool, 0, count), {3, 4, 5}, {7, 0, 2.5f});
+        CHECK(same_bits(plain, pool));
+        const ParticlePool before = random_pool(count);
+        CHECK(pool.y == before.y);
+        for (std::size_t i = 0; i < count; ++i) {
+            CHECK(std::abs(pool.x[i] - 3) <= 3.5001f);
+            const float turns = (pool.x[i] - before.x[i]) / 7;
+            CHECK(turns == test::near(std::round(turns)));
+        }
+    }
 }
 
 TEST_CASE("particles: no number makes a NaN, a hang or more than fits") {

@@ -1,0 +1,135 @@
+// The prefabs of content/effects: each can be placed by itself, and what is shot once leaves
+// nothing.
+
+#include "content/app/stage.h"
+#include "content/load/json_document.h"
+#include "content/load/made_assets.h"
+#include "ecs/base/log.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/transform.h"
+#include "tests/support.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace limn {
+namespace {
+
+struct EffectFile {
+    std::string name;
+    std::vector<std::string> prefabs;
+};
+
+std::vector<EffectFile> effect_files() {
+    std::vector<EffectFile> files;
+    const std::string folder = std::string(LIMN_SOURCE_DIR) + "/content/effects";
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.ends_with(".effect.json")) {
+            continue;
+        }
+        const Result<JsonValue> json = load_json(entry.path().string());
+        REQUIRE_MESSAGE(json.ok(), (json.ok() ? "" : json.error().message));
+        CHECK(json->find("title") != nullptr);
+        EffectFile& file = files.emplace_back(EffectFile{name, {}});
+        const JsonValue* const prefabs = json->find("prefabs");
+        REQUIRE(prefabs != nullptr);
+        for (const JsonMember& member : prefabs->members) {
+            file.prefabs.push_back(member.key);
+        }
+    }
+    std::sort(files.begin(), files.end(), [](const EffectFile& a, const EffectFile& b) {
+        return a.name < b.name;
+    });
+    return files;
+}
+
+std::unique_ptr<Stage>
+open_text(const test::TemporaryFolder& folder, const std::string& text, MadeAssets& made) {
+    const std::string path = folder.path() + "/t.level.json";
+    std::ofstream(path) << text;
+    Result<std::unique_ptr<Stage>> stage = open_stage(path, {.made = &made});
+    REQUIRE_MESSAGE(stage.ok(), (stage ? std::string() : stage.error().message));
+    return *std::move(stage);
+}
+
+constexpr const char* kCamera =
+    R"({"name": "eye", "camera": {}, "transform": {"position": [0, 1.5, 6]}})";
+
+}  // namespace
+
+TEST_CASE("effects: every prefab can be placed by itself, and gives particles within a second") {
+    const std::vector<EffectFile> files = effect_files();
+    CHECK(files.size() >= 9);
+    const test::TemporaryFolder folder;
+    MadeAssets made;
+    for (const EffectFile& file : files) {
+        for (const std::string& prefab : file.prefabs) {
+            CAPTURE(prefab);
+            const std::uint64_t errors_before = logged_error_count();
+            const std::unique_ptr<Stage> stage = open_text(
+                folder,
+                fmt::format(
+                    R"({{"title": "t", "include": ["{}"], "entities": [{}, {{"prefab": "{}"}}]}})",
+                    file.name, kCamera, prefab),
+                made);
+            for (int i = 0; i < 60; ++i) {
+                step_stage(*stage);
+            }
+            CHECK(logged_error_count() == errors_before);
+            std::uint64_t born = 0;
+            std::uint64_t dropped = 0;
+            stage->world.query<const ParticlePool>().each([&](const ParticlePool& pool) {
+                born += pool.born;
+                dropped += pool.dropped;
+            });
+            CHECK(born > 0);
+            CHECK(dropped == 0);
+        }
+    }
+}
+
+TEST_CASE("explosion: each releases its children at its place, and none remains at the end") {
+    const test::TemporaryFolder folder;
+    MadeAssets made;
+    const std::unique_ptr<Stage> stage = open_text(
+        folder,
+        fmt::format(
+            R"({{"title": "t", "include": ["explosion.effect.json"], "entities": [{}], "events": [
+                {{"at": 0.5, "spawn": [{{"prefab": "explosion", "transform": {{"position": [20, 0, 0]}}}}]}},
+                {{"at": 1.5, "spawn": [{{"prefab": "explosion", "transform": {{"position": [-20, 0, 0]}}}}]}}]}})",
+            kCamera),
+        made);
+    const auto count = [&] {
+        std::size_t near_first = 0;
+        std::size_t all = 0;
+        stage->world.query<const ParticlePool, const WorldTransform>().each(
+            [&](const ParticlePool&, const WorldTransform& place) {
+                ++all;
+                near_first += transform_point(place.world, Vec3(0)).x > 15 ? 1 : 0;
+            });
+        return std::pair(near_first, all);
+    };
+    step_stage(*stage);
+    CHECK(count().second == 0);
+    advance_stage(*stage, 1.0);
+    const auto [first, one] = count();
+    CHECK(first > 8);
+    CHECK(one == first);
+    advance_stage(*stage, 2.0);
+    CHECK(count().first == first);
+    CHECK(count().second == 2 * first);
+    advance_stage(*stage, 10.9);  // the first one is gone
+    CHECK(count().first == 0);
+    CHECK(count().second == first);
+    advance_stage(*stage, 12.0);
+    CHECK(count().second == 0);
+}
+
+}  // namespace limn
