@@ -83,7 +83,7 @@ float sample_field(const std::vector<float>& field, int side, const Vec2& at) {
         at * static_cast<float>(side) - 0.5f, Vec2(0.0f), Vec2(static_cast<float>(side - 1)));
     const IVec2 cell = glm::min(IVec2(place), IVec2(side - 2));
     const Vec2 f = place - Vec2(cell);
-    const float* const p = field.data() + cell.y * side + cell.x;
+    const float* const p = field.data() + static_cast<std::ptrdiff_t>(cell.y) * side + cell.x;
     return glm::mix(glm::mix(p[0], p[1], f.x), glm::mix(p[side], p[side + 1], f.x), f.y);
 }
 
@@ -116,10 +116,43 @@ int fluid_side(const PatternSize& image, int frames) {
     return std::clamp(image.size / std::max(frames, 1), 8, kMaxFluidSide);
 }
 
+/// What burns at the foot of the frame: heat that flickers, and a draft from the sides.
+void heat_foot(const FirePattern& pattern, float time, float dt, FluidGrid& fluid) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int side = fluid.side;
+    for (int y = 1; y < side / 8 + 2; ++y) {
+        for (int x = 1; x + 1 < side; ++x) {
+            const Vec2 at = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f)
+                            / static_cast<float>(side);
+            const float away = std::abs(at.x - 0.5f) / (0.5f * pattern.width);
+            const float high = at.y / 0.09f;
+            const float body = glm::smoothstep(1.0f, 0.5f, away * away + high * high * 0.6f);
+            const float flicker =
+                0.85f + 1.1f * fbm(Vec2(at.x * 9.0f, time * 5.0f), seed, {0, 0}, 3);
+            const std::size_t cell = fluid.at(x, y);
+            fluid.heat[cell] = std::max(fluid.heat[cell], body * std::clamp(flicker, 0.0f, 1.1f));
+            fluid.u[cell] +=
+                body * 6.0f * dt * fbm(Vec2(time * 2.5f, at.x * 5.0f), seed + 77, {0, 0}, 2);
+        }
+    }
+}
+
+/// Frames [count, count + overlap), which come after the last, fade into the first ones.
+void close_loop(std::vector<FluidFrame>& film, int count, int overlap) {
+    for (int i = 0; i < overlap; ++i) {
+        const float share = (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
+        const auto first = static_cast<std::size_t>(i);
+        const std::vector<float>& late = film[first + static_cast<std::size_t>(count)].heat;
+        std::vector<float>& early = film[first].heat;
+        for (std::size_t cell = 0; cell < late.size(); ++cell) {
+            early[cell] = glm::mix(late[cell], early[cell], share);
+        }
+    }
+}
+
 }  // namespace
 
 PatternMaps make_fire(const FirePattern& pattern) {
-    const std::uint32_t seed = seed_of(pattern.image);
     const int side = fluid_side(pattern.image, pattern.frames);
     const int count = pattern.frames * pattern.frames;
     const int overlap = std::max(count / 4, 1);  // frames that blend into the beginning of the loop
@@ -132,36 +165,13 @@ PatternMaps make_fire(const FirePattern& pattern) {
     step.drag = 1.0f;
     std::vector<FluidFrame> film;
     for (int i = 0; i < kWarmUp + (count + overlap) * kFluidSteps; ++i) {
-        const float time = static_cast<float>(i) * step.dt;
-        for (int y = 1; y < side / 8 + 2; ++y) {
-            for (int x = 1; x + 1 < side; ++x) {
-                const Vec2 at = (Vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f)
-                                / static_cast<float>(side);
-                const float away = std::abs(at.x - 0.5f) / (0.5f * pattern.width);
-                const float high = at.y / 0.09f;
-                const float body = glm::smoothstep(1.0f, 0.5f, away * away + high * high * 0.6f);
-                const float flicker =
-                    0.85f + 1.1f * fbm(Vec2(at.x * 9.0f, time * 5.0f), seed, {0, 0}, 3);
-                const std::size_t cell = fluid.at(x, y);
-                fluid.heat[cell] =
-                    std::max(fluid.heat[cell], body * std::clamp(flicker, 0.0f, 1.1f));
-                fluid.u[cell] += body * 6.0f * step.dt
-                                 * fbm(Vec2(time * 2.5f, at.x * 5.0f), seed + 77, {0, 0}, 2);
-            }
-        }
+        heat_foot(pattern, static_cast<float>(i) * step.dt, step.dt, fluid);
         step_fluid(fluid, step);
         if (i >= kWarmUp && (i - kWarmUp) % kFluidSteps == kFluidSteps - 1) {
             film.push_back({fluid.heat, {}});
         }
     }
-    for (int i = 0; i < overlap; ++i) {  // the last frames fade to those before the first
-        const float share = (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
-        std::vector<float>& late = film[static_cast<std::size_t>(count + i)].heat;
-        std::vector<float>& early = film[static_cast<std::size_t>(i)].heat;
-        for (std::size_t cell = 0; cell < late.size(); ++cell) {
-            early[cell] = glm::mix(late[cell], early[cell], share);
-        }
-    }
+    close_loop(film, count, overlap);
     for (FluidFrame& frame : film) {
         frame.soot = frame.heat;
     }
@@ -293,10 +303,14 @@ PatternMaps make_flame(const FlamePattern& pattern) {
 
 namespace {
 
+std::uint32_t frame_number(const FramePoint& at, int frames) {
+    return static_cast<std::uint32_t>(
+        std::floor(at.time * static_cast<float>(frames * frames - 1) + 0.5f));
+}
+
 /// 0 .. 1, of a frame.
 float frame_random(const FramePoint& at, int frames, std::uint32_t seed, std::uint32_t index) {
-    const float last = static_cast<float>(frames * frames - 1);
-    const auto number = static_cast<std::uint32_t>(at.time * last + 0.5f);
+    const std::uint32_t number = frame_number(at, frames);
     std::uint32_t h = (number * 64u + index + seed) * 0x9e3779b9u;
     h = (h ^ (h >> 16)) * 0x7feb352du;
     h = (h ^ (h >> 15)) * 0x846ca68bu;
@@ -372,8 +386,7 @@ PatternMaps make_confetti(const ConfettiPattern& pattern) {
                                 {0.90f, 0.08f, 0.42f}, {0.02f, 0.60f, 0.60f}};
     return make_shaded_flipbook(pattern.image, frames, [&](const FramePoint& at) {
         const auto random = [&](std::uint32_t i) { return frame_random(at, frames, seed, i); };
-        const float last = static_cast<float>(frames * frames - 1);
-        const auto number = static_cast<std::size_t>(at.time * last + 0.5f);
+        const std::uint32_t number = frame_number(at, frames);
         const Vec2 half = {0.35f + 0.2f * random(0), 0.55f + 0.15f * random(1)};
         const Vec2 beyond = glm::max(glm::abs(at.p) - half, Vec2(0));
         const float fold = 0.12f * (random(2) - 0.5f) + 0.1f * at.p.x;
