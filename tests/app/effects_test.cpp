@@ -86,8 +86,8 @@ TEST_CASE("effects: every prefab can be placed by itself, and gives particles wi
             std::uint64_t born = 0;
             std::uint64_t dropped = 0;
             stage->world.query<const ParticlePool>().each([&](const ParticlePool& pool) {
-                born += pool.born;
-                dropped += pool.dropped;
+                born += pool.clock.born;
+                dropped += pool.clock.dropped;
             });
             CHECK(born > 0);
             CHECK(dropped == 0);
