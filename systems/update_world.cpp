@@ -14,6 +14,7 @@
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/particle_system.h"
+#include "systems/particles/trail_system.h"
 #include "systems/path_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
@@ -90,7 +91,9 @@ void add_water_systems(SystemList& systems) {
 
 void add_particle_systems(SystemList& systems) {
     systems.add<add_particle_pools>(Create, Both);
+    systems.add<add_trail_states>(Create, Both);
     systems.add<update_particles>(Follow);  // after everything that moves emitters
+    systems.add<update_trails>(Follow);     // after particles, which it follows
 }
 
 void add_camera_systems(SystemList& systems) {

@@ -34,6 +34,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/time.h"
+#include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/vignette.h"
 #include "ecs/components/water.h"
@@ -62,6 +63,8 @@ void register_all_components() {
     register_component<ParticleLook>();
     register_component<ParticleLight>();
     register_component<ParticlePool>();
+    register_component<Trail>();
+    register_component<TrailState>();
     register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();
