@@ -8,7 +8,7 @@ layout(binding = 4) uniform sampler2D scene_depth;
 layout(binding = 0) uniform sampler2DArray images;
 #endif
 
-layout(location = 0) in vec2 corner;
+layout(location = 0) in vec3 corner;
 layout(location = 1) in vec4 light;
 layout(location = 2) flat in vec4 frames;
 layout(location = 3) flat in vec4 blend;
@@ -19,12 +19,16 @@ layout(location = 0) out vec4 radiance;
 
 // Color, and opacity in a.
 vec4 sprite() {
-    float inside = max(1.0 - dot(corner, corner), 0.0);
+    vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
+    float inside = max(1.0 - dot(place, place), 0.0);
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
 #ifdef IMAGES
-    vec2 uv = vec2(0.5 + 0.5 * corner.x, 0.5 - 0.5 * corner.y) * frames.xy;
-    vec4 now = texture(images, vec3(uv + frames.zw, max(blend.w, 0.0)));
-    vec4 next = texture(images, vec3(uv + next_frame, max(blend.w, 0.0)));
+    vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
+    vec2 right = dFdx(uv) * frames.xy;
+    vec2 up = dFdy(uv) * frames.xy;
+    uv = vec2(uv.x - floor(uv.x), uv.y) * frames.xy;  // repeats along ribbons
+    vec4 now = textureGrad(images, vec3(uv + frames.zw, max(blend.w, 0.0)), right, up);
+    vec4 next = textureGrad(images, vec3(uv + next_frame, max(blend.w, 0.0)), right, up);
     return blend.w < 0.0 ? disc : mix(now, next, blend.z);
 #else
     return disc;
