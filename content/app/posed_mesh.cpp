@@ -5,10 +5,9 @@
 #include "ecs/world.h"
 #include "render/skinning/deform_source.h"
 #include "render/skinning/posed_bounds.h"
-#include "systems/animation/skin_kernels.h"
+#include "systems/animation/deform_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace limn {
 namespace {
@@ -16,14 +15,6 @@ namespace {
 std::uint32_t joint_count(const SkinWeights& skin) {
     const auto last = std::max_element(skin.joints.begin(), skin.joints.end());
     return last != skin.joints.end() ? *last + 1u : 0u;
-}
-
-std::vector<float> weights_of(const MorphWeights* morphs, std::size_t first) {
-    std::vector<float> weights;
-    for (std::size_t i = first; morphs != nullptr && i < morphs->weights.size(); ++i) {
-        weights.push_back(std::isfinite(morphs->weights[i]) ? morphs->weights[i] : 0.0f);
-    }
-    return weights;
 }
 
 }  // namespace
@@ -45,28 +36,10 @@ std::vector<Vec3> posed_positions(const World& world, Entity entity) {
     if (!source.fault.empty()) {
         return {};
     }
-    std::vector<Vec3> positions = mesh.positions;
-    std::vector<Vec3> normals(positions.size(), Vec3(0, 0, 1));
-    std::vector<Vec4> tangents(positions.size(), Vec4(1, 0, 0, 1));
-    const SkinnedVertices moved = {positions, normals, tangents};
-    add_morphs(mesh.morphs, weights_of(source.morphs, deformed->first_morph), moved);
-    if (source.skin == nullptr) {
-        return positions;
-    }
-    const RestVertices rest = {positions, normals, tangents};
-    std::vector<Affine> palette(source.skin->joints.size());
-    compute_skin_palette(*source.skin, source.pose->joints, palette);
-    if (deformed->skinning == Skinning::Linear) {
-        skin_linear(mesh.skin, palette, rest, moved, 0, positions.size());
-    } else {
-        std::vector<DualQuaternion> duals(palette.size());
-        compute_dual_palette(palette, duals);
-        skin_dual(mesh.skin, duals, rest, moved, 0, positions.size());
-    }
-    const bool finite = std::all_of(positions.begin(), positions.end(), [](const Vec3& p) {
-        return std::isfinite(p.x + p.y + p.z);
-    });
-    return finite ? positions : std::vector<Vec3>{};  // as it is drawn: at rest
+    std::vector<Vec3> positions;
+    const bool deforms =
+        deform_positions(mesh, *deformed, source.skin, source.pose, source.morphs, positions);
+    return deforms ? positions : std::vector<Vec3>{};
 }
 
 }  // namespace limn

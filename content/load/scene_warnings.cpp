@@ -7,6 +7,7 @@
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/rotation_track.h"
@@ -118,6 +119,27 @@ struct SceneCheck {
         world.query<const PathFollower>().each([&](Entity entity, const PathFollower& follower) {
             if (follower.path.index >= paths) {
                 warn(entity, "path_follower has no effect without a path");
+            }
+        });
+    }
+
+    void check_colliders() {
+        bool any = false;
+        world.query<const ParticleCollider>().each(
+            [&](Entity entity, const ParticleCollider& collider) {
+                any = true;
+                const auto needs = [&](ColliderShape shape, std::string_view what) {
+                    if (collider.shape == shape && !has_component(world, entity, what)) {
+                        warn(entity, fmt::format("particle_collider of this shape needs {}", what));
+                    }
+                };
+                needs(ColliderShape::Mesh, "mesh_instance");
+                needs(ColliderShape::HeightField, "noise_surface");
+                needs(ColliderShape::Water, "water");
+            });
+        world.query<const ParticleCollision>().each([&](Entity entity, const ParticleCollision&) {
+            if (!any) {
+                warn(entity, "particle_collision has no effect without a particle_collider");
             }
         });
     }
@@ -289,6 +311,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     world.each_entity([&](Entity entity) { check.check_needs(entity); });
     check.check_followers();
     check.check_particles();
+    check.check_colliders();
     check.check_cameras();
     check.check_caustics();
     check.check_colors<PointLight>();

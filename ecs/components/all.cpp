@@ -20,6 +20,7 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"

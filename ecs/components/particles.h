@@ -15,7 +15,7 @@ namespace limn {
 //     ParticleEmitter   when and where particles are born, and with what
 //     ParticleSource    that they are born where particles of another emitter are
 //     ParticleMotion    what moves them
-//     ParticleCollision what happens where they meet a ParticleCollider, on other entities
+//     ParticleCollision what happens where they meet a ParticleCollider (particle_collider.h)
 //     ParticleLook      how they are drawn
 //     ParticleLight     that they light what is around
 //     ParticlePool      the living ones, kept by the systems: one array per scalar
@@ -175,47 +175,6 @@ LIMN_FIELDS(ParticleMotion) {
     LIMN_FIELD(attraction, "acceleration toward the emitter's y axis", "m/s^2", -1e4, 1e4);
 }
 
-/// What particles meet, in the entity's local space; they see nothing else.
-enum class ColliderShape : std::uint8_t {
-    Plane,   ///< solid below the local xz plane, without end
-    Sphere,  ///< of radius size.x
-    Box,     ///< of half extents `size`
-};
-
-struct ParticleCollider {
-    ColliderShape shape = ColliderShape::Plane;
-    Vec3 size = {0.5f, 0.5f, 0.5f};
-    bool hollow = false;
-};
-
-LIMN_FIELDS(ParticleCollider) {
-    LIMN_FIELD(shape, .doc = "plane: solid below local y = 0", .values = "plane sphere box");
-    LIMN_FIELD(size, "half extents of a box; its x is the radius of a sphere", "m", 0, 1e5);
-    LIMN_FIELD(hollow, "a sphere that is solid outside");
-}
-
-/// What a collider does to a particle.
-enum class CollisionAction : std::uint8_t {
-    Bounce,
-    Kill,  ///< gives birth to a ParticleSource's particles before, at "hit" and "death"
-};
-
-/// The emitter's particles collide, whatever their speed (particle.plane-response,
-/// particle.collision-loop).
-struct ParticleCollision {
-    CollisionAction action = CollisionAction::Bounce;
-    float bounce = 0.3f;
-    float friction = 0.8f;
-    float radius = 0.005f;
-};
-
-LIMN_FIELDS(ParticleCollision) {
-    LIMN_FIELD(action, .doc = "what a hit does", .values = "bounce kill");
-    LIMN_FIELD(bounce, "share of the speed toward the surface that is kept, outward", "", 0, 1);
-    LIMN_FIELD(friction, "share of the velocity along the surface that is kept", "", 0, 1);
-    LIMN_FIELD(radius, "of the particle, as far as colliders go", "m", 0, 100);
-}
-
 struct ColorKey {
     float at = 0;
     Vec3 color = {1, 1, 1};
@@ -305,15 +264,16 @@ LIMN_FIELDS(ParticleLight) {
 
 /// The particles of an emitter, oldest first; kept by the systems. World space.
 struct ParticlePool {
-    std::vector<float> x, y, z;       ///< position [m]
-    std::vector<float> vx, vy, vz;    ///< velocity [m/s]
-    std::vector<float> age, life;     ///< [s]; dead at age >= life
-    std::vector<std::uint32_t> look;  ///< random bits: size, angle, spin
-    std::uint64_t born = 0;           ///< of all time; numbers of the random sequences
-    std::uint64_t dropped = 0;        ///< births for which there was no room
-    double time = 0;                  ///< the emitter's own [s]
-    double carry = 0;                 ///< a share of a birth that is due
-    std::uint64_t fresh = 0;          ///< of the youngest, how many have not moved yet
+    std::vector<float> x, y, z;        ///< position [m]
+    std::vector<float> vx, vy, vz;     ///< velocity [m/s]
+    std::vector<float> age, life;      ///< [s]; dead at age >= life
+    std::vector<std::uint32_t> look;   ///< random bits: size, angle, spin
+    std::vector<std::uint32_t> stuck;  ///< 1: sticks to a surface; shorter: the rest does not
+    std::uint64_t born = 0;            ///< of all time; numbers of the random sequences
+    std::uint64_t dropped = 0;         ///< births for which there was no room
+    double time = 0;                   ///< the emitter's own [s]
+    double carry = 0;                  ///< a share of a birth that is due
+    std::uint64_t fresh = 0;           ///< of the youngest, how many have not moved yet
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
@@ -328,6 +288,7 @@ LIMN_FIELDS(ParticlePool) {
     LIMN_FIELD(age, "ages", "s");
     LIMN_FIELD(life, "ages at death", "s");
     LIMN_FIELD(look, "random bits of each");
+    LIMN_FIELD(stuck, "1 for those that stick to a surface");
     LIMN_FIELD(born, "births of all time");
     LIMN_FIELD(dropped, "births over capacity");
     LIMN_FIELD(time, "of the emitter", "s");

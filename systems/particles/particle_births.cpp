@@ -9,6 +9,7 @@ namespace limn {
 namespace {
 
 constexpr float kAspect = 16.0f / 9.0f;
+constexpr double kMostBirths = 1e12;  // of a cause in a step or a second, so that sums stay finite
 constexpr double kSlack =
     1e-5;  // of a birth: 600 per second are 10 in each step of 1/60 s, as far as floats know
 constexpr double kMinDuration = 1e-3;  // [s] of an emitter that starts again
@@ -104,9 +105,10 @@ class Births {
         : dt_(dt), room_(room), pool_(pool), births_(births) {}
 
     void add_rate(const Piece& piece, double rate) {
-        if (rate <= 0) {
+        if (!(rate > 0)) {
             return;
         }
+        rate = std::min(rate, kMostBirths);
         const double due = pool_.carry + rate * piece.length;
         const double whole = std::floor(due + kSlack);
         for (double i = 1; i <= whole && births_.size() < room_; ++i) {
@@ -125,8 +127,8 @@ class Births {
                 break;
             }
             asked_ = births_.size();
-            const double count =
-                std::round(static_cast<double>(spread(burst.count, burst.spread, random)));
+            const auto asked = static_cast<double>(spread(burst.count, burst.spread, random));
+            const double count = std::min(std::round(asked), kMostBirths);
             for (double i = 0; i < count && births_.size() < room_; ++i) {
                 add(piece.offset + at);
             }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "systems/particles/particle_kernels.cpp"
@@ -262,6 +264,10 @@ std::size_t remove_dead(ParticlePool& pool, std::size_t first, bool vectors) {
         compact(*column, age, life, first, count, vectors);
     }
     compact(pool.look, age, life, first, count, vectors);
+    const bool sticks = pool.stuck.size() == pool.size();
+    if (sticks) {
+        compact(pool.stuck, age, life, first, count, vectors);
+    }
     // These two decide who lives, and are read before they are overwritten: both at once.
     std::size_t kept = first;
     for (std::size_t i = first; i < pool.size(); ++i) {
@@ -275,6 +281,7 @@ std::size_t remove_dead(ParticlePool& pool, std::size_t first, bool vectors) {
         column->resize(kept);
     }
     pool.look.resize(kept);
+    pool.stuck.resize(sticks ? kept : 0);
     return kept;
 }
 
@@ -324,8 +331,12 @@ Vec3 noise_gradient(const Vec3& at, std::uint32_t seed) {
     const Fade fx = fade(at.x - cell.x);
     const Fade fy = fade(at.y - cell.y);
     const Fade fz = fade(at.z - cell.z);
-    const auto lattice = [](float c) {
-        return static_cast<std::uint32_t>(static_cast<std::int32_t>(c));
+    const auto lattice = [](float c) {  // saturates, as vectors do
+        constexpr float kEnd = 0x1p31f;
+        const std::int32_t whole = c >= kEnd    ? std::numeric_limits<std::int32_t>::max()
+                                   : c >= -kEnd ? static_cast<std::int32_t>(c)
+                                                : std::numeric_limits<std::int32_t>::min();
+        return static_cast<std::uint32_t>(whole);
     };
     const std::uint32_t x0 = (lattice(cell.x) * particles::kHashX) ^ seed;
     const std::uint32_t y0 = lattice(cell.y) * particles::kHashY;

@@ -33,7 +33,8 @@ class Spawns {
         for (double i = 0; i < std::min(count, free); ++i) {
             out_.push_back(spawn);
         }
-        dropped_ += count > free ? static_cast<std::uint64_t>(count - free) : 0;
+        constexpr double kMost = 1e12;  // also of infinitely many
+        dropped_ += count > free ? static_cast<std::uint64_t>(std::min(count - free, kMost)) : 0;
     }
 
     const ParticlePool& parent_;

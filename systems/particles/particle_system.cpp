@@ -6,6 +6,7 @@
 #include "systems/particles/particle_collision.h"
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_sources.h"
+#include "systems/particles/water_surface_hits.h"
 
 #include <glm/geometric.hpp>
 
@@ -24,6 +25,7 @@ constexpr std::uint32_t kNone = 0xffffffff;
 constexpr std::uint32_t kBlock = 1024;       // particles that move as one piece of work
 constexpr std::size_t kBlockGrain = 4;       // blocks of one job
 constexpr float kGravity = 9.81f;            // [m/s^2]
+constexpr float kDry = 1e-3f;                // kept above water by what bounces off or sticks [m]
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 
@@ -173,83 +175,167 @@ std::uint32_t move(const Work& work, const ParticleBlock& block) {
     return static_cast<std::uint32_t>(move_particles(block, work.step));
 }
 
-/// Moves a block whose particles collide.
-void move_colliding(const Work& work, const ColliderSet& colliders, Block& block) {
-    ParticlePool& pool = *work.pool;
+/// Everything that colliding particles may meet.
+struct Around {
+    const ColliderSet* solid = nullptr;
+    std::span<const ParticleWater> waters;
+    [[nodiscard]] bool is_empty() const { return solid->colliders.empty() && waters.empty(); }
+};
+
+/// A particle of a block that would enter water, if nothing solid is before it.
+struct Entry {
+    std::uint32_t particle = 0;  ///< within the block
+    WaterContact contact;
+};
+
+/// A block of a pool in this step: where its particles began, and where they are.
+struct Paths {
     std::array<float, kBlock> start[3];
     std::array<std::uint8_t, kBlock> marks{};
+    CollidingParticles particles;
+
+    [[nodiscard]] Vec3 from(std::size_t i) const { return {start[0][i], start[1][i], start[2][i]}; }
+    [[nodiscard]] Vec3 to(std::size_t i) const {
+        return {particles.x[i], particles.y[i], particles.z[i]};
+    }
+    [[nodiscard]] Vec3 velocity(std::size_t i) const {
+        return {particles.vx[i], particles.vy[i], particles.vz[i]};
+    }
+    void move(std::size_t i, const Vec3& to, const Vec3& velocity) const {
+        particles.x[i] = to.x;
+        particles.y[i] = to.y;
+        particles.z[i] = to.z;
+        particles.vx[i] = velocity.x;
+        particles.vy[i] = velocity.y;
+        particles.vz[i] = velocity.z;
+    }
+};
+
+void begin_paths(const Work& work, const Block& block, Paths& paths) {
+    ParticlePool& pool = *work.pool;
     const auto part = [&](std::vector<float>& column) {
         return std::span(column).subspan(block.first, block.count);
     };
-    const std::span<float> place[] = {part(pool.x), part(pool.y), part(pool.z)};
-    for (int axis = 0; axis < 3; ++axis) {
-        std::copy(place[axis].begin(), place[axis].end(), start[axis].begin());
+    const auto began = [&](int axis) {
+        return std::span<const float>(paths.start[axis]).first(block.count);
+    };
+    paths.particles = {
+        .x0 = began(0),
+        .y0 = began(1),
+        .z0 = began(2),
+        .x = part(pool.x),
+        .y = part(pool.y),
+        .z = part(pool.z),
+        .vx = part(pool.vx),
+        .vy = part(pool.vy),
+        .vz = part(pool.vz),
+        .marks = std::span(paths.marks).first(block.count),
+        .first = block.first};
+    int axis = 0;
+    for (const std::span<float> place : {paths.particles.x, paths.particles.y, paths.particles.z}) {
+        std::copy(place.begin(), place.end(), paths.start[axis++].begin());
     }
+    for (std::size_t i = 0; i < block.count && block.first + i < pool.stuck.size(); ++i) {
+        paths.marks[i] = pool.stuck[block.first + i] != 0 ? kParticleStuck : 0;
+    }
+}
+
+/// Ends the ways of those that would enter water at its surface.
+void stop_at_water(
+    const Paths& paths, std::span<const ParticleWater> waters, std::vector<Entry>& entries) {
+    for (std::uint32_t i = 0; i < paths.particles.x.size(); ++i) {
+        if (paths.marks[i] != 0) {
+            continue;
+        }
+        if (const auto contact = enter_water(waters, paths.from(i), paths.to(i))) {
+            entries.push_back({i, *contact});
+            paths.move(i, contact->point, paths.velocity(i));
+        }
+    }
+}
+
+/// What the water does to those that met nothing solid before.
+void hit_water(
+    Paths& paths, const Work& work, const Around& around, std::span<const Entry> entries,
+    Block& block) {
+    const ParticleCollision& collision = *work.collision;
+    for (const auto& [i, contact] : entries) {
+        if (paths.marks[i] != 0) {
+            continue;
+        }
+        const Vec3 velocity = paths.velocity(i);
+        const auto collider =
+            static_cast<std::uint32_t>(around.solid->colliders.size()) + contact.water;
+        block.hits.push_back({block.first + i, collider, contact.point, contact.normal, velocity});
+        Vec3 after(0);
+        if (collision.action == CollisionAction::Bounce) {
+            after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
+        }
+        const float rest = (1 - contact.share) * work.step.dt;
+        paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
+        paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
+                         : collision.action == CollisionAction::Stick ? kParticleStuck
+                                                                      : kParticleHit;
+    }
+}
+
+/// Moves a block whose particles collide.
+void move_colliding(const Work& work, const Around& around, Block& block) {
+    ParticlePool& pool = *work.pool;
+    Paths paths;
+    begin_paths(work, block, paths);
     block.dead = move(work, particle_block(pool, block.first, block.count));
     const ParticleCollision& collision = *work.collision;
-    const bool kills = collision.action == CollisionAction::Kill;
-    const auto began = [&](int axis) {
-        return std::span<const float>(start[axis]).first(block.count);
-    };
     CollisionOptions options;
     options.radius = finite_or(collision.radius, 0);
-    options.action = kills ? ContactAction::Kill : ContactAction::Bounce;
+    options.action = collision.action == CollisionAction::Kill    ? ContactAction::Kill
+                     : collision.action == CollisionAction::Stick ? ContactAction::Stick
+                                                                  : ContactAction::Bounce;
+    std::vector<Entry> entries;
+    stop_at_water(paths, around.waters, entries);
     collide_particles(
-        {.x0 = began(0),
-         .y0 = began(1),
-         .z0 = began(2),
-         .x = place[0],
-         .y = place[1],
-         .z = place[2],
-         .vx = part(pool.vx),
-         .vy = part(pool.vy),
-         .vz = part(pool.vz),
-         .marks = std::span(marks).first(block.count),
-         .first = block.first},
-        work.step.dt, colliders, {collision.bounce, collision.friction}, options, block.hits);
+        paths.particles, work.step.dt, *around.solid, {collision.bounce, collision.friction},
+        options, block.hits);
+    hit_water(paths, work, around, entries, block);
     for (std::uint32_t i = 0; i < block.count; ++i) {
         const std::uint32_t at = block.first + i;
-        if ((marks[i] & kParticleKilled) != 0 && pool.age[at] < pool.life[at]) {
+        if (at < pool.stuck.size()) {
+            pool.stuck[at] = (paths.marks[i] & kParticleStuck) != 0 ? 1 : 0;
+        }
+        if ((paths.marks[i] & kParticleKilled) != 0 && pool.age[at] < pool.life[at]) {
             pool.life[at] = pool.age[at];
             ++block.dead;
         }
     }
 }
 
-/// What the level's colliders are in this step.
-ColliderSet find_colliders(const Query<const ParticleCollider, const WorldTransform>& colliders) {
-    std::vector<Collider> found;
-    colliders.each([&](const ParticleCollider& collider, const WorldTransform& transform) {
-        const Vec3 center = transform_point(transform.world, Vec3(0));
-        Vec3 axes[3];
-        Vec3 size = collider.size;
-        for (int axis = 0; axis < 3; ++axis) {
-            Vec3 unit(0);
-            unit[axis] = 1;
-            const Vec3 reach = transform_vector(transform.world, unit);
-            size[axis] *= glm::length(reach);
-            axes[axis] = normalize_or(reach, unit);
+std::vector<ParticleWater>
+find_waters(WaterQuery& waters, const Query<const ParticleCollider>& colliders) {
+    std::vector<ParticleWater> found;
+    for (const WaterSurface& surface : collect_water_surfaces(waters)) {
+        const auto* collider = colliders.find<const ParticleCollider>(surface.entity);
+        if (collider != nullptr && collider->shape == ColliderShape::Water) {
+            found.push_back(
+                {surface, surface.frame.origin.y + highest_wave(surface), collider->ripple,
+                 collider->ripple_radius});
         }
-        switch (collider.shape) {
-        case ColliderShape::Plane:
-            found.emplace_back(PlaneCollider{axes[1], glm::dot(axes[1], center)});
-            break;
-        case ColliderShape::Sphere:
-            found.emplace_back(SphereCollider{center, size.x, collider.hollow});
-            break;
-        case ColliderShape::Box: {
-            Affine pose{};
-            for (int row = 0; row < 3; ++row) {
-                pose.row[row] = {axes[0][row], axes[1][row], axes[2][row], center[row]};
-            }
-            found.emplace_back(BoxCollider{pose, size});
-            break;
+    }
+    return found;
+}
+
+/// Dents in the water where the particles of a block have hit it.
+void add_dents(const Block& block, const Around& around, Query<RippleState>& ripples) {
+    const std::size_t solids = around.solid->colliders.size();
+    for (const ParticleHit& hit : block.hits) {
+        if (hit.collider < solids) {
+            continue;
         }
+        const ParticleWater& water = around.waters[hit.collider - solids];
+        RippleState* const state = ripples.find<RippleState>(water.surface.entity);
+        if (state != nullptr && water.ripple > 0) {
+            state->impulses.push_back(make_dent(water, hit.point, hit.velocity));
         }
-    });
-    ColliderSet set;
-    set_colliders(set, found);
-    return set;
+    }
 }
 
 }  // namespace
@@ -266,7 +352,8 @@ void update_particles(
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
         Optional<const ParticleCollision>, ParticlePool>
         emitters,
-    Query<const ParticleCollider, const WorldTransform> colliders,
+    Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
@@ -297,9 +384,13 @@ void update_particles(
         }
     });
 
-    const ColliderSet solid = find_colliders(colliders);
+    const std::vector<ParticleWater> wet = find_waters(waters, colliders);
+    const Around around = {&obstacles->solid, wet};
     std::vector<Block> blocks;
     for (std::uint32_t w = 0; w < works.size(); ++w) {
+        const bool sticks =
+            works[w].collision != nullptr && works[w].collision->action == CollisionAction::Stick;
+        works[w].pool->stuck.resize(sticks ? works[w].pool->size() : 0);
         const auto size = static_cast<std::uint32_t>(works[w].pool->size());
         for (std::uint32_t first = 0; first < size; first += kBlock) {
             Block block;
@@ -313,8 +404,8 @@ void update_particles(
         for (std::size_t i = begin; i < end; ++i) {
             Block& block = blocks[i];
             const Work& work = works[block.work];
-            if (work.collision != nullptr && !solid.colliders.empty()) {
-                move_colliding(work, solid, block);
+            if (work.collision != nullptr && !around.is_empty()) {
+                move_colliding(work, around, block);
             } else {
                 block.dead = move(work, particle_block(*work.pool, block.first, block.count));
             }
@@ -323,6 +414,7 @@ void update_particles(
     for (const Block& block : blocks) {
         std::vector<ParticleHit>& hits = works[block.work].hits;
         hits.insert(hits.end(), block.hits.begin(), block.hits.end());
+        add_dents(block, around, ripples);
     }
 
     // Children's births wait until the dead are gone: their parents may be children too.

@@ -2,13 +2,17 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/water_ripples.h"
 #include "ecs/components/water_spray.h"
 #include "ecs/components/weather.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/particles/particle_obstacles.h"
+#include "systems/water/water_query.h"
 
 #include <cstdint>
 
@@ -30,14 +34,16 @@ inline constexpr float kMaxParticleStep = 0.1f;
 void add_particle_pools(
     Query<const ParticleEmitter, Without<ParticlePool>> emitters, Commands commands);
 
-/// A step of all particles. After update_transforms.
+/// A step of all particles, and the ripples that they leave in water, from the next step on. After
+/// update_transforms.
 void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
         Optional<const ParticleCollision>, ParticlePool>
         emitters,
-    Query<const ParticleCollider, const WorldTransform> colliders,
+    Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 

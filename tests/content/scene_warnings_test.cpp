@@ -60,6 +60,23 @@ TEST_CASE("scene warnings: components that do nothing without another") {
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
 }
 
+TEST_CASE("scene warnings: colliders that are not there") {
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "sparks", "particle_emitter": {},
+        "particle_look": {}, "particle_collision": {}}]})")
+        == Warnings{
+            "entity \"sparks\": particle_collision has no effect without a particle_collider"});
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "a", "particle_collider": {"shape": "mesh"}},
+        {"name": "b", "particle_collider": {"shape": "water"}},
+        {"name": "c", "particle_collider": {"shape": "height_field"}},
+        {"name": "d", "particle_collider": {"shape": "box"}}]})")
+        == Warnings{
+            "entity \"a\": particle_collider of this shape needs mesh_instance",
+            "entity \"b\": particle_collider of this shape needs water",
+            "entity \"c\": particle_collider of this shape needs noise_surface"});
+}
+
 TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {},

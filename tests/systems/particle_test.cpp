@@ -12,6 +12,7 @@
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_system.h"
 #include "tests/near.h"
+#include "tests/systems/particle_emitters.h"
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -22,65 +23,9 @@
 #include <vector>
 
 using namespace limn;
+using namespace limn::test;
 
 namespace {
-
-constexpr float kStep = 1.0f / 60.0f;
-
-/// A world with emitters at rest.
-struct Emitters {
-    World world;
-    std::vector<Entity> entities;
-
-    explicit Emitters(float step = kStep) {
-        register_all_components();
-        world.insert_resource(FrameTime{.step = step});
-        world.insert_resource(RandomSeed{});
-        world.insert_resource(WeatherState{});
-    }
-    Entity add(const ParticleEmitter& emitter, const ParticleMotion& motion = {}) {
-        entities.push_back(
-            world.create(emitter, motion, WorldTransform{}, PreviousWorldTransform{Affine{}}));
-        world.run(add_particle_pools);
-        return entities.back();
-    }
-    void run(int steps = 1) {
-        for (int i = 0; i < steps; ++i) {
-            FrameTime& time = world.resource<FrameTime>();
-            time.time += static_cast<double>(time.step);
-            ++time.frame;
-            world.run(update_particles);
-        }
-    }
-    const ParticlePool& pool(std::size_t i = 0) {
-        return world.get<const ParticlePool>(entities[i]);
-    }
-};
-
-/// Births at a point, straight up, that do not end.
-ParticleEmitter steady(float rate) {
-    ParticleEmitter emitter;
-    emitter.rate = rate;
-    emitter.cone = 0;
-    emitter.speed = 1;
-    emitter.speed_spread = 0;
-    emitter.life = 1000;
-    emitter.life_spread = 0;
-    emitter.capacity = 1000000;
-    return emitter;
-}
-
-ParticleEmitter burst(float count) {
-    ParticleEmitter emitter = steady(0);
-    emitter.bursts = {{.time = 0, .count = count}};
-    return emitter;
-}
-
-ParticleMotion falling(float gravity = 1) {
-    ParticleMotion motion;
-    motion.gravity = gravity;
-    return motion;
-}
 
 /// A pool of particles anywhere, some of them dead.
 ParticlePool random_pool(std::size_t count) {
@@ -93,13 +38,15 @@ ParticlePool random_pool(std::size_t count) {
         pool.age.push_back(random.uniform(0.0f, 2.0f));
         pool.life.push_back(random.uniform(1.0f, 3.0f));
         pool.look.push_back(random.word());
+        pool.stuck.push_back(pool.look.back() & 1);
     }
     return pool;
 }
 
 bool same_bits(const ParticlePool& a, const ParticlePool& b) {
     return a.x == b.x && a.y == b.y && a.z == b.z && a.vx == b.vx && a.vy == b.vy && a.vz == b.vz
-           && a.age == b.age && a.life == b.life && a.look == b.look && a.born == b.born;
+           && a.age == b.age && a.life == b.life && a.look == b.look && a.stuck == b.stuck
+           && a.born == b.born;
 }
 
 }  // namespace
@@ -569,77 +516,6 @@ TEST_CASE("particle source: no births of itself, of nothing, or over capacity, w
     CHECK(scene.pool(1).size() == 150);
 }
 
-/// Particles at 10 m/s toward a floor 2 m below them.
-struct Bouncing : Emitters {
-    explicit Bouncing(const ParticleCollision& collision, const ParticleCollider& collider = {}) {
-        ParticleEmitter drop = burst(100);
-        drop.speed = -10;
-        drop.cone = 0.2f;
-        world.add(add(drop), collision);
-        world.create(collider, WorldTransform{affine_from({0, -2, 0}, Quat(1, 0, 0, 0), Vec3(1))});
-    }
-};
-
-TEST_CASE("particle collision: on a floor they bounce ever lower, never pass it and come to rest") {
-    Bouncing scene({.bounce = 0.5f, .friction = 1});
-    float highest_late = -10;
-    for (int step = 0; step < 600; ++step) {
-        scene.run();
-        const ParticlePool& pool = scene.pool();
-        REQUIRE(pool.size() == 100);
-        for (std::size_t i = 0; i < pool.size(); ++i) {
-            REQUIRE(pool.y[i] > -2);
-            highest_late = step > 500 ? std::max(highest_late, pool.y[i]) : highest_late;
-        }
-    }
-    CHECK(highest_late < -1.98f);
-    Emitters free;
-    free.add(burst(1));
-    free.run(200);
-    CHECK(free.pool().y[0] < -10);  // without particle_collision nothing is in the way
-}
-
-TEST_CASE("particle collision: a box and a sphere stop them, scaled as their entities are") {
-    for (const ColliderShape shape : {ColliderShape::Box, ColliderShape::Sphere}) {
-        Bouncing scene(
-            {.bounce = 0, .friction = 0, .radius = 0}, {.shape = shape, .size = Vec3(0.5f)});
-        scene.world.query<const ParticleCollider, WorldTransform>().each(
-            [](const ParticleCollider&, WorldTransform& transform) {
-                transform.world = affine_from({0, -2, 0}, Quat(1, 0, 0, 0), {2, 3, 2});
-            });
-        scene.run(30);
-        const ParticlePool& pool = scene.pool();
-        for (std::size_t i = 0; i < pool.size(); ++i) {
-            if (shape == ColliderShape::Box) {
-                CHECK(pool.y[i] == test::near(-0.5).epsilon(1e-3));
-            } else {
-                CHECK(
-                    glm::length(Vec3(pool.x[i], pool.y[i] + 2, pool.z[i]))
-                    == test::near(1).epsilon(1e-3));
-            }
-        }
-    }
-}
-
-TEST_CASE("particle collision: killed ones give birth once where they hit, along the normal") {
-    Bouncing scene({.action = CollisionAction::Kill});
-    ParticleEmitter splash = steady(0);
-    splash.speed = 1;
-    splash.cone = 0;
-    scene.world.add(
-        scene.add(splash, falling(0)),
-        ParticleSource{
-            .emitter = scene.entities[0], .at = ParticleMoment::Hit, .count = 3, .inherit = 0});
-    scene.run(60);
-    CHECK(scene.pool(0).size() == 0);
-    const ParticlePool& pool = scene.pool(1);
-    REQUIRE(pool.size() == 300);
-    for (std::size_t i = 0; i < pool.size(); ++i) {
-        CHECK(pool.vy[i] == test::near(1));
-        CHECK(pool.y[i] - pool.age[i] == test::near(-1.995).epsilon(1e-3));
-    }
-}
-
 TEST_CASE("particles: vectors give the bits of the plain loops, for any number") {
     for (const std::size_t count : {1u, 7u, 16u, 33u, 1000u}) {
         CAPTURE(count);
@@ -674,6 +550,10 @@ TEST_CASE("particles: the dead leave in place, the others keep their order") {
     remove_dead(pool, 100);
     CHECK(pool.look == expected);
     CHECK(pool.x.size() == expected.size());
+    REQUIRE(pool.stuck.size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        CHECK(pool.stuck[i] == (pool.look[i] & 1));
+    }
 }
 
 TEST_CASE("particles: drops that waves throw up fly on from where they are, up to the capacity") {

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/reflect.h"
+
+#include <cstdint>
+
+namespace limn {
+
+/// What particles meet, in the entity's local space; they see nothing else of a level.
+enum class ColliderShape : std::uint8_t {
+    Plane,        ///< solid below the local xz plane, without end
+    Sphere,       ///< of radius size.x
+    Box,          ///< of half extents `size`
+    Mesh,         ///< the triangles of the entity's mesh, deformed as it is; both of their sides
+    HeightField,  ///< solid below its noise surface, which must not be turned or scaled
+    Water,        ///< the surface of its water with all waves, from above
+};
+
+struct ParticleCollider {
+    ColliderShape shape = ColliderShape::Plane;
+    Vec3 size = {0.5f, 0.5f, 0.5f};
+    bool hollow = false;
+    float ripple = 0.004f;
+    float ripple_radius = 0.1f;
+};
+
+LIMN_FIELDS(ParticleCollider) {
+    LIMN_FIELD(
+        shape,
+        .doc = "plane: solid below local y = 0; mesh, height_field, water: as the entity is drawn",
+        .values = "plane sphere box mesh height_field water");
+    LIMN_FIELD(size, "half extents of a box; its x is the radius of a sphere", "m", 0, 1e5);
+    LIMN_FIELD(hollow, "a sphere that is solid outside");
+    LIMN_FIELD(
+        ripple, "depth of the dent that a hit at 10 m/s leaves in water_ripples, in proportion",
+        "m", 0, 1);
+    LIMN_FIELD(ripple_radius, "of that dent", "m", 0.001, 100);
+}
+
+/// What a collider does to a particle.
+enum class CollisionAction : std::uint8_t {
+    Bounce,
+    Stick,  ///< stays where it hit until its end, even if that moves on
+    Kill,   ///< gives birth to a ParticleSource's particles before, at "hit" and "death"
+};
+
+/// The emitter's particles collide, whatever their speed (particle.plane-response,
+/// particle.collision-loop).
+struct ParticleCollision {
+    CollisionAction action = CollisionAction::Bounce;
+    float bounce = 0.3f;
+    float friction = 0.8f;
+    float radius = 0.005f;
+};
+
+LIMN_FIELDS(ParticleCollision) {
+    LIMN_FIELD(action, .doc = "what a hit does", .values = "bounce stick kill");
+    LIMN_FIELD(bounce, "share of the speed toward the surface that is kept, outward", "", 0, 1);
+    LIMN_FIELD(friction, "share of the velocity along the surface that is kept", "", 0, 1);
+    LIMN_FIELD(radius, "of the particle, as far as colliders other than water go", "m", 0, 100);
+}
+
+}  // namespace limn

@@ -1,0 +1,184 @@
+#include "systems/particles/particle_obstacles.h"
+
+#include "systems/animation/deform_mesh.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace limn {
+namespace {
+
+/// An entity that is a collider, of shape Mesh.
+struct MeshSource {
+    Entity entity;
+    const Affine* world = nullptr;
+    MeshId mesh;
+    const MeshData* data = nullptr;
+    const Deformed* deformed = nullptr;
+    const SkinData* skin = nullptr;
+    const Pose* pose = nullptr;
+    const MorphWeights* morphs = nullptr;
+};
+
+void place_vertices(const MeshSource& source, std::vector<Vec3>& positions) {
+    if (source.deformed != nullptr) {
+        deform_positions(
+            *source.data, *source.deformed, source.skin, source.pose, source.morphs, positions);
+    } else {
+        positions = source.data->positions;
+    }
+    for (Vec3& position : positions) {
+        position = transform_point(*source.world, position);
+    }
+}
+
+bool are_equal(const Affine& a, const Affine& b) {
+    return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
+}
+
+void follow_mesh(const MeshSource& source, ParticleObstacles& obstacles) {
+    std::vector<ObstacleMesh>& meshes = obstacles.meshes;
+    auto mesh = std::find_if(meshes.begin(), meshes.end(), [&](const ObstacleMesh& one) {
+        return one.entity == source.entity;
+    });
+    const bool is_new = mesh == meshes.end() || !(mesh->mesh == source.mesh)
+                        || mesh->version != source.data->version;
+    if (mesh == meshes.end()) {
+        mesh = meshes.insert(meshes.end(), ObstacleMesh{.entity = source.entity});
+    }
+    mesh->frame = obstacles.frame;
+    const bool deforms = source.deformed != nullptr;
+    if (is_new || deforms || mesh->deforms || !are_equal(mesh->world, *source.world)) {
+        place_vertices(source, mesh->positions);
+        if (is_new) {
+            mesh->bvh = build_mesh_bvh(mesh->positions, source.data->indices);
+        } else {
+            refit_mesh_bvh(mesh->bvh, mesh->positions, source.data->indices);
+        }
+    }
+    mesh->mesh = source.mesh;
+    mesh->version = source.data->version;
+    mesh->world = *source.world;
+    mesh->deforms = deforms;
+}
+
+/// Unit axes of an entity in world space, and how long they are.
+struct Axes {
+    Vec3 unit[3];
+    Vec3 length;
+};
+Axes axes_of(const Affine& world) {
+    Axes axes{};
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 unit(0);
+        unit[axis] = 1;
+        const Vec3 reach = transform_vector(world, unit);
+        axes.length[axis] = glm::length(reach);
+        axes.unit[axis] = normalize_or(reach, unit);
+    }
+    return axes;
+}
+
+BoxCollider make_box(const Axes& axes, const Vec3& center, const Vec3& size) {
+    Affine pose{};
+    for (int row = 0; row < 3; ++row) {
+        pose.row[row] = {axes.unit[0][row], axes.unit[1][row], axes.unit[2][row], center[row]};
+    }
+    return {pose, size * axes.length};
+}
+
+/// None of a field that is turned, scaled or not there yet.
+bool is_upright(const Affine& world) {
+    constexpr float kTolerance = 1e-4f;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            if (!(std::abs(world.row[row][column] - (row == column ? 1.0f : 0.0f)) < kTolerance)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+HeightCollider make_field(const HeightField& field, const Vec3& center) {
+    const auto points = static_cast<int>(field.points);
+    const Vec2 cell = field.size / static_cast<float>(points - 1);
+    return {
+        .origin = center - Vec3(0.5f * field.size.x, 0, 0.5f * field.size.y),
+        .cell = cell,
+        .width = points,
+        .depth = points,
+        .heights = field.height};
+}
+
+}  // namespace
+
+void find_particle_obstacles(
+    Query<
+        const ParticleCollider, const WorldTransform, Optional<const MeshInstance>,
+        Optional<const Deformed>, Optional<const HeightField>>
+        colliders,
+    Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
+    Res<ParticleObstacles> obstacles) {
+    thread_local std::vector<Collider> found;  // memory of both is reused
+    thread_local std::vector<MeshSource> sources;
+    found.clear();
+    sources.clear();
+    ++obstacles->frame;
+    colliders.each([&](Entity entity, const ParticleCollider& collider,
+                       const WorldTransform& transform, const MeshInstance* instance,
+                       const Deformed* deformed, const HeightField* field) {
+        const Vec3 center = transform_point(transform.world, Vec3(0));
+        const Axes axes = axes_of(transform.world);
+        switch (collider.shape) {
+        case ColliderShape::Plane:
+            found.emplace_back(PlaneCollider{axes.unit[1], glm::dot(axes.unit[1], center)});
+            break;
+        case ColliderShape::Sphere:
+            found.emplace_back(
+                SphereCollider{center, collider.size.x * axes.length.x, collider.hollow});
+            break;
+        case ColliderShape::Box:
+            found.emplace_back(make_box(axes, center, collider.size));
+            break;
+        case ColliderShape::Mesh:
+            if (instance != nullptr && instance->mesh.index < assets->meshes.size()) {
+                MeshSource source = {
+                    entity, &transform.world, instance->mesh,
+                    &assets->meshes[instance->mesh.index]};
+                if (deformed != nullptr) {
+                    source.deformed = deformed;
+                    source.skin = deformed->skin.index < assets->skins.size()
+                                      ? &assets->skins[deformed->skin.index]
+                                      : nullptr;
+                    source.pose = poses.find<const Pose>(deformed->character);
+                    source.morphs = morphs.find<const MorphWeights>(deformed->character);
+                }
+                sources.push_back(source);
+            }
+            break;
+        case ColliderShape::HeightField:
+            if (field != nullptr && field->points >= 2 && is_upright(transform.world)) {
+                found.emplace_back(make_field(*field, center));
+            }
+            break;
+        case ColliderShape::Water:
+            break;  // not solid: update_particles asks the water
+        }
+    });
+    for (const MeshSource& source : sources) {
+        follow_mesh(source, *obstacles);
+    }
+    std::erase_if(obstacles->meshes, [&](const ObstacleMesh& mesh) {
+        return mesh.frame != obstacles->frame;
+    });
+    for (const ObstacleMesh& mesh : obstacles->meshes) {
+        found.emplace_back(MeshCollider{&mesh.bvh});
+    }
+    set_colliders(obstacles->solid, found);
+}
+
+}  // namespace limn
