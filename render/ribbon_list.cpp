@@ -8,9 +8,10 @@
 namespace limn {
 namespace {
 
-constexpr float kSamePlace = 1e-4f;  // points as near are one [m]
-constexpr float kSharpTurn = 0.6f;   // [rad], about: gets a join
-constexpr float kSmoothTurn = 0.1f;  // [rad]: gets none
+constexpr float kSamePlace = 1e-4f;    // points as near are one [m]
+constexpr float kSharpTurn = 0.6f;     // [rad], about: gets a join
+constexpr float kSmoothTurn = 0.1f;    // [rad]: gets none
+constexpr float kBranchSpread = 0.4f;  // of lightning's branches, by eye
 
 /// Whether a miter would be long, or edges on the inside of the turn would cross.
 bool is_sharp(const Vec3& before, const Vec3& point, const Vec3& after, float width) {
@@ -94,6 +95,18 @@ void append_strand(
     list.add_strip();
 }
 
+/// A ribbon along `points`, from `share` of the curves on.
+void add_line(const std::vector<Vec3>& points, float share, float tile, RibbonList& list) {
+    float along = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        along += i > 0 ? glm::distance(points[i - 1], points[i]) : 0.0f;
+        const float at = static_cast<float>(i) / static_cast<float>(points.size() - 1);
+        list.strip.push_back({points[i], along, Vec3(0), share + (1 - share) * at});
+    }
+    set_texture(list.strip, 0, tile);
+    list.add_strip();
+}
+
 }  // namespace
 
 void RibbonList::clear() {
@@ -163,6 +176,33 @@ void append_births(
         list.strip.push_back({place, static_cast<float>(travelled - along), Vec3(0), share});
     }
     end_strip();
+}
+
+void append_beam(
+    const Beam& beam, const BeamState& state, Entity entity, float alpha, double time,
+    RibbonList& list) {
+    if (!state.shown) {
+        return;
+    }
+    const Vec3 start = glm::mix(state.previous_start, state.start, alpha);
+    const Vec3 end = glm::mix(state.previous_end, state.end, alpha);
+    const float length = glm::distance(start, end);
+    const bool jagged = beam.jag > 0;
+    Random random = beam_random(beam, entity, time);
+    make_bolt(start, end, beam.jag, jagged ? beam.detail : 0, random, list.bolt);
+    add_line(list.bolt, 0, beam.tile, list);
+    for (std::uint32_t i = 0; jagged && i < beam.branches; ++i) {
+        const auto pieces = static_cast<std::uint32_t>(list.bolt.size() - 1);
+        const std::uint32_t fork = 1 + random.below(std::max(pieces - 1, 1u));
+        const float share = static_cast<float>(fork) / static_cast<float>(pieces);
+        const Vec3 aside = {random.normal(), random.normal(), random.normal()};
+        const Vec3 tip = list.bolt[fork]
+                         + random.uniform(0.1f, 0.35f) * (1 - share)
+                               * ((end - start) + kBranchSpread * length * aside);
+        make_bolt(
+            list.bolt[fork], tip, beam.jag, std::max(beam.detail, 2u) - 2, random, list.branch);
+        add_line(list.branch, share, beam.tile, list);
+    }
 }
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/beam.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/trail.h"
 
@@ -27,7 +28,9 @@ struct RibbonList {
     std::vector<RibbonPoint> points = {};
     std::vector<std::uint32_t> segments = {};  ///< index of the point before each
     std::vector<RibbonPoint> strip = {};       ///< the one that is being made
-    float width = 0;                           ///< of the next ribbons at most [m]
+    std::vector<Vec3> bolt = {};
+    std::vector<Vec3> branch = {};
+    float width = 0;  ///< of the next ribbons at most [m]
 
     void clear();
     /// Appends the strip without points that coincide, if two are left; clears it.
@@ -43,5 +46,11 @@ void append_trail(
 /// are now, null if there are none.
 void append_births(
     const Trail& trail, const ParticlePool& pool, float back, const Vec3* head, RibbonList& list);
+
+/// Appends a beam as it is at `alpha` between the steps and at `time`, with its branches, which
+/// take on where they leave it on the look's curves and go on to their ends.
+void append_beam(
+    const Beam& beam, const BeamState& state, Entity entity, float alpha, double time,
+    RibbonList& list);
 
 }  // namespace limn

@@ -1,6 +1,7 @@
 #include "ecs/components/all.h"
 
 #include "ecs/components/animation.h"
+#include "ecs/components/beam.h"
 #include "ecs/components/buoyancy.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
@@ -66,6 +67,8 @@ void register_all_components() {
     register_component<ParticlePool>();
     register_component<Trail>();
     register_component<TrailState>();
+    register_component<Beam>();
+    register_component<BeamState>();
     register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();

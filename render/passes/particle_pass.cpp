@@ -1,5 +1,6 @@
 #include "render/passes/particle_pass.h"
 
+#include "ecs/components/beam.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -146,6 +147,14 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
                 append_trail(trail, *state, back, step, ribbons);
             }
             add_segments(look);
+        });
+    world.query<const Beam, const ParticleLook, const BeamState>().each(
+        [&](Entity entity, const Beam& beam, const ParticleLook& look, const BeamState& state) {
+            if (looks.size() < kMaxLooks) {
+                ribbons.width = max_width(look);
+                append_beam(beam, state, entity, frame.camera.alpha, frame.time, ribbons);
+                add_segments(look);
+            }
         });
 }
 

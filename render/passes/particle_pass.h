@@ -18,7 +18,7 @@ namespace limn {
 // (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
 // among them, as quads that share their corners (engine.trail).
 //
-// Reads    depth, light clusters, environment; ParticlePool, Trail with ParticleLook
+// Reads    depth, light clusters, environment; ParticlePool, Trail, Beam with ParticleLook
 // Writes   radiance
 // Order    after blended surfaces, before the lens
 // Shaders  particle.vert, particle.frag; layout in particle_gpu.h

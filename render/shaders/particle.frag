@@ -17,6 +17,20 @@ layout(location = 5) in float distance_ahead;
 
 layout(location = 0) out vec4 radiance;
 
+#ifdef IMAGES
+// The frame at `offset`; it repeats along ribbons.
+vec4 image_at(vec2 uv, vec2 offset) {
+    float layer = max(blend.w, 0.0);
+#ifdef RIBBONS
+    vec2 repeated = vec2(uv.x - floor(uv.x), uv.y);
+    return textureGrad(
+        images, vec3(repeated * frames.xy + offset, layer), dFdx(uv) * frames.xy, dFdy(uv) * frames.xy);
+#else
+    return texture(images, vec3(uv * frames.xy + offset, layer));
+#endif
+}
+#endif
+
 // Color, and opacity in a.
 vec4 sprite() {
     vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
@@ -24,11 +38,8 @@ vec4 sprite() {
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
 #ifdef IMAGES
     vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
-    vec2 right = dFdx(uv) * frames.xy;
-    vec2 up = dFdy(uv) * frames.xy;
-    uv = vec2(uv.x - floor(uv.x), uv.y) * frames.xy;  // repeats along ribbons
-    vec4 now = textureGrad(images, vec3(uv + frames.zw, max(blend.w, 0.0)), right, up);
-    vec4 next = textureGrad(images, vec3(uv + next_frame, max(blend.w, 0.0)), right, up);
+    vec4 now = image_at(uv, frames.zw);
+    vec4 next = image_at(uv, next_frame);
     return blend.w < 0.0 ? disc : mix(now, next, blend.z);
 #else
     return disc;

@@ -1,3 +1,4 @@
+#include "ecs/components/beam.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
@@ -243,6 +244,50 @@ TEST_CASE("ribbon: through particles it goes from the youngest to the oldest, an
     CHECK(list.points[list.segments[3] + 1].share == near(0.1));
 }
 
+TEST_CASE("ribbon: a beam reaches exactly from end to end, between steps as well") {
+    const BeamState state = {
+        .shown = true,
+        .start = {0, 0, 0},
+        .end = {8, 0, 0},
+        .previous_start = {0, 2, 0},
+        .previous_end = {8, 0, 4}};
+    for (const float alpha : {0.0f, 0.25f, 1.0f}) {
+        RibbonList list;
+        append_beam({.jag = 0.3f, .detail = 5}, state, {}, alpha, 0, list);
+        CHECK(list.points[1].position == Vec3(0, 2 - 2 * alpha, 0));
+        CHECK(list.points[1].share == 0);
+        const RibbonPoint& end = list.points[list.points.size() - 2];
+        CHECK(end.position == Vec3(8, 0, 4 - 4 * alpha));
+        CHECK(end.share == 1);
+        CHECK(end.u == near(1));
+    }
+    RibbonList none;
+    append_beam({}, {}, {}, 1, 0, none);
+    CHECK(none.points.empty());
+}
+
+TEST_CASE("ribbon: branches leave their beam at one of its points, and end as it does") {
+    const BeamState state = {.shown = true, .end = {8, 0, 0}, .previous_end = {8, 0, 0}};
+    RibbonList list;
+    append_beam({.jag = 0.2f, .detail = 6, .branches = 9}, state, {}, 1, 0, list);
+    const std::vector<RibbonPoint>& points = list.points;
+    int branches = 0;
+    for (const std::uint32_t before : list.segments) {
+        const bool is_cap = points[before].position == points[before + 3].position;
+        const RibbonPoint& begin = points[before + 1];
+        if (is_cap && begin.share > 0 && begin.share < 1) {
+            ++branches;
+            bool found = false;
+            for (const Vec3& point : list.bolt) {
+                found = found || point == begin.position;
+            }
+            CHECK(found);
+        }
+    }
+    CHECK(branches == 9);
+    CHECK(points[points.size() - 2].share == 1);
+}
+
 TEST_CASE("ribbon: points that coincide or are not finite leave no segment") {
     RibbonList list;
     const float nan = std::nanf("");
@@ -350,6 +395,23 @@ TEST_CASE_FIXTURE(RibbonScene, "ribbon: a blade's is spanned as the blade was, w
         high += above.at(32, i, 0) > 1e-4f ? 1 : 0;
     }
     CHECK(high <= 1);  // edge-on
+}
+
+TEST_CASE_FIXTURE(RibbonScene, "ribbon: a beam is drawn between its ends, at the time it is seen") {
+    const BeamState state = {
+        .shown = true,
+        .start = {-0.5f, 0, 0},
+        .end = {0.5f, 0, 0},
+        .previous_start = {-0.5f, 0, 0},
+        .previous_end = {0.5f, 0, 0}};
+    const Entity entity = world.create(Beam{}, state, line(0.2f));
+    CHECK(image().at(32, 32, 0) == near(1).epsilon(1e-3));
+    CHECK(image().at(2, 32, 0) == 0);
+    world.get<Beam>(entity) = {.jag = 0.5f, .rate = 10};
+    const gpu::FloatImage first = image();
+    CHECK(largest_difference(first, image()) == 0);
+    world.resource<FrameTime>().time = 0.5;
+    CHECK(largest_difference(first, image()) > 0.3f);
 }
 
 }  // namespace limn::test
