@@ -14,6 +14,7 @@
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
+#include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
 #include "systems/particles/trail_system.h"
@@ -93,11 +94,13 @@ void add_water_systems(SystemList& systems) {
 
 void add_particle_systems(SystemList& systems) {
     systems.add<add_particle_pools>(Create, Both);
+    systems.add<add_particle_mesh_states>(Create, Both);
     systems.add<add_trail_states>(Create, Both);
     systems.add<add_beam_states>(Create, Both);
     systems.add<find_particle_obstacles>(Follow);
     systems.add<update_particles>(Follow);  // after everything that moves emitters
-    systems.add<update_trails>(Follow);     // after particles, which it follows
+    systems.add<update_particle_meshes>(Follow);
+    systems.add<update_trails>(Follow);  // after particles, which it follows
     systems.add<update_beams>(Follow);
 }
 

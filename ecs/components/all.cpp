@@ -22,6 +22,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
+#include "ecs/components/particle_mesh.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
@@ -65,6 +66,8 @@ void register_all_components() {
     register_component<ParticleLook>();
     register_component<ParticleLight>();
     register_component<ParticlePool>();
+    register_component<ParticleMesh>();
+    register_component<ParticleMeshState>();
     register_component<Trail>();
     register_component<TrailState>();
     register_component<Beam>();
