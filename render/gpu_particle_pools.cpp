@@ -1,6 +1,7 @@
 #include "render/gpu_particle_pools.h"
 
 #include "ecs/components/gpu_particles.h"
+#include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
 #include "render/shaders/particle_gpu.h"
@@ -9,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -101,8 +103,9 @@ Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     return pools;
 }
 
-void GpuParticlePools::begin_frame() {
-    std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
+void GpuParticlePools::begin_frame(const World& world) {
+    const bool is_same = std::exchange(epoch_, world.core().epoch) == world.core().epoch;
+    std::erase_if(pools_, [=](const auto& pool) { return !is_same || !pool.second->used; });
     for (auto& [entity, pool] : pools_) {
         pool->used = false;
     }

@@ -15,6 +15,7 @@ namespace limn {
 
 struct GpuParticles;
 struct ParticleEmitter;
+class World;
 
 // Particles that the GPU moves (particle.gpu-state, particle.gpu-update): for each emitter a ring
 // of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
@@ -49,8 +50,9 @@ class GpuParticlePools {
   public:
     [[nodiscard]] static Result<GpuParticlePools> create(gpu::Device& device);
 
-    /// Once a frame: forgets pools that nobody has added since.
-    void begin_frame();
+    /// Once a frame: forgets pools that nobody has added since, and all those of another world or
+    /// of one that was loaded anew.
+    void begin_frame(const World& world);
     /// An emitter's particles, drawn with the look of this number.
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
@@ -65,6 +67,7 @@ class GpuParticlePools {
 
   private:
     const gpu::Program* program_ = nullptr;
+    std::uint32_t epoch_ = 0;                                            ///< of the world
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
 };
 

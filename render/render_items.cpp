@@ -2,6 +2,7 @@
 
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
+#include "ecs/components/particle_mesh.h"
 #include "ecs/components/shadow.h"
 #include "ecs/world.h"
 #include "render/material_pool.h"
@@ -100,17 +101,53 @@ void RenderItems::update(
         }
     });
     refreshed_ = refreshed;
+    add_particles();
     epoch_ = world.core().epoch;
     version_ = world.version();
     mesh_revision_ = meshes.revision();
     material_revision_ = materials.revision();
 }
 
+void RenderItems::add_particles() {
+    const auto add =
+        [this](Entity entity, const ParticleMesh& mesh, const ParticleMeshState& state) {
+            const std::vector<MeshParticle>& particles = state.instances;
+            for (std::size_t first = 0; first < particles.size(); first += kCullBlock) {
+                const std::size_t end = std::min<std::size_t>(first + kCullBlock, particles.size());
+                if (count_ == blocks_.size()) {
+                    blocks_.push_back(std::make_unique<RenderItemBlock>());
+                }
+                RenderItemBlock& block = *blocks_[count_++];
+                RenderItemBlock::Copies& copies = block.copies_;
+                copies.entities.assign(end - first, entity);
+                copies.surfaces.clear();
+                copies.now.clear();
+                copies.before.clear();
+                for (std::size_t i = first; i < end; ++i) {
+                    copies.surfaces.push_back({particles[i].mesh, mesh.material});
+                    copies.now.push_back({particles[i].now});
+                    copies.before.push_back({particles[i].before});
+                }
+                block.entities = copies.entities;
+                block.surfaces = copies.surfaces;
+                block.now = copies.now;
+                block.before = copies.before;
+                block.inflate = {};
+                block.casts_shadows = !world_->has<NoShadow>(entity);
+                block.archetype_ = nullptr;
+                refresh(block);
+                size_ += end - first;
+            }
+        };
+    world_->query<const ParticleMesh, const ParticleMeshState>().each(add);
+}
+
 void RenderItems::refresh(RenderItemBlock& block) const {
     const std::vector<MeshRange>& meshes = meshes_->meshes();
     BoxBlock& boxes = block.boxes;
     block.hashed_ = false;
-    const bool may_deform = block.archetype_->has(component_id<Deformed>);
+    const bool may_deform =
+        block.archetype_ != nullptr && block.archetype_->has(component_id<Deformed>);
     for (std::uint32_t i = 0; i < block.size(); ++i) {
         const std::uint32_t mesh = block.surfaces[i].mesh.index;
         const std::uint32_t shape =

@@ -27,6 +27,8 @@ class World;
 // changed nor moves since the last frame is kept: change versions of its columns tell. In a world
 // at rest a frame costs one comparison per chunk.
 
+// Particles that are meshes (ParticleMesh) are items, too, in blocks after those of the world.
+
 /// Draw state of an item as a number, by which items are sorted and counted. From the high bits:
 /// blended, inflated, deformed, batch (28 bits), mirrored, index of the mesh or, if deformed, of
 /// the deformed instance (32 bits).
@@ -58,7 +60,8 @@ struct DrawState {
         .index = static_cast<std::uint32_t>(key)};
 }
 
-/// Up to 1024 items of one archetype. The spans are columns of the world, valid until it changes.
+/// Up to 1024 items of one archetype, or particles of one emitter. The spans are columns of the
+/// world, valid until it changes.
 struct RenderItemBlock {
     std::span<const Entity> entities;
     std::span<const MeshInstance> surfaces;
@@ -93,6 +96,14 @@ struct RenderItemBlock {
     const Archetype* archetype_ = nullptr;
     std::uint32_t first_row_ = 0;
     bool hashed_ = false;
+    /// Items that are no rows of the world: the spans are these.
+    struct Copies {
+        std::vector<Entity> entities;
+        std::vector<MeshInstance> surfaces;
+        std::vector<WorldTransform> now;
+        std::vector<PreviousWorldTransform> before;
+    };
+    Copies copies_;
 };
 
 /// Reuses its memory, and keeps what did not change, from frame to frame.
@@ -124,6 +135,7 @@ class RenderItems {
     [[nodiscard]] float alpha() const { return alpha_; }
 
   private:
+    void add_particles();
     void refresh(RenderItemBlock& block) const;
     void hash_block(RenderItemBlock& block) const;
 

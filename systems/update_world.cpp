@@ -13,9 +13,12 @@
 #include "systems/lens_control_system.h"
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
+#include "systems/particles/beam_system.h"
 #include "systems/particles/gpu_particles.h"
+#include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
+#include "systems/particles/trail_system.h"
 #include "systems/path_system.h"
 #include "systems/ripple_system.h"
 #include "systems/script_system.h"
@@ -93,9 +96,15 @@ void add_water_systems(SystemList& systems) {
 void add_particle_systems(SystemList& systems) {
     systems.add<add_particle_pools>(Create, Both);
     systems.add<add_gpu_particles>(Create, Both);
+    systems.add<add_particle_mesh_states>(Create, Both);
+    systems.add<add_trail_states>(Create, Both);
+    systems.add<add_beam_states>(Create, Both);
     systems.add<find_particle_obstacles>(Follow);
     systems.add<update_particles>(Follow);  // after everything that moves emitters
     systems.add<record_gpu_particles>(Follow);
+    systems.add<update_particle_meshes>(Follow);
+    systems.add<update_trails>(Follow);  // after particles, which it follows
+    systems.add<update_beams>(Follow);
 }
 
 void add_camera_systems(SystemList& systems) {

@@ -57,9 +57,12 @@ constexpr Need kNeeds[] = {
     {"no_shadow", {"mesh_instance", "", ""}},
     {"mesh_levels", {"mesh_instance", "", ""}},
     {"deformed", {"mesh_instance", "", ""}},
-    {"particle_emitter", {"particle_look", "", ""}},
+    {"particle_emitter", {"particle_look", "particle_mesh", ""}},
+    {"particle_mesh", {"particle_emitter", "", ""}},
+    {"trail", {"particle_look", "", ""}},
+    {"beam", {"particle_look", "", ""}},
     {"particle_motion", {"particle_emitter", "", ""}},
-    {"particle_look", {"particle_emitter", "", ""}},
+    {"particle_look", {"particle_emitter", "trail", "beam"}},
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_collision", {"particle_emitter", "", ""}},
@@ -151,6 +154,23 @@ struct SceneCheck {
                 warn(entity, "particle_source has no effect without the name of an emitter");
             }
         });
+    }
+
+    void check_gpu_particles() {
+        world.query<const ParticleEmitter>().each(
+            [&](Entity entity, const ParticleEmitter& emitter) {
+                for (const std::string_view one :
+                     {"particle_collision", "particle_mesh", "particle_light", "trail"}) {
+                    if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
+                        warn(
+                            entity, fmt::format(
+                                        "{} has no effect on particles of the GPU; set "
+                                        "particle_emitter.executor "
+                                        "to cpu",
+                                        one));
+                    }
+                }
+            });
     }
 
     void check_cameras() {
@@ -310,6 +330,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     world.each_entity([&](Entity entity) { check.check_needs(entity); });
     check.check_followers();
     check.check_particles();
+    check.check_gpu_particles();
     check.check_colliders();
     check.check_cameras();
     check.check_caustics();

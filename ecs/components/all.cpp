@@ -1,6 +1,7 @@
 #include "ecs/components/all.h"
 
 #include "ecs/components/animation.h"
+#include "ecs/components/beam.h"
 #include "ecs/components/buoyancy.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
@@ -21,6 +22,7 @@
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
+#include "ecs/components/particle_mesh.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
@@ -35,6 +37,7 @@
 #include "ecs/components/surface.h"
 #include "ecs/components/texture_combine.h"
 #include "ecs/components/time.h"
+#include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/vignette.h"
 #include "ecs/components/water.h"
@@ -64,6 +67,12 @@ void register_all_components() {
     register_component<ParticleLook>();
     register_component<ParticleLight>();
     register_component<ParticlePool>();
+    register_component<ParticleMesh>();
+    register_component<ParticleMeshState>();
+    register_component<Trail>();
+    register_component<TrailState>();
+    register_component<Beam>();
+    register_component<BeamState>();
     register_component<Parent>();
     register_component<Transform>();
     register_component<WorldTransform>();

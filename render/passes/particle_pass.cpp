@@ -1,7 +1,9 @@
 #include "render/passes/particle_pass.h"
 
+#include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/time.h"
+#include "ecs/components/transform.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/lighting.h"
@@ -22,7 +24,34 @@ constexpr unsigned kImagesUnit = 0;
 constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
+constexpr unsigned kRibbonsUnit = 8;
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
+
+float max_width(const ParticleLook& look) {
+    float factor = look.size_curve.empty() ? 1.0f : 0.0f;
+    for (const CurveKey& key : look.size_curve) {
+        factor = std::max(factor, key.value);
+    }
+    return look.size * factor;
+}
+
+void append_births_of(
+    const World& world, Entity emitter, const Trail& trail, float back, float alpha,
+    RibbonList& ribbons) {
+    const auto* const pool = world.find<ParticlePool>(emitter);
+    const auto* const settings = world.find<ParticleEmitter>(emitter);
+    const auto* const now = world.find<WorldTransform>(emitter);
+    const auto* const before = world.find<PreviousWorldTransform>(emitter);
+    if (pool == nullptr) {
+        return;
+    }
+    Vec3 head(0);
+    const bool grows = settings != nullptr && settings->active && settings->rate > 0;
+    if (now != nullptr && before != nullptr) {
+        head = transform_point(mix_affine(before->world, now->world, alpha), Vec3(0));
+    }
+    append_births(trail, *pool, back, grows && now != nullptr ? &head : nullptr, ribbons);
+}
 
 }  // namespace
 
@@ -105,40 +134,83 @@ bool ParticleEffect::is_used(const FrameData& frame) {
     return !frame.world->query<const ParticleLook>().empty();
 }
 
+std::uint32_t ParticleEffect::add_look(const FrameData& frame, const ParticleLook& look) {
+    const bool has_image = frame.assets->images.size() > look.image.index;
+    const ImageLayer place = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
+    looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
+    arrays.push_back(place.array);
+    lit = lit || look.lit > 0;
+    images = images || has_image;
+    return static_cast<std::uint32_t>(looks.size() - 1);
+}
+
+void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float step) {
+    const World& world = *frame.world;
+    const auto add_segments = [&](const ParticleLook& look) {
+        has_ribbons = true;
+        const std::uint32_t index = add_look(frame, look);
+        looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        for (const std::uint32_t before : ribbons.segments) {
+            const Vec3 middle =
+                0.5f * (ribbons.points[before + 1].position + ribbons.points[before + 2].position);
+            instances.push_back(
+                {.position = middle, .look_and_share = index << 16, .velocity_and_age = before});
+        }
+        ribbons.segments.clear();
+    };
+    world.query<const Trail, const ParticleLook, Optional<const TrailState>>().each(
+        [&](Entity entity, const Trail& trail, const ParticleLook& look, const TrailState* state) {
+            if (looks.size() >= kMaxLooks) {
+                return;
+            }
+            ribbons.width = max_width(look);
+            const Entity followed = trail.emitter.is_null() ? entity : trail.emitter;
+            if (trail.path == TrailPath::Births) {
+                append_births_of(world, followed, trail, back, frame.camera.alpha, ribbons);
+            } else if (state != nullptr) {
+                append_trail(trail, *state, back, step, ribbons);
+            }
+            add_segments(look);
+        });
+    world.query<const Beam, const ParticleLook, const BeamState>().each(
+        [&](Entity entity, const Beam& beam, const ParticleLook& look, const BeamState& state) {
+            if (looks.size() < kMaxLooks) {
+                ribbons.width = max_width(look);
+                append_beam(beam, state, entity, frame.camera.alpha, frame.time, ribbons);
+                add_segments(look);
+            }
+        });
+}
+
 void ParticleEffect::collect(FrameData& frame) {
+    const World& world = *frame.world;
+    const float step = particle_step(frame);
     const float back = particle_lag(frame);
-    const ImagePool& pool = frame.materials->images();
-    const Vec3 eye_velocity =
-        camera_velocity(*frame.world, frame.camera.entity, particle_step(frame));
+    const Vec3 eye_velocity = camera_velocity(world, frame.camera.entity, step);
     looks.clear();
     arrays.clear();
     instances.clear();
-    lit = images = false;
-    // The number of its record.
-    const auto add_look = [&](const ParticleLook& look) {
-        const bool has_image = frame.assets->images.size() > look.image.index;
-        const ImageLayer place = has_image ? pool.find(look.image) : ImageLayer{};
-        looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
-        arrays.push_back(place.array);
-        lit = lit || look.lit > 0;
-        images = images || has_image;
-        return static_cast<std::uint32_t>(looks.size() - 1);
-    };
-    frame.world->query<const ParticleLook, const ParticlePool>().each(
-        [&](const ParticleLook& look, const ParticlePool& particles) {
-            if (looks.size() < kMaxLooks) {
+    ribbons.clear();
+    lit = images = has_ribbons = false;
+    world.query<const ParticleLook, const ParticlePool, Optional<const Trail>>().each(
+        [&](const ParticleLook& look, const ParticlePool& particles, const Trail* trail) {
+            const bool is_ribbon =
+                trail != nullptr && trail->path == TrailPath::Births && trail->emitter.is_null();
+            if (looks.size() < kMaxLooks && !is_ribbon) {
                 append_particles(
-                    particles, add_look(look), back, instances, look.camera_streak * eye_velocity);
+                    particles, add_look(frame, look), back, instances,
+                    look.camera_streak * eye_velocity);
             }
         });
-    gpu.begin_frame();
-    frame.world->query<const ParticleLook, const ParticleEmitter, const GpuParticles>().each(
+    gpu.begin_frame(world);
+    world.query<const ParticleLook, const ParticleEmitter, const GpuParticles>().each(
         [&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
             const GpuParticles& particles) {
             if (looks.size() < kMaxLooks) {
-                gpu.add(frame, entity, emitter, particles, add_look(look));
+                gpu.add(frame, entity, emitter, particles, add_look(frame, look));
             }
         });
+    collect_ribbons(frame, back, step);
     if (frame.warm_up && instances.empty() && !looks.empty()) {
         instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
     }
@@ -162,6 +234,7 @@ void ParticleEffect::collect(FrameData& frame) {
     }
     particle_texels.upload(*frame.ring, sorted);
     look_texels.upload(*frame.ring, looks);
+    ribbon_texels.upload(*frame.ring, ribbons.points);
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
@@ -185,6 +258,7 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
             variant.add_if(clipped, "CLIPPED");
             variant.add_if(lit, "LIT");
             variant.add_if(images, "IMAGES");
+            variant.add_if(has_ribbons, "RIBBONS");
             const gpu::Program* const program = programs.get(variant);
             if (program == nullptr) {
                 return;
@@ -199,6 +273,7 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
             bind_lighting(context, view);
             particle_texels.bind(device, kParticlesUnit);
             look_texels.bind(device, kLooksUnit);
+            ribbon_texels.bind(device, kRibbonsUnit);
             for (const Run& run : runs) {
                 program->set("first", run.first);
                 if (images) {

@@ -6,6 +6,7 @@
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
+#include "render/ribbon_list.h"
 #include "render/shaders/particle_gpu.h"
 
 #include <array>
@@ -15,9 +16,10 @@
 namespace limn {
 
 // Draws the particles of all emitters, back to front, as quads that are lit at their corners
-// (engine.billboard, particle.gpu-draw, particle.light-source-render).
+// (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
+// among them, as quads that share their corners (engine.trail).
 //
-// Reads    depth, light clusters, environment; ParticlePool with ParticleLook
+// Reads    depth, light clusters, environment; ParticlePool, Trail, Beam with ParticleLook
 // Writes   radiance
 // Order    after blended surfaces, before the lens
 // Shaders  particle.vert, particle.frag; layout in particle_gpu.h
@@ -79,6 +81,7 @@ struct ParticleEffect {
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
+    RibbonList ribbons = {};
     std::vector<ParticleInstance> instances = {};
     ParticleOrder order = {};
     std::vector<ParticleInstance> sorted = {};
@@ -86,14 +89,20 @@ struct ParticleEffect {
     GpuParticlePools gpu = {};  ///< drawn after the others, each in the order of births
     bool lit = false;
     bool images = false;
+    bool has_ribbons = false;
     BufferTexture particle_texels = BufferTexture("particles", GL_RGBA32UI);
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
+    BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
 
     [[nodiscard]] static Result<ParticleEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     void collect(FrameData& frame);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
+
+  private:
+    std::uint32_t add_look(const FrameData& frame, const ParticleLook& look);
+    void collect_ribbons(const FrameData& frame, float back, float step);
 };
 
 }  // namespace limn

@@ -1,5 +1,6 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
-//   LIT  some particle scatters light
+//   LIT      some particle scatters light
+//   RIBBONS  some are segments of ribbons
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #include "lib/view.glsl"
@@ -7,12 +8,16 @@
 #ifdef LIT
 #include "lib/lighting.glsl"
 #endif
+#ifdef RIBBONS
+#include "lib/ribbon.glsl"
+layout(binding = 8) uniform samplerBuffer ribbon_points;
+#endif
 
 layout(binding = 2) uniform usamplerBuffer particles;
 layout(binding = 3) uniform samplerBuffer looks;
 uniform int first;  // of the particles to draw
 
-layout(location = 0) out vec2 corner;                  // -1 .. 1
+layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multiplied by z, so that it stays straight
 layout(location = 1) out vec4 light;                   // radiance of the middle, premultiplied by a: its opacity
 layout(location = 2) flat out vec4 frames;             // texture coordinates: scale xy, offset of the frame zw
 layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
@@ -117,6 +122,54 @@ Quad quad_of(vec4 shape, vec4 streak, float tumble, vec3 position, vec3 velocity
     return Quad(half_size * right, half_size * up);
 }
 
+#ifdef RIBBONS
+// A segment from `begin` to `end`, between its neighbors; a join where these are one place.
+struct RibbonSegment {
+    vec3 before;
+    vec3 begin;
+    vec3 end;
+    vec3 after;
+    vec4 place;  // of the end at which the corner is: position, texture coordinate along the ribbon
+    vec4 rest;   // span, share of the curves
+};
+
+vec4 ribbon_texel(int point, int texel) {
+    return texelFetch(ribbon_points, point * int(kRibbonTexels) + texel);
+}
+
+RibbonSegment ribbon_segment(int before, int end) {
+    vec4 points[4];
+    for (int i = 0; i < 4; ++i) {
+        points[i] = ribbon_texel(before + i, 0);
+    }
+    return RibbonSegment(points[0].xyz, points[1].xyz, points[2].xyz, points[3].xyz, points[1 + end],
+                         ribbon_texel(before + 1 + end, 1));
+}
+
+// Extent of a pixel at this place [m]: ribbons of less than two are drawn as wide and fainter, so that they do not break
+// up into dots.
+float pixel_extent(vec3 position_ws) {
+    float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
+}
+
+// From the middle of the ribbon to the corner; -1 .. 1 across it in w.
+vec4 ribbon_corner(RibbonSegment s, int vertex, float half_width, bool has_image) {
+    vec3 to_camera = normalize(view.camera_ws.xyz - s.place.xyz);
+    vec3 right = normalize(view.ray_right.xyz);
+    float side = float(vertex >> 1) * 2.0 - 1.0;
+    bool is_cap = s.before == s.after;
+    if (s.begin == s.end) {
+        return is_cap && has_image ? vec4(0.0)
+                                   : half_width * ribbon_join(s.before, s.begin, s.after, vertex, to_camera, right);
+    }
+    bool at_begin = (vertex & 1) == 0;
+    vec3 before = at_begin ? s.before : s.begin;
+    vec3 after = at_begin ? s.end : s.after;
+    return vec4(side * ribbon_edge(before, s.place.xyz, after, to_camera, right, half_width), side * half_width);
+}
+#endif
+
 void main() {
     int particle = first + gl_InstanceID;
     uvec4 place = texelFetch(particles, particle * int(kParticleTexels));
@@ -134,6 +187,16 @@ void main() {
     vec4 glow = look_texel(look, 2u);
     vec4 book = look_texel(look, 3u);
     vec4 more = look_texel(look, kLookMore);
+    corner = vec3(gl_VertexID & 1, gl_VertexID >> 1, 1.0) * vec3(2.0, 2.0, 1.0) - vec3(1.0, 1.0, 0.0);
+#ifdef RIBBONS
+    bool is_ribbon = uint(glow.w) == kFacingRibbon;
+    RibbonSegment segment;
+    if (is_ribbon) {
+        segment = ribbon_segment(int(rest.x), gl_VertexID & 1);
+        position = segment.place.xyz;
+        share = segment.rest.w;
+    }
+#endif
     float at = share * float(kLookSamples - 1u);
     float size = max(shape.x + shape.y * random_share(rest.z, 0u), 0.0) * size_factor(look, at);
     vec4 color = color_at(look, at);
@@ -141,9 +204,27 @@ void main() {
     color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
     color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
 
-    corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
     Quad quad = quad_of(shape, streak, more.w, position, velocity, int(glow.w), rest.z, size, age);
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
+#ifdef RIBBONS
+    if (is_ribbon) {
+        vec3 span = segment.rest.xyz;
+        offset = corner.y * 0.5 * size_factor(look, at) * span;
+        float side = corner.y;
+        float half_width = 1.0;
+        position += 0.5 * span;
+        if (span == vec3(0.0)) {
+            float thinnest = pixel_extent(position);
+            color.a *= min(0.5 * size / thinnest, 1.0);
+            half_width = max(0.5 * size, thinnest);
+            vec4 across = ribbon_corner(segment, gl_VertexID, half_width, book.w >= 0.0);
+            offset = across.xyz;
+            side = across.w;
+        }
+        // A disc's profile is the same all along.
+        corner = vec3(book.w < 0.0 ? 0.0 : 2.0 * segment.place.w - 1.0, side, half_width);
+    }
+#endif
     vec3 corner_ws = position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
     distance_ahead = gl_Position.w;
@@ -174,7 +255,11 @@ void main() {
     next_frame = vec2(mod(next, book.x), floor(next / book.x)) / book.xy;
     blend = vec4(glow.z, streak.z, count > 1.0 ? fract(shown) : 0.0, book.w);
     // Too small to draw, transparent or dead.
-    if (size <= 0.0 || color.a <= 0.0 || rest.w != 0u) {
+    bool is_gone = size <= 0.0 || color.a <= 0.0 || rest.w != 0u;
+#ifdef RIBBONS
+    is_gone = is_gone && !is_ribbon;
+#endif
+    if (is_gone) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }
 }

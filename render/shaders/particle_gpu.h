@@ -11,6 +11,15 @@ namespace limn::layout {
 //   1  velocity [m/s] and age [s] as four halfs; random bits; 1: dead
 const uint kParticleTexels = 2u;
 
+// A segment of a ribbon, in place of a particle: its look is one of facing kFacingRibbon.
+//   0  its middle; index of its look in the upper 16 bits
+//   1  index of the point before it
+// Points of ribbons (RibbonList): texels of four floats.
+//   0  position xyz [m]; texture coordinate along the ribbon
+//   1  from edge to edge xyz [m], 0: faces the camera; share of the curves
+const uint kRibbonTexels = 2u;
+const uint kFacingRibbon = 3u;  // after those of ParticleFacing
+
 // A look: texels of four floats.
 //   0  diameter [m], give or take; angle [rad], give or take; spin [rad/s]
 //   1  spin, give or take; stretch [s]; softness [m]; forward

@@ -77,6 +77,14 @@ TEST_CASE("scene warnings: colliders that are not there") {
             "entity \"c\": particle_collider of this shape needs noise_surface"});
 }
 
+TEST_CASE("scene warnings: what particles of the GPU cannot do") {
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "sparks", "particle_look": {},
+        "particle_emitter": {"executor": "gpu"}, "particle_light": {}}]})")
+        == Warnings{"entity \"sparks\": particle_light has no effect on particles of the GPU; set "
+                    "particle_emitter.executor to cpu"});
+}
+
 TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {},

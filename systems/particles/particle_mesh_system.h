@@ -1,0 +1,29 @@
+#pragma once
+
+#include "ecs/commands.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/components/particle_mesh.h"
+#include "ecs/components/time.h"
+#include "ecs/query.h"
+#include "ecs/resource.h"
+
+namespace limn {
+
+// Places of particles that are meshes. A particle is found again in the next step by its random
+// bits, in the order of births; so an instance has the place it really had one step earlier, for
+// velocities and for frames between steps.
+
+/// Adds a ParticleMeshState to every ParticleMesh that lacks one. Before update_particle_meshes,
+/// with a sync point in between.
+void add_particle_mesh_states(
+    Query<const ParticleMesh, Without<ParticleMeshState>> meshes, Commands commands);
+
+/// A step of all of them. After update_particles.
+void update_particle_meshes(
+    Query<
+        const ParticleMesh, const ParticlePool, Optional<const ParticleCollision>,
+        ParticleMeshState>
+        meshes,
+    Res<const FrameTime> time);
+
+}  // namespace limn

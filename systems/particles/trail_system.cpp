@@ -1,0 +1,226 @@
+#include "systems/particles/trail_system.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn {
+namespace {
+
+constexpr float kMaxStepPoints = 2000;  // that one step may leave; more are a jump
+constexpr float kSharpTurn = 0.5f;      // cosine of the angle beyond which a path is straightened
+
+bool is_finite(const TrailPoint& point) {
+    const Vec3 sum = point.position + point.span;
+    return std::isfinite(sum.x + sum.y + sum.z);
+}
+
+/// Points of a strand: half as many again as its length takes, for what a step adds.
+std::uint32_t capacity_of(const Trail& trail) {
+    const float points = 1.5f * trail.length / trail_spacing(trail);
+    return points > 0 ? static_cast<std::uint32_t>(std::min(points, 1500.0f)) + 8 : 8;
+}
+
+void push_point(TrailState& state, TrailStrand& strand, const TrailPoint& point) {
+    if (strand.count == state.capacity) {
+        strand.first = (strand.first + 1) % state.capacity;
+        --strand.count;
+    }
+    const std::uint32_t place = (strand.first + strand.count) % state.capacity;
+    state.points[std::size_t{strand.slot} * state.capacity + place] = point;
+    ++strand.count;
+    ++strand.number;
+}
+
+TrailPoint mix_points(const TrailPoint& a, const TrailPoint& b, float t) {
+    return {a.position + (b.position - a.position) * t, 0, a.span + (b.span - a.span) * t};
+}
+
+/// Leaves a point wherever the straight way from `a` to `b` is a spacing away from the last one.
+void walk(
+    TrailState& state, TrailStrand& strand, float spacing, const TrailPoint& a, const TrailPoint& b,
+    float age, float duration) {
+    const Vec3 way = b.position - a.position;
+    const float way2 = glm::dot(way, way);
+    for (float from = 0; way2 > 0;) {
+        const Vec3 last = trail_point(state, strand, strand.count - 1).position;
+        const Vec3 offset = a.position - last;
+        const float along = glm::dot(offset, way);
+        const float room = spacing * spacing - glm::dot(offset, offset);
+        const float root = along * along + way2 * room;
+        const float t = root >= 0 ? (std::sqrt(root) - along) / way2 : 2.0f;
+        if (!(t >= from && t <= 1)) {
+            return;
+        }
+        TrailPoint point = mix_points(a, b, t);
+        point.age = age + (1 - t) * duration;
+        push_point(state, strand, point);
+        from = std::max(t, std::nextafter(from, 2.0f));
+    }
+}
+
+TrailPoint place_of(const Affine& world, const Trail& trail) {
+    return {transform_point(world, Vec3(0)), 0, transform_vector(world, trail.span)};
+}
+
+void follow_entity(
+    TrailState& state, const Trail& trail, const Affine& now, const Affine& previous, float dt) {
+    const TrailPoint to = place_of(now, trail);
+    TrailPoint from = place_of(previous, trail);
+    from.age = dt;
+    TrailStrand* strand = state.strands.empty() ? nullptr : &state.strands.back();
+    if (strand != nullptr && strand->live && trail.active
+        && (strand->head.position == from.position)) {
+        if (extend_strand(state, *strand, trail, to, dt)) {
+            return;
+        }
+    } else if (strand != nullptr) {
+        strand->live = false;  // a Teleport, or no longer active
+    }
+    if (trail.active && is_finite(to)) {
+        TrailStrand& fresh = add_strand(state, is_finite(from) ? from : to);
+        if (!extend_strand(state, fresh, trail, to, dt)) {
+            add_strand(state, to);
+        }
+    }
+}
+
+/// Finds the particles of the strands by their random bits: both are in the order of their births.
+void follow_particles(TrailState& state, const Trail& trail, const ParticlePool& pool, float dt) {
+    const std::size_t known = state.strands.size();
+    std::size_t live = 0;
+    for (const TrailStrand& strand : state.strands) {
+        live += strand.live ? 1 : 0;
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const TrailPoint to = {{pool.x[i], pool.y[i], pool.z[i]}, 0, Vec3(0)};
+        const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
+        std::size_t found = next;
+        while (found < known
+               && !(state.strands[found].live && state.strands[found].key == pool.look[i])) {
+            ++found;
+        }
+        if (found < known) {
+            for (; next < found; ++next) {
+                state.strands[next].live = false;  // died between
+            }
+            ++next;
+            extend_strand(state, state.strands[found], trail, to, dt);
+        } else if (trail.active && live < trail.count && pool.age[i] <= dt) {
+            const float age = std::min(pool.age[i], dt);
+            TrailStrand& fresh = add_strand(state, {to.position - velocity * age, age, Vec3(0)});
+            fresh.key = pool.look[i];
+            extend_strand(state, fresh, trail, to, age);
+            ++live;
+        }
+    }
+    for (; next < known; ++next) {
+        state.strands[next].live = false;
+    }
+}
+
+}  // namespace
+
+void add_trail_states(Query<const Trail, Without<TrailState>> trails, Commands commands) {
+    trails.each([&](Entity entity, const Trail&) { commands.add(entity, TrailState{}); });
+}
+
+TrailStrand& add_strand(TrailState& state, const TrailPoint& start) {
+    if (state.free_slots.empty()) {
+        state.free_slots.push_back(
+            static_cast<std::uint32_t>(state.points.size() / state.capacity));
+        state.points.resize(state.points.size() + state.capacity);
+    }
+    TrailStrand strand;
+    strand.slot = state.free_slots.back();
+    state.free_slots.pop_back();
+    strand.head = strand.previous = start;
+    strand.before = start.position;
+    strand.head.age = 0;
+    push_point(state, strand, start);
+    state.strands.push_back(strand);
+    return state.strands.back();
+}
+
+bool extend_strand(
+    TrailState& state, TrailStrand& strand, const Trail& trail, const TrailPoint& to, float dt) {
+    const TrailPoint from = strand.head;
+    const float spacing = trail_spacing(trail);
+    const Vec3 way = to.position - from.position;
+    const float length = glm::length(way);
+    if (!is_finite(to) || !(length <= std::min(trail.jump, kMaxStepPoints * spacing))) {
+        strand.live = false;
+        return false;
+    }
+    const Vec3 came = from.position - strand.before;
+    const bool smooth = glm::dot(came, way) > kSharpTurn * glm::length(came) * length;
+    const Vec3 bend = smooth ? 0.5f * (way - came) : Vec3(0);
+    const int parts = std::clamp(static_cast<int>(2 * length / spacing), 1, 64);
+    TrailPoint a = from;
+    for (int i = 1; i <= parts; ++i) {
+        const float t = static_cast<float>(i) / static_cast<float>(parts);
+        TrailPoint b = mix_points(from, to, t);
+        b.position -= bend * (t * (1 - t));
+        walk(state, strand, spacing, a, b, (1 - t) * dt, dt / static_cast<float>(parts));
+        a = b;
+    }
+    strand.before = from.position;
+    strand.previous = from;
+    strand.head = {to.position, 0, to.span};
+    return true;
+}
+
+void age_trail(TrailState& state, const Trail& trail, float dt) {
+    const float spacing = trail_spacing(trail);
+    for (TrailStrand& strand : state.strands) {
+        strand.previous = strand.head;
+        strand.head.age += strand.live ? 0 : dt;
+        for (std::uint32_t i = 0; i < strand.count; ++i) {
+            const std::uint32_t place = (strand.first + i) % state.capacity;
+            state.points[std::size_t{strand.slot} * state.capacity + place].age += dt;
+        }
+        const auto beyond = [&](std::uint32_t i) {
+            const float behind = static_cast<float>(strand.count - 1 - i) * spacing;
+            return trail_point(state, strand, i).age > trail.life + dt || behind > trail.length;
+        };
+        while (strand.count >= 2 && beyond(1)) {
+            strand.first = (strand.first + 1) % state.capacity;
+            --strand.count;
+        }
+    }
+    std::erase_if(state.strands, [&](const TrailStrand& strand) {
+        const bool gone = !strand.live && strand.head.age > trail.life + dt;
+        if (gone) {
+            state.free_slots.push_back(strand.slot);
+        }
+        return gone;
+    });
+}
+
+void update_trails(
+    Query<const Trail, TrailState> trails, Query<const ParticlePool> pools,
+    Query<const WorldTransform, const PreviousWorldTransform> places, Res<const FrameTime> time) {
+    trails.each([&](Entity entity, const Trail& trail, TrailState& state) {
+        if (trail.path == TrailPath::Births) {
+            return;
+        }
+        if (state.capacity != capacity_of(trail)) {
+            state = {};
+            state.capacity = capacity_of(trail);
+        }
+        age_trail(state, trail, time->step);
+        const Entity followed = trail.emitter == Entity{} ? entity : trail.emitter;
+        if (trail.path == TrailPath::Particles) {
+            if (const auto* const pool = pools.find<const ParticlePool>(followed)) {
+                follow_particles(state, trail, *pool, time->step);
+            }
+        } else if (const auto* const now = places.find<const WorldTransform>(followed)) {
+            const Affine& previous = places.find<const PreviousWorldTransform>(followed)->world;
+            follow_entity(state, trail, now->world, previous, time->step);
+        }
+    });
+}
+
+}  // namespace limn
