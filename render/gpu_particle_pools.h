@@ -19,8 +19,8 @@ class World;
 
 // Particles that the GPU moves (particle.gpu-state, particle.gpu-update): for each emitter a ring
 // of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
-// systems have written down (systems/particles/gpu_particles.h), and a list of what to draw, oldest
-// first.
+// systems have written down (systems/particles/gpu_particle_system.h), and a list of what to draw,
+// oldest first.
 
 struct GpuParticlePool {
     gpu::Buffer state{};      ///< two vec4 a slot

@@ -14,7 +14,7 @@
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
-#include "systems/particles/gpu_particles.h"
+#include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"

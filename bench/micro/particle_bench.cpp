@@ -153,7 +153,7 @@ void born(benchmark::State& state) {
             column->clear();
         }
         pool.look.clear();
-        add_particles(emitter, {}, kStep, 1, 2, births, pool);
+        add_particles(emitter, {}, {.dt = kStep}, 1, 2, births, pool);
     }
     per_particle(state);
 }

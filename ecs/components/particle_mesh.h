@@ -19,11 +19,11 @@ enum class ParticleMeshFacing : std::uint8_t {
 /// debris, leaves, projectiles (particle.mesh-particles, engine.projectile-instances). Beside a
 /// ParticleLook or without one.
 struct ParticleMesh {
-    std::vector<MeshId> meshes;
-    MaterialId material;
+    std::vector<MeshId> meshes = {};
+    MaterialId material = {};
     float scale = 1;
     float scale_spread = 0;
-    std::vector<CurveKey> scale_curve;
+    std::vector<CurveKey> scale_curve = {};
     ParticleMeshFacing facing = ParticleMeshFacing::Tumble;
     float spin = 0;
     float spin_spread = 6;

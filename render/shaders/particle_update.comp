@@ -78,6 +78,8 @@ float next_signed(inout Random random) {
 
 // ---- births: particle_births.cpp
 
+const float kLeastKept = 0.37;
+
 vec3 sample_direction(inout Random random) {
     float y = next_signed(random);
     float angle = 2.0 * kPi * next_share(random);
@@ -139,6 +141,18 @@ vec3 transform_vector(Rows m, vec3 v) {
     return vec3(dot(m.row[0].xyz, v), dot(m.row[1].xyz, v), dot(m.row[2].xyz, v));
 }
 
+// Takes a newborn back by the share `at` of a step, on the way along which gravity and drag will bring it here.
+void rewind(inout Particle p, float at, int texel) {
+    vec4 push = texelFetch(steps, texel + 1);
+    vec4 air = texelFetch(steps, texel + 2);
+    float old_share = texelFetch(steps, texel + 9).w;
+    vec3 now = p.velocity;
+    float ahead = at * push.w;
+    p.velocity = air.xyz + (now - air.xyz) * pow(max(air.w, kLeastKept), -at) - push.xyz * at;
+    p.place -= (p.velocity * old_share + now * (1.0 - old_share)) * ahead;
+    p.age = -ahead;
+}
+
 // Particle `number` (low word), the birth `index` of the step at `texel`.
 Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     vec4 run = vec4(0.0);
@@ -170,9 +184,8 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     p.velocity = aim * (size_speed.w + rest.x * next_signed(random)) + texelFetch(steps, texel + 9).xyz;
     p.life = rest.y + rest.z * next_signed(random);
     p.look_bits = next_word(random);
-    float ahead = at * texelFetch(steps, texel + 1).w;
-    p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w) - p.velocity * ahead;
-    p.age = -ahead;
+    p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w);
+    rewind(p, at, texel);
     return p;
 }
 

@@ -45,6 +45,17 @@ void make_room(const ParticleEmitter& emitter, std::size_t more, ParticlePool& p
     }
 }
 
+constexpr float kLeastKept = 0.37f;  // for which drag is taken back [1/e]
+
+/// Takes a newborn back by the share `at` of a step, on the way along which gravity and drag will
+/// bring it here. Otherwise all births of a step would fall as far, and jets break into clumps.
+void rewind(const ParticleStep& step, float at, Vec3& position, Vec3& velocity) {
+    const Vec3 now = velocity;
+    const float undo_drag = std::pow(std::max(step.keep, kLeastKept), -at);
+    velocity = step.air + (now - step.air) * undo_drag - step.gravity * (at * step.dt);
+    position -= (velocity * step.old_share + now * (1 - step.old_share)) * (at * step.dt);
+}
+
 /// `ahead`: how much of the next step's time is before its birth [s].
 void add_particle(
     ParticlePool& pool, const Vec3& position, const Vec3& velocity, float ahead, float life,
@@ -243,9 +254,10 @@ Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& plac
 }
 
 void add_particles(
-    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
-    std::uint64_t subject, const std::vector<BirthRun>& births, ParticlePool& pool) {
-    const Vec3 inherited = inherited_velocity(emitter, place, dt);
+    const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
+    std::uint64_t seed, std::uint64_t subject, const std::vector<BirthRun>& births,
+    ParticlePool& pool) {
+    const Vec3 inherited = inherited_velocity(emitter, place, step.dt);
     std::size_t count = 0;
     for (const BirthRun& run : births) {
         count += run.count;
@@ -255,9 +267,10 @@ void add_particles(
         Random random = attributes_random(seed, subject, pool.clock.born++);
         const Affine world = between(place.before, place.now, at);
         const Attributes its = draw_attributes(emitter, world, random);
-        const Vec3 velocity = its.velocity + inherited;
-        const Vec3 position = transform_point(world, its.local) - velocity * (at * dt);
-        add_particle(pool, position, velocity, at * dt, its.life, its.look);
+        Vec3 velocity = its.velocity + inherited;
+        Vec3 position = transform_point(world, its.local);
+        rewind(step, at, position, velocity);
+        add_particle(pool, position, velocity, at * step.dt, its.life, its.look);
     };
     for (const BirthRun& run : births) {
         for (std::uint32_t i = 0; i < run.count; ++i) {
@@ -282,7 +295,7 @@ void add_spawns(
 }
 
 void add_drops(
-    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, float dt,
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, const ParticleStep& step,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
     const std::size_t count = std::min(drops.size(), room);
@@ -290,11 +303,12 @@ void add_drops(
     make_room(emitter, count, pool);
     for (std::size_t i = 0; i < count; ++i) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
-        const float ahead = random.uniform() * dt;
+        const float at = random.uniform();
         const float life = spread(emitter.life, emitter.life_spread, random);
-        const Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);
-        const Vec3 position = drops[i].position - velocity * ahead;
-        add_particle(pool, position, velocity, ahead, life, random.word());
+        Vec3 velocity = drops[i].velocity * finite_or(emitter.drop_speed, 1);
+        Vec3 position = drops[i].position;
+        rewind(step, at, position, velocity);
+        add_particle(pool, position, velocity, at * step.dt, life, random.word());
     }
 }
 

@@ -37,7 +37,7 @@ void find_births(
 /// water.impact-spray), at any instant of it; lifetimes are the emitter's. At most up to its
 /// capacity.
 void add_drops(
-    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, float dt,
+    const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, const ParticleStep& step,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool);
 
 /// The share of the emitter's own velocity that is added at birth [m/s].
@@ -47,8 +47,9 @@ inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, fl
 /// Adds a particle for every birth, at the emitter's place of that instant, as far back on its way
 /// as a whole step will bring it forward.
 void add_particles(
-    const ParticleEmitter& emitter, const EmitterPlace& place, float dt, std::uint64_t seed,
-    std::uint64_t subject, const std::vector<BirthRun>& births, ParticlePool& pool);
+    const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
+    std::uint64_t seed, std::uint64_t subject, const std::vector<BirthRun>& births,
+    ParticlePool& pool);
 
 /// Adds a particle for every birth by another one (ParticleSource), where it is at the end of the
 /// step. `world` turns and scales the emitter's shape.

@@ -69,7 +69,7 @@ void prewarm(const Work& work, std::uint64_t seed) {
             emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
         births.clear();
         find_births(emitter, work.scale, dt, room, random, pool.clock, births);
-        add_particles(emitter, work.place, dt, seed, subject_of(work), births, pool);
+        add_particles(emitter, work.place, work.motion.step, seed, subject_of(work), births, pool);
         if (move_block(work.motion, particle_block(pool, 0, pool.size())) > 0) {
             remove_dead(pool, 0);
         }
@@ -91,9 +91,9 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
     std::vector<BirthRun> births;
     find_births(emitter, work.scale, work.motion.step.dt, room, random, pool.clock, births);
-    add_particles(emitter, work.place, work.motion.step.dt, seed, subject, births, pool);
+    add_particles(emitter, work.place, work.motion.step, seed, subject, births, pool);
     if (work.drops != nullptr && emitter.active) {
-        add_drops(emitter, work.drops->drops, work.motion.step.dt, seed, subject, pool);
+        add_drops(emitter, work.drops->drops, work.motion.step, seed, subject, pool);
     }
     pool.fresh = pool.size() - before;
 }

@@ -319,6 +319,36 @@ TEST_CASE("particles: free fall is exact whatever the step, unlike Euler's") {
     }
 }
 
+TEST_CASE("particles: a jet has no clumps, births within a step are on its parabola") {
+    // Forty births a step, thrown up and falling for 1.2 s.
+    Emitters scene;
+    ParticleEmitter emitter = steady(2400);
+    emitter.speed = 3;
+    scene.add(emitter, falling());
+    scene.run(72);
+    const ParticlePool& pool = scene.pool();
+    REQUIRE(pool.size() == 2880);
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const double age = static_cast<double>(pool.age[i]);
+        CHECK(pool.vy[i] == test::near(3 - 9.81 * age).scale(9).epsilon(1e-5));
+        CHECK(pool.y[i] == test::near(3 * age - 4.905 * age * age).scale(3).epsilon(1e-5));
+    }
+    // With drag, velocities are those of its decay, and whoever is younger is behind.
+    ParticleMotion slowed;
+    slowed.gravity = 0;
+    slowed.drag = 12;
+    Emitters smoke;
+    smoke.add(emitter, slowed);
+    smoke.run(10);
+    const ParticlePool& puffs = smoke.pool();
+    for (std::size_t i = 0; i < puffs.size(); ++i) {
+        CHECK(puffs.vy[i] == test::near(3 * std::exp(-12 * puffs.age[i])).epsilon(1e-4));
+        CHECK((i == 0 || puffs.y[i] < puffs.y[i - 1]));
+    }
+    // The rest of that is the integrator's.
+    CHECK(puffs.y[0] == test::near(0.25).epsilon(0.15));
+}
+
 TEST_CASE("particles: Euler's integrators fall as far as their sums") {
     const auto fall = [](ParticleIntegrator integrator, float dt, int steps) {
         Emitters scene(dt);

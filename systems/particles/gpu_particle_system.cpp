@@ -1,4 +1,4 @@
-#include "systems/particles/gpu_particles.h"
+#include "systems/particles/gpu_particle_system.h"
 
 #include "systems/particles/emitter_place.h"
 #include "systems/particles/particle_births.h"
