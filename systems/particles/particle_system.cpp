@@ -4,19 +4,13 @@
 #include "ecs/base/rng.h"
 #include "systems/particles/emitter_place.h"
 #include "systems/particles/particle_births.h"
-#include "systems/particles/particle_collision.h"
+#include "systems/particles/particle_contacts.h"
 #include "systems/particles/particle_kernels.h"
 #include "systems/particles/particle_motion.h"
 #include "systems/particles/particle_sources.h"
-#include "systems/particles/water_surface_hits.h"
-
-#include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,9 +18,7 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr std::uint32_t kBlock = 1024;  // particles that move as one piece of work
 constexpr std::size_t kBlockGrain = 4;  // blocks of one job
-constexpr float kDry = 1e-3f;           // kept above water by what bounces off or sticks [m]
 
 /// An emitter in this step.
 struct Work {
@@ -125,174 +117,6 @@ void find_spawns_of(
         work.motion.step.dt, room, random, work.spawns);
 }
 
-std::uint32_t move_alone(const Work& work, const Block& block) {
-    return static_cast<std::uint32_t>(
-        move_block(work.motion, particle_block(*work.pool, block.first, block.count)));
-}
-
-/// Everything that colliding particles may meet.
-struct Around {
-    const ColliderSet* solid = nullptr;
-    std::span<const ParticleWater> waters;
-    [[nodiscard]] bool is_empty() const { return solid->colliders.empty() && waters.empty(); }
-};
-
-/// A particle of a block that would enter water, if nothing solid is before it.
-struct Entry {
-    std::uint32_t particle = 0;  ///< within the block
-    WaterContact contact;
-};
-
-/// A block of a pool in this step: where its particles began, and where they are.
-struct Paths {
-    std::array<float, kBlock> start[3];
-    std::array<std::uint8_t, kBlock> marks{};
-    CollidingParticles particles;
-
-    [[nodiscard]] Vec3 from(std::size_t i) const { return {start[0][i], start[1][i], start[2][i]}; }
-    [[nodiscard]] Vec3 to(std::size_t i) const {
-        return {particles.x[i], particles.y[i], particles.z[i]};
-    }
-    [[nodiscard]] Vec3 velocity(std::size_t i) const {
-        return {particles.vx[i], particles.vy[i], particles.vz[i]};
-    }
-    void move(std::size_t i, const Vec3& to, const Vec3& velocity) const {
-        particles.x[i] = to.x;
-        particles.y[i] = to.y;
-        particles.z[i] = to.z;
-        particles.vx[i] = velocity.x;
-        particles.vy[i] = velocity.y;
-        particles.vz[i] = velocity.z;
-    }
-};
-
-void begin_paths(const Work& work, const Block& block, Paths& paths) {
-    ParticlePool& pool = *work.pool;
-    const auto part = [&](std::vector<float>& column) {
-        return std::span(column).subspan(block.first, block.count);
-    };
-    const auto began = [&](int axis) {
-        return std::span<const float>(paths.start[axis]).first(block.count);
-    };
-    paths.particles = {
-        .x0 = began(0),
-        .y0 = began(1),
-        .z0 = began(2),
-        .x = part(pool.x),
-        .y = part(pool.y),
-        .z = part(pool.z),
-        .vx = part(pool.vx),
-        .vy = part(pool.vy),
-        .vz = part(pool.vz),
-        .marks = std::span(paths.marks).first(block.count),
-        .first = block.first};
-    int axis = 0;
-    for (const std::span<float> place : {paths.particles.x, paths.particles.y, paths.particles.z}) {
-        std::copy(place.begin(), place.end(), paths.start[axis++].begin());
-    }
-    for (std::size_t i = 0; i < block.count && block.first + i < pool.stuck.size(); ++i) {
-        paths.marks[i] = pool.stuck[block.first + i] != 0 ? kParticleStuck : 0;
-    }
-}
-
-/// Ends the ways of those that would enter water at its surface.
-void stop_at_water(
-    const Paths& paths, std::span<const ParticleWater> waters, std::vector<Entry>& entries) {
-    for (std::uint32_t i = 0; i < paths.particles.x.size(); ++i) {
-        if (paths.marks[i] != 0) {
-            continue;
-        }
-        if (const auto contact = enter_water(waters, paths.from(i), paths.to(i))) {
-            entries.push_back({i, *contact});
-            paths.move(i, contact->point, paths.velocity(i));
-        }
-    }
-}
-
-/// What the water does to those that met nothing solid before.
-void hit_water(
-    Paths& paths, const Work& work, const Around& around, std::span<const Entry> entries,
-    Block& block) {
-    const ParticleCollision& collision = *work.collision;
-    for (const auto& [i, contact] : entries) {
-        if (paths.marks[i] != 0) {
-            continue;
-        }
-        const Vec3 velocity = paths.velocity(i);
-        const auto collider =
-            static_cast<std::uint32_t>(around.solid->colliders.size()) + contact.water;
-        block.hits.push_back({block.first + i, collider, contact.point, contact.normal, velocity});
-        Vec3 after(0);
-        if (collision.action == CollisionAction::Bounce) {
-            after = respond(velocity, contact.normal, {collision.bounce, collision.friction});
-        }
-        const float rest = (1 - contact.share) * work.motion.step.dt;
-        paths.move(i, contact.point + kDry * contact.normal + rest * after, after);
-        paths.marks[i] = collision.action == CollisionAction::Kill    ? kParticleKilled
-                         : collision.action == CollisionAction::Stick ? kParticleStuck
-                                                                      : kParticleHit;
-    }
-}
-
-/// Moves a block whose particles collide.
-void move_colliding(const Work& work, const Around& around, Block& block) {
-    ParticlePool& pool = *work.pool;
-    Paths paths;
-    begin_paths(work, block, paths);
-    block.dead = move_alone(work, block);
-    const ParticleCollision& collision = *work.collision;
-    CollisionOptions options;
-    options.radius = finite_or(collision.radius, 0);
-    options.action = collision.action == CollisionAction::Kill    ? ContactAction::Kill
-                     : collision.action == CollisionAction::Stick ? ContactAction::Stick
-                                                                  : ContactAction::Bounce;
-    std::vector<Entry> entries;
-    stop_at_water(paths, around.waters, entries);
-    collide_particles(
-        paths.particles, work.motion.step.dt, *around.solid, {collision.bounce, collision.friction},
-        options, block.hits);
-    hit_water(paths, work, around, entries, block);
-    for (std::uint32_t i = 0; i < block.count; ++i) {
-        const std::uint32_t at = block.first + i;
-        if (at < pool.stuck.size()) {
-            pool.stuck[at] = (paths.marks[i] & kParticleStuck) != 0 ? 1 : 0;
-        }
-        if ((paths.marks[i] & kParticleKilled) != 0 && pool.age[at] < pool.life[at]) {
-            pool.life[at] = pool.age[at];
-            ++block.dead;
-        }
-    }
-}
-
-std::vector<ParticleWater>
-find_waters(WaterQuery& waters, const Query<const ParticleCollider>& colliders) {
-    std::vector<ParticleWater> found;
-    for (const WaterSurface& surface : collect_water_surfaces(waters)) {
-        const auto* collider = colliders.find<const ParticleCollider>(surface.entity);
-        if (collider != nullptr && collider->shape == ColliderShape::Water) {
-            found.push_back(
-                {surface, surface.frame.origin.y + highest_wave(surface), collider->ripple,
-                 collider->ripple_radius});
-        }
-    }
-    return found;
-}
-
-/// Dents in the water where the particles of a block have hit it.
-void add_dents(const Block& block, const Around& around, Query<RippleState>& ripples) {
-    const std::size_t solids = around.solid->colliders.size();
-    for (const ParticleHit& hit : block.hits) {
-        if (hit.collider < solids) {
-            continue;
-        }
-        const ParticleWater& water = around.waters[hit.collider - solids];
-        RippleState* const state = ripples.find<RippleState>(water.surface.entity);
-        if (state != nullptr && water.ripple > 0) {
-            state->impulses.push_back(make_dent(water, hit.point, hit.velocity));
-        }
-    }
-}
-
 }  // namespace
 
 void add_particle_pools(
@@ -352,19 +176,19 @@ void update_particles(
         }
     });
 
-    const std::vector<ParticleWater> wet = find_waters(waters, colliders);
-    const Around around = {&obstacles->solid, wet};
+    const std::vector<ParticleWater> wet = find_particle_waters(waters, colliders);
+    const ParticleSurroundings around = {&obstacles->solid, wet};
     std::vector<Block> blocks;
     for (std::uint32_t w = 0; w < works.size(); ++w) {
         const bool sticks =
             works[w].collision != nullptr && works[w].collision->action == CollisionAction::Stick;
         works[w].pool->stuck.resize(sticks ? works[w].pool->size() : 0);
         const auto size = static_cast<std::uint32_t>(works[w].pool->size());
-        for (std::uint32_t first = 0; first < size; first += kBlock) {
+        for (std::uint32_t first = 0; first < size; first += kParticleBlock) {
             Block block;
             block.work = w;
             block.first = first;
-            block.count = std::min<std::uint32_t>(size - first, kBlock);
+            block.count = std::min<std::uint32_t>(size - first, kParticleBlock);
             blocks.push_back(std::move(block));
         }
     }
@@ -373,16 +197,19 @@ void update_particles(
             Block& block = blocks[i];
             const Work& work = works[block.work];
             if (work.collision != nullptr && !around.is_empty()) {
-                move_colliding(work, around, block);
+                block.dead = move_colliding_particles(
+                    work.motion, *work.collision, around, *work.pool, block.first, block.count,
+                    block.hits);
             } else {
-                block.dead = move_alone(work, block);
+                block.dead = static_cast<std::uint32_t>(
+                    move_block(work.motion, particle_block(*work.pool, block.first, block.count)));
             }
         }
     });
     for (const Block& block : blocks) {
         std::vector<ParticleHit>& hits = works[block.work].hits;
         hits.insert(hits.end(), block.hits.begin(), block.hits.end());
-        add_dents(block, around, ripples);
+        add_dents(block.hits, around, ripples);
     }
 
     // Children's births wait until the dead are gone: their parents may be children too.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/water_ripples.h"
+#include "ecs/query.h"
+#include "systems/particles/particle_collision.h"
+#include "systems/particles/water_surface_hits.h"
+#include "systems/water/water_query.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace limn {
+
+// What particles meet on their way through a step, solid or water, and what comes of it.
+
+/// Most particles that move as one piece of work.
+inline constexpr std::uint32_t kParticleBlock = 1024;
+
+/// Everything that colliding particles may meet. Hits name a collider, or after those a water.
+struct ParticleSurroundings {
+    const ColliderSet* solid = nullptr;
+    std::span<const ParticleWater> waters;
+
+    [[nodiscard]] bool is_empty() const { return solid->colliders.empty() && waters.empty(); }
+};
+
+/// Moves `count` of a pool's particles, from `first` on, and lets them collide. Appends their hits;
+/// returns how many have reached the end of life.
+[[nodiscard]] std::uint32_t move_colliding_particles(
+    const MotionStep& motion, const ParticleCollision& collision,
+    const ParticleSurroundings& around, ParticlePool& pool, std::uint32_t first,
+    std::uint32_t count, std::vector<ParticleHit>& hits);
+
+/// Water with a ParticleCollider of that shape.
+[[nodiscard]] std::vector<ParticleWater>
+find_particle_waters(WaterQuery& waters, const Query<const ParticleCollider>& colliders);
+
+/// Dents in the water where particles have hit it.
+void add_dents(
+    std::span<const ParticleHit> hits, const ParticleSurroundings& around,
+    Query<RippleState>& ripples);
+
+}  // namespace limn
