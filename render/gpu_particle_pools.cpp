@@ -100,20 +100,26 @@ std::vector<Vec4> pack_particle_steps(
 Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     GpuParticlePools pools;
     pools.program_ = LIMN_TRY(device.shaders().load({.compute = "particle_update.comp"}));
+    pools.sort_programs_ = LIMN_TRY(ParticleSortPrograms::create(device));
     return pools;
 }
 
 void GpuParticlePools::begin_frame(const World& world) {
-    const bool is_same = std::exchange(epoch_, world.core().epoch) == world.core().epoch;
-    std::erase_if(pools_, [=](const auto& pool) { return !is_same || !pool.second->used; });
+    if (std::exchange(epoch_, world.core().epoch) != world.core().epoch) {
+        pools_.clear();
+    }
     for (auto& [entity, pool] : pools_) {
         pool->used = false;
     }
 }
 
+void GpuParticlePools::forget_unused() {
+    std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
+}
+
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
-    std::uint32_t look) {
+    std::uint32_t look, std::optional<std::uint32_t> sort_passes) {
     std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
     if (found == nullptr) {
         found = std::make_unique<GpuParticlePool>();
@@ -136,9 +142,18 @@ void GpuParticlePools::add(
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
     pool.count = static_cast<std::uint32_t>(window);
+    if (!particles.kept().empty()) {
+        const ParticleStep& step = particles.kept().back().motion.step;
+        pool.closed_form = step.closed_form;
+        pool.gravity = step.gravity;
+    }
+    pool.sorted = sort_passes.has_value() && pool.count > 0;
+    if (pool.sorted) {
+        plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
+    }
 }
 
-void GpuParticlePools::update(FrameGraph& graph, float back) {
+void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward) {
     if (pools_.empty()) {
         return;
     }
@@ -163,9 +178,27 @@ void GpuParticlePools::update(FrameGraph& graph, float back) {
             program_->set("runs", pool->runs);
             program_->set("look", pool->look);
             program_->set("back", back);
+            program_->set("closed_form", pool->closed_form ? 1 : 0);
+            program_->set("gravity", pool->gravity);
             device.dispatch((pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
         }
     });
+    for (const auto& [entity, found] : pools_) {
+        GpuParticlePool& pool = *found;
+        if (!pool.sorted) {
+            continue;
+        }
+        const Use reads[] = {graph.import("particles", pool.instances)};
+        const Use order[] = {
+            graph.import("particle order", pool.sort.entries[0]),
+            graph.import("particle order", pool.sort.entries[1]),
+            graph.import("sorted particles", pool.sort.instances)};
+        graph.add_pass("sort particles", reads, order, [=, this, &pool](PassContext& context) {
+            run_particle_sort(
+                context, sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
+                pool.sort);
+        });
+    }
 }
 
 }  // namespace limn

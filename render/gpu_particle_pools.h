@@ -5,10 +5,12 @@
 #include "render/frame_data.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/program.h"
+#include "render/gpu_particle_sort.h"
 
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace limn {
@@ -38,6 +40,10 @@ struct GpuParticlePool {
     std::uint32_t count = 0;  ///< to draw
     int step_count = 0;
     int runs = 0;  ///< texel of the first run of births
+    bool sorted = false;
+    GpuParticleSort sort{};
+    bool closed_form = false;  ///< states are those of birth
+    Vec3 gravity = {0, 0, 0};  ///< of the last step [m/s^2]
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
@@ -50,16 +56,20 @@ class GpuParticlePools {
   public:
     [[nodiscard]] static Result<GpuParticlePools> create(gpu::Device& device);
 
-    /// Once a frame: forgets pools that nobody has added since, and all those of another world or
-    /// of one that was loaded anew.
+    /// Before those of a frame are added: forgets all pools of another world, or of one that was
+    /// loaded anew.
     void begin_frame(const World& world);
-    /// An emitter's particles, drawn with the look of this number.
+    /// An emitter's particles, drawn with the look of this number. `sort_passes`: none: as they
+    /// were born; 0: sorted; otherwise so many passes of a sort.
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
-        const GpuParticles& particles, std::uint32_t look);
-    /// Adds the pass that moves them; `back`: how long before the end of the last step they are
-    /// seen [s].
-    void update(FrameGraph& graph, float back);
+        const GpuParticles& particles, std::uint32_t look,
+        std::optional<std::uint32_t> sort_passes = std::nullopt);
+    /// After they have been added: forgets all others.
+    void forget_unused();
+    /// Adds the passes that move and sort them. They are seen from `eye` along `forward`, `back`
+    /// seconds before the end of the last step.
+    void update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward);
 
     [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
         return pools_;
@@ -67,6 +77,7 @@ class GpuParticlePools {
 
   private:
     const gpu::Program* program_ = nullptr;
+    ParticleSortPrograms sort_programs_{};
     std::uint32_t epoch_ = 0;                                            ///< of the world
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
 };

@@ -13,6 +13,9 @@ namespace limn {
 
 namespace {
 
+/// Key and index: key << 32 | index.
+using SortItem = std::uint64_t;
+
 /// Particles per range of a parallel sort; the same for any number of threads.
 constexpr std::size_t kGrain = std::size_t{1} << 16;
 
@@ -144,23 +147,23 @@ void sort_by_depth(
     SortThreads threads) {
     LIMN_CHECK(keys.size() == order.size() && keys.size() <= 0xffffffffu);
     const std::size_t count = keys.size();
-    for (std::vector<SortEntry>& items : scratch.items) {
+    for (std::vector<SortItem>& items : scratch.items) {
         items.resize(count);
     }
     std::uint32_t* const indices = order.data();
-    SortEntry* const a = scratch.items[0].data();
-    SortEntry* const b = scratch.items[1].data();
+    SortItem* const a = scratch.items[0].data();
+    SortItem* const b = scratch.items[1].data();
     const auto read_key = [keys = keys.data(), indices](std::size_t i) {
-        return SortEntry{keys[indices[i]]} << 32 | indices[i];
+        return SortItem{keys[indices[i]]} << 32 | indices[i];
     };
     const auto read_a = [a](std::size_t i) { return a[i]; };
     const auto read_b = [b](std::size_t i) { return b[i]; };
-    const auto low = [](SortEntry item) { return (item >> 32) & 2047; };
-    const auto middle = [](SortEntry item) { return (item >> 43) & 2047; };
-    const auto high = [](SortEntry item) { return item >> 54; };
-    const auto write_a = [a](std::uint32_t slot, SortEntry item) { a[slot] = item; };
-    const auto write_b = [b](std::uint32_t slot, SortEntry item) { b[slot] = item; };
-    const auto write_index = [indices](std::uint32_t slot, SortEntry item) {
+    const auto low = [](SortItem item) { return (item >> 32) & 2047; };
+    const auto middle = [](SortItem item) { return (item >> 43) & 2047; };
+    const auto high = [](SortItem item) { return item >> 54; };
+    const auto write_a = [a](std::uint32_t slot, SortItem item) { a[slot] = item; };
+    const auto write_b = [b](std::uint32_t slot, SortItem item) { b[slot] = item; };
+    const auto write_index = [indices](std::uint32_t slot, SortItem item) {
         indices[slot] = static_cast<std::uint32_t>(item);
     };
     if (threads == SortThreads::All && count > kGrain) {
@@ -175,19 +178,6 @@ void sort_by_depth(
     }
 }
 
-void fit_order(std::vector<std::uint32_t>& order, std::size_t count) {
-    const std::size_t before = order.size();
-    if (count < before) {
-        std::erase_if(order, [count](std::uint32_t index) { return index >= count; });
-    } else {
-        order.resize(count);
-        std::iota(order.begin() + static_cast<std::ptrdiff_t>(before), order.end(), before);
-    }
-}
-
-// ---- bitonic
-// -------------------------------------------------------------------------------------
-
 std::uint32_t bitonic_pass_count(std::size_t count) {
     LIMN_CHECK(std::has_single_bit(count));
     const auto levels = static_cast<std::uint32_t>(std::countr_zero(count));
@@ -200,63 +190,6 @@ BitonicPass bitonic_pass_at(std::uint32_t number) {
         number -= level++;
     }
     return {.run = 1u << level, .partner = 1u << (level - 1 - number)};
-}
-
-std::size_t bitonic_pass(std::span<SortEntry> entries, BitonicPass pass) {
-    LIMN_CHECK(std::has_single_bit(entries.size()));
-    std::size_t comparisons = 0;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        SortEntry& here = entries[i];
-        SortEntry& there = entries[i ^ pass.partner];
-        if ((i & pass.partner) == 0) {
-            const bool ascending = (i & pass.run) == 0;
-            const SortEntry low = std::min(here, there);
-            const SortEntry high = std::max(here, there);
-            here = ascending ? low : high;
-            there = ascending ? high : low;
-            ++comparisons;
-        }
-    }
-    return comparisons;
-}
-
-std::size_t bitonic_sort(std::span<SortEntry> entries) {
-    std::size_t comparisons = 0;
-    const std::uint32_t passes = entries.empty() ? 0 : bitonic_pass_count(entries.size());
-    for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        comparisons += bitonic_pass(entries, bitonic_pass_at(pass));
-    }
-    return comparisons;
-}
-
-bool step_amortized_sort(AmortizedSort& sort, std::span<const std::uint32_t> keys) {
-    LIMN_CHECK(sort.passes_per_frame > 0);
-    fit_order(sort.order, keys.size());
-    if (keys.empty()) {
-        sort.next_pass = 0;
-        return false;
-    }
-    if (sort.next_pass == 0) {
-        sort.frozen_count = keys.size();
-        sort.entries.assign(std::bit_ceil(keys.size()), kSortPad);
-        for (std::size_t i = 0; i < keys.size(); ++i) {
-            sort.entries[i] = SortEntry{keys[i]} << 32 | i;
-        }
-    }
-    const std::uint32_t passes = bitonic_pass_count(sort.entries.size());
-    for (std::uint32_t i = 0; i < sort.passes_per_frame && sort.next_pass < passes; ++i) {
-        bitonic_pass(sort.entries, bitonic_pass_at(sort.next_pass++));
-    }
-    if (sort.next_pass < passes) {
-        return false;
-    }
-    sort.next_pass = 0;
-    sort.order.resize(sort.frozen_count);
-    std::transform(
-        sort.entries.begin(), sort.entries.begin() + static_cast<std::ptrdiff_t>(sort.frozen_count),
-        sort.order.begin(), [](SortEntry entry) { return static_cast<std::uint32_t>(entry); });
-    fit_order(sort.order, keys.size());
-    return true;
 }
 
 }  // namespace limn

@@ -12,8 +12,7 @@ namespace limn {
 //
 // sort_by_depth is what to use: a stable least-significant-digit radix sort. 16-bit keys take two
 // passes of 8 bits, 32-bit keys three of 11 (Merrill and Grimshaw, "High Performance and Scalable
-// Radix Sorting", 2011). Bitonic sort (Batcher 1968) is the reference of a GPU pass; spreading its
-// passes over frames is Latta's, "Building a Million Particle System", GDC 2004.
+// Radix Sorting", 2011). The GPU uses a bitonic sort (Batcher 1968): render/gpu_particle_sort.h.
 
 /// Ascends from far to near: 0 for NaN, which counts as farthest, then +infinity; -infinity, which
 /// marks the dead, comes last. Equal for 0 and -0. Any monotonic measure of depth will do.
@@ -43,19 +42,10 @@ void sort_by_depth(
     std::span<const std::uint32_t> keys, std::span<std::uint32_t> order, SortScratch& scratch,
     SortThreads threads = SortThreads::One);
 
-/// Fits the previous order to `count` particles: drops indices >= count, appends missing ones at
-/// the end. Other entries keep their order.
-void fit_order(std::vector<std::uint32_t>& order, std::size_t count);
+// ---- passes of a bitonic sort
 
-// ---- bitonic
-// -------------------------------------------------------------------------------------
-
-/// key << 32 | index: all differ, so that every sort has the same result. kSortPad fills up to a
-/// power of two and comes last.
-using SortEntry = std::uint64_t;
-inline constexpr SortEntry kSortPad = ~SortEntry{0};
-
-/// Compares i and i xor partner, ascending where (i & run) = 0.
+/// Entries i and i xor partner change places where they are out of order: descending if i & run,
+/// else ascending.
 struct BitonicPass {
     std::uint32_t run = 2;      ///< length of the bitonic sequences being merged: 2, 4, 8, ...
     std::uint32_t partner = 1;  ///< run / 2, run / 4, ..., 1
@@ -66,27 +56,5 @@ struct BitonicPass {
 
 /// The pass with this number, 0 .. bitonic_pass_count - 1.
 [[nodiscard]] BitonicPass bitonic_pass_at(std::uint32_t number);
-
-/// Performs one pass in place; returns the number of comparisons, half of the entries. Their count
-/// must be a power of two.
-std::size_t bitonic_pass(std::span<SortEntry> entries, BitonicPass pass);
-
-/// All passes; returns the number of comparisons. The count must be a power of two, or 0.
-std::size_t bitonic_sort(std::span<SortEntry> entries);
-
-/// A bitonic sort of which each frame does a few passes. `order` is complete at any time: that of
-/// the keys when the sort began that finished last.
-struct AmortizedSort {
-    std::uint32_t passes_per_frame = 4;  ///< 210 passes of a million particles take 53 frames
-    std::vector<std::uint32_t> order{};  ///< far to near; a permutation of 0 .. count - 1
-    std::vector<SortEntry> entries{};    ///< being sorted, with the keys of the first frame
-    std::uint32_t next_pass = 0;         ///< 0: the next frame reads new keys
-    std::size_t frozen_count = 0;        ///< particles when the keys were read
-};
-
-/// One frame: reads all keys if the previous sort is finished, then does up to passes_per_frame
-/// passes. Particles born during a sort are last in the order, the dead leave it. Returns whether
-/// `order` is newly sorted.
-bool step_amortized_sort(AmortizedSort& sort, std::span<const std::uint32_t> keys);
 
 }  // namespace limn

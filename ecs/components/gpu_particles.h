@@ -25,7 +25,8 @@ struct ParticleStep {
     Vec3 air = {0, 0, 0};      ///< velocity that drag leads to [m/s]
     float keep = 1;  ///< share of the velocity relative to the air that is left: exp(-drag dt)
     float dt = 0;    ///< [s]
-    float old_share = 0.5f;  ///< of the step in which the old velocity counts, not the new one
+    float old_share = 0.5f;    ///< of the step in which the old velocity counts, not the new one
+    bool closed_form = false;  ///< places follow from births and ages
 
     [[nodiscard]] float old_dt() const { return dt * old_share; }
     [[nodiscard]] float new_dt() const { return dt - old_dt(); }

@@ -179,6 +179,7 @@ enum class ParticleIntegrator : std::uint8_t {
     Average,        ///< by the mean of old and new velocity: exact for constant forces
     ExplicitEuler,  ///< by the old one, as where place and velocity are updated in one pass
     SemiImplicit,   ///< by the new one
+    ClosedForm,     ///< not by steps: by the age, under gravity alone (particle.stateless-script)
 };
 
 struct ParticleMotion {
@@ -213,8 +214,10 @@ LIMN_FIELDS(ParticleMotion) {
         "", 0, 1);
     LIMN_FIELD(brake, "speed that is lost, down to rest", "m/s^2", 0, 1e4);
     LIMN_FIELD(
-        integrator, .doc = "average: exact for constant forces; the others as in the book",
-        .values = "average explicit_euler semi_implicit");
+        integrator,
+        .doc = "average: exact for constant forces; closed_form: by the age, under gravity alone; "
+               "the others as in the book",
+        .values = "average explicit_euler semi_implicit closed_form");
 }
 
 /// Particles fill a box about the camera, wherever it goes: who leaves at one side comes in at the
@@ -248,6 +251,14 @@ enum class ParticleFacing : std::uint8_t {
     Camera,    ///< a disc toward the camera
     Velocity,  ///< along the flight, as far as it goes in `stretch`
     Ground,    ///< flat on the world's xz plane
+    Pixels,    ///< a point sprite: `size` in pixels, see `attenuation` (particle.gpu-draw)
+};
+
+/// In which order particles cover each other (particle.distance-sort).
+enum class ParticleSort : std::uint8_t {
+    Distance,   ///< from back to front, among those of all emitters
+    Amortized,  ///< on the GPU by four passes a frame; on the CPU as Distance
+    Births,     ///< oldest first, the emitter as a whole among the others
 };
 
 /// Which frames of its flipbook a particle shows.
@@ -272,6 +283,8 @@ struct ParticleLook {
     float cover = 1;
     float forward = 0;
     ParticleFacing facing = ParticleFacing::Camera;
+    Vec3 attenuation = {1, 0, 0};
+    ParticleSort sort = ParticleSort::Distance;
     float stretch = 0.02f;
     float camera_streak = 0;
     float turn_spread = 3.1416f;
@@ -281,6 +294,7 @@ struct ParticleLook {
     float softness = 0.2f;
     float near_fade = 0;
     float far_fade = 0;
+    float fade = 0;
 };
 
 LIMN_FIELDS(ParticleLook) {
@@ -302,7 +316,18 @@ LIMN_FIELDS(ParticleLook) {
         forward,
         "light from behind: 0 evenly, toward 1 ever more forward (Henyey and Greenstein 1941)", "",
         -0.95, 0.95);
-    LIMN_FIELD(facing, .doc = "how the quad is turned", .values = "camera velocity ground");
+    LIMN_FIELD(
+        facing, .doc = "how the quad is turned; pixels: to the camera, with `size` in pixels",
+        .values = "camera velocity ground pixels");
+    LIMN_FIELD(
+        attenuation,
+        "of pixels: at the distance d the size is times sqrt(1 / (x + y d + z d^2)); not all 0", "",
+        0, 1e6);
+    LIMN_FIELD(
+        sort,
+        .doc = "which covers which: the nearer one; likewise by four passes of a sort a frame, on "
+               "the GPU; the younger one",
+        .values = "distance amortized births");
     LIMN_FIELD(stretch, "length of a streak: the way of so much time; facing velocity", "s", 0, 10);
     LIMN_FIELD(
         camera_streak, "share of the camera's own velocity that streaks show; facing velocity", "",
@@ -318,6 +343,7 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(
         far_fade, "distance beyond which it is not seen, fading from 0.6 of it; 0: none", "m", 0,
         1e5);
+    LIMN_FIELD(fade, "it fades out over the last seconds of its life", "s", 0, 1e5);
 }
 
 /// Particles light surfaces and each other, as small lights without shadows.

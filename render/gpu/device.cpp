@@ -357,6 +357,10 @@ void Device::dispatch(unsigned x, unsigned y, unsigned z) {
     glDispatchCompute(x, y, z);
 }
 
+void Device::storage_barrier() {
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
 void Device::dispatch_over(int width, int height, int group) {
     LIMN_CHECK(group > 0);
     dispatch(

@@ -92,6 +92,9 @@ class Device {
     /// One triangle that covers the viewport, from gl_VertexID alone.
     void draw_fullscreen();
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
+    /// Between dispatches of one pass of the frame graph: later ones see what earlier ones have
+    /// written to storage buffers. The graph does this between passes.
+    void storage_barrier();
     /// As many groups of `group` x `group` as cover `width` x `height` items.
     void dispatch_over(int width, int height, int group);
 

@@ -25,6 +25,7 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kRibbonsUnit = 8;
+constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 
 float max_width(const ParticleLook& look) {
@@ -35,22 +36,36 @@ float max_width(const ParticleLook& look) {
     return look.size * factor;
 }
 
+/// Where an entity is seen; none without a transform.
+std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {
+    const auto* const now = world.find<WorldTransform>(entity);
+    const auto* const before = world.find<PreviousWorldTransform>(entity);
+    if (now == nullptr) {
+        return std::nullopt;
+    }
+    const Affine& from = before != nullptr ? before->world : now->world;
+    return transform_point(mix_affine(from, now->world, alpha), Vec3(0));
+}
+
+/// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
+std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
+    if (look.sort == ParticleSort::Births || look.cover <= 0) {
+        return std::nullopt;
+    }
+    return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
+}
+
 void append_births_of(
     const World& world, Entity emitter, const Trail& trail, float back, float alpha,
     RibbonList& ribbons) {
     const auto* const pool = world.find<ParticlePool>(emitter);
     const auto* const settings = world.find<ParticleEmitter>(emitter);
-    const auto* const now = world.find<WorldTransform>(emitter);
-    const auto* const before = world.find<PreviousWorldTransform>(emitter);
     if (pool == nullptr) {
         return;
     }
-    Vec3 head(0);
     const bool grows = settings != nullptr && settings->active && settings->rate > 0;
-    if (now != nullptr && before != nullptr) {
-        head = transform_point(mix_affine(before->world, now->world, alpha), Vec3(0));
-    }
-    append_births(trail, *pool, back, grows && now != nullptr ? &head : nullptr, ribbons);
+    const std::optional<Vec3> head = place_of(world, emitter, alpha);
+    append_births(trail, *pool, back, grows && head ? &*head : nullptr, ribbons);
 }
 
 }  // namespace
@@ -65,6 +80,7 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
         look.frame_rate, static_cast<float>(layer)};
     record[layout::kLookMore] = {
         static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
+    record[layout::kLookMore + 1] = {look.attenuation, look.fade};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -112,11 +128,14 @@ Vec3 camera_velocity(const World& world, Entity camera, float step) {
 }
 
 void order_by_distance(
-    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward,
-    ParticleOrder& order) {
+    const std::vector<ParticleInstance>& instances, std::span<const std::optional<Vec3>> places,
+    const Vec3& eye, const Vec3& forward, DistanceOrder& order) {
     order.keys.resize(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        order.keys[i] = depth_key(glm::dot(instances[i].position - eye, forward));
+        const std::uint32_t look = instances[i].look_and_share >> 16;
+        const Vec3 place =
+            look < places.size() && places[look] ? *places[look] : instances[i].position;
+        order.keys[i] = depth_key(glm::dot(place - eye, forward));
     }
     order.indices.resize(instances.size());
     std::iota(order.indices.begin(), order.indices.end(), 0u);
@@ -134,11 +153,13 @@ bool ParticleEffect::is_used(const FrameData& frame) {
     return !frame.world->query<const ParticleLook>().empty();
 }
 
-std::uint32_t ParticleEffect::add_look(const FrameData& frame, const ParticleLook& look) {
+std::uint32_t ParticleEffect::add_look(
+    const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place) {
     const bool has_image = frame.assets->images.size() > look.image.index;
-    const ImageLayer place = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
-    looks.push_back(make_look_record(look, has_image ? static_cast<int>(place.layer) : -1));
-    arrays.push_back(place.array);
+    const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
+    looks.push_back(make_look_record(look, has_image ? static_cast<int>(image.layer) : -1));
+    arrays.push_back(image.array);
+    places.push_back(place);
     lit = lit || look.lit > 0;
     images = images || has_image;
     return static_cast<std::uint32_t>(looks.size() - 1);
@@ -189,16 +210,23 @@ void ParticleEffect::collect(FrameData& frame) {
     const Vec3 eye_velocity = camera_velocity(world, frame.camera.entity, step);
     looks.clear();
     arrays.clear();
+    places.clear();
     instances.clear();
     ribbons.clear();
     lit = images = has_ribbons = false;
+    const float alpha = frame.camera.alpha;
     world.query<const ParticleLook, const ParticlePool, Optional<const Trail>>().each(
-        [&](const ParticleLook& look, const ParticlePool& particles, const Trail* trail) {
+        [&](Entity entity, const ParticleLook& look, const ParticlePool& particles,
+            const Trail* trail) {
             const bool is_ribbon =
                 trail != nullptr && trail->path == TrailPath::Births && trail->emitter.is_null();
             if (looks.size() < kMaxLooks && !is_ribbon) {
+                std::optional<Vec3> place;
+                if (look.sort == ParticleSort::Births) {
+                    place = place_of(world, entity, alpha);
+                }
                 append_particles(
-                    particles, add_look(frame, look), back, instances,
+                    particles, add_look(frame, look, place), back, instances,
                     look.camera_streak * eye_velocity);
             }
         });
@@ -207,9 +235,11 @@ void ParticleEffect::collect(FrameData& frame) {
         [&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
             const GpuParticles& particles) {
             if (looks.size() < kMaxLooks) {
-                gpu.add(frame, entity, emitter, particles, add_look(frame, look));
+                gpu.add(
+                    frame, entity, emitter, particles, add_look(frame, look), sort_passes(look));
             }
         });
+    gpu.forget_unused();
     collect_ribbons(frame, back, step);
     if (frame.warm_up && instances.empty() && !looks.empty()) {
         instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
@@ -217,8 +247,8 @@ void ParticleEffect::collect(FrameData& frame) {
 
     const Affine& camera = frame.camera.world_from_camera;
     order_by_distance(
-        instances, transform_point(camera, Vec3(0)), transform_vector(camera, Vec3(0, 0, -1)),
-        order);
+        instances, places, transform_point(camera, Vec3(0)),
+        transform_vector(camera, Vec3(0, 0, -1)), order);
     sorted.clear();
     runs.clear();
     for (const std::uint32_t i : order.indices) {
@@ -238,7 +268,10 @@ void ParticleEffect::collect(FrameData& frame) {
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
-    gpu.update(graph, particle_lag(frame));
+    const Affine& camera = frame.camera.world_from_camera;
+    gpu.update(
+        graph, particle_lag(frame), transform_point(camera, Vec3(0)),
+        transform_vector(camera, Vec3(0, 0, -1)));
 }
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
@@ -248,7 +281,9 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     std::vector<Use> reads = lighting_reads(
         view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
     for (const auto& [entity, pool] : gpu.pools()) {
-        reads.emplace_back(graph.import("particles", pool->instances));
+        reads.emplace_back(
+            pool->sorted ? graph.import("sorted particles", pool->sort.instances)
+                         : graph.import("particles", pool->instances));
     }
     const Use writes[] = {view.radiance};
     graph.add_pass(
@@ -287,9 +322,11 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
                     device.bind_texture(
                         kImagesUnit, frame.materials->images().array(arrays[pool->look]));
                 }
-                pool->texels.bind(device, kParticlesUnit);
-                if (pool->count > 0) {
-                    device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(pool->count));
+                const BufferTexture& texels = pool->sorted ? pool->sort.texels : pool->texels;
+                texels.bind(device, kParticlesUnit);
+                const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
+                if (count > 0) {
+                    device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
                 }
             }
         });

@@ -11,6 +11,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace limn {
@@ -59,16 +61,17 @@ void append_particles(
 [[nodiscard]] Vec3 camera_velocity(const World& world, Entity camera, float step);
 
 /// Keeps its memory from frame to frame.
-struct ParticleOrder {
+struct DistanceOrder {
     std::vector<std::uint32_t> indices{};  ///< of instances, from back to front
     std::vector<std::uint32_t> keys{};
     SortScratch scratch{};
 };
 /// As seen from `eye` along `forward`; equal distances keep their order, NaN comes first
-/// (particle.distance-sort).
+/// (particle.distance-sort). `places`: of each look, where all of its particles count as being, if
+/// they are one thing (ParticleSort::Births).
 void order_by_distance(
-    const std::vector<ParticleInstance>& instances, const Vec3& eye, const Vec3& forward,
-    ParticleOrder& order);
+    const std::vector<ParticleInstance>& instances, std::span<const std::optional<Vec3>> places,
+    const Vec3& eye, const Vec3& forward, DistanceOrder& order);
 
 struct ParticleEffect {
     /// Particles that follow one another in the order and have images of one texture array.
@@ -83,10 +86,11 @@ struct ParticleEffect {
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
     RibbonList ribbons = {};
     std::vector<ParticleInstance> instances = {};
-    ParticleOrder order = {};
+    std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
+    DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
     std::vector<Run> runs = {};
-    GpuParticlePools gpu = {};  ///< drawn after the others, each in the order of births
+    GpuParticlePools gpu = {};  ///< drawn after the others
     bool lit = false;
     bool images = false;
     bool has_ribbons = false;
@@ -101,7 +105,8 @@ struct ParticleEffect {
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
   private:
-    std::uint32_t add_look(const FrameData& frame, const ParticleLook& look);
+    std::uint32_t add_look(
+        const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void collect_ribbons(const FrameData& frame, float back, float step);
 };
 

@@ -26,6 +26,7 @@ layout(location = 5) out float distance_ahead;         // along the view axis [m
 
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
+const int kFacingPixels = 3;
 const int kFramesShuffle = 1;
 const int kFramesPick = 2;
 const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
@@ -87,6 +88,12 @@ vec3 scattered_light(vec3 position_ws, vec3 normal, float forward, vec2 pixel, f
 }
 #endif
 
+// Extent of a pixel at this place [m].
+float pixel_extent(vec3 position_ws) {
+    float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
+    return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
+}
+
 // Half the extents of the quad in world space: along x and y of `corner`.
 struct Quad {
     vec3 right;
@@ -146,13 +153,6 @@ RibbonSegment ribbon_segment(int before, int end) {
                          ribbon_texel(before + 1 + end, 1));
 }
 
-// Extent of a pixel at this place [m]: ribbons of less than two are drawn as wide and fainter, so that they do not break
-// up into dots.
-float pixel_extent(vec3 position_ws) {
-    float ahead = dot(position_ws - view.camera_ws.xyz, view.ray_forward.xyz);
-    return max(ahead, 1e-4) * 2.0 * length(view.ray_up.xyz) * view.size.w;
-}
-
 // From the middle of the ribbon to the corner; -1 .. 1 across it in w.
 vec4 ribbon_corner(RibbonSegment s, int vertex, float half_width, bool has_image) {
     vec3 to_camera = normalize(view.camera_ws.xyz - s.place.xyz);
@@ -203,6 +203,13 @@ void main() {
     float away = distance(position, view.camera_ws.xyz);
     color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
     color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
+    vec4 point = look_texel(look, kLookMore + 1u);
+    if (point.w > 0.0 && share > 0.0) {
+        color.a *= clamp(age * (1.0 - share) / (share * point.w), 0.0, 1.0);
+    }
+    if (int(glow.w) == kFacingPixels) {
+        size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(position);
+    }
 
     Quad quad = quad_of(shape, streak, more.w, position, velocity, int(glow.w), rest.z, size, age);
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
@@ -214,7 +221,7 @@ void main() {
         float half_width = 1.0;
         position += 0.5 * span;
         if (span == vec3(0.0)) {
-            float thinnest = pixel_extent(position);
+            float thinnest = pixel_extent(position);  // fainter instead of narrower: thin ones would break up into dots
             color.a *= min(0.5 * size / thinnest, 1.0);
             half_width = max(0.5 * size, thinnest);
             vec4 across = ribbon_corner(segment, gl_VertexID, half_width, book.w >= 0.0);

@@ -18,7 +18,7 @@ const uint kParticleTexels = 2u;
 //   0  position xyz [m]; texture coordinate along the ribbon
 //   1  from edge to edge xyz [m], 0: faces the camera; share of the curves
 const uint kRibbonTexels = 2u;
-const uint kFacingRibbon = 3u;  // after those of ParticleFacing
+const uint kFacingRibbon = 4u;  // after those of ParticleFacing
 
 // A look: texels of four floats.
 //   0  diameter [m], give or take; angle [rad], give or take; spin [rad/s]
@@ -31,8 +31,9 @@ const uint kFacingRibbon = 3u;  // after those of ParticleFacing
 const uint kLookSamples = 32u;  // evenly over the life, the first at its beginning and the last at its end
 const uint kLookSizes = 4u;
 const uint kLookColors = 12u;
+//  45  a, b, c of the attenuation of point sprites; fade [s]
 const uint kLookMore = 44u;
-const uint kLookTexels = 45u;
+const uint kLookTexels = 46u;
 
 // Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
 //   0  seed of the random numbers: key (2 words); subject (2 words)

@@ -21,6 +21,8 @@ uniform uint capacity;    // slots
 uniform int step_count;   // steps to do
 uniform int runs;         // texel of the first run of births
 uniform uint look;
+uniform int closed_form;  // states are those of birth
+uniform vec3 gravity;
 uniform float back;       // how long before the end of the last step the particles are seen [s]
 
 const float kPi = 3.14159265358979;
@@ -185,7 +187,11 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     p.life = rest.y + rest.z * next_signed(random);
     p.look_bits = next_word(random);
     p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w);
-    rewind(p, at, texel);
+    if (closed_form != 0) {
+        p.age = -at * texelFetch(steps, texel + 1).w;
+    } else {
+        rewind(p, at, texel);
+    }
     return p;
 }
 
@@ -257,6 +263,10 @@ void whirl_and_steer(inout Particle p, int texel) {
 
 void move(inout Particle p, int texel) {
     vec4 push = texelFetch(steps, texel + 1);
+    if (closed_form != 0) {
+        p.age += push.w;
+        return;
+    }
     vec4 air = texelFetch(steps, texel + 2);
     float old_share = texelFetch(steps, texel + 9).w;
     vec3 start = p.velocity;
@@ -298,7 +308,12 @@ void main() {
     float age = p.age - back;
     bool is_alive = p.age < p.life && age >= 0.0;
     float share = clamp(age / max(p.life, 1e-6), 0.0, 1.0);
-    instances[2u * index] = uvec4(floatBitsToUint(p.place - p.velocity * back), look << 16 | uint(share * 65535.0));
+    vec3 place = p.place - p.velocity * back;
+    if (closed_form != 0) {
+        place = p.place + (p.velocity + 0.5 * gravity * age) * age;
+        p.velocity += gravity * age;
+    }
+    instances[2u * index] = uvec4(floatBitsToUint(place), look << 16 | uint(share * 65535.0));
     instances[2u * index + 1u] =
         uvec4(packHalf2x16(p.velocity.xy), packHalf2x16(vec2(p.velocity.z, age)), p.look_bits, is_alive ? 0u : 1u);
 }

@@ -3,7 +3,6 @@
 #include "systems/particles/emitter_place.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_motion.h"
-#include "systems/particles/particle_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +98,7 @@ void record_gpu_particles(
         step.place = place_of(now, previous);
         step.inherited = inherited_velocity(emitter, step.place, dt);
         step.motion = find_motion(motion != nullptr ? *motion : kStill, now.world, wind, dt, *time);
-        if (wrap != nullptr) {
+        if (wrap != nullptr && !step.motion.step.closed_form) {
             step.motion.wrap_size = wrap->size;
             step.motion.wrap_center = eye.place;
         }

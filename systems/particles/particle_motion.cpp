@@ -27,6 +27,10 @@ MotionStep find_motion(
           &motion.vortex, &motion.attraction, &motion.orbit, &motion.brake}) {
         *field = finite_or(*field, 0);
     }
+    const bool closed_form = motion.integrator == ParticleIntegrator::ClosedForm;
+    if (closed_form) {
+        motion = {.gravity = motion.gravity};
+    }
     MotionStep found;
     found.step = {
         .gravity = {0, -kGravity * motion.gravity, 0},
@@ -35,7 +39,8 @@ MotionStep find_motion(
         .dt = dt,
         .old_share = motion.integrator == ParticleIntegrator::ExplicitEuler  ? 1.0f
                      : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
-                                                                             : 0.5f};
+                                                                             : 0.5f,
+        .closed_form = closed_form};
     // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
     // whirls.
     const auto turns = static_cast<float>(

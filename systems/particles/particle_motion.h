@@ -10,6 +10,9 @@
 
 namespace limn {
 
+/// Longest step that is simulated [s]; in a longer one particles move so much only.
+inline constexpr float kMaxParticleStep = 0.1f;
+
 /// `world` is the emitter's, `weather` the velocity of the wind [m/s], `dt` the step [s]. Numbers
 /// that are not finite count as 0.
 [[nodiscard]] MotionStep find_motion(

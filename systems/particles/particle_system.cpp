@@ -162,7 +162,7 @@ void update_particles(
         work.drops = drops;
         work.source = source;
         work.collision = wrap == nullptr ? collision : nullptr;
-        if (wrap != nullptr) {
+        if (wrap != nullptr && !work.motion.step.closed_form) {
             work.motion.wrap_size = wrap->size;
             work.motion.wrap_center = eye.place;
         }

@@ -26,9 +26,6 @@ namespace limn {
 // nothing refers to one particle, so handles and change versions would only cost memory and time;
 // and a pool is saved, hashed, copied and freed with its emitter.
 
-/// Longest step that is simulated [s]; in a longer one particles move so much only.
-inline constexpr float kMaxParticleStep = 0.1f;
-
 /// Adds a ParticlePool to every ParticleEmitter that runs on the CPU and lacks one, and takes it
 /// from the others. Before update_particles, with a sync point in between.
 void add_particle_pools(

@@ -5,6 +5,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
+#include "render/passes/particle_pass.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
@@ -68,7 +69,7 @@ struct Executors : Scene {
         pools.begin_frame(world);
         pools.add(frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0);
         graph.begin_frame();
-        pools.update(graph, 0);
+        pools.update(graph, 0, {0, 0, 0}, {0, 0, -1});
         graph.execute();
         ring.end_frame();
         const GpuParticlePool& its = *pools.pools().begin()->second;
@@ -82,6 +83,13 @@ struct Executors : Scene {
             }
         }
         return alive;
+    }
+    /// What the last read() has written for drawing.
+    std::vector<ParticleInstance> drawn() {
+        const GpuParticlePool& its = *pools.pools().begin()->second;
+        std::vector<ParticleInstance> instances(its.count);
+        its.instances.read(0, std::as_writable_bytes(std::span(instances)));
+        return instances;
     }
     gpu::RingBuffer ring{device().caps(), "steps", 1 << 20};
 };
@@ -245,6 +253,66 @@ TEST_CASE("gpu particles: when the GPU begins anew they are where they were") {
     (void)seen.read();
     seen.step(3000);
     CHECK(seen.read().size() == 10);
+}
+
+TEST_CASE("gpu particles: a closed form is its parabola, however long the steps are") {
+    for (const float step : {1.0f / 24, 1.0f / 60, 1.0f / 144}) {
+        ParticleEmitter emitter = fountain();
+        emitter.life = 1.5f;
+        emitter.cone = 1;
+        Executors both(emitter, {.gravity = 2, .integrator = ParticleIntegrator::ClosedForm});
+        both.world.resource<FrameTime>().step = step;
+        both.step(static_cast<int>(std::round(1.2f / step)));
+        // On the GPU the state stays that of birth.
+        const std::vector<GpuParticle> born = both.read();
+        const std::vector<ParticleInstance> drawn = both.drawn();
+        const ParticlePool& cpu = both.pool();
+        REQUIRE(born.size() > 400);
+        REQUIRE(cpu.size() == born.size());
+        const std::size_t dead = drawn.size() - born.size();
+        for (std::size_t i = 0; i < born.size(); ++i) {
+            const float age = born[i].place_age.w;
+            CHECK(age == near(cpu.age[i]).scale(1).epsilon(1e-5));
+            Vec3 place = Vec3(born[i].place_age) + Vec3(born[i].velocity_life) * age;
+            place.y -= 9.81f * age * age;
+            CHECK(glm::distance(drawn[dead + i].position, place) < 1e-5f);
+            CHECK(glm::distance(Vec3(cpu.x[i], cpu.y[i], cpu.z[i]), place) < 2e-4f);
+        }
+    }
+}
+
+TEST_CASE("gpu particles: those that cover are drawn from back to front, as the CPU's are") {
+    ParticleEmitter emitter;
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = 3000}};
+    emitter.capacity = 3000;
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = {1, 1, 1};
+    emitter.speed = emitter.speed_spread = 0;
+    emitter.life = 100;
+    Executors both(emitter, {.gravity = 0});
+    both.step(2);
+    both.shine(PointLight{.intensity = 20, .radius = 9}, at({3, 4, 3.5f}));
+    ParticleLook puff;
+    puff.size = 0.5f;
+    puff.colors = {{.at = 0, .color = {1, 1, 1}, .opacity = 0.9f}};
+    const RenderView view = both.look({3, 3, 6}, {1, 2, 3}, 48, 32);
+    const auto drawn_by = [&](Entity entity, ParticleSort sort) {
+        puff.sort = sort;
+        both.world.add(entity, ParticleLook(puff));
+        gpu::FloatImage image = both.radiance(view);
+        both.world.remove<ParticleLook>(entity);
+        return image;
+    };
+    const gpu::FloatImage cpu = drawn_by(both.cpu, ParticleSort::Distance);
+    const float brightest = *std::max_element(cpu.pixels.begin(), cpu.pixels.end());
+    CHECK(largest_difference(drawn_by(both.gpu, ParticleSort::Distance), cpu) < 0.01f * brightest);
+    CHECK(largest_difference(drawn_by(both.gpu, ParticleSort::Amortized), cpu) < 0.01f * brightest);
+    const gpu::FloatImage unsorted = drawn_by(both.gpu, ParticleSort::Births);
+    CHECK(largest_difference(unsorted, cpu) > 0.05f * brightest);
+    CHECK(
+        largest_difference(drawn_by(both.cpu, ParticleSort::Births), unsorted) < 0.01f * brightest);
+    CHECK(largest_difference(drawn_by(both.cpu, ParticleSort::Distance), cpu) == 0);  // alone again
 }
 
 TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one before") {

@@ -20,7 +20,7 @@ struct ParticleScene : Scene {
     ParticleScene() { world.insert_resource(FrameTime{}); }
 
     /// Particles at rest, in the middle of their life of a second.
-    void emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
         ParticlePool pool;
         for (const Vec3& place : places) {
             pool.x.push_back(place.x);
@@ -33,7 +33,7 @@ struct ParticleScene : Scene {
             pool.life.push_back(1);
             pool.look.push_back(7);
         }
-        world.create(ParticleEmitter{}, look, pool);
+        return world.create(ParticleEmitter{}, look, pool);
     }
     [[nodiscard]] RenderView view() const { return look({0, 0, 1}, {0, 0, 0}, 9, 9); }
     Vec3 middle() { return rgb_at(radiance(view()), 4, 4); }
@@ -77,8 +77,8 @@ TEST_CASE(
         instances[i].position = {0, 0, -static_cast<float>((i * 37) % 50)};
     }
     instances[60].position.x = std::numeric_limits<float>::quiet_NaN();
-    ParticleOrder found;
-    order_by_distance(instances, {0, 0, 5}, {0, 0, -1}, found);
+    DistanceOrder found;
+    order_by_distance(instances, {}, {0, 0, 5}, {0, 0, -1}, found);
     const std::vector<std::uint32_t>& order = found.indices;
     REQUIRE(order.size() == 100);
     CHECK(order[0] == 60);
@@ -93,6 +93,60 @@ TEST_CASE(
         const bool in_order = before > now || (before == now && order[i - 1] < order[i]);
         CHECK(in_order);
     }
+}
+
+TEST_CASE("particle pass: whoever counts as one thing is ordered by its place") {
+    std::vector<ParticleInstance> instances(6);
+    for (std::uint32_t i = 0; i < 6; ++i) {
+        instances[i].position = {0, 0, -static_cast<float>(i)};
+        instances[i].look_and_share = (i % 2) << 16;
+    }
+    DistanceOrder found;
+    // Looks 0 at 0, -2, -4 m; looks 1 all at -3 m.
+    order_by_distance(
+        instances, std::vector{std::optional<Vec3>(), std::optional(Vec3(0, 0, -3))}, {0, 0, 5},
+        {0, 0, -1}, found);
+    CHECK(found.indices == std::vector<std::uint32_t>{4, 1, 3, 5, 2, 0});
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: point sprites have the sizes of the book's table") {
+    // Seen in an image of 96 lines, white without an edge: psize (1, 0, 0.01, 16).
+    ParticleLook point = disc({1, 1, 1}, 1, 1);
+    ImageData white;
+    white.width = white.height = 1;
+    white.pixels = {255, 255, 255, 255};
+    point.image = add(white);
+    point.facing = ParticleFacing::Pixels;
+    point.size = 16;
+    point.turn_spread = 0;
+    point.attenuation = {1, 0, 0.01f};
+    for (const auto& [distance, size] :
+         {std::pair(0.1f, 15.9992f), std::pair(10.0f, 11.313708f), std::pair(100.0f, 1.592060f)}) {
+        CAPTURE(distance);
+        const Entity sprite = emit({{0, 0, -distance}}, point);
+        const gpu::FloatImage image = radiance(look({0, 0, 0}, {0, 0, -1}, 96, 96));
+        double lit = 0;
+        for (int x = 0; x < 96; ++x) {
+            lit += rgb_at(image, x, 48).x > 0.5f ? 1 : 0;
+        }
+        CHECK(std::abs(lit - static_cast<double>(size)) <= 1);
+        world.destroy(sprite);
+    }
+}
+
+TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade out") {
+    // Half a second of the life of one is left.
+    ParticleLook look = disc({1, 1, 1}, 1, 1);
+    const float whole = (emit({{0, 0, 0}}, look), middle().x);
+    const auto faded = [&](float fade) {
+        world.query<ParticleLook>().each([&](ParticleLook& its) { its.fade = fade; });
+        return middle().x / whole;
+    };
+    CHECK(faded(0.25f) == near(1).epsilon(1e-3));
+    CHECK(faded(0.5f) == near(1).epsilon(1e-3));
+    CHECK(faded(1) == near(0.5).epsilon(2e-3));
+    CHECK(faded(2) == near(0.25).epsilon(2e-3));
 }
 
 TEST_CASE("particle pass: between steps they are back on their way, and not there before birth") {

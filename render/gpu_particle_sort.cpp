@@ -1,0 +1,147 @@
+#include "render/gpu_particle_sort.h"
+
+#include "render/gpu/device.h"
+#include "render/gpu/shader_library.h"
+#include "render/shaders/particle_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kEntriesBinding = 0;
+constexpr unsigned kInstancesBinding = 1;
+constexpr unsigned kSortedBinding = 2;
+constexpr std::uint32_t kGroup = 512;   // invocations of a work group
+constexpr std::uint32_t kLocal = 1024;  // entries that a work group sorts by itself
+
+void make_buffers(std::uint32_t size, GpuParticleSort& sort) {
+    for (gpu::Buffer& entries : sort.entries) {
+        entries =
+            gpu::Buffer("particle order", size * sizeof(std::uint64_t), gpu::BufferUse::GpuOnly);
+    }
+    // Those that have died during a sort keep their places until the next one.
+    sort.instances = gpu::Buffer(
+        "sorted particles", std::size_t{2} * size * layout::kParticleTexels * sizeof(Vec4),
+        gpu::BufferUse::GpuOnly);
+    sort.texels.set(sort.instances);
+    sort.capacity = size;
+    sort.next_pass = 0;
+    sort.shown.reset();
+}
+
+/// A whole sort: passes within a work group's entries are done at once.
+void sort_all(gpu::Device& device, const ParticleSortPrograms& programs, std::uint32_t size) {
+    const auto sort_local = [&](std::uint32_t run, std::uint32_t last_run) {
+        device.use(*programs.local);
+        programs.local->set("run", run);
+        programs.local->set("last_run", last_run);
+        device.dispatch(size / kLocal);
+        device.storage_barrier();
+    };
+    sort_local(2, kLocal);
+    for (std::uint32_t run = 2 * kLocal; run <= size; run *= 2) {
+        device.use(*programs.pass);
+        programs.pass->set("run", run);
+        for (std::uint32_t partner = run / 2; partner >= kLocal; partner /= 2) {
+            programs.pass->set("partner", partner);
+            device.dispatch(size / 2 / kGroup);
+            device.storage_barrier();
+        }
+        sort_local(run, run);
+    }
+}
+
+void sort_some(
+    gpu::Device& device, const ParticleSortPrograms& programs, const ParticleSortPlan& plan) {
+    device.use(*programs.pass);
+    for (std::uint32_t number = plan.first_pass; number < plan.last_pass; ++number) {
+        const BitonicPass pass = bitonic_pass_at(number);
+        programs.pass->set("run", pass.run);
+        programs.pass->set("partner", pass.partner);
+        device.dispatch(plan.size / 2 / kGroup);
+        device.storage_barrier();
+    }
+}
+
+}  // namespace
+
+std::uint32_t sort_size(std::uint32_t count) {
+    return std::max(std::bit_ceil(count), kLocal);
+}
+
+void plan_particle_sort(const ParticleWindow& now, std::uint32_t passes, GpuParticleSort& sort) {
+    if (sort.capacity < sort_size(now.count)) {
+        make_buffers(sort_size(now.count), sort);
+    }
+    const bool whole = passes == 0 || !sort.shown;
+    if (whole) {
+        sort.next_pass = 0;
+    }
+    ParticleSortPlan& plan = sort.plan;
+    plan.read_keys = sort.next_pass == 0;
+    if (plan.read_keys) {
+        sort.sorting = now;
+    }
+    plan.size = sort_size(sort.sorting.count);
+    const std::uint32_t all = bitonic_pass_count(plan.size);
+    plan.first_pass = sort.next_pass;
+    plan.last_pass = whole ? all : std::min(all, sort.next_pass + passes);
+    sort.next_pass = plan.last_pass;
+    if (plan.last_pass == all) {
+        sort.next_pass = 0;
+        sort.shown = sort.sorting;
+        sort.current = 1 - sort.current;
+    }
+    sort.count = now.first + now.count - sort.shown->first;
+}
+
+Result<ParticleSortPrograms> ParticleSortPrograms::create(gpu::Device& device) {
+    const auto load = [&](const char* part) {
+        return device.shaders().load({.compute = "particle_sort.comp", .defines = {{part}}});
+    };
+    ParticleSortPrograms programs;
+    programs.keys = LIMN_TRY(load("KEYS"));
+    programs.pass = LIMN_TRY(load("PASS"));
+    programs.local = LIMN_TRY(load("LOCAL"));
+    programs.gather = LIMN_TRY(load("GATHER"));
+    return programs;
+}
+
+void run_particle_sort(
+    PassContext& context, const ParticleSortPrograms& programs, const ParticleWindow& now,
+    const gpu::Buffer& instances, const Vec3& eye, const Vec3& forward, GpuParticleSort& sort) {
+    gpu::Device& device = context.device();
+    const ParticleSortPlan& plan = sort.plan;
+    const bool ended = sort.next_pass == 0;
+    const int sorted = ended ? 1 - sort.current : sort.current;
+    device.storage_barrier();  // after the particles have moved
+    device.bind_storage(kEntriesBinding, sort.entries[sorted]);
+    device.bind_storage(kInstancesBinding, instances);
+    if (plan.read_keys) {
+        device.use(*programs.keys);
+        programs.keys->set("count", now.count);
+        programs.keys->set("size", plan.size);
+        programs.keys->set("eye", eye);
+        programs.keys->set("forward", forward);
+        device.dispatch(plan.size / kGroup);
+        device.storage_barrier();
+    }
+    if (plan.first_pass == 0 && ended) {
+        sort_all(device, programs, plan.size);
+    } else {
+        sort_some(device, programs, plan);
+    }
+    device.bind_storage(kEntriesBinding, sort.entries[1 - sort.current]);
+    device.bind_storage(kSortedBinding, sort.instances);
+    device.use(*programs.gather);
+    programs.gather->set("count", now.count);
+    programs.gather->set("sorted_count", sort.shown->count);
+    programs.gather->set("died", now.first - sort.shown->first);
+    programs.gather->set("total", sort.count);
+    device.dispatch((sort.count + kGroup - 1) / kGroup);
+}
+
+}  // namespace limn

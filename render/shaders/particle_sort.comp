@@ -1,0 +1,117 @@
+// Sorts the particles of an emitter from back to front (particle.distance-sort, particle.bitonic-sort). Definitions:
+//   KEYS    writes an entry for each particle, and fills up with entries that come last
+//   PASS    one pass of the bitonic sort, an invocation for each pair
+//   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
+//   GATHER  writes the particles in their order
+#version 450
+
+layout(local_size_x = 512) in;  // kSortGroup
+
+// Of each, the key and the number in the order of births, counted from the oldest when keys were read.
+layout(std430, binding = 0) buffer Entries {
+    uvec2 entries[];
+};
+#if defined(KEYS) || defined(GATHER)
+layout(std430, binding = 1) readonly buffer Instances {
+    uvec4 instances[];
+};
+#endif
+#ifdef GATHER
+layout(std430, binding = 2) writeonly buffer Sorted {
+    uvec4 in_order[];
+};
+#endif
+
+uniform uint count;  // particles
+uniform uint size;   // entries: a power of two
+uniform vec3 eye;
+uniform vec3 forward;
+uniform uint run;
+uniform uint partner;
+uniform uint last_run;
+uniform uint sorted_count;  // particles when keys were read
+uniform uint died;          // of them since, oldest first
+uniform uint total;         // particles to write
+
+const uint kDead = 0xfffffffeu;  // after all others
+const uint kPad = 0xffffffffu;   // last
+
+// As depth_key() in ecs/base/depth_sort.h: ascends from far to near, NaN first.
+uint depth_key(float depth) {
+    if (isnan(depth)) {
+        return 0u;
+    }
+    uint bits = floatBitsToUint(depth + 0.0);
+    bits = (bits >> 31) != 0u ? ~bits : bits | 0x80000000u;
+    return ~bits;
+}
+
+bool comes_after(uvec2 a, uvec2 b) {
+    return a.x > b.x || (a.x == b.x && a.y > b.y);
+}
+
+#ifdef KEYS
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    uint key = kPad;
+    if (i < count) {
+        bool is_dead = instances[2u * i + 1u].w != 0u;
+        key = is_dead ? kDead : min(depth_key(dot(uintBitsToFloat(instances[2u * i].xyz) - eye, forward)), kDead - 1u);
+    }
+    if (i < size) {
+        entries[i] = uvec2(key, i);
+    }
+}
+#endif
+
+#ifdef PASS
+void main() {
+    uint pair = gl_GlobalInvocationID.x;
+    uint i = 2u * pair - (pair & (partner - 1u));
+    uvec2 a = entries[i];
+    uvec2 b = entries[i + partner];
+    if (comes_after(a, b) == ((i & run) == 0u)) {
+        entries[i] = b;
+        entries[i + partner] = a;
+    }
+}
+#endif
+
+#ifdef LOCAL
+shared uvec2 items[1024];
+void main() {
+    uint thread = gl_LocalInvocationID.x;
+    uint base = 1024u * gl_WorkGroupID.x;
+    items[thread] = entries[base + thread];
+    items[thread + 512u] = entries[base + thread + 512u];
+    for (uint r = run; r <= last_run; r *= 2u) {
+        for (uint p = min(r / 2u, 512u); p > 0u; p /= 2u) {
+            barrier();
+            uint i = 2u * thread - (thread & (p - 1u));
+            uvec2 a = items[i];
+            uvec2 b = items[i + p];
+            if (comes_after(a, b) == (((base + i) & r) == 0u)) {
+                items[i] = b;
+                items[i + p] = a;
+            }
+        }
+    }
+    barrier();
+    entries[base + thread] = items[thread];
+    entries[base + thread + 512u] = items[thread + 512u];
+}
+#endif
+
+#ifdef GATHER
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= total) {
+        return;
+    }
+    // Those born since are last, in the order of births.
+    uint index = (i < sorted_count ? entries[i].y : i) - died;
+    bool is_there = index < count;  // and not less than 0
+    in_order[2u * i] = is_there ? instances[2u * index] : uvec4(0u);
+    in_order[2u * i + 1u] = is_there ? instances[2u * index + 1u] : uvec4(0u, 0u, 0u, 1u);
+}
+#endif
