@@ -37,7 +37,10 @@ void pack_emitter(
     texels.emplace_back(emitter.speed_spread, emitter.life, emitter.life_spread, 0.0f);
 }
 
-void pack_step(const GpuParticleStep& step, std::uint32_t first_run, std::vector<Vec4>& texels) {
+/// `first_run`, `first_force`: texels, counted from the first of either.
+void pack_step(
+    const GpuParticleStep& step, std::uint32_t first_run, std::uint32_t first_force,
+    std::vector<Vec4>& texels) {
     const MotionStep& motion = step.motion;
     const float dt = motion.step.dt;
     texels.emplace_back(
@@ -54,8 +57,8 @@ void pack_step(const GpuParticleStep& step, std::uint32_t first_run, std::vector
     texels.emplace_back(motion.vortex.axis, motion.vortex.toward * dt);
     texels.emplace_back(
         motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
-    texels.emplace_back(motion.wrap_center, 0.0f);
-    texels.emplace_back(motion.wrap_size, 0.0f);
+    texels.emplace_back(motion.wrap_center, word(first_force));
+    texels.emplace_back(motion.wrap_size, word(motion.forces.size()));
 }
 
 void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
@@ -75,7 +78,7 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
 
 std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
-    int& runs) {
+    int& runs, int& forces) {
     const std::span<const GpuParticleStep> kept = particles.kept();
     const std::uint64_t first_kept = particles.step - kept.size();
     const std::size_t skipped = std::min<std::size_t>(
@@ -83,15 +86,26 @@ std::vector<Vec4> pack_particle_steps(
     std::vector<Vec4> texels;
     pack_emitter(emitter, particles, texels);
     std::uint32_t run = 0;
+    std::uint32_t force = 0;
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
-        pack_step(step, run, texels);
+        pack_step(step, run, force, texels);
         run += static_cast<std::uint32_t>(step.births.size());
+        force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
     }
     steps = static_cast<int>(kept.size() - skipped);
     runs = static_cast<int>(texels.size());
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
         for (const BirthRun& births : step.births) {
             texels.emplace_back(births.first, births.spacing, word(births.count), 0.0f);
+        }
+    }
+    forces = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        const float share = step.motion.forces_share * step.motion.step.dt;
+        for (const Force& one : step.motion.forces) {
+            texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
+            texels.emplace_back(one.axis, one.strength * share);
+            texels.emplace_back(one.speed, one.radius, 0.0f, 0.0f);
         }
     }
     return texels;
@@ -135,8 +149,8 @@ void GpuParticlePools::add(
         make_buffers(slots, pool);  // and all steps again
     }
     pool.steps.upload(
-        *frame.ring,
-        pack_particle_steps(emitter, particles, pool.done, pool.step_count, pool.runs));
+        *frame.ring, pack_particle_steps(
+                         emitter, particles, pool.done, pool.step_count, pool.runs, pool.forces));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
@@ -176,6 +190,7 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
             program_->set("capacity", pool->capacity);
             program_->set("step_count", pool->step_count);
             program_->set("runs", pool->runs);
+            program_->set("forces", pool->forces);
             program_->set("look", pool->look);
             program_->set("back", back);
             program_->set("closed_form", pool->closed_form ? 1 : 0);

@@ -39,7 +39,8 @@ struct GpuParticlePool {
     std::uint32_t first = 0;  ///< number of the oldest particle, low word
     std::uint32_t count = 0;  ///< to draw
     int step_count = 0;
-    int runs = 0;  ///< texel of the first run of births
+    int runs = 0;    ///< texel of the first run of births
+    int forces = 0;  ///< texel of the first force
     bool sorted = false;
     GpuParticleSort sort{};
     bool closed_form = false;  ///< states are those of birth
@@ -47,10 +48,11 @@ struct GpuParticlePool {
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
-/// beyond. `steps` and `runs` become how many steps there are and where their births begin.
+/// beyond. `steps`, `runs` and `forces` become how many steps there are and where their births and
+/// forces begin.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
     const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
-    int& runs);
+    int& runs, int& forces);
 
 class GpuParticlePools {
   public:

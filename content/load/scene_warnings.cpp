@@ -59,6 +59,7 @@ constexpr Need kNeeds[] = {
     {"deformed", {"mesh_instance", "", ""}},
     {"particle_emitter", {"particle_look", "particle_mesh", ""}},
     {"particle_mesh", {"particle_emitter", "", ""}},
+    {"force_field", {"transform", "", ""}},
     {"trail", {"particle_look", "", ""}},
     {"beam", {"particle_look", "", ""}},
     {"particle_motion", {"particle_emitter", "", ""}},

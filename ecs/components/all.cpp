@@ -9,6 +9,7 @@
 #include "ecs/components/caustics.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/force_field.h"
 #include "ecs/components/glare.h"
 #include "ecs/components/glow.h"
 #include "ecs/components/gltf_source.h"
@@ -58,6 +59,7 @@ void register_all_components() {
     register_component<Name>();
     register_component<GltfSource>();
     register_component<Lifetime>();
+    register_component<ForceField>();
     register_component<ParticleEmitter>();
     register_component<ParticleSource>();
     register_component<ParticleCollision>();

@@ -2,6 +2,7 @@
 
 #include "ecs/base/math.h"
 #include "ecs/base/rng.h"
+#include "ecs/components/force_field.h"
 #include "ecs/components/particles.h"
 #include "ecs/reflect.h"
 
@@ -58,12 +59,24 @@ struct Steering {
     float loss = 0;         ///< [m/s]
 };
 
+/// A ForceField at an instant, in world space.
+struct Force {
+    ForceKind kind = ForceKind::Push;
+    Vec3 origin = {0, 0, 0};
+    Vec3 axis = {0, 1, 0};  ///< unit
+    float strength = 0;     ///< as ForceField::strength
+    float speed = 0;        ///< along the axis [m/s]
+    float radius = 0;       ///< [m]; 0: unbounded
+};
+
 /// What moves the particles of an emitter in a step: a ParticleMotion at an instant.
 struct MotionStep {
     ParticleStep step{};
     Turbulence turbulence{};
     Vortex vortex{};
     Steering steering{};
+    std::vector<Force> forces{};  ///< of the fields around
+    float forces_share = 1;
     Vec3 wrap_center = {0, 0, 0};
     Vec3 wrap_size = {0, 0, 0};  ///< as ParticleWrap; 0: none [m]
 };

@@ -194,6 +194,7 @@ struct ParticleMotion {
     float attraction = 0;
     float orbit = 0;
     float brake = 0;
+    float fields = 1;
     ParticleIntegrator integrator = ParticleIntegrator::Average;
 };
 
@@ -213,6 +214,7 @@ LIMN_FIELDS(ParticleMotion) {
         "brakes",
         "", 0, 1);
     LIMN_FIELD(brake, "speed that is lost, down to rest", "m/s^2", 0, 1e4);
+    LIMN_FIELD(fields, "factor on the forces of each force_field", "", -100, 100);
     LIMN_FIELD(
         integrator,
         .doc = "average: exact for constant forces; closed_form: by the age, under gravity alone; "

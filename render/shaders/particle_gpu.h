@@ -40,7 +40,8 @@ const uint kLookTexels = 46u;
 //   1  high word of the number of the oldest particle; shape, direction (words); cosine of the cone
 //   2  size of the shape; speed
 //   3  speed, give or take; lifetime, give or take; 0
-// then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (shares of the step), number.
+// then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (shares of the step), number;
+// then the forces of fields: origin, kind (word); axis, strength times dt; speed, radius.
 const uint kEmitterTexels = 4u;
 //   0  number of its first birth (low word), births, first run, runs (words)
 //   1  acceleration times dt; dt
@@ -52,9 +53,10 @@ const uint kEmitterTexels = 4u;
 //  12  origin of axis; acceleration around it times dt
 //  13  axis; acceleration toward it times dt
 //  14  orbit; loss of speed; seed of the turbulence (word); 0
-//  15  middle of the box that particles stay in; 0
-//  16  its extents; 0
+//  15  middle of the box that particles stay in; first texel of the forces of fields (word)
+//  16  its extents; number of forces (word)
 const uint kStepTexels = 17u;
+const uint kForceTexels = 3u;
 const uint kParticleGroup = 128u;  // particles of a work group
 
 #ifdef __cplusplus

@@ -20,6 +20,7 @@ uniform uint count;       // of particles that may be alive
 uniform uint capacity;    // slots
 uniform int step_count;   // steps to do
 uniform int runs;         // texel of the first run of births
+uniform int forces;       // texel of the first force of a field
 uniform uint look;
 uniform int closed_form;  // states are those of birth
 uniform vec3 gravity;
@@ -242,6 +243,44 @@ void stir(inout Particle p, int texel) {
     }
 }
 
+const uint kPush = 0u, kAttract = 1u, kSpring = 2u, kWhirl = 3u, kWind = 4u;
+
+// As acceleration() in force_fields.cpp, times dt.
+vec3 push_of(int texel, Particle p) {
+    vec4 origin = texelFetch(steps, texel);
+    vec4 axis = texelFetch(steps, texel + 1);
+    vec4 rest = texelFetch(steps, texel + 2);
+    vec3 offset = p.place - origin.xyz;
+    float distance2 = dot(offset, offset);
+    float strength = axis.w * (rest.y > 0.0 ? max(1.0 - distance2 / (rest.y * rest.y), 0.0) : 1.0);
+    uint kind = floatBitsToUint(origin.w);
+    if (kind == kPush) {
+        return strength * axis.xyz;
+    }
+    if (kind == kAttract) {
+        return distance2 > 0.0 ? -strength * inversesqrt(distance2) * offset : vec3(0.0);
+    }
+    if (kind == kSpring) {
+        return -strength * offset;
+    }
+    if (kind == kWhirl) {
+        vec3 tangent = cross(axis.xyz, offset);
+        float reach = length(tangent);
+        return reach > 0.0 ? strength / reach * tangent : vec3(0.0);
+    }
+    return strength * (rest.x * axis.xyz - p.velocity);
+}
+
+void push(inout Particle p, int texel) {
+    int count = int(floatBitsToUint(texelFetch(steps, texel + 16).w));
+    int first_force = forces + int(floatBitsToUint(texelFetch(steps, texel + 15).w));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < count; ++i) {
+        sum += push_of(first_force + i * int(kForceTexels), p);
+    }
+    p.velocity += sum;
+}
+
 void whirl_and_steer(inout Particle p, int texel) {
     vec4 origin = texelFetch(steps, texel + 12);
     vec4 axis = texelFetch(steps, texel + 13);
@@ -262,20 +301,21 @@ void whirl_and_steer(inout Particle p, int texel) {
 }
 
 void move(inout Particle p, int texel) {
-    vec4 push = texelFetch(steps, texel + 1);
+    vec4 push_dt = texelFetch(steps, texel + 1);
     if (closed_form != 0) {
-        p.age += push.w;
+        p.age += push_dt.w;
         return;
     }
     vec4 air = texelFetch(steps, texel + 2);
     float old_share = texelFetch(steps, texel + 9).w;
     vec3 start = p.velocity;
     stir(p, texel);
+    push(p, texel);
     whirl_and_steer(p, texel);
     vec3 old = old_share == 1.0 ? start : p.velocity;
-    p.velocity = air.xyz + (p.velocity + push.xyz - air.xyz) * air.w;
-    p.place += old * (push.w * old_share) + p.velocity * (push.w - push.w * old_share);
-    p.age += push.w;
+    p.velocity = air.xyz + (p.velocity + push_dt.xyz - air.xyz) * air.w;
+    p.place += old * (push_dt.w * old_share) + p.velocity * (push_dt.w - push_dt.w * old_share);
+    p.age += push_dt.w;
     vec3 box = texelFetch(steps, texel + 16).xyz;
     vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
     p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));

@@ -1,6 +1,7 @@
 #include "systems/particles/gpu_particle_system.h"
 
 #include "systems/particles/emitter_place.h"
+#include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_motion.h"
 
@@ -84,11 +85,13 @@ void record_gpu_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
         emitters,
+    Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
     const EmitterEye eye = find_eye(cameras);
+    const std::vector<Force> forces = find_forces(fields, time->time);
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const ParticleWrap* wrap, GpuParticles& particles) {
@@ -97,7 +100,8 @@ void record_gpu_particles(
         GpuParticleStep step;
         step.place = place_of(now, previous);
         step.inherited = inherited_velocity(emitter, step.place, dt);
-        step.motion = find_motion(motion != nullptr ? *motion : kStill, now.world, wind, dt, *time);
+        step.motion =
+            find_motion(motion != nullptr ? *motion : kStill, now.world, wind, forces, dt, *time);
         if (wrap != nullptr && !step.motion.step.closed_form) {
             step.motion.wrap_size = wrap->size;
             step.motion.wrap_center = eye.place;

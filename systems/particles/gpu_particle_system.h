@@ -2,6 +2,7 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
@@ -24,6 +25,7 @@ void record_gpu_particles(
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
         emitters,
+    Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 

@@ -1,5 +1,6 @@
 #include "systems/particles/particle_motion.h"
 
+#include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
 
 #include <algorithm>
@@ -18,20 +19,24 @@ const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 }  // namespace
 
 MotionStep find_motion(
-    const ParticleMotion& asked, const Affine& world, const Vec3& weather, float dt,
-    const FrameTime& time) {
+    const ParticleMotion& asked, const Affine& world, const Vec3& weather,
+    std::span<const Force> forces, float dt, const FrameTime& time) {
     ParticleMotion motion = asked;
     for (float* const field :
          {&motion.gravity, &motion.drag, &motion.wind.x, &motion.wind.y, &motion.wind.z,
           &motion.weather, &motion.turbulence, &motion.turbulence_size, &motion.turbulence_speed,
-          &motion.vortex, &motion.attraction, &motion.orbit, &motion.brake}) {
+          &motion.vortex, &motion.attraction, &motion.orbit, &motion.brake, &motion.fields}) {
         *field = finite_or(*field, 0);
     }
     const bool closed_form = motion.integrator == ParticleIntegrator::ClosedForm;
     if (closed_form) {
-        motion = {.gravity = motion.gravity};
+        motion = {.gravity = motion.gravity, .fields = 0};
     }
     MotionStep found;
+    if (motion.fields != 0) {
+        found.forces.assign(forces.begin(), forces.end());
+        found.forces_share = motion.fields;
+    }
     found.step = {
         .gravity = {0, -kGravity * motion.gravity, 0},
         .air = motion.wind + motion.weather * weather,
@@ -69,6 +74,9 @@ void change_velocities(const MotionStep& motion, const ParticleBlock& block) {
     const float dt = motion.step.dt;
     if (motion.turbulence.strength != 0) {
         stir_particles(block, motion.turbulence, dt);
+    }
+    if (!motion.forces.empty()) {
+        push_particles(block, motion.forces, motion.forces_share, dt);
     }
     if (motion.vortex.around != 0 || motion.vortex.toward != 0) {
         whirl_particles(block, motion.vortex, dt);

@@ -7,17 +7,18 @@
 #include "systems/particles/particle_kernels.h"
 
 #include <cstddef>
+#include <span>
 
 namespace limn {
 
 /// Longest step that is simulated [s]; in a longer one particles move so much only.
 inline constexpr float kMaxParticleStep = 0.1f;
 
-/// `world` is the emitter's, `weather` the velocity of the wind [m/s], `dt` the step [s]. Numbers
-/// that are not finite count as 0.
+/// `world` is the emitter's, `weather` the velocity of the wind [m/s], `forces` those of the
+/// fields, `dt` the step [s]. Numbers that are not finite count as 0.
 [[nodiscard]] MotionStep find_motion(
-    const ParticleMotion& motion, const Affine& world, const Vec3& weather, float dt,
-    const FrameTime& time);
+    const ParticleMotion& motion, const Affine& world, const Vec3& weather,
+    std::span<const Force> forces, float dt, const FrameTime& time);
 
 /// Moves particles by a step; returns how many have reached the end of life.
 std::size_t move_block(const MotionStep& motion, const ParticleBlock& block);

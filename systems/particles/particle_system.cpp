@@ -3,6 +3,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/rng.h"
 #include "systems/particles/emitter_place.h"
+#include "systems/particles/force_fields.h"
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_contacts.h"
 #include "systems/particles/particle_kernels.h"
@@ -142,11 +143,13 @@ void update_particles(
         emitters,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
+    Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
     const EmitterEye eye = find_eye(cameras);
+    const std::vector<Force> forces = find_forces(fields, time->time);
     std::vector<Work> works;
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
@@ -156,7 +159,8 @@ void update_particles(
         const EmitterPlace place = place_of(now, previous);
         static const ParticleMotion kStill;
         Work work{.entity = entity, .place = place};
-        work.motion = find_motion(motion != nullptr ? *motion : kStill, now.world, wind, dt, *time);
+        work.motion =
+            find_motion(motion != nullptr ? *motion : kStill, now.world, wind, forces, dt, *time);
         work.scale = seen_share(emitter, now.world, eye);
         work.emitter = &emitter;
         work.drops = drops;

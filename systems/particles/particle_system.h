@@ -2,6 +2,7 @@
 
 #include "ecs/commands.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/force_field.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
@@ -42,6 +43,7 @@ void update_particles(
         emitters,
     Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
+    Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 

@@ -1,5 +1,6 @@
 // The two executors of particles: the same happens on the GPU as on the CPU.
 
+#include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
@@ -164,6 +165,29 @@ TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
         CHECK(gpu.size() >= 1200);
         CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
     }
+}
+
+TEST_CASE("gpu particles: force fields push them as they push the CPU's") {
+    ParticleEmitter emitter = fountain();
+    emitter.life = 3;
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = Vec3(1);
+    Executors both(emitter, {.gravity = 0.1f, .fields = 0.8f});
+    const Quat leaning = glm::normalize(Quat(0.8f, 0.1f, 0.3f, -0.2f));
+    float x = 0;
+    for (const ForceKind kind :
+         {ForceKind::Push, ForceKind::Attract, ForceKind::Spring, ForceKind::Whirl,
+          ForceKind::Wind}) {
+        x += 0.5f;
+        both.world.create(
+            ForceField{.kind = kind, .strength = 1.3f, .speed = 2, .radius = 5, .frequency = x},
+            WorldTransform{affine_from({x, 3, 2 * x}, leaning, Vec3(1))});
+    }
+    both.step(300);
+    const std::vector<GpuParticle> gpu = both.read();
+    REQUIRE(gpu.size() == both.pool().size());
+    CHECK(gpu.size() >= 1200);
+    CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
 }
 
 TEST_CASE("gpu particles: how often they are drawn changes nothing") {
