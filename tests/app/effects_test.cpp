@@ -5,6 +5,7 @@
 #include "content/load/json_document.h"
 #include "content/load/made_assets.h"
 #include "ecs/base/log.h"
+#include "ecs/components/beam.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/transform.h"
 #include "tests/support.h"
@@ -64,7 +65,8 @@ constexpr const char* kCamera =
 
 }  // namespace
 
-TEST_CASE("effects: every prefab can be placed by itself, and gives particles within a second") {
+TEST_CASE(
+    "effects: every prefab can be placed by itself, and gives particles or beams in a second") {
     const std::vector<EffectFile> files = effect_files();
     CHECK(files.size() >= 9);
     const test::TemporaryFolder folder;
@@ -79,11 +81,14 @@ TEST_CASE("effects: every prefab can be placed by itself, and gives particles wi
                     R"({{"title": "t", "include": ["{}"], "entities": [{}, {{"prefab": "{}"}}]}})",
                     file.name, kCamera, prefab),
                 made);
+            advance_stage(*stage, 0.2);
+            std::uint64_t born = 0;
+            stage->world.query<const BeamState>().each(
+                [&](const BeamState& beam) { born += beam.shown ? 1 : 0; });
             for (int i = 0; i < 60; ++i) {
                 step_stage(*stage);
             }
             CHECK(logged_error_count() == errors_before);
-            std::uint64_t born = 0;
             std::uint64_t dropped = 0;
             stage->world.query<const ParticlePool>().each([&](const ParticlePool& pool) {
                 born += pool.clock.born;
