@@ -193,6 +193,11 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     } else {
         rewind(p, at, texel);
     }
+    if (!(abs(dot(p.place + p.velocity, vec3(1.0)) + p.life) < 1e30)) {  // settings beyond reason: it is never seen
+        p.place = vec3(0.0);
+        p.velocity = vec3(0.0);
+        p.life = 0.0;
+    }
     return p;
 }
 

@@ -16,6 +16,8 @@ constexpr float kOrbitRate = 60.0f;          // in which `orbit` is what a step 
 const Vec3 kDriftA = {0.37f, 1.0f, -0.21f};  // of the fields of curl noise, by eye
 const Vec3 kDriftB = {-0.29f, -0.6f, 0.43f};
 
+constexpr float kLeastDrag = 0.1f;  // at which falling leads to no velocity too large to add [1/s]
+
 }  // namespace
 
 MotionStep find_motion(
@@ -46,6 +48,11 @@ MotionStep find_motion(
                      : motion.integrator == ParticleIntegrator::SemiImplicit ? 0.0f
                                                                              : 0.5f,
         .closed_form = closed_form};
+    if (motion.drag >= kLeastDrag) {
+        // Both lead to one velocity, exactly, however long the step is.
+        found.step.air += found.step.gravity / motion.drag;
+        found.step.gravity = Vec3(0);
+    }
     // Drifts stay small, so that places in the noise keep their precision: it repeats every 4,096
     // whirls.
     const auto turns = static_cast<float>(

@@ -295,4 +295,20 @@ TEST_CASE("cli: the state hash is the same on one thread, on two, and again") {
     CHECK(last.substr(last.find(' ')) != first.out.substr(1, first.out.find('\n')));
 }
 
+TEST_CASE("cli: the state hash of particles is the same for any number of threads") {
+    const TemporaryFolder folder;
+    for (const char* const level : {"forge", "storm", "vale"}) {
+        CAPTURE(level);
+        std::string hashes;
+        for (const char* const threads : {"1", "2", "3", "7"}) {
+            const ProgramRun run =
+                run_limn(folder, {"hash", level, "--frames", "30", "--threads", threads});
+            CHECK(run.exit_code == 0);
+            hashes = hashes.empty() ? run.out : hashes;
+            CHECK(run.out == hashes);
+        }
+        CHECK(count_lines(hashes) == 30);
+    }
+}
+
 }  // namespace limn

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -337,6 +338,38 @@ TEST_CASE("gpu particles: those that cover are drawn from back to front, as the 
     CHECK(
         largest_difference(drawn_by(both.cpu, ParticleSort::Births), unsorted) < 0.01f * brightest);
     CHECK(largest_difference(drawn_by(both.cpu, ParticleSort::Distance), cpu) == 0);  // alone again
+}
+
+TEST_CASE("gpu particles: no number makes a NaN, a hang or more than fits") {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    for (const float bad : {kNan, kInf, -kInf, 1e9f, -1e9f, 0.0f}) {
+        CAPTURE(bad);
+        for (int field = 0; field < 10; ++field) {
+            CAPTURE(field);
+            ParticleEmitter emitter = fountain();
+            emitter.bursts = {{.time = 0.05f, .count = 10}};
+            emitter.duration = 0.5f;
+            emitter.shape = EmitterShape::Ball;
+            ParticleMotion motion;
+            motion.turbulence = 1;
+            float* const fields[] = {
+                &emitter.rate, &emitter.rate_spread,   &emitter.life,     &emitter.speed,
+                &emitter.cone, &emitter.size.y,        &emitter.duration, &emitter.bursts[0].count,
+                &motion.drag,  &motion.turbulence_size};
+            *fields[field] = bad;
+            Executors both(emitter, motion);
+            both.step(30);
+            const std::vector<GpuParticle> alive = both.read();
+            CHECK(alive.size() <= emitter.capacity);
+            bool all_finite = true;
+            for (const GpuParticle& one : alive) {
+                const Vec3 sum = Vec3(one.place_age) + Vec3(one.velocity_life);
+                all_finite = all_finite && std::isfinite(sum.x + sum.y + sum.z);
+            }
+            CHECK(all_finite);
+        }
+    }
 }
 
 TEST_CASE("gpu particles: a world that was loaded anew owes nothing to the one before") {

@@ -349,6 +349,28 @@ TEST_CASE("particles: a jet has no clumps, births within a step are on its parab
     CHECK(puffs.y[0] == test::near(0.25).epsilon(0.15));
 }
 
+TEST_CASE("particles: with drag they fall as they should, whatever the step") {
+    for (const float dt : {1.0f / 60, 1.0f / 20, 0.1f}) {
+        CAPTURE(dt);
+        Emitters scene(dt);
+        ParticleEmitter emitter = burst(1);
+        emitter.speed = 20;
+        ParticleMotion motion = falling();
+        motion.drag = 1.5f;
+        motion.wind = {0, 2, 0};
+        scene.add(emitter, motion);
+        scene.run(static_cast<int>(std::round(3 / dt)));
+        const double left = std::exp(-1.5 * 3);
+        const double last = 2 - 9.81 / 1.5;
+        CHECK(scene.pool().vy[0] == test::near(last + (20 - last) * left).epsilon(1e-5));
+        // Places by means of velocities: off by (drag dt)^2 / 12 of what drag takes.
+        const double place = last * 3 + (20 - last) * (1 - left) / 1.5;
+        const double turned = (20 - last) / 1.5;
+        const double bound = turned * std::pow(1.5 * static_cast<double>(dt), 2) / 12;
+        CHECK(std::abs(static_cast<double>(scene.pool().y[0]) - place) < bound + 1e-4);
+    }
+}
+
 TEST_CASE("particles: Euler's integrators fall as far as their sums") {
     const auto fall = [](ParticleIntegrator integrator, float dt, int steps) {
         Emitters scene(dt);

@@ -1,0 +1,298 @@
+#include "bench/quality/quality_scene.h"
+#include "ecs/base/depth_sort.h"
+#include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "ecs/components/weather.h"
+#include "render/gpu_particle_pools.h"
+#include "systems/particles/gpu_particle_system.h"
+#include "systems/particles/particle_obstacles.h"
+#include "systems/particles/particle_system.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limn {
+namespace {
+
+using glm::dvec3;
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 180;
+constexpr float kStep = 1.0f / 60;
+
+/// One emitter in a world of its own, step by step.
+struct Fountain : QualityScene {
+    Entity emitter;
+
+    Fountain(const ParticleEmitter& settings, const ParticleMotion& motion) {
+        world.insert_resource(FrameTime{.step = kStep});
+        world.insert_resource(RandomSeed{});
+        world.insert_resource(WeatherState{});
+        world.insert_resource(ParticleObstacles{});
+        emitter = world.create(
+            settings, motion, WorldTransform{placed_at({0, 0, 0})},
+            PreviousWorldTransform{placed_at({0, 0, 0})});
+        world.run(add_particle_pools);
+        world.run(add_gpu_particles);
+    }
+    void step(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            auto& time = world.resource<FrameTime>();
+            time.time += static_cast<double>(kStep);
+            ++time.frame;
+            world.run(find_particle_obstacles);
+            world.run(update_particles);
+            world.run(record_gpu_particles);
+        }
+    }
+    [[nodiscard]] const ParticlePool& pool() const {
+        return world.get<const ParticlePool>(emitter);
+    }
+};
+
+dvec3 place_of(const ParticlePool& pool, std::size_t i) {
+    return {pool.x[i], pool.y[i], pool.z[i]};
+}
+dvec3 velocity_of(const ParticlePool& pool, std::size_t i) {
+    return {pool.vx[i], pool.vy[i], pool.vz[i]};
+}
+
+ParticleEmitter burst_of(float count) {
+    ParticleEmitter emitter;
+    emitter.executor = ParticleExecutor::Cpu;
+    emitter.rate = 0;
+    emitter.bursts = {{.time = 0, .count = count}};
+    emitter.capacity = static_cast<std::uint32_t>(count);
+    emitter.cone = 1;
+    emitter.speed = 6;
+    emitter.speed_spread = 3;
+    emitter.life = 100;
+    emitter.life_spread = 0;
+    emitter.seed = 7;
+    return emitter;
+}
+
+// ---- motion
+
+/// Where the GPU has them.
+Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Fountain& fountain) {
+    gpu::Device& device = *headless.device;
+    GpuParticlePools pools = LIMN_TRY(GpuParticlePools::create(device));
+    gpu::RingBuffer ring(device.caps(), "steps", 1 << 20);
+    FrameGraph graph(device);
+    FrameData frame;
+    frame.ring = &ring;
+    ring.begin_frame();
+    pools.begin_frame(fountain.world);
+    pools.add(
+        frame, fountain.emitter, fountain.world.get<const ParticleEmitter>(fountain.emitter),
+        fountain.world.get<const GpuParticles>(fountain.emitter), 0);
+    graph.begin_frame();
+    pools.update(graph, 0, {0, 0, 0}, {0, 0, -1});
+    graph.execute();
+    ring.end_frame();
+    const GpuParticlePool& pool = *pools.pools().begin()->second;
+    std::vector<Vec4> slots(std::size_t{2} * pool.capacity);
+    pool.state.read(0, std::as_writable_bytes(std::span(slots)));
+    std::vector<Vec3> places;
+    for (std::uint32_t i = 0; i < pool.count; ++i) {
+        places.emplace_back(slots[2 * ((pool.first + i) % pool.capacity)]);
+    }
+    return places;
+}
+
+/// Ten seconds of 5,000 particles under gravity, in air that drags them along.
+Status measure_motion(HeadlessRenderer& headless, QualityReport& report) {
+    constexpr int kSteps = 600;
+    const ParticleMotion motion = {.gravity = 1, .drag = 0.4f, .wind = {2, 0, 1}};
+    Fountain cpu(burst_of(5000), motion);
+    ParticleEmitter on_gpu = burst_of(5000);
+    on_gpu.executor = ParticleExecutor::Gpu;
+    Fountain gpu(on_gpu, motion);
+    cpu.step(1);
+    std::vector<dvec3> x;
+    std::vector<dvec3> v;
+    for (std::size_t i = 0; i < cpu.pool().size(); ++i) {
+        x.push_back(place_of(cpu.pool(), i));
+        v.push_back(velocity_of(cpu.pool(), i));
+    }
+    const std::vector<dvec3> x0 = x;
+    const std::vector<dvec3> v0 = v;
+    std::vector<double> way(x.size());
+
+    // The plain loop: forces, velocities and places by the midpoints of half a millisecond.
+    constexpr int kParts = 32;
+    const double dt = static_cast<double>(kStep);
+    const double h = dt / kParts;
+    const double k = static_cast<double>(motion.drag);
+    const dvec3 air = {2, 0, 1};
+    const dvec3 g = {0, -9.81, 0};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        for (int part = 0; part < (kSteps - 1) * kParts; ++part) {
+            const dvec3 middle = v[i] + 0.5 * h * (g - k * (v[i] - air));
+            v[i] += h * (g - k * (middle - air));
+            x[i] += h * middle;
+            way[i] += h * glm::length(middle);
+        }
+    }
+    cpu.step(kSteps - 1);
+    gpu.step(kSteps);
+    const std::vector<Vec3> gpu_places = LIMN_TRY(places_on_gpu(headless, gpu));
+
+    const double t = (kSteps - 1) * dt;
+    double cpu_error = 0;
+    double gpu_error = 0;
+    double exact_error = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const dvec3 found = place_of(cpu.pool(), i);
+        cpu_error = std::max(cpu_error, glm::distance(found, x[i]) / way[i]);
+        gpu_error = std::max(gpu_error, glm::distance(dvec3(gpu_places[i]), x[i]) / way[i]);
+        const dvec3 last = air + g / k;  // the velocity that drag leads to
+        const dvec3 exact = x0[i] + last * t + (v0[i] - last) * ((1 - std::exp(-k * t)) / k);
+        exact_error = std::max(exact_error, glm::distance(found, exact) / way[i]);
+    }
+    report.at_most("CPU: distance to the plain loop, of the way", cpu_error, 1e-4);
+    report.at_most("GPU: distance to the plain loop, of the way", gpu_error, 1e-4);
+    report.at_most("CPU: distance to the exact motion, of the way", exact_error, 1e-4);
+    return Done{};
+}
+
+// ---- collisions
+
+/// 20,000 particles at 60 m/s against a sheet of triangles, at 60 steps a second.
+void measure_tunnelling(QualityReport& report) {
+    ParticleEmitter emitter = burst_of(20000);
+    emitter.speed = 60;
+    emitter.speed_spread = 0;
+    Fountain fountain(emitter, {.gravity = 0});
+    fountain.world.add(fountain.emitter, ParticleCollision{.bounce = 0.5f});
+    const MeshId sheet = fountain.add(quality_square());
+    fountain.world.create(
+        ParticleCollider{.shape = ColliderShape::Mesh}, MeshInstance{sheet, {}},
+        WorldTransform{
+            affine_from({0, 3, 0}, glm::angleAxis(0.5f * kPi, Vec3(1, 0, 0)), Vec3(300))});
+    fountain.step(60);
+    double through = 0;
+    for (const float y : fountain.pool().y) {
+        through += y > 3 ? 1 : 0;
+    }
+    report.at_most("60 m/s against a sheet without thickness: got through", through, 0);
+}
+
+// ---- transparency
+
+constexpr ColorKey kColors[] = {
+    {0, {1, 0.3f, 0.1f}, 0.9f}, {0.5f, {0.9f, 0.8f, 0.2f}, 0.7f}, {1, {0.1f, 0.3f, 0.9f}, 0.8f}};
+
+/// Color and opacity at a share of the life, straight between the keys.
+glm::dvec4 color_at(double share) {
+    const int i = share < 0.5 ? 0 : 1;
+    const auto key = [](const ColorKey& its) {
+        return glm::dvec4(its.color, static_cast<double>(its.opacity));
+    };
+    return glm::mix(key(kColors[i]), key(kColors[i + 1]), 2 * share - i);
+}
+
+/// All discs of a pixel in the order in which its ray meets them.
+dvec3 blend_exactly(const ParticlePool& pool, double radius, const dvec3& eye, const dvec3& ray) {
+    struct Hit {
+        double distance;
+        glm::dvec4 color;
+    };
+    std::vector<Hit> hits;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const dvec3 middle = place_of(pool, i);
+        const dvec3 normal = glm::normalize(eye - middle);
+        const double distance = glm::dot(middle - eye, normal) / glm::dot(ray, normal);
+        const dvec3 off = (eye + distance * ray - middle) / radius;
+        const double inside = 1 - glm::dot(off, off);
+        if (distance > 0 && inside > 0) {
+            glm::dvec4 color =
+                color_at(static_cast<double>(pool.age[i]) / static_cast<double>(pool.life[i]));
+            color.w *= inside * inside;
+            hits.push_back({distance, color});
+        }
+    }
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+        return a.distance > b.distance;
+    });
+    dvec3 sum(0);
+    for (const Hit& hit : hits) {
+        sum = glm::mix(sum, dvec3(hit.color), hit.color.w);
+    }
+    return sum;
+}
+
+ColorImage draw_exactly(const ParticlePool& pool, const RenderView& view) {
+    gpu::FloatImage image{.width = kWidth, .height = kHeight, .channels = 3, .pixels = {}};
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const dvec3 color = blend_exactly(pool, 0.225, eye_of(view), pixel_ray(view, x, y));
+            for (int c = 0; c < 3; ++c) {
+                image.pixels.push_back(static_cast<float>(color[c]));
+            }
+        }
+    }
+    return displayed(image);
+}
+
+/// Colored puffs among each other.
+void measure_transparency(HeadlessRenderer& headless, QualityReport& report) {
+    ParticleEmitter emitter;
+    emitter.rate = 150;
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = {1.3f, 0.7f, 1.3f};
+    emitter.speed = emitter.speed_spread = 0;
+    emitter.life = 3;
+    emitter.life_spread = 0;
+    emitter.seed = 3;
+    ParticleLook look;
+    look.size = 0.45f;
+    look.emission = 1;
+    look.lit = 0;
+    look.softness = 0;
+    look.colors.assign(std::begin(kColors), std::end(kColors));
+    const RenderView view =
+        quality_view({0.4f, 0.8f, 3}, {0, 0, 0}, kWidth, kHeight, radians(45.0f));
+    ColorImage truth;
+    for (const auto& [name, executor] :
+         {std::pair("CPU", ParticleExecutor::Cpu), std::pair("GPU", ParticleExecutor::Gpu)}) {
+        emitter.executor = executor;
+        Fountain fountain(emitter, {.gravity = 0});
+        fountain.step(180);
+        fountain.world.add(fountain.emitter, ParticleLook(look));
+        const gpu::FloatImage found = fountain.render(headless, view);
+        const ColorImage effect = displayed(found);
+        if (executor == ParticleExecutor::Cpu) {
+            truth = draw_exactly(fountain.pool(), view);
+        }
+        report.at_least(
+            std::string(name) + ": 400 puffs against sorting in each pixel", psnr(effect, truth),
+            30, "dB");
+        look.sort = ParticleSort::Births;
+        fountain.world.add(fountain.emitter, ParticleLook(look));
+        report.inform(
+            std::string(name) + ": the same in the order of births",
+            psnr(displayed(fountain.render(headless, view)), truth), "dB");
+        look.sort = ParticleSort::Distance;
+        report.images.push_back({std::string("puffs, ") + name, effect, truth});
+    }
+}
+
+Status measure_particles(HeadlessRenderer& headless, QualityReport& report) {
+    LIMN_TRY(measure_motion(headless, report));
+    measure_tunnelling(report);
+    measure_transparency(headless, report);
+    return Done{};
+}
+
+const RegisterQuality kRegistered(
+    "particles", "a plain loop in double precision; sorting in each pixel", measure_particles);
+
+}  // namespace
+}  // namespace limn
