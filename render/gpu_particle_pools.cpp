@@ -1,5 +1,6 @@
 #include "render/gpu_particle_pools.h"
 
+#include "ecs/base/log.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
@@ -114,7 +115,6 @@ std::vector<Vec4> pack_particle_steps(
 Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     GpuParticlePools pools;
     pools.program_ = LIMN_TRY(device.shaders().load({.compute = "particle_update.comp"}));
-    pools.sort_programs_ = LIMN_TRY(ParticleSortPrograms::create(device));
     return pools;
 }
 
@@ -129,6 +129,18 @@ void GpuParticlePools::begin_frame(const World& world) {
 
 void GpuParticlePools::forget_unused() {
     std::erase_if(pools_, [](const auto& pool) { return !pool.second->used; });
+}
+
+bool GpuParticlePools::can_sort(gpu::Device& device) {
+    if (!sort_programs_) {
+        Result<ParticleSortPrograms> made = ParticleSortPrograms::create(device);
+        if (!made) {
+            log_error("{}", made.error().message);
+            return false;
+        }
+        sort_programs_ = *made;
+    }
+    return true;
 }
 
 void GpuParticlePools::add(
@@ -161,7 +173,7 @@ void GpuParticlePools::add(
         pool.closed_form = step.closed_form;
         pool.gravity = step.gravity;
     }
-    pool.sorted = sort_passes.has_value() && pool.count > 0;
+    pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
     }
@@ -210,7 +222,7 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
             graph.import("sorted particles", pool.sort.instances)};
         graph.add_pass("sort particles", reads, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
+                context, *sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
                 pool.sort);
         });
     }

@@ -78,9 +78,11 @@ class GpuParticlePools {
     }
 
   private:
+    bool can_sort(gpu::Device& device);
+
     const gpu::Program* program_ = nullptr;
-    ParticleSortPrograms sort_programs_{};
-    std::uint32_t epoch_ = 0;                                            ///< of the world
+    std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
+    std::uint32_t epoch_ = 0;                              ///< of the world
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <utility>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -99,14 +100,15 @@ void plan_particle_sort(const ParticleWindow& now, std::uint32_t passes, GpuPart
 }
 
 Result<ParticleSortPrograms> ParticleSortPrograms::create(gpu::Device& device) {
-    const auto load = [&](const char* part) {
-        return device.shaders().load({.compute = "particle_sort.comp", .defines = {{part}}});
+    const auto load = [&](std::vector<gpu::ShaderDefine> defines) {
+        return device.shaders().load(
+            {.compute = "particle_sort.comp", .defines = std::move(defines)});
     };
     ParticleSortPrograms programs;
-    programs.keys = LIMN_TRY(load("KEYS"));
-    programs.pass = LIMN_TRY(load("PASS"));
-    programs.local = LIMN_TRY(load("LOCAL"));
-    programs.gather = LIMN_TRY(load("GATHER"));
+    programs.keys = LIMN_TRY(load({{"KEYS"}}));
+    programs.pass = LIMN_TRY(load({{"PASS"}}));
+    programs.local = LIMN_TRY(load({{"LOCAL"}}));
+    programs.gather = LIMN_TRY(load({}));
     return programs;
 }
 

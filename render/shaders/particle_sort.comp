@@ -1,8 +1,8 @@
-// Sorts the particles of an emitter from back to front (particle.distance-sort, particle.bitonic-sort). Definitions:
+// Sorts the particles of an emitter from back to front (particle.distance-sort, particle.bitonic-sort). One definition at most:
 //   KEYS    writes an entry for each particle, and fills up with entries that come last
 //   PASS    one pass of the bitonic sort, an invocation for each pair
 //   LOCAL   all passes of the runs `run` .. `last_run` whose partners are less than 1,024 apart, in shared memory
-//   GATHER  writes the particles in their order
+//   none    writes the particles in their order
 #version 450
 
 layout(local_size_x = 512) in;  // kSortGroup
@@ -11,12 +11,12 @@ layout(local_size_x = 512) in;  // kSortGroup
 layout(std430, binding = 0) buffer Entries {
     uvec2 entries[];
 };
-#if defined(KEYS) || defined(GATHER)
+#if defined(KEYS) || !(defined(PASS) || defined(LOCAL))
 layout(std430, binding = 1) readonly buffer Instances {
     uvec4 instances[];
 };
 #endif
-#ifdef GATHER
+#if !(defined(KEYS) || defined(PASS) || defined(LOCAL))
 layout(std430, binding = 2) writeonly buffer Sorted {
     uvec4 in_order[];
 };
@@ -50,7 +50,7 @@ bool comes_after(uvec2 a, uvec2 b) {
     return a.x > b.x || (a.x == b.x && a.y > b.y);
 }
 
-#ifdef KEYS
+#if defined(KEYS)
 void main() {
     uint i = gl_GlobalInvocationID.x;
     uint key = kPad;
@@ -62,9 +62,7 @@ void main() {
         entries[i] = uvec2(key, i);
     }
 }
-#endif
-
-#ifdef PASS
+#elif defined(PASS)
 void main() {
     uint pair = gl_GlobalInvocationID.x;
     uint i = 2u * pair - (pair & (partner - 1u));
@@ -75,9 +73,7 @@ void main() {
         entries[i + partner] = a;
     }
 }
-#endif
-
-#ifdef LOCAL
+#elif defined(LOCAL)
 shared uvec2 items[1024];
 void main() {
     uint thread = gl_LocalInvocationID.x;
@@ -100,9 +96,7 @@ void main() {
     entries[base + thread] = items[thread];
     entries[base + thread + 512u] = items[thread + 512u];
 }
-#endif
-
-#ifdef GATHER
+#else
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= total) {
