@@ -6,9 +6,11 @@
 #include "content/app/headless.h"
 #include "content/app/profiler_panel.h"
 #include "content/app/progress.h"
+#include "content/app/sibling_program.h"
 #include "content/app/stage.h"
 #include "content/load/atomic_file.h"
 #include "ecs/base/jobs.h"
+#include "ecs/base/text.h"
 #include "render/graph/frame_graph.h"
 #include "render/render_view.h"
 
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -27,8 +30,9 @@ constexpr const char* kLightsScene =
     "lights";  ///< by name, not by file: measured by light count and method
 constexpr int kHeapFrames =
     600;  ///< the last ones, whose least heap memory counts; a whole camera path if it is longer
-constexpr int kHeapInterval = 60;          ///< frames between its measurements
-constexpr const char* kLensName = "lens";  ///< not a scene: the lens effects, one by one
+constexpr int kHeapInterval = 60;                    ///< frames between its measurements
+constexpr const char* kParticlesName = "particles";  ///< likewise: their pools, without a scene
+constexpr const char* kLensName = "lens";            ///< not a scene: the lens effects, one by one
 
 double ms_between(Clock::time_point begin, Clock::time_point end) {
     return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -147,6 +151,20 @@ machine_report(const Stage& stage, const HeadlessRenderer& headless, const Bench
 }
 
 Status run_bench(const BenchOptions& options) {
+    if (options.scene == kParticlesName) {
+        std::vector<std::string> arguments = {
+            "--repeats", std::to_string(std::min(options.frames, 400))};
+        for (const auto& [option, file] :
+             {std::pair{"--json", options.json}, {"--csv", options.csv}, {"--svg", options.svg}}) {
+            if (!file.empty()) {
+                arguments.insert(arguments.end(), {option, file});
+            }
+        }
+        return run_sibling("limn bench", "limn-bench-particles", std::move(arguments));
+    }
+    if (!options.svg.empty()) {
+        return fail("limn bench: --svg is for the scene `particles`, found `{}`", options.scene);
+    }
     if (options.scene == kLensName) {
         return run_lens_bench(options);
     }

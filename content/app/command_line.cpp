@@ -10,8 +10,8 @@
 #include "content/app/list_commands.h"
 #include "content/app/log_sink.h"
 #include "content/app/play_command.h"
-#include "content/app/quality_command.h"
 #include "content/app/render_command.h"
+#include "content/app/sibling_program.h"
 #include "content/app/view_command.h"
 #include "ecs/base/type_name.h"
 
@@ -262,6 +262,8 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         ->type_name("FILE");
     app->add_option("--csv", options.csv, "write the numbers as CSV; - is stdout")
         ->type_name("FILE");
+    app->add_option("--svg", options.svg, "of `particles`: draw the cost over their number")
+        ->type_name("FILE");
     app->footer(
         "Every frame simulates one step and renders off screen. Times are in milliseconds. Shaders "
         "are\n"
@@ -299,11 +301,23 @@ Command add_bench(CLI::App& program, BenchOptions& options) {
         "\"p95_ms\", \"added_ms\",\n"
         "\"passes_ms\", \"passes\"}]}\n"
         "CSV: effects,frames,median_ms,p95_ms,added_ms,passes_ms\n\n"
+        "`limn bench particles` holds particles to their gates, ratios to loops that people write "
+        "by\n"
+        "hand, and shows what a particle costs among a thousand to ten million. It draws nothing;\n"
+        "--frames is how often each is run at most, and the best counts.\n"
+        "JSON: {\"threads\", \"gates\": [{\"gate\", \"name\", \"ours\", \"other\", \"against\", "
+        "\"unit\",\n"
+        "\"ratio\", \"limit\", \"met\"}], \"growth\": [{\"curve\", \"points\": [{\"count\", "
+        "\"ns\"}]}], "
+        "\"notes\"}\n"
+        "CSV: gate,name,ours,other,unit,ratio,limit,met and, after an empty line, "
+        "curve,count,ns\n\n"
         "Examples:\n"
         "  limn bench lights --size 640x360\n"
         "  limn bench lens --size 640x360 --frames 100\n"
         "  limn bench gallery --size 640x360 --set glow.strength=0.1\n"
-        "  limn bench stress-instances --frames 600 --json numbers.json");
+        "  limn bench stress-instances --frames 600 --json numbers.json\n"
+        "  limn bench particles --csv particles.csv --svg particles.svg");
     return {app, [&options] { return run_bench(options); }};
 }
 
@@ -388,7 +402,7 @@ Command add_quality(CLI::App& program) {
     CLI::App* app = program.add_subcommand("quality", "Compare the effects with their oracles");
     app->set_help_flag();  // everything behind the name is for the other program, --help as well
     app->prefix_command();
-    return {app, [app] { return run_quality(app->remaining()); }};
+    return {app, [app] { return run_sibling("limn quality", "limn-quality", app->remaining()); }};
 }
 
 Command add_compare(CLI::App& program, CompareOptions& options) {

@@ -1,98 +1,36 @@
-#include "bench/micro/scalar_bvh.h"
-#include "ecs/base/depth_sort.h"
+#include "bench/particles/particle_race.h"
+#include "bench/particles/particle_rows.h"
+#include "bench/particles/scalar_bvh.h"
 #include "ecs/base/rng.h"
 #include "systems/particles/mesh_bvh.h"
 #include "systems/particles/particle_collision.h"
 #include "systems/particles/particle_collision_kernels.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <numeric>
 #include <string>
 #include <vector>
 
-// Sorting, collision and tracing of particles against what people write by hand. Prints the ratio
-// of the times, the gate that it has to stay below, and "pass" or "miss". Both take turns, and of
-// each the best run counts, so that other work on the machine disturbs little; this file is
-// compiled with the flags that suit the loops to compare with best (-O3 -march=native).
+// Collision and tracing of particles against what people write by hand.
 
+namespace limn::bench {
 namespace {
 
-using namespace limn;
-
 constexpr std::size_t kMany = 1000000;
-constexpr int kRepeats = 15;
-
-/// Best times of two functions, in turns, each after its untimed preparation [s].
-template <typename PrepareA, typename A, typename PrepareB, typename B>
-std::pair<double, double> race(PrepareA prepare_a, A a, PrepareB prepare_b, B b) {
-    using Clock = std::chrono::steady_clock;
-    const auto time = [](auto& prepare, auto& run) {
-        prepare();
-        const auto begin = Clock::now();
-        run();
-        return std::chrono::duration<double>(Clock::now() - begin).count();
-    };
-    std::pair<double, double> best = {INFINITY, INFINITY};
-    for (int i = 0; i < kRepeats; ++i) {
-        best.first = std::min(best.first, time(prepare_a, a));
-        best.second = std::min(best.second, time(prepare_b, b));
-    }
-    return best;
-}
-
-/// `count` items in each time.
-void print_row(
-    const char* number, const std::string& name, std::pair<double, double> times, std::size_t count,
-    double gate) {
-    const double ratio = times.first / times.second;
-    const double per_item = 1e9 / static_cast<double>(count);
-    std::printf(
-        "%-3s %-44s %8.2f ns %8.2f ns   ratio %.3f   gate %.2f   %s\n", number, name.c_str(),
-        times.first * per_item, times.second * per_item, ratio, gate,
-        ratio <= gate ? "pass" : "miss");
-    std::fflush(stdout);
-}
-
-// ---- sorting
-// -----------------------------------------------------------------------------------
-
-template <typename Key>
-void sort_row(
-    const char* number, const char* name, std::size_t count, SortThreads threads, double gate) {
-    Random random(1, 2, 3, 4);
-    std::vector<Key> keys(count);
-    std::vector<std::uint64_t> packed(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t word = depth_key(-random.uniform(0.1f, 1000.0f));
-        keys[i] = static_cast<Key>(sizeof(Key) == 2 ? random.word() >> 16 : word);
-        packed[i] = std::uint64_t{keys[i]} << 32 | i;
-    }
-    std::vector<std::uint32_t> order(count);
-    std::vector<std::uint64_t> sorted(count);
-    SortScratch scratch;
-    const auto times = race(
-        [&] { std::iota(order.begin(), order.end(), 0u); },
-        [&] { sort_by_depth(std::span<const Key>(keys), order, scratch, threads); },
-        [&] { sorted = packed; }, [&] { std::sort(sorted.begin(), sorted.end()); });
-    print_row(number, name, times, count, gate);
-}
 
 // ---- colliding
 // -----------------------------------------------------------------------------------
 
-struct Structure {
+struct Body {
     Vec3 position;
     Vec3 velocity;
     float rest[12];  ///< age, color, size and so on
 };
-static_assert(sizeof(Structure) == 72);
+static_assert(sizeof(Body) == 72);
 
 struct Arrays {
     std::vector<float> column[6];
@@ -112,8 +50,8 @@ void respond_by_hand(Vec3& velocity, const Vec3& normal) {
     }
 }
 
-void collide_structures(std::vector<Structure>& all, const PlaneCollider& plane) {
-    for (Structure& p : all) {
+void collide_structures(std::vector<Body>& all, const PlaneCollider& plane) {
+    for (Body& p : all) {
         const float distance = glm::dot(p.position, plane.normal) - plane.offset;
         if (distance < 0) {
             p.position -= distance * plane.normal;
@@ -122,9 +60,9 @@ void collide_structures(std::vector<Structure>& all, const PlaneCollider& plane)
     }
 }
 
-void collide_structures(std::vector<Structure>& all, const SphereCollider& sphere) {
+void collide_structures(std::vector<Body>& all, const SphereCollider& sphere) {
     const float radius2 = sphere.radius * sphere.radius;
-    for (Structure& p : all) {
+    for (Body& p : all) {
         const Vec3 delta = p.position - sphere.center;
         const float length2 = glm::dot(delta, delta);
         if (length2 < radius2) {
@@ -135,9 +73,9 @@ void collide_structures(std::vector<Structure>& all, const SphereCollider& spher
     }
 }
 
-void collide_structures(std::vector<Structure>& all, const HeightCollider& field) {
+void collide_structures(std::vector<Body>& all, const HeightCollider& field) {
     const Vec2 per_meter = 1.0f / field.cell;
-    for (Structure& p : all) {
+    for (Body& p : all) {
         const float x = (p.position.x - field.origin.x) * per_meter.x;
         const float z = (p.position.z - field.origin.z) * per_meter.y;
         if (!(x >= 0 && z >= 0 && x <= static_cast<float>(field.width - 1)
@@ -165,12 +103,14 @@ void collide_structures(std::vector<Structure>& all, const HeightCollider& field
 
 /// A million particles in a cube of 20 m, of which one in a hundred is inside.
 template <typename Shape, typename Kernel>
-void collision_row(const char* name, const Shape& shape, float floor, Kernel kernel, double gate) {
+void add_collision_row(
+    ParticleBench& bench, const char* name, const Shape& shape, float floor, Kernel kernel,
+    double gate) {
     Arrays arrays;
-    std::vector<Structure> structures(kMany);
+    std::vector<Body> structures(kMany);
     Random random(1, 2, 3, 4);
     for (std::size_t i = 0; i < kMany; ++i) {
-        Structure& p = structures[i];
+        Body& p = structures[i];
         p = {};
         p.position = {
             random.uniform(-10.0f, 10.0f), random.uniform(floor, 10.0f),
@@ -182,16 +122,19 @@ void collision_row(const char* name, const Shape& shape, float floor, Kernel ker
         }
     }
     const Arrays first_arrays = arrays;
-    const std::vector<Structure> first_structures = structures;
-    const auto times = race(
-        [&] { arrays = first_arrays; }, [&] { kernel(arrays.columns(), shape, kResponse, 0.0f); },
+    const std::vector<Body> first_structures = structures;
+    const auto [ours, by_hand] = race(
+        kMany, [&] { arrays = first_arrays; },
+        [&] { kernel(arrays.columns(), shape, kResponse, 0.0f); },
         [&] { structures = first_structures; }, [&] { collide_structures(structures, shape); });
-    print_row("13", name, times, kMany, gate);
+    bench.add(GateRow{"13", name, ours, by_hand, "structures", "ns", gate});
 }
 
-void collision_rows() {
-    collision_row("plane, 1M", PlaneCollider{.offset = -9.8f}, -10.0f, collide_plane, 0.45);
-    collision_row("sphere, 1M", SphereCollider{.radius = 2.7f}, -10.0f, collide_sphere, 0.35);
+void add_shape_rows(ParticleBench& bench) {
+    add_collision_row(
+        bench, "plane, 1M", PlaneCollider{.offset = -9.8f}, -10.0f, collide_plane, 0.45);
+    add_collision_row(
+        bench, "sphere, 1M", SphereCollider{.radius = 2.7f}, -10.0f, collide_sphere, 0.35);
     constexpr int kPoints = 512;
     std::vector<float> heights(kPoints * kPoints);
     for (std::size_t i = 0; i < heights.size(); ++i) {
@@ -206,7 +149,8 @@ void collision_rows() {
         .width = kPoints,
         .depth = kPoints,
         .heights = heights};
-    collision_row("height field of 512 x 512, 1M", field, -10.0f, collide_height_field, 0.3);
+    add_collision_row(
+        bench, "height field of 512 x 512, 1M", field, -10.0f, collide_height_field, 0.3);
 }
 
 // ---- tracing
@@ -254,12 +198,11 @@ std::vector<Segment> make_segments(std::size_t count, float spread) {
     return segments;
 }
 
-void tracing_rows() {
+void add_tracing_rows(ParticleBench& bench) {
     constexpr std::size_t kSegments = 200000;
     const Hills hills;
     const MeshBvh bvh = build_mesh_bvh(hills.positions, hills.indices);
-    const bench::ScalarBvh scalar(hills.positions, hills.indices);
-    const auto nothing = [] {};
+    const ScalarBvh scalar(hills.positions, hills.indices);
     std::vector<MeshHit> hits(kSegments);
     std::vector<float> shares(kSegments);
     SegmentBatch batch;
@@ -293,41 +236,37 @@ void tracing_rows() {
          {Row{"near the surface, random order", near},
           Row{"near the surface, Morton order", ordered},
           Row{"in a volume, random order", volume}}) {
-        const auto times = race(nothing, one_by_one(row.segments), nothing, by_hand(row.segments));
-        print_row("14", std::string("segments ") + row.name, times, kSegments, 0.6);
-        std::size_t found = 0;
+        const auto [ours, plain] = race(
+            kSegments, kUnprepared, one_by_one(row.segments), kUnprepared, by_hand(row.segments));
+        bench.add(GateRow{
+            "14", std::string("segments ") + row.name, ours, plain, "scalar BVH by hand", "ns",
+            0.6});
         std::size_t differ = 0;
         for (std::size_t i = 0; i < kSegments; ++i) {
-            const bool hit = hits[i].triangle != kNoTriangle;
-            found += hit ? 1 : 0;
-            differ += hit == (shares[i] <= 1) ? 0 : 1;
+            differ += (hits[i].triangle != kNoTriangle) == (shares[i] <= 1) ? 0 : 1;
         }
-        std::printf(
-            "      %.1f %% hit, %zu decided otherwise\n",
-            100.0 * static_cast<double>(found) / static_cast<double>(kSegments), differ);
+        bench.note(fmt::format("of {} segments, {} were decided otherwise", kSegments, differ));
     }
     const auto batched = [&] { first_hits(bvh, near, hits, batch); };
-    print_row(
-        "14", "segments near the surface, sorted batch",
-        race(nothing, batched, nothing, by_hand(near)), kSegments, 0.6);
-    print_row(
-        "15", "segments in Morton order / random order",
-        race(nothing, one_by_one(ordered), nothing, one_by_one(near)), kSegments, 0.75);
-    print_row(
-        "15", "segments, sorted batch / random order",
-        race(nothing, batched, nothing, one_by_one(near)), kSegments, 0.75);
+    const auto [sorted, plain] = race(kSegments, kUnprepared, batched, kUnprepared, by_hand(near));
+    bench.add(GateRow{
+        "14", "segments near the surface, sorted batch", sorted, plain, "scalar BVH by hand", "ns",
+        0.6});
+    const auto [morton, random] =
+        race(kSegments, kUnprepared, one_by_one(ordered), kUnprepared, one_by_one(near));
+    bench.add(
+        GateRow{"15", "segments in Morton order", morton, random, "random order", "ns", 0.75});
+    const auto [batch_time, single] =
+        race(kSegments, kUnprepared, batched, kUnprepared, one_by_one(near));
+    bench.add(
+        GateRow{"15", "segments, sorted batch", batch_time, single, "random order", "ns", 0.75});
 }
 
 }  // namespace
 
-int main() {
-    std::printf("    %-44s %11s %11s\n", "", "ours", "by hand");
-    sort_row<std::uint32_t>("10", "sort 100k by 32 bits", 100000, SortThreads::One, 0.1);
-    sort_row<std::uint32_t>("10", "sort 1M by 32 bits", kMany, SortThreads::One, 0.13);
-    sort_row<std::uint16_t>("10", "sort 100k by 16 bits", 100000, SortThreads::One, 0.1);
-    sort_row<std::uint16_t>("10", "sort 1M by 16 bits", kMany, SortThreads::One, 0.13);
-    sort_row<std::uint32_t>("11", "sort 1M by 32 bits, all threads", kMany, SortThreads::All, 0.11);
-    sort_row<std::uint16_t>("11", "sort 1M by 16 bits, all threads", kMany, SortThreads::All, 0.11);
-    collision_rows();
-    tracing_rows();
+void add_collision_rows(ParticleBench& bench) {
+    add_shape_rows(bench);
+    add_tracing_rows(bench);
 }
+
+}  // namespace limn::bench

@@ -1,4 +1,4 @@
-#include "content/app/quality_command.h"
+#include "content/app/sibling_program.h"
 
 #include "ecs/base/text.h"
 
@@ -9,10 +9,11 @@
 
 namespace limn {
 
-Status run_quality(std::vector<std::string> arguments) {
+Status
+run_sibling(std::string_view command, const std::string& name, std::vector<std::string> arguments) {
     std::error_code ignored;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::string program = self.parent_path() / "limn-quality";
+    const std::string program = self.parent_path() / name;
     arguments.insert(arguments.begin(), program);
     std::vector<char*> words;
     for (std::string& argument : arguments) {
@@ -23,11 +24,10 @@ Status run_quality(std::vector<std::string> arguments) {
     const int error = errno;
     if (error == ENOENT) {
         return fail(
-            "limn quality: found no program {}, build it with: cmake --build --preset release "
-            "--target limn-quality",
-            program);
+            "{}: found no program {}, build it with: cmake --build --preset release --target {}",
+            command, program, name);
     }
-    return fail("limn quality: {}: {}", program, std::strerror(error));
+    return fail("{}: {}: {}", command, program, std::strerror(error));
 }
 
 }  // namespace limn

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "ecs/base/result.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limn {
+
+/// Becomes the program of that name beside this one, with these arguments: `limn quality` is
+/// `limn-quality`, `limn bench particles` is `limn-bench-particles`, so that this program contains
+/// neither oracles nor references. `command` names what failed, as "limn quality". Returns only if
+/// that fails.
+[[nodiscard]] Status
+run_sibling(std::string_view command, const std::string& name, std::vector<std::string> arguments);
+
+}  // namespace limn
