@@ -11,7 +11,6 @@
 #include "render/view_block.h"
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -102,19 +101,12 @@ float particle_lag(const FrameData& frame) {
 void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances, const Vec3& observer) {
-    for (std::size_t i = 0; i < pool.size(); ++i) {
-        const float age = pool.age[i] - back;
-        if (age < 0) {
-            continue;  // not born yet
-        }
-        const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
-        const float share = std::clamp(age / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
-        instances.push_back(
-            {.position = Vec3(pool.x[i], pool.y[i], pool.z[i]) - velocity * back,
-             .look_and_share = look << 16 | static_cast<std::uint32_t>(share * 65535.0f),
-             .velocity_and_age = glm::packHalf4x16(Vec4(velocity - observer, age)),
-             .random = pool.look[i]});
-    }
+    const std::size_t before = instances.size();
+    instances.resize(before + pool.size());
+    const std::size_t packed = pack_particles(
+        pool, {.look = look, .back = back, .observer = observer},
+        std::span(instances).subspan(before));
+    instances.resize(before + packed);
 }
 
 Vec3 camera_velocity(const World& world, Entity camera, float step) {

@@ -6,6 +6,7 @@
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
+#include "render/particle_packing.h"
 #include "render/ribbon_list.h"
 #include "render/shaders/particle_gpu.h"
 
@@ -30,14 +31,6 @@ namespace limn {
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
 // format. Sorted by distance of their centers; blended surfaces are all behind.
 
-/// Layout of two texels in particle_gpu.h.
-struct ParticleInstance {
-    Vec3 position;
-    std::uint32_t look_and_share = 0;
-    std::uint64_t velocity_and_age = 0;  ///< four halfs, the first in the lowest bits
-    std::uint32_t random = 0;
-    std::uint32_t unused = 0;
-};
 static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
 
 /// Length of a step [s].

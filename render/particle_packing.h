@@ -1,0 +1,38 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/particles.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace limn {
+
+// Instances of particles, for the vertex shader: 32 bytes from nine arrays, every frame. A SIMD
+// version for the machine's widest vectors (Highway, dispatched at run time) beside a plain one.
+
+/// Layout of two texels in particle_gpu.h.
+struct ParticleInstance {
+    Vec3 position;
+    std::uint32_t look_and_share = 0;    ///< look in the high half; share of the life, of 65,535
+    std::uint64_t velocity_and_age = 0;  ///< four halfs, the first in the lowest bits
+    std::uint32_t random = 0;
+    std::uint32_t unused = 0;
+};
+
+/// What is the same for all particles of a pool.
+struct ParticlePacking {
+    std::uint32_t look = 0;     ///< 0 .. 65,535
+    float back = 0;             ///< before the end of the step [s]
+    Vec3 observer = {0, 0, 0};  ///< whose velocity is taken off [m/s]
+};
+
+/// Writes the particles that exist `back` seconds before the end of the step, where they are then;
+/// `out` has room for all. Returns how many they are: those that are not born yet are left out.
+std::size_t pack_particles(
+    const ParticlePool& pool, const ParticlePacking& packing, std::span<ParticleInstance> out);
+std::size_t pack_particles_scalar(
+    const ParticlePool& pool, const ParticlePacking& packing, std::span<ParticleInstance> out);
+
+}  // namespace limn

@@ -1,0 +1,68 @@
+#include "ecs/base/rng.h"
+#include "render/particle_packing.h"
+
+#include <doctest/doctest.h>
+#include <glm/gtc/packing.hpp>
+
+#include <bit>
+#include <cmath>
+#include <vector>
+
+using namespace limn;
+
+namespace {
+
+/// Some are not born yet, some have outlived their time, one has no life.
+ParticlePool make_pool(std::size_t count) {
+    ParticlePool pool;
+    Random random(1, 2, 3, 4);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
+            column->push_back(random.uniform(-10.0f, 10.0f));
+        }
+        pool.age.push_back(random.uniform(-0.01f, 1.2f));
+        pool.life.push_back(i == 70 ? 0.0f : 1.0f);
+        pool.look.push_back(random.word());
+    }
+    return pool;
+}
+
+constexpr ParticlePacking kPacking = {.look = 40000, .back = 0.004f, .observer = {1, -2, 3}};
+
+}  // namespace
+
+TEST_CASE("particle packing: vectors pack what the plain loop packs, in its order") {
+    for (const std::size_t count : {0, 1, 7, 64, 500}) {
+        const ParticlePool pool = make_pool(count);
+        std::vector<ParticleInstance> ours(count);
+        std::vector<ParticleInstance> plain(count);
+        const std::size_t packed = pack_particles(pool, kPacking, ours);
+        REQUIRE(packed == pack_particles_scalar(pool, kPacking, plain));
+        CHECK((count < 500 || packed < count));
+        for (std::size_t i = 0; i < packed; ++i) {
+            CHECK(ours[i].position == plain[i].position);
+            CHECK(ours[i].look_and_share == plain[i].look_and_share);
+            CHECK(ours[i].random == plain[i].random);
+            const Vec4 a = glm::unpackHalf4x16(ours[i].velocity_and_age);
+            const Vec4 b = glm::unpackHalf4x16(plain[i].velocity_and_age);
+            for (int c = 0; c < 4; ++c) {  // ties may be rounded either way
+                CHECK(std::abs(a[c] - b[c]) <= std::abs(b[c]) * 0x1p-10f + 0x1p-24f);
+            }
+        }
+    }
+}
+
+TEST_CASE("particle packing: an instance has the look above the share, and velocities less the "
+          "observer's") {
+    ParticlePool pool = make_pool(32);
+    pool.age.assign(32, 0.504f);
+    pool.life.assign(32, 1.0f);
+    pool.vx.assign(32, 3);
+    std::vector<ParticleInstance> instances(32);
+    REQUIRE(pack_particles(pool, kPacking, instances) == 32);
+    for (const ParticleInstance& instance : instances) {
+        CHECK(instance.look_and_share >> 16 == 40000);
+        CHECK((instance.look_and_share & 0xffff) == 32767);
+        CHECK(glm::unpackHalf4x16(instance.velocity_and_age).x == 2);
+    }
+}
