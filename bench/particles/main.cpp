@@ -19,10 +19,13 @@ int main(int argc, char** argv) {
     std::string csv;
     std::string json;
     std::string svg;
+    std::string only;
     std::size_t most = 10'000'000;
     app.add_option("--csv", csv, "write the numbers as CSV; - is stdout");
     app.add_option("--json", json, "write the numbers as JSON; - is stdout");
     app.add_option("--svg", svg, "draw the cost per particle over their number");
+    app.add_option("--only", only, "one part")
+        ->check(CLI::IsMember({"update", "sort", "collision", "world", "growth"}));
     app.add_option("--most", most, "particles of the last point of the curves")
         ->check(CLI::Range(std::size_t{1000}, std::size_t{100'000'000}));
     app.add_option(
@@ -36,11 +39,22 @@ int main(int argc, char** argv) {
         fmt::print(
             "{} threads; times per particle, the best of many runs in turns\n", thread_count());
     }
-    add_update_rows(bench);
-    add_sort_rows(bench);
-    add_collision_rows(bench);
-    add_world_rows(bench);
-    add_growth(bench, most);
+    const auto wanted = [&](const char* part) { return only.empty() || only == part; };
+    if (wanted("update")) {
+        add_update_rows(bench);
+    }
+    if (wanted("sort")) {
+        add_sort_rows(bench);
+    }
+    if (wanted("collision")) {
+        add_collision_rows(bench);
+    }
+    if (wanted("world")) {
+        add_world_rows(bench);
+    }
+    if (wanted("growth")) {
+        add_growth(bench, most);
+    }
     const auto met =
         std::count_if(bench.gates.begin(), bench.gates.end(), [](const bench::GateRow& row) {
             return row.is_met();

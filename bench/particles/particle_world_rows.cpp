@@ -204,7 +204,7 @@ void add_tunnel_row(ParticleBench& bench) {
 void add_world_rows(ParticleBench& bench) {
     const int threads = thread_count();
     add_memory_row(bench);
-    add_emitter_rows(bench, threads);
+    add_emitter_rows(bench, 1);
     add_filling_row(bench, threads);
     add_thread_rows(bench, threads);
     add_hash_row(bench);

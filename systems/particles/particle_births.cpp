@@ -51,7 +51,7 @@ constexpr float kLeastKept = 0.37f;  // for which drag is taken back [1/e]
 /// bring it here. Otherwise all births of a step would fall as far, and jets break into clumps.
 void rewind(const ParticleStep& step, float at, Vec3& position, Vec3& velocity) {
     const Vec3 now = velocity;
-    const float undo_drag = std::pow(std::max(step.keep, kLeastKept), -at);
+    const float undo_drag = step.keep == 1 ? 1 : std::pow(std::max(step.keep, kLeastKept), -at);
     velocity = step.air + (now - step.air) * undo_drag - step.gravity * (at * step.dt);
     position -= (velocity * step.old_share + now * (1 - step.old_share)) * (at * step.dt);
 }

@@ -19,7 +19,7 @@ namespace limn {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
-constexpr std::size_t kBlockGrain = 4;  // blocks of one job
+constexpr std::uint32_t kJobParticles = 4096;  // at least, of one job: small emitters share jobs
 
 /// An emitter in this step.
 struct Work {
@@ -91,9 +91,17 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     pool.fresh = pool.size() - before;
 }
 
-void find_parents(std::vector<Work>& works) {
+/// Those whose particles are born where others are.
+std::vector<Work*> find_children(std::vector<Work>& works) {
+    std::vector<Work*> children;
     for (Work& work : works) {
-        if (work.source == nullptr || work.source->emitter == work.entity) {
+        if (work.source != nullptr) {
+            children.push_back(&work);
+        }
+    }
+    for (Work* child : children) {
+        Work& work = *child;
+        if (work.source->emitter == work.entity) {
             continue;
         }
         const auto parent = std::find_if(works.begin(), works.end(), [&](const Work& other) {
@@ -102,6 +110,21 @@ void find_parents(std::vector<Work>& works) {
         work.parent =
             parent != works.end() ? static_cast<std::uint32_t>(parent - works.begin()) : kNone;
     }
+    return children;
+}
+
+/// Ends of runs of blocks that have enough to do for a job; the same for any number of threads.
+std::vector<std::size_t> split_into_jobs(const std::vector<Block>& blocks) {
+    std::vector<std::size_t> ends;
+    std::uint32_t particles = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        particles += blocks[i].count;
+        if (particles >= kJobParticles || i + 1 == blocks.size()) {
+            ends.push_back(i + 1);
+            particles = 0;
+        }
+    }
+    return ends;
 }
 
 /// Births by the particles of the work's parent, which have moved and not lost their dead yet.
@@ -151,6 +174,7 @@ void update_particles(
     const EmitterEye eye = find_eye(cameras);
     const std::vector<Force> forces = find_forces(fields, time->time);
     std::vector<Work> works;
+    works.reserve(emitters.count());
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
@@ -171,7 +195,7 @@ void update_particles(
             work.motion.wrap_center = eye.place;
         }
         work.pool = &pool;
-        works.push_back(work);
+        works.push_back(std::move(work));
     });
 
     parallel_for(works.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -196,8 +220,9 @@ void update_particles(
             blocks.push_back(std::move(block));
         }
     }
-    parallel_for(blocks.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
+    const std::vector<std::size_t> ends = split_into_jobs(blocks);
+    parallel_for(ends.size(), 1, [&](std::size_t job, std::size_t) {
+        for (std::size_t i = job == 0 ? 0 : ends[job - 1]; i < ends[job]; ++i) {
             Block& block = blocks[i];
             const Work& work = works[block.work];
             if (work.collision != nullptr && !around.is_empty()) {
@@ -217,10 +242,10 @@ void update_particles(
     }
 
     // Children's births wait until the dead are gone: their parents may be children too.
-    find_parents(works);
-    parallel_for(works.size(), 1, [&](std::size_t begin, std::size_t end) {
+    const std::vector<Work*> children = find_children(works);
+    parallel_for(children.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            find_spawns_of(works[i], works, seed->seed, *time);
+            find_spawns_of(*children[i], works, seed->seed, *time);
         }
     });
 
@@ -231,20 +256,18 @@ void update_particles(
             firsts.push_back(block);
         }
     }
-    parallel_for(firsts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(firsts.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             remove_dead(*works[firsts[i].work].pool, firsts[i].first);
         }
     });
-    parallel_for(works.size(), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for(children.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Work& work = works[i];
-            if (work.source != nullptr) {
-                add_spawns(
-                    *work.emitter, work.place.now, work.spawns, seed->seed, subject_of(work),
-                    *work.pool);
-                work.pool->fresh = work.spawns.size();
-            }
+            const Work& work = *children[i];
+            add_spawns(
+                *work.emitter, work.place.now, work.spawns, seed->seed, subject_of(work),
+                *work.pool);
+            work.pool->fresh = work.spawns.size();
         }
     });
 }
