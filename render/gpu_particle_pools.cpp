@@ -36,6 +36,8 @@ void pack_emitter(
         word(static_cast<std::uint32_t>(emitter.direction)), std::cos(cone));
     texels.emplace_back(emitter.size, emitter.speed);
     texels.emplace_back(emitter.speed_spread, emitter.life, emitter.life_spread, 0.0f);
+    texels.emplace_back(emitter.size_spread, 0.0f);
+    texels.emplace_back(emitter.velocity_spread, 0.0f);
 }
 
 /// `first_run`, `first_force`: texels, counted from the first of either.

@@ -1,6 +1,5 @@
 #include "render/light_list.h"
 
-#include "ecs/base/gradient_noise.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
@@ -10,8 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
-#include <numbers>
+#include <cmath>
 
 namespace limn {
 namespace {
@@ -104,7 +102,11 @@ void each_light(const World& world, double time, float alpha, bool all, Use&& us
                                                     ? now.world
                                                     : mix_affine(before->world, now.world, alpha);
                 const float factor = pulse != nullptr ? pulse_factor(*pulse, time) : 1.0f;
-                use(light, LightEntity{entity, world_from_light, factor, shadow, projector});
+                Light shown = light;
+                if (pulse != nullptr) {
+                    shown.color = pulse_color(*pulse, light.color, time);
+                }
+                use(shown, LightEntity{entity, world_from_light, factor, shadow, projector});
             }
         });
 }
@@ -136,15 +138,11 @@ void add_extras(
 }  // namespace
 
 float pulse_factor(const LightPulse& pulse, double time) {
-    const double angle = static_cast<double>(pulse.frequency) * time;
-    const float wave = pulse.shape == PulseShape::Sine
-                           ? static_cast<float>(std::sin(angle + pulse.phase))
-                           : 2.0f
-                                     * noise(
-                                         static_cast<float>(angle / (2.0 * std::numbers::pi)),
-                                         std::bit_cast<std::uint32_t>(pulse.phase), 3)
-                                 - 1.0f;
-    return std::max(0.0f, 1.0f + pulse.amplitude * wave);
+    return std::max(0.0f, evaluate(pulse.function, time));
+}
+
+Vec3 pulse_color(const LightPulse& pulse, const Vec3& color, double time) {
+    return color + (pulse.color - color) * evaluate_share(pulse.color_function, time);
 }
 
 layout::LightRecord make_record(const PointLight& light, const Vec3& position, float factor) {

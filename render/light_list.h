@@ -82,6 +82,8 @@ void add_particle_lights(const World& world, float back, LightList& list);
 
 /// Factor on the intensity at `time` [s] (engine.light-object), >= 0.
 [[nodiscard]] float pulse_factor(const LightPulse& pulse, double time);
+/// Color of a light of this `color` at `time` [s].
+[[nodiscard]] Vec3 pulse_color(const LightPulse& pulse, const Vec3& color, double time);
 
 /// `factor` multiplies the intensity.
 [[nodiscard]] layout::LightRecord

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/periodic.h"
 #include "ecs/reflect.h"
 
 namespace limn {
@@ -93,26 +94,18 @@ LIMN_FIELDS(DirectionalLight) {
     LIMN_FIELD(enabled, "whether the light is on");
 }
 
-/// Waveform of a LightPulse.
-enum class PulseShape : std::uint8_t {
-    Sine,   ///< sin(frequency t + phase)
-    Noise,  ///< flickers like a flame, at a similar rate; each phase gives another sequence
-};
-
-/// Modulates the intensity of the light on the same entity (the `function` of engine.light-object):
-/// intensity x (1 + amplitude shape(t)), never below 0.
+/// Modulates the light on the same entity (the `function` of engine.light-object): its intensity is
+/// multiplied by a periodic function, never below 0, its color led to another one and back.
 struct LightPulse {
-    PulseShape shape = PulseShape::Sine;
-    float amplitude = 0.5f;
-    float frequency = 4.0f;
-    float phase = 0.0f;
+    PeriodicFunction function = {.base = 1, .amplitude = 0.5f, .frequency = 0.64f};
+    Vec3 color = {1, 1, 1};
+    PeriodicFunction color_function = constant_function(0);
 };
 
 LIMN_FIELDS(LightPulse) {
-    LIMN_FIELD(shape, .doc = "waveform", .values = "sine noise");
-    LIMN_FIELD(amplitude, "modulated fraction of the intensity", "", 0, 1);
-    LIMN_FIELD(frequency, "angular frequency", "rad/s", 0, 1000);
-    LIMN_FIELD(phase, "phase at time 0", "rad");
+    visit_fields(self.function, visit);
+    LIMN_FIELD(color, .doc = "other color, which color_function leads to", .min = 0, .color = true);
+    LIMN_FIELD(color_function, "share of the other color, clamped to 0 .. 1");
 }
 
 }  // namespace limn

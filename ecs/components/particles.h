@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/periodic.h"
 #include "ecs/components/surface.h"
 #include "ecs/reflect.h"
 
@@ -27,7 +28,7 @@ namespace limn {
 enum class EmitterShape : std::uint8_t {
     Point,
     Ball,    ///< evenly within an ellipsoid
-    Sphere,  ///< on its surface
+    Sphere,  ///< on its surface; an axis of size 0 is left out, so that a ring is left
     Disc,    ///< within an ellipse in the xz plane
     Circle,  ///< on its edge
     Box,
@@ -77,6 +78,12 @@ enum class ParticleExecutor : std::uint8_t {
     Gpu,
 };
 
+/// Which births the capacity limits (particle.linear-window, particle.circular-list).
+enum class ParticlePopulation : std::uint8_t {
+    Circular,  ///< those alive: places are used again
+    Linear,    ///< all, ever: of an effect that ends, a window that moves down an array
+};
+
 struct ParticleEmitter {
     bool active = true;
     ParticleExecutor executor = ParticleExecutor::Auto;
@@ -89,13 +96,16 @@ struct ParticleEmitter {
     bool loop = true;
     float prewarm = 0;
     std::uint32_t capacity = 4096;
+    ParticlePopulation population = ParticlePopulation::Circular;
     std::uint32_t seed = 0;
     EmitterShape shape = EmitterShape::Point;
     Vec3 size = {0.1f, 0.1f, 0.1f};
+    Vec3 size_spread = {0, 0, 0};
     EmitterDirection direction = EmitterDirection::Cone;
     float cone = 0.3f;
     float speed = 1;
     float speed_spread = 0.2f;
+    Vec3 velocity_spread = {0, 0, 0};
     float inherit = 0;
     float drop_speed = 1;
     float life = 2;
@@ -123,6 +133,9 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(
         capacity, "living particles at most; further births are dropped and counted", "", 0,
         4194304);
+    LIMN_FIELD(
+        population, .doc = "what the capacity counts: the living, or with linear all births ever",
+        .values = "circular linear");
     LIMN_FIELD(seed, "random seed; 0: of its own for each entity");
     LIMN_FIELD(
         shape, .doc = "where particles are born",
@@ -131,10 +144,14 @@ LIMN_FIELDS(ParticleEmitter) {
         size, "half extents of the shape along the local axes; y of a torus: radius of its tube",
         "m", 0, 1e5);
     LIMN_FIELD(
+        size_spread, "give or take, along each local axis: thickness of a shell", "m", 0, 1e5);
+    LIMN_FIELD(
         direction, .doc = "initial direction: about local +y, or outward", .values = "cone radial");
     LIMN_FIELD(cone, "half angle of the cone of directions", "rad", 0, 3.1416);
     LIMN_FIELD(speed, "initial speed", "m/s", -1e4, 1e4);
     LIMN_FIELD(speed_spread, "give or take", "m/s", 0, 1e4);
+    LIMN_FIELD(
+        velocity_spread, "give or take, along each local axis beside the speed", "m/s", 0, 1e4);
     LIMN_FIELD(inherit, "share of the emitter's own velocity that is added", "", -10, 10);
     LIMN_FIELD(
         drop_speed, "factor on the speed of drops that a spray source or obstacle throws up", "", 0,
@@ -270,6 +287,13 @@ enum class ParticleFrames : std::uint8_t {
     Pick,     ///< one by chance, for life
 };
 
+/// What is left out before it is drawn, because it is out of view (particle.visibility).
+enum class ParticleCulling : std::uint8_t {
+    Particles,  ///< each by itself
+    Bounds,     ///< all, if none is in view
+    Emitter,    ///< all, if the emitter's shape is out of view: cheap, but what flew into view goes
+};
+
 struct ParticleLook {
     ImageId image;
     std::uint32_t columns = 1;
@@ -280,6 +304,8 @@ struct ParticleLook {
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
     std::vector<ColorKey> colors;
+    PeriodicFunction color_function = constant_function(0);
+    Vec3 color_spread = {0, 0, 0};
     float emission = 0;
     float lit = 1;
     float cover = 1;
@@ -297,6 +323,8 @@ struct ParticleLook {
     float near_fade = 0;
     float far_fade = 0;
     float fade = 0;
+    ParticleCulling culling = ParticleCulling::Particles;
+    float cull_margin = 0;
 };
 
 LIMN_FIELDS(ParticleLook) {
@@ -311,6 +339,11 @@ LIMN_FIELDS(ParticleLook) {
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");
     LIMN_FIELD(colors, "color and opacity over the life, at most 8 keys; none: white");
+    LIMN_FIELD(
+        color_function,
+        "place in `colors`, 0 .. 1, by the age instead of the life; unless base and amplitude are "
+        "0");
+    LIMN_FIELD(color_spread, "give or take of red, green and blue, once for each", "", 0, 1000);
     LIMN_FIELD(emission, .doc = "radiance of a white particle by itself", .min = 0, .max = 1e6);
     LIMN_FIELD(lit, .doc = "factor on the light that it scatters; 0: unlit", .min = 0, .max = 10);
     LIMN_FIELD(cover, "1: hides what is behind by its opacity, 0: only adds light", "", 0, 1);
@@ -346,6 +379,13 @@ LIMN_FIELDS(ParticleLook) {
         far_fade, "distance beyond which it is not seen, fading from 0.6 of it; 0: none", "m", 0,
         1e5);
     LIMN_FIELD(fade, "it fades out over the last seconds of its life", "s", 0, 1e5);
+    LIMN_FIELD(
+        culling,
+        .doc = "what is not drawn where it is out of view: each particle by itself; all of them, "
+               "if none is in view; all, if the emitter's shape is not, even those that flew into "
+               "view",
+        .values = "particles bounds emitter");
+    LIMN_FIELD(cull_margin, "by which that is taken larger", "m", 0, 1e5);
 }
 
 /// Particles light surfaces and each other, as small lights without shadows.

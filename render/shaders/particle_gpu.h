@@ -20,6 +20,15 @@ const uint kParticleTexels = 2u;
 const uint kRibbonTexels = 2u;
 const uint kFacingRibbon = 4u;  // after those of ParticleFacing
 
+// A billboard, in place of a particle: its look is one of facing kFacingBillboard, its share of the life is that of its
+// colors.
+//   1  index of its quad; its opacity as a float
+// Quads of billboards (BillboardList): texels of four floats.
+//   0  half the extent to the right xyz [m]; BillboardAlignment
+//   1  half the extent upward xyz [m]; frame of the flipbook
+const uint kBillboardTexels = 2u;
+const uint kFacingBillboard = 5u;
+
 // A look: texels of four floats.
 //   0  diameter [m], give or take; angle [rad], give or take; spin [rad/s]
 //   1  spin, give or take; stretch [s]; softness [m]; forward
@@ -32,17 +41,21 @@ const uint kLookSamples = 32u;  // evenly over the life, the first at its beginn
 const uint kLookSizes = 4u;
 const uint kLookColors = 12u;
 //  45  a, b, c of the attenuation of point sprites; fade [s]
+//  46  place in the colors by age: wave, base, amplitude, phase
+//  47  its frequency [Hz]; give or take of the color
 const uint kLookMore = 44u;
-const uint kLookTexels = 46u;
+const uint kLookTexels = 48u;
 
 // Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
 //   0  seed of the random numbers: key (2 words); subject (2 words)
 //   1  high word of the number of the oldest particle; shape, direction (words); cosine of the cone
 //   2  size of the shape; speed
 //   3  speed, give or take; lifetime, give or take; 0
+//   4  place, give or take; 0
+//   5  velocity, give or take; 0
 // then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (shares of the step), number;
 // then the forces of fields: origin, kind (word); axis, strength times dt; speed, radius.
-const uint kEmitterTexels = 4u;
+const uint kEmitterTexels = 6u;
 //   0  number of its first birth (low word), births, first run, runs (words)
 //   1  acceleration times dt; dt
 //   2  velocity of the air; share of the velocity that is kept

@@ -79,6 +79,12 @@ float next_signed(inout Random random) {
     return -1.0 + 2.0 * next_share(random);
 }
 
+vec3 next_vector(inout Random random) {
+    float x = next_signed(random);
+    float y = next_signed(random);
+    return vec3(x, y, next_signed(random));
+}
+
 // ---- births: particle_births.cpp
 
 const float kLeastKept = 0.37;
@@ -103,7 +109,9 @@ vec3 sample_shape(uint shape, vec3 size, inout Random random) {
         return size * (sample_direction(random) * radius);
     }
     if (shape == kSphere) {
-        return size * sample_direction(random);
+        vec3 direction = sample_direction(random);
+        vec3 used = direction * vec3(notEqual(size, vec3(0.0)));
+        return size * (used == direction ? direction : used / max(length(used), 1e-15));
     }
     if (shape == kDisc) {
         float radius = sqrt(next_share(random));
@@ -187,6 +195,14 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     p.velocity = aim * (size_speed.w + rest.x * next_signed(random)) + texelFetch(steps, texel + 9).xyz;
     p.life = rest.y + rest.z * next_signed(random);
     p.look_bits = next_word(random);
+    vec3 size_spread = texelFetch(steps, 4).xyz;
+    vec3 velocity_spread = texelFetch(steps, 5).xyz;
+    if (size_spread != vec3(0.0)) {
+        local += size_spread * next_vector(random);
+    }
+    if (velocity_spread != vec3(0.0)) {
+        p.velocity += transform_vector(place, velocity_spread * next_vector(random));
+    }
     p.place = transform_vector(place, local) + vec3(place.row[0].w, place.row[1].w, place.row[2].w);
     if (closed_form != 0) {
         p.age = -at * texelFetch(steps, texel + 1).w;

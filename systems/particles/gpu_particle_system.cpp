@@ -48,7 +48,7 @@ void add_step(
     const float dt = step.motion.step.dt;
     forget_old(emitter, dt, particles);
     const std::uint64_t window = particles.clock.born - particles.oldest();
-    const std::uint64_t room = emitter.capacity > window ? emitter.capacity - window : 0;
+    const std::size_t room = birth_room(emitter, window, particles.clock);
     step.first = particles.clock.born;
     find_births(emitter, scale, dt, room, random, particles.clock, step.births);
     for (const BirthRun& run : step.births) {

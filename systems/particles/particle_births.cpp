@@ -74,6 +74,13 @@ void add_particle(
     pool.look.push_back(look);
 }
 
+/// Each component between -1 and 1.
+Vec3 random_vector(Random& random) {
+    const float x = random.uniform(-1.0f, 1.0f);
+    const float y = random.uniform(-1.0f, 1.0f);
+    return {x, y, random.uniform(-1.0f, 1.0f)};
+}
+
 /// What is drawn for a birth.
 struct Attributes {
     Vec3 local;     ///< place in the emitter's space
@@ -93,6 +100,13 @@ Attributes draw_attributes(const ParticleEmitter& emitter, const Affine& world, 
     its.velocity = aim * spread(emitter.speed, emitter.speed_spread, random);
     its.life = spread(emitter.life, emitter.life_spread, random);
     its.look = random.word();
+    // Last, so that whoever has none gets the same numbers as ever.
+    if (emitter.size_spread != Vec3(0)) {
+        its.local += emitter.size_spread * random_vector(random);
+    }
+    if (emitter.velocity_spread != Vec3(0)) {
+        its.velocity += transform_vector(world, emitter.velocity_spread * random_vector(random));
+    }
     return its;
 }
 
@@ -162,6 +176,13 @@ class Births {
 
 }  // namespace
 
+std::size_t
+birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterClock& clock) {
+    const std::uint64_t used =
+        emitter.population == ParticlePopulation::Linear ? clock.born : window;
+    return emitter.capacity > used ? static_cast<std::size_t>(emitter.capacity - used) : 0;
+}
+
 void find_births(
     const ParticleEmitter& emitter, float scale, float dt, std::size_t room, Random& random,
     EmitterClock& clock, std::vector<BirthRun>& births) {
@@ -213,8 +234,13 @@ Vec3 sample_shape(EmitterShape shape, const Vec3& size, Random& random) {
         const float radius = std::cbrt(random.uniform());
         return size * (random.direction() * radius);
     }
-    case EmitterShape::Sphere:
-        return size * random.direction();
+    case EmitterShape::Sphere: {
+        const Vec3 direction = random.direction();
+        const Vec3 used = {
+            size.x != 0 ? direction.x : 0, size.y != 0 ? direction.y : 0,
+            size.z != 0 ? direction.z : 0};
+        return size * (used == direction ? direction : normalize_or(used, Vec3(0)));
+    }
     case EmitterShape::Disc: {
         const Vec2 p = random.in_disc();
         return size * Vec3(p.x, 0, p.y);
@@ -297,7 +323,7 @@ void add_spawns(
 void add_drops(
     const ParticleEmitter& emitter, const std::vector<SprayDrop>& drops, const ParticleStep& step,
     std::uint64_t seed, std::uint64_t subject, ParticlePool& pool) {
-    const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+    const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
     const std::size_t count = std::min(drops.size(), room);
     pool.clock.dropped += drops.size() - count;
     make_room(emitter, count, pool);

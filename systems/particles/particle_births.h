@@ -17,6 +17,10 @@ namespace limn {
 // When and where particles are born. All random numbers are keyed by the emitter and the number of
 // the birth, so they depend neither on the frame rate nor on what else is born.
 
+/// How many more may be born where `window` count as alive (particle.linear-window).
+[[nodiscard]] std::size_t
+birth_room(const ParticleEmitter& emitter, std::uint64_t window, const EmitterClock& clock);
+
 /// The births of a step: those of the rate in equal intervals that go on across steps, then those
 /// of bursts. Advances the clock. `random` decides the spreads; `scale` is a factor on the rate. At
 /// most `room` births; the others are added to `clock.dropped`.

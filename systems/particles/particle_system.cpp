@@ -58,8 +58,7 @@ void prewarm(const Work& work, std::uint64_t seed) {
     std::vector<BirthRun> births;
     for (int i = 0; i < prewarm_steps(emitter, dt); ++i) {
         Random random = prewarm_random(seed, subject_of(work), i);
-        const std::size_t room =
-            emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+        const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
         births.clear();
         find_births(emitter, work.scale, dt, room, random, pool.clock, births);
         add_particles(emitter, work.place, work.motion.step, seed, subject_of(work), births, pool);
@@ -81,7 +80,7 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const std::uint64_t subject = subject_of(work);
     Random random = births_random(seed, subject, time.frame);
     const std::size_t before = pool.size();
-    const std::size_t room = emitter.capacity > pool.size() ? emitter.capacity - pool.size() : 0;
+    const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
     std::vector<BirthRun> births;
     find_births(emitter, work.scale, work.motion.step.dt, room, random, pool.clock, births);
     add_particles(emitter, work.place, work.motion.step, seed, subject, births, pool);
@@ -133,8 +132,7 @@ void find_spawns_of(
     if (work.parent == kNone || !work.emitter->active) {
         return;
     }
-    const std::size_t size = work.pool->size();
-    const std::size_t room = work.emitter->capacity > size ? work.emitter->capacity - size : 0;
+    const std::size_t room = birth_room(*work.emitter, work.pool->size(), work.pool->clock);
     Random random(seed, subject_of(work), name_hash("particle sources"), time.frame);
     work.pool->clock.dropped += find_spawns(
         *work.source, *work.emitter, *works[work.parent].pool, works[work.parent].hits,

@@ -112,7 +112,7 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     for (int i = 0; i < 3; ++i) {
         hud.frame(draw);
     }
-    const auto amplitude = [&] { return world.get<const LightPulse>(entity).amplitude; };
+    const auto amplitude = [&] { return world.get<const LightPulse>(entity).function.amplitude; };
     // Look for it: press at every height until the amplitude changes.
     const float x = 1130.0f;
     float y = 150.0f;

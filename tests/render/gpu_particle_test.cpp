@@ -139,6 +139,52 @@ TEST_CASE("gpu particles: for ten seconds they are where the CPU has them") {
     }
 }
 
+TEST_CASE("gpu particles: shells and velocities vary as on the CPU") {
+    ParticleEmitter emitter = fountain();
+    emitter.shape = EmitterShape::Sphere;
+    emitter.size = {2, 2, 0};
+    emitter.size_spread = {0.2f, 0.3f, 0.4f};
+    emitter.velocity_spread = {1, 0.5f, 2};
+    Executors both(emitter, {});
+    both.step(120);
+    const std::vector<GpuParticle> gpu = both.read();
+    REQUIRE(gpu.size() == both.pool().size());
+    CHECK(gpu.size() > 500);
+    CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+}
+
+TEST_CASE("gpu particles: the window of a linear population moves down and ends") {
+    ParticleEmitter emitter = fountain();
+    emitter.population = ParticlePopulation::Linear;
+    emitter.capacity = 1000;
+    emitter.rate = 6000;
+    emitter.life = 0.5f;
+    emitter.life_spread = 0.3f;
+    Executors both(emitter, {});
+    std::uint64_t tail = 0;
+    std::size_t most = 0;
+    for (int i = 0; i < 90; ++i) {
+        both.step();
+        const GpuParticles& window = both.recorded();
+        REQUIRE(window.oldest() <= window.clock.born);
+        REQUIRE(window.clock.born <= 1000);
+        REQUIRE(window.oldest() >= tail);
+        tail = window.oldest();
+        if (i % 10 == 0) {
+            // The dead within the window are skipped.
+            const std::size_t alive = both.read().size();
+            CHECK(alive <= window.clock.born - tail);
+            CHECK(alive == both.pool().size());
+            most = std::max(most, alive);
+        }
+    }
+    CHECK(most > 500);
+    CHECK(both.recorded().clock.born == 1000);
+    CHECK(both.recorded().clock.dropped == 8000);
+    CHECK(both.recorded().oldest() == 1000);
+    CHECK(both.read().empty());
+}
+
 TEST_CASE("gpu particles: forces, turns and integrators are those of the CPU") {
     for (const ParticleIntegrator integrator :
          {ParticleIntegrator::Average, ParticleIntegrator::ExplicitEuler,

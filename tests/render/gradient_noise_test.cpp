@@ -112,9 +112,10 @@ TEST_CASE_FIXTURE(RenderTest, "noise: CPU and GPU agree to 1e-5, and each with i
 }
 
 TEST_CASE("noise: a flame flickers within its amplitude, smoothly, and no two alike") {
-    const LightPulse one = {.shape = PulseShape::Noise, .amplitude = 0.3f, .frequency = 12};
+    const LightPulse one = {
+        .function = {.wave = Wave::Noise, .base = 1, .amplitude = 0.3f, .frequency = 1.91f}};
     LightPulse other = one;
-    other.phase = 1.5f;
+    other.function.phase = 1.5f;
     float least = 2;
     float most = 0;
     double apart = 0;

@@ -556,18 +556,39 @@ TEST_CASE("light: nothing is lit beyond the radius") {
 }
 
 TEST_CASE("light: a pulse modulates the intensity and never makes it negative") {
-    const LightPulse pulse = {.amplitude = 0.5f, .frequency = 2, .phase = 0.3f};
-    CHECK(pulse_factor(pulse, 0) == test::near(1 + 0.5 * std::sin(0.3)));
-    CHECK(pulse_factor(pulse, 1.7) == test::near(1 + 0.5 * std::sin(3.7)));
-    CHECK(pulse_factor({.amplitude = 3, .frequency = 1, .phase = 0}, 1.5 * kPiD) == 0);
+    const auto pulsing = [](const PeriodicFunction& function) {
+        return LightPulse{.function = function};
+    };
+    const LightPulse pulse = pulsing({.base = 1, .amplitude = 0.5f, .phase = 0.1f, .frequency = 2});
+    CHECK(pulse_factor(pulse, 0) == test::near(1 + 0.5 * std::sin(0.2 * kPiD)));
+    CHECK(pulse_factor(pulse, 1.7) == test::near(1 + 0.5 * std::sin(7 * kPiD)));
+    const LightPulse deep = pulsing({.base = 1, .amplitude = 3});
+    CHECK(pulse_factor(deep, 0.75) == 0);
 
     PlaneScene scene;
     scene.world.insert_resource(FrameTime{.time = 0});
     const Entity lamp = scene.shine(PointLight{}, at({0, 0, 0.6f}));
     const float steady = scene.picture().at(9, 9, 0);
-    scene.world.add(lamp, LightPulse{.amplitude = 1, .frequency = 1, .phase = 0});
-    scene.world.resource<FrameTime>().time = 0.5 * kPiD;
+    scene.world.add(lamp, pulsing({.base = 1, .amplitude = 1}));
+    scene.world.resource<FrameTime>().time = 0.25;
     CHECK(scene.picture().at(9, 9, 0) == test::near(2 * steady).epsilon(1e-3));
+}
+
+TEST_CASE("light: a pulse leads the color to another one, no farther than all the way") {
+    PlaneScene scene;
+    scene.world.insert_resource(FrameTime{.time = 0});
+    const Entity lamp = scene.shine(PointLight{.color = {1, 0, 0}}, at({0, 0, 0.6f}));
+    const float red = scene.picture().at(9, 9, 0);
+    scene.world.add(
+        lamp, LightPulse{
+                  .function = constant_function(1),
+                  .color = {0, 0, 1},
+                  .color_function = {.base = 0.5f, .amplitude = 2}});
+    CHECK(scene.picture().at(9, 9, 0) == test::near(0.5 * red).epsilon(1e-3));
+    CHECK(scene.picture().at(9, 9, 2) == test::near(0.5 * red).epsilon(1e-3));
+    scene.world.resource<FrameTime>().time = 0.25;
+    CHECK(scene.picture().at(9, 9, 0) == test::near(0).scale(red));
+    CHECK(scene.picture().at(9, 9, 2) == test::near(red).epsilon(1e-3));
 }
 
 TEST_CASE("light: broken lights are left out") {

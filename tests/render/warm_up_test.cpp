@@ -134,7 +134,7 @@ TEST_CASE("warm-up: a light that its pulse turns black for a moment stays in the
     World world;
     world.insert_resource(FrameTime{.time = 1.5 * std::numbers::pi});
     const Entity lamp = world.create(
-        PointLight{}, WorldTransform{}, LightPulse{.amplitude = 3, .frequency = 1, .phase = 0});
+        PointLight{}, WorldTransform{}, LightPulse{.function = {.base = 1, .amplitude = 3}});
     LightList list;
     collect_lights(world, 1, list);
     REQUIRE(list.records.size() == 1);

@@ -286,6 +286,109 @@ TEST_CASE("particles: the torus of the book is a ring without a hole in its tube
     CHECK(glm::length(sum) / kCount < 0.1f);
 }
 
+TEST_CASE("particles: a shell's radii vary by axis, and an axis of 0 leaves a ring") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(20000);
+    emitter.shape = EmitterShape::Sphere;
+    emitter.size = {10, 10, 0};
+    emitter.size_spread = {1, 1, 1};
+    emitter.speed = 0;
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    REQUIRE(pool.size() == 20000);
+    const float reach = std::sqrt(2.0f);
+    float thick = 0;
+    float nearest = 20;
+    float farthest = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const float radius = std::sqrt(pool.x[i] * pool.x[i] + pool.y[i] * pool.y[i]);
+        nearest = std::min(nearest, radius);
+        farthest = std::max(farthest, radius);
+        thick = std::max(thick, std::abs(pool.z[i]));
+    }
+    CHECK(nearest >= 10 - reach);
+    CHECK(nearest < 10 - 0.9f * reach);
+    CHECK(farthest <= 10 + reach);
+    CHECK(farthest > 10 + 0.9f * reach);
+    CHECK(thick <= 1);
+    CHECK(thick > 0.99f);
+}
+
+TEST_CASE("particles: velocities vary by axis, each by itself, and a small shell is a point") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(20000);
+    emitter.shape = EmitterShape::Sphere;
+    emitter.size = Vec3(0.001f);
+    emitter.speed = 5;
+    emitter.velocity_spread = {2, 1, 0.5f};
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    const auto reach = [](const std::vector<float>& v, float mean) {
+        float most = 0;
+        double sum = 0;
+        for (const float x : v) {
+            most = std::max(most, std::abs(x - mean));
+            sum += x;
+        }
+        CHECK(sum / static_cast<double>(v.size()) == near(mean).scale(1).epsilon(0.03));
+        return most;
+    };
+    CHECK(reach(pool.vx, 0) == near(2).epsilon(0.001));
+    CHECK(reach(pool.vy, 5) == near(1).epsilon(0.001));
+    CHECK(reach(pool.vz, 0) == near(0.5).epsilon(0.001));
+    double product = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        product += pool.vx[i] * (pool.vy[i] - 5);
+    }
+    CHECK(std::abs(product / 20000) < 0.02);
+}
+
+TEST_CASE("particles: a linear population is born once, as many as the capacity") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(600);
+    emitter.population = ParticlePopulation::Linear;
+    emitter.capacity = 50;
+    emitter.life = 0.05f;
+    scene.add(emitter);
+    std::uint64_t last = 0;
+    for (int i = 0; i < 60; ++i) {
+        scene.run();
+        const ParticlePool& pool = scene.pool();
+        CHECK(pool.clock.born >= last);
+        CHECK(pool.clock.born <= 50);
+        CHECK(pool.size() <= pool.clock.born);
+        // First in, first out: those alive are the youngest, in the order of their births.
+        CHECK(std::is_sorted(pool.age.rbegin(), pool.age.rend()));
+        last = pool.clock.born;
+    }
+    CHECK(last == 50);
+    CHECK(scene.pool().size() == 0);
+    CHECK(scene.pool().clock.dropped == 550);
+}
+
+TEST_CASE("particles: a rate of capacity / life holds the population at the capacity") {
+    // The source's example: fifty in all, a life of a second.
+    Emitters scene;
+    ParticleEmitter emitter = steady(50);
+    emitter.capacity = 50;
+    emitter.life = 1;
+    scene.add(emitter);
+    std::uint64_t begun = 0;
+    for (int i = 0; i < 600; ++i) {
+        scene.run();
+        CHECK(scene.pool().size() <= 50);
+        if (i == 119) {
+            begun = scene.pool().clock.born;
+        }
+        if (i > 60) {
+            CHECK(scene.pool().size() >= 49);
+        }
+    }
+    CHECK(std::abs(static_cast<double>(scene.pool().clock.born - begun) - 8 * 50) <= 8);
+}
+
 TEST_CASE("particles: directions are unit, within the cone, even over its cap") {
     Random random(1, 2, 3, 4);
     constexpr int kCount = 50000;
