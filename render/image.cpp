@@ -15,6 +15,7 @@
 #include "render/passes/mirror_caustic_pass.h"
 #include "render/passes/motion_blur_pass.h"
 #include "render/passes/particle_pass.h"
+#include "render/passes/particle_shadow_pass.h"
 #include "render/passes/probe_pass.h"
 #include "render/passes/ripple_pass.h"
 #include "render/passes/shadow_pass.h"
@@ -40,7 +41,8 @@ constexpr EffectEntry kImage[] = {
     effect<GbufferEffect>(kSceneViews),
     effect<WaterBodiesEffect>(kSceneViews),  // where water is, and what lies in it
     effect<ShadowEffect>(kSceneViews),       // maps and volumes; after water, which asks for maps
-    effect<CausticsEffect>(kSceneViews),     // after shadows: what stands in the way of its light
+    effect<ParticleShadowEffect>(kSceneViews),  // maps of what particles leave of a light
+    effect<CausticsEffect>(kSceneViews),  // after shadows: what stands in the way of its light
 
     // Light.
     effect<LightEffect>(kSceneViews),

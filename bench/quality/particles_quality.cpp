@@ -1,6 +1,8 @@
+#include "bench/oracles/particle_shadow_oracle.h"
 #include "bench/quality/quality_scene.h"
 #include "ecs/base/depth_sort.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/light.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
@@ -284,15 +286,71 @@ void measure_transparency(HeadlessRenderer& headless, QualityReport& report) {
     }
 }
 
+// ---- shadows
+
+/// A wall among the puffs, and behind them, each pixel against the sum of all optical depths.
+void measure_shadows(HeadlessRenderer& headless, QualityReport& report) {
+    ParticleEmitter emitter;
+    emitter.executor = ParticleExecutor::Cpu;
+    emitter.rate = 60;
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = {1.1f, 1.1f, 1.4f};
+    emitter.speed = emitter.speed_spread = 0;
+    emitter.life = 3;
+    emitter.life_spread = 0;
+    emitter.seed = 5;
+    ParticleLook look;
+    look.size = 0.7f;
+    look.colors = {{.at = 0, .opacity = 0.35f}};
+    look.near_fade = 1000;  // not seen by the camera
+    Fountain fountain(emitter, {.gravity = 0});
+    fountain.step(180);
+    fountain.add_light(DirectionalLight{.illuminance = 3}, placed_at({0, 0, 5}));
+    std::vector<oracle::ShadowDisc> discs;
+    for (std::size_t i = 0; i < fountain.pool().size(); ++i) {
+        discs.push_back({.middle = place_of(fountain.pool(), i), .diameter = 0.7, .opacity = 0.35});
+    }
+    const MeshId square = fountain.add(quality_square());
+    const MaterialId white = fountain.add(Material{.base_color = {1, 1, 1, 1}, .roughness = 1});
+    for (const float z : {-2.0f, 0.0f}) {
+        const Entity wall = fountain.place(square, white, placed_at({0, 0, z}, 2));
+        const RenderView view =
+            quality_view({0, 0, z + 2}, {0, 0, z}, kHeight, kHeight, radians(90.0f));
+        look.shadow = 0;
+        fountain.world.add(fountain.emitter, ParticleLook(look));
+        const gpu::FloatImage open = fountain.render(headless, view);
+        look.shadow = 1;
+        fountain.world.add(fountain.emitter, ParticleLook(look));
+        const gpu::FloatImage found = fountain.render(headless, view);
+        double sum = 0;
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = 0; x < kHeight; ++x) {
+                const dvec3 place = eye_of(view) + 2.0 * pixel_ray(view, x, y);
+                const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
+                const auto its = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
+                sum += (its - exact) * (its - exact);
+            }
+        }
+        report.at_most(
+            std::string("shadow of 180 puffs, ") + (z < 0 ? "behind" : "among")
+                + " them: RMS error of the transmittance",
+            std::sqrt(sum / (kHeight * kHeight)), z < 0 ? 0.002 : 0.01);
+        fountain.world.destroy(wall);
+    }
+}
+
 Status measure_particles(HeadlessRenderer& headless, QualityReport& report) {
     LIMN_TRY(measure_motion(headless, report));
     measure_tunnelling(report);
     measure_transparency(headless, report);
+    measure_shadows(headless, report);
     return Done{};
 }
 
 const RegisterQuality kRegistered(
-    "particles", "a plain loop in double precision; sorting in each pixel", measure_particles);
+    "particles",
+    "a plain loop in double precision; sorting in each pixel; the sum of optical depths",
+    measure_particles);
 
 }  // namespace
 }  // namespace limn

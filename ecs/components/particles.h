@@ -294,12 +294,19 @@ enum class ParticleCulling : std::uint8_t {
     Emitter,    ///< all, if the emitter's shape is out of view: cheap, but what flew into view goes
 };
 
+/// How finely particles are drawn.
+enum class ParticleResolution : std::uint8_t {
+    Full,
+    Half,  ///< a quarter of the pixels, enlarged along depth edges; behind all that are drawn fully
+};
+
 struct ParticleLook {
     ImageId image;
     std::uint32_t columns = 1;
     std::uint32_t rows = 1;
     ParticleFrames frames = ParticleFrames::Play;
     float frame_rate = 0;
+    ImageId motion;
     float size = 0.1f;
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
@@ -325,6 +332,9 @@ struct ParticleLook {
     float fade = 0;
     ParticleCulling culling = ParticleCulling::Particles;
     float cull_margin = 0;
+    float shadow = 0;
+    Vec3 shadow_tint = {1, 1, 1};
+    ParticleResolution resolution = ParticleResolution::Full;
 };
 
 LIMN_FIELDS(ParticleLook) {
@@ -335,6 +345,10 @@ LIMN_FIELDS(ParticleLook) {
         frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
         .values = "play shuffle pick");
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
+    LIMN_FIELD(
+        motion,
+        "motion vectors of the flipbook (made images: `motion`), along which a frame becomes the "
+        "next; none: they fade into each other");
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");
@@ -386,6 +400,20 @@ LIMN_FIELDS(ParticleLook) {
                "view",
         .values = "particles bounds emitter");
     LIMN_FIELD(cull_margin, "by which that is taken larger", "m", 0, 1e5);
+    LIMN_FIELD(
+        shadow,
+        "share of the opacity that casts a shadow, on surfaces and particles, in the first "
+        "directional light, or without one in the first spot with a shadow; not if the GPU moves "
+        "them",
+        "", 0, 1);
+    LIMN_FIELD(
+        shadow_tint, .doc = "factors on the optical depth of red, green and blue in the shadow",
+        .min = 0, .max = 1);
+    LIMN_FIELD(
+        resolution,
+        .doc = "half: a quarter of the pixels, for smoke that covers much of the image; drawn "
+               "behind all full ones",
+        .values = "full half");
 }
 
 /// Particles light surfaces and each other, as small lights without shadows.

@@ -69,26 +69,6 @@ void append_births_of(
 
 }  // namespace
 
-LookRecord make_look_record(const ParticleLook& look, int layer) {
-    LookRecord record{};
-    record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
-    record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
-    record[2] = {look.emission, look.lit, look.cover, static_cast<float>(look.facing)};
-    record[3] = {
-        static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
-        look.frame_rate, static_cast<float>(layer)};
-    record[layout::kLookMore] = {
-        static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
-    record[layout::kLookMore + 1] = {look.attenuation, look.fade};
-    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
-        const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
-        record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
-            sample_curve(look.size_curve, at);
-        record[layout::kLookColors + i] = sample_colors(look.colors, at);
-    }
-    return record;
-}
-
 float particle_step(const FrameData& frame) {
     const auto* const time = frame.world->find_resource<FrameTime>();
     return time != nullptr ? time->step : FrameTime{}.step;
@@ -96,17 +76,6 @@ float particle_step(const FrameData& frame) {
 
 float particle_lag(const FrameData& frame) {
     return (1.0f - frame.camera.alpha) * particle_step(frame);
-}
-
-void append_particles(
-    const ParticlePool& pool, std::uint32_t look, float back,
-    std::vector<ParticleInstance>& instances, const Vec3& observer) {
-    const std::size_t before = instances.size();
-    instances.resize(before + pool.size());
-    const std::size_t packed = pack_particles(
-        pool, {.look = look, .back = back, .observer = observer},
-        std::span(instances).subspan(before));
-    instances.resize(before + packed);
 }
 
 Vec3 camera_velocity(const World& world, Entity camera, float step) {
@@ -254,6 +223,11 @@ void ParticleEffect::collect(FrameData& frame) {
         ++runs.back().count;
         sorted.push_back(instances[i]);
     }
+    auto& sprites = frame.data.publish<ParticleSprites>();
+    sprites.instances = instances;
+    sprites.looks = looks;
+    sprites.arrays = arrays;
+    sprites.look_texels = &look_texels;
     particle_texels.upload(*frame.ring, sorted);
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
@@ -301,7 +275,7 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
             particle_texels.bind(device, kParticlesUnit);
             look_texels.bind(device, kLooksUnit);
             ribbon_texels.bind(device, kRibbonsUnit);
-            for (const Run& run : runs) {
+            for (const ParticleRun& run : runs) {
                 program->set("first", run.first);
                 if (images) {
                     device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));

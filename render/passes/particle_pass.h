@@ -1,16 +1,13 @@
 #pragma once
 
 #include "ecs/base/depth_sort.h"
-#include "ecs/components/particles.h"
 #include "render/buffer_texture.h"
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
-#include "render/particle_packing.h"
+#include "render/particle_list.h"
 #include "render/ribbon_list.h"
-#include "render/shaders/particle_gpu.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -31,24 +28,10 @@ namespace limn {
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
 // format. Sorted by distance of their centers; blended surfaces are all behind.
 
-static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
-
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
 /// Time of the frame before the end of the last step [s].
 [[nodiscard]] float particle_lag(const FrameData& frame);
-
-/// The record of a look in particle_gpu.h.
-using LookRecord = std::array<Vec4, layout::kLookTexels>;
-
-/// `layer`: of the texture array that its image is in; -1: a soft disc.
-[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
-
-/// Appends the particles that exist `back` seconds before the end of the step, where they are then.
-/// Streaks show velocities relative to `observer` [m/s].
-void append_particles(
-    const ParticlePool& pool, std::uint32_t look, float back,
-    std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
 
 /// Of the last step [m/s]; 0 after a cut.
 [[nodiscard]] Vec3 camera_velocity(const World& world, Entity camera, float step);
@@ -67,13 +50,6 @@ void order_by_distance(
     const Vec3& eye, const Vec3& forward, DistanceOrder& order);
 
 struct ParticleEffect {
-    /// Particles that follow one another in the order and have images of one texture array.
-    struct Run {
-        std::uint32_t array = 0;  ///< of ImagePool
-        int first = 0;
-        int count = 0;
-    };
-
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
@@ -82,7 +58,7 @@ struct ParticleEffect {
     std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
     DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
-    std::vector<Run> runs = {};
+    std::vector<ParticleRun> runs = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
     bool lit = false;
     bool images = false;

@@ -3,8 +3,8 @@
 //   RIBBONS  some are segments of ribbons
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
+#include "lib/particle.glsl"
 #include "lib/view.glsl"
-#include "particle_gpu.h"
 #ifdef LIT
 #include "lib/lighting.glsl"
 #endif
@@ -13,8 +13,6 @@
 layout(binding = 8) uniform samplerBuffer ribbon_points;
 #endif
 
-layout(binding = 2) uniform usamplerBuffer particles;
-layout(binding = 3) uniform samplerBuffer looks;
 uniform int first;  // of the particles to draw
 
 layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multiplied by z, so that it stays straight
@@ -27,31 +25,8 @@ layout(location = 5) out float distance_ahead;         // along the view axis [m
 const int kFacingVelocity = 1;
 const int kFacingGround = 2;
 const int kFacingPixels = 3;
-const int kFramesShuffle = 1;
-const int kFramesPick = 2;
 const float kRoundness = 0.8;  // how far the normals at the corners lean outward, by eye
-
-float random_share(uint bits, uint index) {  // -1 .. 1
-    uint h = (bits + index * 0x9e3779b9u) * 0x7feb352du;
-    h = (h ^ (h >> 15)) * 0x846ca68bu;
-    return float(h >> 8) * (2.0 / 16777216.0) - 1.0;
-}
-
-vec4 look_texel(int look, uint texel) {
-    return texelFetch(looks, look * int(kLookTexels) + int(texel));
-}
-
-float size_factor(int look, float at) {
-    int i = min(int(at), int(kLookSamples) - 2);
-    float a = look_texel(look, kLookSizes + uint(i >> 2))[i & 3];
-    float b = look_texel(look, kLookSizes + uint((i + 1) >> 2))[(i + 1) & 3];
-    return mix(a, b, at - float(i));
-}
-
-vec4 color_at(int look, float at) {
-    int i = min(int(at), int(kLookSamples) - 2);
-    return mix(look_texel(look, kLookColors + uint(i)), look_texel(look, kLookColors + uint(i) + 1u), at - float(i));
-}
+const float kShadeReach = 0.5;  // of the way to its corners at which it is shadowed by others, by eye
 
 #ifdef LIT
 // Radiance that a white puff scatters toward `to_camera`: around its round surface, and forward through it (Henyey and
@@ -99,10 +74,9 @@ struct Quad {
     vec3 right;
     vec3 up;
 };
-Quad quad_of(vec4 shape, vec4 streak, float tumble, vec3 position, vec3 velocity, int facing, uint random, float size,
-             float age) {
-    float angle = shape.z * random_share(random, 1u) + (shape.w + streak.x * random_share(random, 2u)) * age;
-    vec3 to_camera = normalize(view.camera_ws.xyz - position);
+Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, float size) {
+    float angle = angle_of(p, shape, streak);
+    vec3 to_camera = normalize(view.camera_ws.xyz - p.position);
     vec3 right = normalize(view.ray_right.xyz);
     vec3 up = normalize(cross(to_camera, right));
     right = cross(up, to_camera);
@@ -115,15 +89,15 @@ Quad quad_of(vec4 shape, vec4 streak, float tumble, vec3 position, vec3 velocity
     right = turned;
     float half_size = 0.5 * size;
     if (facing == kFacingVelocity) {
-        float speed = length(velocity);
-        vec3 along = speed > 1e-6 ? velocity / speed : up;
+        float speed = length(p.velocity);
+        vec3 along = speed > 1e-6 ? p.velocity / speed : up;
         vec3 across = cross(along, to_camera);
         float seen = length(across);  // its length in the image, of what it would be from the side
         across = seen > 1e-3 ? across / seen : right;
         return Quad(half_size * across, (half_size + 0.5 * streak.y * speed) * along);
     }
     if (tumble > 0.0) {
-        float lean = tumble * (0.6 + 0.4 * random_share(random, 3u)) * age + 3.14159 * random_share(random, 4u);
+        float lean = tumble * (0.6 + 0.4 * random_share(p.random, 3u)) * p.age + 3.14159 * random_share(p.random, 4u);
         right = cos(lean) * right + sin(lean) * cross(right, up);
     }
     return Quad(half_size * right, half_size * up);
@@ -171,57 +145,44 @@ vec4 ribbon_corner(RibbonSegment s, int vertex, float half_width, bool has_image
 #endif
 
 void main() {
-    int particle = first + gl_InstanceID;
-    uvec4 place = texelFetch(particles, particle * int(kParticleTexels));
-    uvec4 rest = texelFetch(particles, particle * int(kParticleTexels) + 1);
-    vec3 position = uintBitsToFloat(place.xyz);
-    int look = int(place.w >> 16);
-    float share = float(place.w & 0xffffu) / 65535.0;
-    vec2 velocity_xy = unpackHalf2x16(rest.x);
-    vec2 velocity_z_age = unpackHalf2x16(rest.y);
-    vec3 velocity = vec3(velocity_xy, velocity_z_age.x);
-    float age = velocity_z_age.y;
-
+    Particle p = read_particle(first + gl_InstanceID);
+    int look = p.look;
     vec4 shape = look_texel(look, 0u);
     vec4 streak = look_texel(look, 1u);
     vec4 glow = look_texel(look, 2u);
     vec4 book = look_texel(look, 3u);
     vec4 more = look_texel(look, kLookMore);
-    corner = vec3(gl_VertexID & 1, gl_VertexID >> 1, 1.0) * vec3(2.0, 2.0, 1.0) - vec3(1.0, 1.0, 0.0);
+    corner = vec3(corner_of(gl_VertexID), 1.0);
 #ifdef RIBBONS
     bool is_ribbon = uint(glow.w) == kFacingRibbon;
     RibbonSegment segment;
     if (is_ribbon) {
-        segment = ribbon_segment(int(rest.x), gl_VertexID & 1);
-        position = segment.place.xyz;
-        share = segment.rest.w;
+        segment = ribbon_segment(p.ribbon_point, gl_VertexID & 1);
+        p.position = segment.place.xyz;
+        p.share = segment.rest.w;
     }
 #endif
-    float at = share * float(kLookSamples - 1u);
-    float size = max(shape.x + shape.y * random_share(rest.z, 0u), 0.0) * size_factor(look, at);
-    vec4 color = color_at(look, at);
-    float away = distance(position, view.camera_ws.xyz);
+    float size = size_of(p, shape);
+    vec4 color = color_of(p);
+    float away = distance(p.position, view.camera_ws.xyz);
     color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
     color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
     vec4 point = look_texel(look, kLookMore + 1u);
-    if (point.w > 0.0 && share > 0.0) {
-        color.a *= clamp(age * (1.0 - share) / (share * point.w), 0.0, 1.0);
-    }
     if (int(glow.w) == kFacingPixels) {
-        size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(position);
+        size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(p.position);
     }
 
-    Quad quad = quad_of(shape, streak, more.w, position, velocity, int(glow.w), rest.z, size, age);
+    Quad quad = quad_of(p, shape, streak, more.w, int(glow.w), size);
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
 #ifdef RIBBONS
     if (is_ribbon) {
         vec3 span = segment.rest.xyz;
-        offset = corner.y * 0.5 * size_factor(look, at) * span;
+        offset = corner.y * 0.5 * size_factor(look, p.share * float(kLookSamples - 1u)) * span;
         float side = corner.y;
         float half_width = 1.0;
-        position += 0.5 * span;
+        p.position += 0.5 * span;
         if (span == vec3(0.0)) {
-            float thinnest = pixel_extent(position);  // fainter instead of narrower: thin ones would break up into dots
+            float thinnest = pixel_extent(p.position);  // fainter instead of narrower: thin ones would break up into dots
             color.a *= min(0.5 * size / thinnest, 1.0);
             half_width = max(0.5 * size, thinnest);
             vec4 across = ribbon_corner(segment, gl_VertexID, half_width, book.w >= 0.0);
@@ -232,7 +193,7 @@ void main() {
         corner = vec3(book.w < 0.0 ? 0.0 : 2.0 * segment.place.w - 1.0, side, half_width);
     }
 #endif
-    vec3 corner_ws = position + offset;
+    vec3 corner_ws = p.position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
     distance_ahead = gl_Position.w;
 #ifdef CLIPPED
@@ -242,27 +203,25 @@ void main() {
     vec3 radiance = vec3(glow.x);
 #ifdef LIT
     if (glow.y > 0.0) {
-        vec3 normal = normalize(to_viewer(position) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
-        vec4 middle = view.clip_from_world * vec4(position, 1.0);
+        vec3 normal = normalize(to_viewer(p.position) + kRoundness * normalize(offset + vec3(0.0, 1e-6, 0.0)));
+        vec4 middle = view.clip_from_world * vec4(p.position, 1.0);
         vec2 pixel = (middle.xy / max(middle.w, 1e-6) * 0.5 + 0.5) * view.size.xy;
-        radiance += glow.y * scattered_light(position, normal, streak.w, pixel, max(middle.w, view.camera_ws.w));
+#ifdef PARTICLE_SHADOWS
+        vec3 lit_at = p.position + kShadeReach * offset;  // so that shadows of particles vary over it
+#else
+        vec3 lit_at = p.position;
+#endif
+        radiance += glow.y * scattered_light(lit_at, normal, streak.w, pixel, max(middle.w, view.camera_ws.w));
     }
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);
 
-    float count = book.x * book.y;
-    float shown = book.z > 0.0 ? age * book.z : share * (count - 1.0);
-    int frames_shown = int(more.x);
-    float chance = floor((0.5 + 0.5 * random_share(rest.z, 5u)) * count);
-    shown = frames_shown == kFramesPick ? chance : frames_shown == kFramesShuffle ? shown + chance : shown;
-    bool loops = book.z > 0.0 || frames_shown == kFramesShuffle;
-    float frame = mod(floor(shown), count);
-    float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
-    frames = vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy);
-    next_frame = vec2(mod(next, book.x), floor(next / book.x)) / book.xy;
-    blend = vec4(glow.z, streak.z, count > 1.0 ? fract(shown) : 0.0, book.w);
+    Flipbook flipbook = flipbook_of(p, book, int(more.x));
+    frames = flipbook.frames;
+    next_frame = flipbook.next;
+    blend = vec4(glow.z, streak.z, flipbook.progress, book.w);
     // Too small to draw, transparent or dead.
-    bool is_gone = size <= 0.0 || color.a <= 0.0 || rest.w != 0u;
+    bool is_gone = size <= 0.0 || color.a <= 0.0 || p.is_dead;
 #ifdef RIBBONS
     is_gone = is_gone && !is_ribbon;
 #endif

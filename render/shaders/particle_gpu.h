@@ -44,7 +44,15 @@ const uint kLookColors = 12u;
 //  46  place in the colors by age: wave, base, amplitude, phase
 //  47  its frequency [Hz]; give or take of the color
 const uint kLookMore = 44u;
-const uint kLookTexels = 48u;
+//  48  factors on the optical depth of its shadow for red, green and blue; factor on the opacity, 0: casts none
+const uint kLookShadow = 48u;
+const uint kLookTexels = 49u;
+
+// ParticleShadowRecord: rows that map the world to the opacity maps (lib/particle_shadow.glsl).
+//   0, 1, 3  texture coordinates s and t, as rows 0 and 1 divided by row 3
+//   2        depth, as a share of the range of depths that casters are in; not divided
+//   4        index of the light that they shadow, -1: none
+const uint kParticleShadowTexels = 5u;
 
 // Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.
 //   0  seed of the random numbers: key (2 words); subject (2 words)

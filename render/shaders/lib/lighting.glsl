@@ -9,6 +9,7 @@
 //   LOCAL_LIGHTS        there are point or spot lights
 //   WATERS              there is water; ON_WATER: and its surface is being shaded
 //   MIRRORS             some water reflects the sun's light upward
+//   PARTICLE_SHADOWS    particles cast shadows: 1: in the first directional light, 2: in a spot with a shadow
 
 #include "lib/light.glsl"
 #include "lib/numbers.glsl"  // must not be included first within the #ifdef below
@@ -23,6 +24,9 @@
 #endif
 #ifdef PROJECTORS
 #include "lib/projector.glsl"
+#endif
+#ifdef PARTICLE_SHADOWS
+#include "lib/particle_shadow.glsl"
 #endif
 #if defined(SHADOWS) || defined(PROJECTORS)
 #define LIGHT_TRANSMITTANCE
@@ -55,7 +59,11 @@ vec3 shadow_transmittance(vec4 shadow, vec3 position_ws, vec3 normal, vec3 to_li
 vec3 light_transmittance(int index, vec3 position_ws, vec3 normal, vec3 to_light, vec2 pixel) {
 #ifdef LIGHT_TRANSMITTANCE
     vec4 shadow = texelFetch(lights, index * int(kLightTexels) + 4);
-    return shadow_transmittance(shadow, position_ws, normal, to_light, pixel);
+    vec3 transmittance = shadow_transmittance(shadow, position_ws, normal, to_light, pixel);
+#if defined(PARTICLE_SHADOWS) && PARTICLE_SHADOWS == 2
+    transmittance *= particle_transmittance(index, position_ws);
+#endif
+    return transmittance;
 #else
     return vec3(1.0);
 #endif
@@ -81,6 +89,9 @@ Incoming incoming_directional(int index, vec3 position_ws, vec3 normal, vec2 pix
 #endif
 #else
     irradiance *= light_transmittance(index, position_ws, normal, to_light, pixel);
+#endif
+#if defined(PARTICLE_SHADOWS) && PARTICLE_SHADOWS == 1
+    irradiance *= particle_transmittance(index, position_ws);
 #endif
     return Incoming(to_light, irradiance);
 }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace limn::oracle {
+
+// What soft discs without an image leave of directional light, by adding up the optical depth of
+// each: what render/passes/particle_shadow_pass.h has as a series. A disc faces the light and is a
+// slab as thick as its diameter.
+
+struct ShadowDisc {
+    glm::dvec3 middle;   ///< [m]
+    double diameter;     ///< [m], > 0
+    double opacity = 1;  ///< of its middle, 0 .. 1
+};
+
+/// Transmittance at `place` of light that travels along `axis` (unit).
+[[nodiscard]] inline double disc_transmittance(
+    const std::vector<ShadowDisc>& discs, const glm::dvec3& place, const glm::dvec3& axis) {
+    double depth = 0;
+    for (const ShadowDisc& disc : discs) {
+        const glm::dvec3 to = place - disc.middle;
+        const double ahead = glm::dot(to, axis);
+        const double r = 2 * glm::length(to - ahead * axis) / disc.diameter;
+        const double inside = std::max(1 - r * r, 0.0);
+        const double opacity = std::min(disc.opacity * inside * inside, 0.98);
+        depth -= std::log(1 - opacity) * std::clamp(ahead / disc.diameter + 0.5, 0.0, 1.0);
+    }
+    return std::exp(-depth);
+}
+
+}  // namespace limn::oracle

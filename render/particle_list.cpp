@@ -1,0 +1,54 @@
+#include "render/particle_list.h"
+
+#include <algorithm>
+
+namespace limn {
+namespace {
+
+/// 0 for NaN.
+float to_share(float value) {
+    return std::min(std::max(0.0f, value), 1.0f);
+}
+
+/// Factors on the optical depth of red, green and blue; on the opacity.
+Vec4 shadow_texel(const ParticleLook& look) {
+    const Vec3& tint = look.shadow_tint;
+    return {
+        to_share(tint.x), to_share(tint.y), to_share(tint.z), to_share(look.shadow) * look.cover};
+}
+
+}  // namespace
+
+LookRecord make_look_record(const ParticleLook& look, int layer) {
+    LookRecord record{};
+    record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
+    record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
+    record[2] = {look.emission, look.lit, look.cover, static_cast<float>(look.facing)};
+    record[3] = {
+        static_cast<float>(std::max(look.columns, 1u)), static_cast<float>(std::max(look.rows, 1u)),
+        look.frame_rate, static_cast<float>(layer)};
+    record[layout::kLookMore] = {
+        static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
+    record[layout::kLookMore + 1] = {look.attenuation, look.fade};
+    record[layout::kLookShadow] = shadow_texel(look);
+    for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
+        const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
+        record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
+            sample_curve(look.size_curve, at);
+        record[layout::kLookColors + i] = sample_colors(look.colors, at);
+    }
+    return record;
+}
+
+void append_particles(
+    const ParticlePool& pool, std::uint32_t look, float back,
+    std::vector<ParticleInstance>& instances, const Vec3& observer) {
+    const std::size_t before = instances.size();
+    instances.resize(before + pool.size());
+    const std::size_t packed = pack_particles(
+        pool, {.look = look, .back = back, .observer = observer},
+        std::span(instances).subspan(before));
+    instances.resize(before + packed);
+}
+
+}  // namespace limn

@@ -1,0 +1,93 @@
+// A particle and its look (particle_gpu.h), for shaders that draw it as a quad.
+
+#include "particle_gpu.h"
+
+layout(binding = 2) uniform usamplerBuffer particles;
+layout(binding = 3) uniform samplerBuffer looks;
+
+const int kFramesShuffle = 1;
+const int kFramesPick = 2;
+
+struct Particle {
+    vec3 position;  // [m]
+    vec3 velocity;  // [m/s]
+    float age;      // [s]
+    float share;    // of its life
+    int look;
+    uint random;
+    bool is_dead;
+    int ribbon_point;  // before it, if it is a segment of a ribbon
+};
+
+Particle read_particle(int index) {
+    uvec4 place = texelFetch(particles, index * int(kParticleTexels));
+    uvec4 rest = texelFetch(particles, index * int(kParticleTexels) + 1);
+    vec2 velocity_xy = unpackHalf2x16(rest.x);
+    vec2 velocity_z_age = unpackHalf2x16(rest.y);
+    return Particle(uintBitsToFloat(place.xyz), vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y,
+                    float(place.w & 0xffffu) / 65535.0, int(place.w >> 16), rest.z, rest.w != 0u, int(rest.x));
+}
+
+// Of the quad's vertices, -1 .. 1, as a strip.
+vec2 corner_of(int vertex) {
+    return 2.0 * vec2(vertex & 1, vertex >> 1) - 1.0;
+}
+
+float random_share(uint bits, uint index) {  // -1 .. 1
+    uint h = (bits + index * 0x9e3779b9u) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return float(h >> 8) * (2.0 / 16777216.0) - 1.0;
+}
+
+vec4 look_texel(int look, uint texel) {
+    return texelFetch(looks, look * int(kLookTexels) + int(texel));
+}
+
+float size_factor(int look, float at) {
+    int i = min(int(at), int(kLookSamples) - 2);
+    float a = look_texel(look, kLookSizes + uint(i >> 2))[i & 3];
+    float b = look_texel(look, kLookSizes + uint((i + 1) >> 2))[(i + 1) & 3];
+    return mix(a, b, at - float(i));
+}
+
+// Diameter [m]; `shape`: texel 0 of the look.
+float size_of(Particle p, vec4 shape) {
+    return max(shape.x + shape.y * random_share(p.random, 0u), 0.0)
+           * size_factor(p.look, p.share * float(kLookSamples - 1u));
+}
+
+// Color and opacity at its age, wherever it is seen from.
+vec4 color_of(Particle p) {
+    float at = p.share * float(kLookSamples - 1u);
+    int i = min(int(at), int(kLookSamples) - 2);
+    vec4 color = mix(look_texel(p.look, kLookColors + uint(i)), look_texel(p.look, kLookColors + uint(i) + 1u),
+                     at - float(i));
+    float fade = look_texel(p.look, kLookMore + 1u).w;
+    if (fade > 0.0 && p.share > 0.0) {
+        color.a *= clamp(p.age * (1.0 - p.share) / (p.share * fade), 0.0, 1.0);
+    }
+    return color;
+}
+
+// Angle of the quad [rad]; `streak`: texel 1 of the look.
+float angle_of(Particle p, vec4 shape, vec4 streak) {
+    return shape.z * random_share(p.random, 1u) + (shape.w + streak.x * random_share(p.random, 2u)) * p.age;
+}
+
+struct Flipbook {
+    vec4 frames;     // texture coordinates: scale xy, offset of the frame zw
+    vec2 next;       // offset of the next frame
+    float progress;  // toward it, 0 .. 1
+};
+// `book`: texel 3 of the look; `kind`: ParticleFrames.
+Flipbook flipbook_of(Particle p, vec4 book, int kind) {
+    float count = book.x * book.y;
+    float shown = book.z > 0.0 ? p.age * book.z : p.share * (count - 1.0);
+    float chance = floor((0.5 + 0.5 * random_share(p.random, 5u)) * count);
+    shown = kind == kFramesPick ? chance : kind == kFramesShuffle ? shown + chance : shown;
+    bool loops = book.z > 0.0 || kind == kFramesShuffle;
+    float frame = mod(floor(shown), count);
+    float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
+    return Flipbook(vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy),
+                    vec2(mod(next, book.x), floor(next / book.x)) / book.xy, count > 1.0 ? fract(shown) : 0.0);
+}

@@ -1,0 +1,40 @@
+// A particle as a light sees it: a slab that faces it.
+#version 450
+#include "lib/particle.glsl"
+
+layout(binding = 31) uniform samplerBuffer particle_shadow;  // ParticleShadowRecord
+uniform int first;         // of the particles to draw
+uniform vec3 light_right;  // unit, along the map's columns and rows
+uniform vec3 light_up;
+uniform float depth_scale;  // shares of the range of depths per meter
+
+layout(location = 0) out vec2 corner;
+layout(location = 1) flat out vec4 slab;  // opacity, depth, thickness (shares of the range), progress of the flipbook
+layout(location = 2) flat out vec4 frames;
+layout(location = 3) flat out vec3 next_frame;  // its offset; layer of the image
+layout(location = 4) flat out vec3 tint;
+
+void main() {
+    Particle p = read_particle(first + gl_InstanceID);
+    vec4 shape = look_texel(p.look, 0u);
+    vec4 book = look_texel(p.look, 3u);
+    float size = size_of(p, shape);
+    float angle = angle_of(p, shape, look_texel(p.look, 1u));
+    corner = corner_of(gl_VertexID);
+    vec2 turned = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
+    vec4 place = vec4(p.position + 0.5 * size * (turned.x * light_right + turned.y * light_up), 1.0);
+    vec2 st = vec2(dot(texelFetch(particle_shadow, 0), place), dot(texelFetch(particle_shadow, 1), place));
+    float q = dot(texelFetch(particle_shadow, 3), place);
+    gl_Position = vec4(2.0 * st - q, 0.0, q);
+
+    vec4 opacity = look_texel(p.look, kLookShadow);
+    Flipbook flipbook = flipbook_of(p, book, int(look_texel(p.look, kLookMore).x));
+    slab = vec4(color_of(p).a * opacity.w, dot(texelFetch(particle_shadow, 2), vec4(p.position, 1.0)), size * depth_scale,
+                flipbook.progress);
+    frames = flipbook.frames;
+    next_frame = vec3(flipbook.next, book.w);
+    tint = opacity.rgb;
+    if (size <= 0.0 || slab.x <= 0.0 || p.is_dead) {
+        gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    }
+}

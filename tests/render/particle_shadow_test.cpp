@@ -1,0 +1,290 @@
+#include "bench/oracles/particle_shadow_oracle.h"
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/shadow.h"
+#include "ecs/components/time.h"
+#include "render/graph/frame_graph.h"
+#include "render/passes/particle_shadow_pass.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+#include "tests/render/shader_eval.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace limn::test {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// A white wall in z = 0, of half side 2, before it a camera that does not see particles.
+struct ShadowScene : Scene {
+    MeshId square = add(make_square());
+    MaterialId white = add(Material{.base_color = {1, 1, 1, 1}, .roughness = 1});
+    Entity wall = world.create();
+
+    ShadowScene() {
+        world.insert_resource(FrameTime{});
+        put_wall(0);
+    }
+    void put_wall(float z) {
+        world.destroy(wall);
+        wall = place(square, white, affine_from({0, 0, z}, {1, 0, 0, 0}, Vec3(2)));
+    }
+    Entity add_sun() {
+        return shine(DirectionalLight{.illuminance = 3}, at({0, 0, 5}));  // along -z
+    }
+    /// Particles at rest, in the middle of their life.
+    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+        ParticlePool pool;
+        for (const Vec3& place : places) {
+            pool.x.push_back(place.x);
+            pool.y.push_back(place.y);
+            pool.z.push_back(place.z);
+            for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
+                column->push_back(0);
+            }
+            pool.age.push_back(0.5f);
+            pool.life.push_back(1);
+            pool.look.push_back(7);
+        }
+        return world.create(ParticleEmitter{}, look, pool);
+    }
+    gpu::FloatImage wall_image(float z = 0) { return radiance(look({0, 0, z + 2}, {0, 0, z})); }
+    /// At the middle of the wall; a pixel is 1/16 m.
+    Vec3 middle(float z = 0) { return rgb_at(wall_image(z), 32, 32); }
+};
+
+/// Of this opacity in the middle; it casts a shadow and is not seen by a camera that is near.
+ParticleLook caster(float size, float opacity) {
+    ParticleLook look;
+    look.size = size;
+    look.colors = {{.at = 0, .opacity = opacity}};
+    look.near_fade = 1000;
+    look.shadow = 1;
+    return look;
+}
+
+/// A cloud of 60 discs in x, y = -0.9 .. 0.9 and z = 0.6 .. 3.4, by the Weyl sequence.
+std::vector<Vec3> cloud() {
+    std::vector<Vec3> places;
+    for (int i = 1; i <= 60; ++i) {
+        const auto share = [&](double step) { return std::fmod(step * i, 1.0); };
+        places.emplace_back(
+            1.8 * share(0.8191725134) - 0.9, 1.8 * share(0.6710436067) - 0.9,
+            0.6 + 2.8 * share(0.5497004779));
+    }
+    return places;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(RenderTest, "particle shadow: behind all slabs the series is exact") {
+    std::vector<Vec4> inputs;
+    for (const float depth : {0.2f, 0.5f, 0.83f}) {
+        for (const float thickness : {0.0f, 0.1f, 0.3f}) {
+            inputs.emplace_back(0.7f, depth, thickness, 0);
+        }
+    }
+    const std::vector<Vec4> found = evaluate_shader(
+        "#include \"lib/fourier_opacity.glsl\"\n",
+        "OpacitySeries s = slab_series(x.x, x.y, x.z);\n"
+        "y = vec4(optical_depth(s, 1.0), optical_depth(s, 7.0), optical_depth(s, 0.0), 0.0);",
+        inputs);
+    for (const Vec4& its : found) {
+        CHECK(its.x == near(-std::log(0.3)).epsilon(1e-4));
+        CHECK(its.y == near(-std::log(0.3)).epsilon(1e-4));
+        CHECK(its.z == near(0).epsilon(1e-4));
+    }
+}
+
+TEST_CASE_FIXTURE(
+    RenderTest, "particle shadow: the series of a slab is that of its density, term by term") {
+    // By sums over the depth in double precision.
+    const double depth = 0.4;
+    const double thickness = 0.2;
+    const std::vector<Vec4> found = evaluate_shader(
+        "#include \"lib/fourier_opacity.glsl\"\n",
+        "OpacitySeries s = slab_series(0.5, 0.4, 0.2); y = x.x == 0.0 ? s.low : s.high;",
+        {Vec4(0), Vec4(1)});
+    const auto term = [&](int k, bool sine) {
+        constexpr int kSteps = 20000;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i) {
+            const double at = depth + thickness * ((i + 0.5) / kSteps - 0.5);
+            const double angle = 2 * 3.14159265358979 * k * at;
+            sum += (sine ? std::sin(angle) : std::cos(angle)) / kSteps;
+        }
+        return 2 * std::log(2.0) * sum;
+    };
+    const double wanted[] = {term(0, false), term(1, false), term(1, true), term(2, false),
+                             term(2, true),  term(3, false), term(3, true)};
+    for (int i = 0; i < 7; ++i) {
+        CAPTURE(i);
+        const float its = i < 4 ? found[0][i] : found[1][i - 4];
+        CHECK(its == near(wanted[i]).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in depth") {
+    const Vec3 axis = glm::normalize(Vec3(0.4f, -0.8f, 0.2f));
+    const std::vector<ShadowBall> balls = {{{1, 2, 3}, 0.5f}, {{-2, 0, 1}, 1}, {{0, 5, 0}, 0.1f}};
+    const ParticleShadowView view = view_from_sun(4, axis, balls);
+    CHECK(view.record[4].x == 4);
+    CHECK(std::abs(glm::dot(view.right, axis)) < 1e-6f);
+    CHECK(std::abs(glm::dot(view.up, axis)) < 1e-6f);
+    for (const ShadowBall& ball : balls) {
+        for (const Vec3& way : {view.right, view.up, axis}) {
+            for (const float side : {-1.0f, 1.0f}) {
+                const Vec4 place = Vec4(ball.middle + side * ball.radius * way, 1);
+                for (int row = 0; row < 3; ++row) {
+                    const float at = glm::dot(view.record[static_cast<std::size_t>(row)], place);
+                    CHECK(at > -1e-4f);
+                    CHECK(at < 1 + 1e-4f);
+                }
+            }
+        }
+    }
+    const Vec4 deeper = Vec4(0.25f * axis, 0);
+    CHECK(glm::dot(view.record[2], deeper) == near(0.25f * view.depth_scale));
+    CHECK(view_from_sun(4, axis, {}).record[4].x == -1);
+}
+
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: a surface behind a puff gets the light that it leaves") {
+    add_sun();
+    const float open = middle().x;
+    const float edge = wall_image().at(4, 4, 0);
+    ParticleLook look = caster(1, 0.5f);
+    const Entity puff = emit({{0.03125f, -0.03125f, 0.8f}}, look);
+    CHECK(middle().x / open == near(0.5).epsilon(0.01));
+    CHECK(wall_image().at(4, 4, 0) / edge == near(1).epsilon(1e-3));  // beside it
+    // Two that lie one behind the other leave the product.
+    const Entity other = emit({{0.03125f, -0.03125f, 1.6f}}, look);
+    CHECK(middle().x / open == near(0.25).epsilon(0.01));
+    world.destroy(other);
+    // A factor on the opacity, and one on the optical depth of each color.
+    look.shadow = 0.4f;
+    world.add(puff, ParticleLook(look));
+    CHECK(middle().x / open == near(0.8).epsilon(0.01));
+    look.shadow = 1;
+    look.shadow_tint = {0, 0.5f, 1};
+    world.add(puff, ParticleLook(look));
+    const Vec3 tinted = middle() / open;
+    CHECK(tinted.x == near(1).epsilon(0.01));
+    CHECK(tinted.y == near(std::sqrt(0.5)).epsilon(0.01));
+    CHECK(tinted.z == near(0.5).epsilon(0.01));
+    // What only adds light hides none.
+    look.cover = 0;
+    world.add(puff, ParticleLook(look));
+    CHECK(middle().z / open == near(1).epsilon(1e-3));
+}
+
+TEST_CASE_FIXTURE(
+    ShadowScene, "particle shadow: within a cloud it is the sum over all particles, to 0.03") {
+    const std::vector<Vec3> places = cloud();
+    std::vector<oracle::ShadowDisc> discs;
+    for (const Vec3& place : places) {
+        discs.push_back({.middle = place, .diameter = 0.8, .opacity = 0.3});
+    }
+    add_sun();
+    for (const auto& [z, limit] :
+         {std::pair(0.0f, 0.002), std::pair(1.4f, 0.03), std::pair(2.0f, 0.03)}) {
+        CAPTURE(z);
+        put_wall(z);
+        world.query<const ParticlePool>().each(
+            [&](Entity its, const ParticlePool&) { world.find<ParticleLook>(its)->shadow = 0; });
+        const gpu::FloatImage open = wall_image(z);
+        if (world.query<const ParticlePool>().empty()) {
+            emit(places, caster(0.8f, 0.3f));
+        }
+        world.query<ParticleLook>().each([](ParticleLook& look) { look.shadow = 1; });
+        const gpu::FloatImage found = wall_image(z);
+        double sum = 0;
+        double darkest = 1;
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                const glm::dvec3 place = {
+                    (x + 0.5) / 16 - 2, 2 - (y + 0.5) / 16, static_cast<double>(z)};
+                const double exact = oracle::disc_transmittance(discs, place, {0, 0, -1});
+                const double its = static_cast<double>(found.at(x, y, 0) / open.at(x, y, 0));
+                sum += (its - exact) * (its - exact);
+                darkest = std::min(darkest, exact);
+            }
+        }
+        CHECK(darkest < 0.5);
+        CHECK(std::sqrt(sum / (64 * 64)) <= limit);
+    }
+}
+
+TEST_CASE_FIXTURE(ShadowScene, "particle shadow: a particle is dimmed by those before it alone") {
+    world.destroy(wall);
+    add_sun();
+    ParticleLook seen = caster(0.5f, 0.9f);
+    seen.near_fade = 0;
+    seen.shadow = 0;
+    seen.softness = 0;
+    emit({{0, 0, 0}}, seen);
+    const float open = middle().x;
+    // The puff between it and the sun is out of the camera's sight, the one behind it is not.
+    const Entity before = emit({{0, 0, 4}}, caster(6, 0.6f));
+    CHECK(middle().x / open == near(0.4).epsilon(0.02));
+    world.destroy(before);
+    emit({{0, 0, -4}}, caster(6, 0.6f));
+    CHECK(middle().x / open == near(1).epsilon(0.02));
+}
+
+TEST_CASE_FIXTURE(ShadowScene, "particle shadow: without a sun they are in the light of a spot") {
+    world.create(
+        SpotLight{.intensity = 40, .radius = 20, .inner_angle = 0.5f, .outer_angle = 0.6f},
+        Shadow{}, WorldTransform{at({0, 0, 4})});
+    const float open = middle().x;
+    REQUIRE(open > 0);
+    emit({{0.02f, 0.02f, 2}}, caster(1, 0.5f));
+    CHECK(middle().x / open == near(0.5).epsilon(0.02));
+    // The disc is seen at twice its size: at 0.75 m from the middle, r = 0.75 of its radius.
+    const gpu::FloatImage image = wall_image();
+    world.query<ParticleLook>().each([](ParticleLook& look) { look.shadow = 0; });
+    const gpu::FloatImage bare = wall_image();
+    const double at = (44.5 / 16 - 2 - 0.04) / 1.0;
+    const double inside = 1 - at * at;
+    CHECK(
+        image.at(44, 32, 0) / bare.at(44, 32, 0) == near(1 - 0.5 * inside * inside).epsilon(0.03));
+}
+
+TEST_CASE_FIXTURE(ShadowScene, "particle shadow: where none casts there is no pass, nor a trace") {
+    add_sun();
+    const gpu::FloatImage open = wall_image();
+    ParticleLook look = caster(1, 0.5f);
+    look.shadow = 0;
+    emit({{0, 0, 0.8f}}, look);
+    CHECK(largest_difference(wall_image(), open) <= 1e-4f);
+    CHECK_FALSE(frame_graph(shared_renderer()).was_run("particle shadows"));
+    world.query<ParticleLook>().each([](ParticleLook& its) { its.shadow = 1; });
+    CHECK(largest_difference(wall_image(), open) > 0.05f);
+    CHECK(frame_graph(shared_renderer()).was_run("particle shadows"));
+}
+
+TEST_CASE_FIXTURE(ShadowScene, "particle shadow: what is broken casts none, and breaks nothing") {
+    add_sun();
+    const float open = middle().x;
+    const float huge = std::numeric_limits<float>::max();
+    ParticleLook look = caster(1, 1);
+    emit({{kNaN, 0, 1}, {huge, huge, huge}, {0, -INFINITY, 1}}, look);
+    look.shadow = kNaN;
+    emit({{0, 0, 1}}, look);
+    look.shadow = -3;
+    emit({{0, 0, 1}}, look);
+    CHECK(middle().x == near(static_cast<double>(open)).epsilon(1e-3));
+    look.shadow = 9;  // as 1
+    look.shadow_tint = {kNaN, -2, 7};
+    emit({{0, 0, 1}}, look);
+    const Vec3 found = middle() / open;
+    CHECK(found.x == near(1).epsilon(0.01));
+    CHECK(found.y == near(1).epsilon(0.01));
+    CHECK(found.z == near(0.02).epsilon(0.01));
+}
+
+}  // namespace limn::test
