@@ -63,7 +63,7 @@ TEST_CASE("particle packing: an instance has the look above the share, and veloc
     std::vector<ParticleInstance> instances(32);
     REQUIRE(pack_particles(pool, kPacking, instances) == 32);
     for (const ParticleInstance& instance : instances) {
-        CHECK(instance.look_and_share >> 16 == 40000);
+        CHECK((instance.look_and_share >> 16) == 40000);
         CHECK((instance.look_and_share & 0xffff) == 32767);
         CHECK(glm::unpackHalf4x16(instance.velocity_and_age).x == 2);
     }
