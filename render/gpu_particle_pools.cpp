@@ -2,6 +2,7 @@
 
 #include "ecs/base/log.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/world.h"
 #include "render/gpu/device.h"
 #include "render/gpu/shader_library.h"
@@ -25,8 +26,21 @@ float word(std::uint64_t bits) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
 }
 
+/// Bounce, friction, radius, action.
+Vec4 response_texel(const ParticleCollision* collision) {
+    if (collision == nullptr) {
+        return Vec4(0);
+    }
+    const auto share = [](float value) { return std::clamp(finite_or(value, 0), 0.0f, 1.0f); };
+    const auto action = static_cast<std::uint32_t>(collision->action) + 1;
+    return {
+        share(collision->bounce), share(collision->friction),
+        std::max(finite_or(collision->radius, 0), 0.0f), word(action)};
+}
+
 void pack_emitter(
-    const ParticleEmitter& emitter, const GpuParticles& particles, std::vector<Vec4>& texels) {
+    const ParticleEmitter& emitter, const ParticleCollision* collision,
+    const GpuParticles& particles, std::vector<Vec4>& texels) {
     const PhiloxKey& key = particles.key;
     const PhiloxCounter& counter = particles.counter;
     const float cone = std::clamp(finite_or(emitter.cone, 0), 0.0f, kPi);
@@ -38,16 +52,21 @@ void pack_emitter(
     texels.emplace_back(emitter.speed_spread, emitter.life, emitter.life_spread, 0.0f);
     texels.emplace_back(emitter.size_spread, 0.0f);
     texels.emplace_back(emitter.velocity_spread, 0.0f);
+    texels.push_back(response_texel(collision));
 }
 
-/// `first_run`, `first_force`: texels, counted from the first of either.
-void pack_step(
-    const GpuParticleStep& step, std::uint32_t first_run, std::uint32_t first_force,
-    std::vector<Vec4>& texels) {
+/// Texels of what belongs to a step, counted from the first of their kind.
+struct StepParts {
+    std::uint32_t run = 0;
+    std::uint32_t force = 0;
+    std::uint32_t collider = 0;
+};
+
+void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<Vec4>& texels) {
     const MotionStep& motion = step.motion;
     const float dt = motion.step.dt;
     texels.emplace_back(
-        word(step.first), word(step.count), word(first_run), word(step.births.size()));
+        word(step.first), word(step.count), word(first.run), word(step.births.size()));
     texels.emplace_back(motion.step.gravity * dt, dt);
     texels.emplace_back(motion.step.air, motion.step.keep);
     for (const Affine* const place : {&step.place.before, &step.place.now}) {
@@ -60,8 +79,9 @@ void pack_step(
     texels.emplace_back(motion.vortex.axis, motion.vortex.toward * dt);
     texels.emplace_back(
         motion.steering.orbit, motion.steering.loss, word(motion.turbulence.seed), 0.0f);
-    texels.emplace_back(motion.wrap_center, word(first_force));
+    texels.emplace_back(motion.wrap_center, word(first.force));
     texels.emplace_back(motion.wrap_size, word(motion.forces.size()));
+    texels.emplace_back(word(first.collider), word(step.colliders.size()), 0.0f, 0.0f);
 }
 
 void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
@@ -80,35 +100,43 @@ void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
 }  // namespace
 
 std::vector<Vec4> pack_particle_steps(
-    const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
-    int& runs, int& forces) {
+    const ParticleEmitter& emitter, const ParticleCollision* collision,
+    const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout) {
     const std::span<const GpuParticleStep> kept = particles.kept();
     const std::uint64_t first_kept = particles.step - kept.size();
     const std::size_t skipped = std::min<std::size_t>(
         from > first_kept ? static_cast<std::size_t>(from - first_kept) : 0, kept.size());
     std::vector<Vec4> texels;
-    pack_emitter(emitter, particles, texels);
-    std::uint32_t run = 0;
-    std::uint32_t force = 0;
+    pack_emitter(emitter, collision, particles, texels);
+    StepParts next;
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
-        pack_step(step, run, force, texels);
-        run += static_cast<std::uint32_t>(step.births.size());
-        force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
+        pack_step(step, next, texels);
+        next.run += static_cast<std::uint32_t>(step.births.size());
+        next.force += static_cast<std::uint32_t>(step.motion.forces.size()) * layout::kForceTexels;
+        next.collider +=
+            static_cast<std::uint32_t>(step.colliders.size()) * layout::kColliderTexels;
     }
-    steps = static_cast<int>(kept.size() - skipped);
-    runs = static_cast<int>(texels.size());
+    layout.steps = static_cast<int>(kept.size() - skipped);
+    layout.runs = static_cast<int>(texels.size());
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
         for (const BirthRun& births : step.births) {
             texels.emplace_back(births.first, births.spacing, word(births.count), 0.0f);
         }
     }
-    forces = static_cast<int>(texels.size());
+    layout.forces = static_cast<int>(texels.size());
     for (const GpuParticleStep& step : kept.subspan(skipped)) {
         const float share = step.motion.forces_share * step.motion.step.dt;
         for (const Force& one : step.motion.forces) {
             texels.emplace_back(one.origin, word(static_cast<std::uint32_t>(one.kind)));
             texels.emplace_back(one.axis, one.strength * share);
             texels.emplace_back(one.speed, one.radius, 0.0f, 0.0f);
+        }
+    }
+    layout.colliders = static_cast<int>(texels.size());
+    for (const GpuParticleStep& step : kept.subspan(skipped)) {
+        for (const GpuCollider& one : step.colliders) {
+            texels.insert(texels.end(), std::begin(one.rows), std::end(one.rows));
+            texels.emplace_back(one.half, word(static_cast<std::uint32_t>(one.kind)));
         }
     }
     return texels;
@@ -147,7 +175,8 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
 
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
-    std::uint32_t look, std::optional<std::uint32_t> sort_passes) {
+    std::uint32_t look, std::optional<std::uint32_t> sort_passes,
+    const ParticleCollision* collision) {
     std::unique_ptr<GpuParticlePool>& found = pools_[entity.bits()];
     if (found == nullptr) {
         found = std::make_unique<GpuParticlePool>();
@@ -163,8 +192,7 @@ void GpuParticlePools::add(
         make_buffers(slots, pool);  // and all steps again
     }
     pool.steps.upload(
-        *frame.ring, pack_particle_steps(
-                         emitter, particles, pool.done, pool.step_count, pool.runs, pool.forces));
+        *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
@@ -202,9 +230,10 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
             program_->set("first", pool->first);
             program_->set("count", pool->count);
             program_->set("capacity", pool->capacity);
-            program_->set("step_count", pool->step_count);
-            program_->set("runs", pool->runs);
-            program_->set("forces", pool->forces);
+            program_->set("step_count", pool->layout.steps);
+            program_->set("runs", pool->layout.runs);
+            program_->set("forces", pool->layout.forces);
+            program_->set("colliders", pool->layout.colliders);
             program_->set("look", pool->look);
             program_->set("back", back);
             program_->set("closed_form", pool->closed_form ? 1 : 0);

@@ -16,6 +16,7 @@
 namespace limn {
 
 struct GpuParticles;
+struct ParticleCollision;
 struct ParticleEmitter;
 class World;
 
@@ -23,6 +24,14 @@ class World;
 // of slots, 36 bytes each, that particle_update.comp brings up to date with the steps that the
 // systems have written down (systems/particles/gpu_particle_system.h), and a list of what to draw,
 // oldest first.
+
+/// Where the parts of the texels of steps begin.
+struct ParticleStepTexels {
+    int steps = 0;      ///< how many
+    int runs = 0;       ///< texel of the first run of births
+    int forces = 0;     ///< texel of the first force
+    int colliders = 0;  ///< texel of the first collider
+};
 
 struct GpuParticlePool {
     gpu::Buffer state{};      ///< two vec4 a slot
@@ -38,9 +47,7 @@ struct GpuParticlePool {
     std::uint32_t look = 0;
     std::uint32_t first = 0;  ///< number of the oldest particle, low word
     std::uint32_t count = 0;  ///< to draw
-    int step_count = 0;
-    int runs = 0;    ///< texel of the first run of births
-    int forces = 0;  ///< texel of the first force
+    ParticleStepTexels layout{};
     bool sorted = false;
     GpuParticleSort sort{};
     bool closed_form = false;  ///< states are those of birth
@@ -48,11 +55,10 @@ struct GpuParticlePool {
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
-/// beyond. `steps`, `runs` and `forces` become how many steps there are and where their births and
-/// forces begin.
+/// beyond. `collision`: null: they do not collide.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
-    const ParticleEmitter& emitter, const GpuParticles& particles, std::uint64_t from, int& steps,
-    int& runs, int& forces);
+    const ParticleEmitter& emitter, const ParticleCollision* collision,
+    const GpuParticles& particles, std::uint64_t from, ParticleStepTexels& layout);
 
 class GpuParticlePools {
   public:
@@ -66,7 +72,8 @@ class GpuParticlePools {
     void
     add(FrameData& frame, Entity entity, const ParticleEmitter& emitter,
         const GpuParticles& particles, std::uint32_t look,
-        std::optional<std::uint32_t> sort_passes = std::nullopt);
+        std::optional<std::uint32_t> sort_passes = std::nullopt,
+        const ParticleCollision* collision = nullptr);
     /// After they have been added: forgets all others.
     void forget_unused();
     /// Adds the passes that move and sort them. They are seen from `eye` along `forward`, `back`

@@ -160,8 +160,7 @@ struct SceneCheck {
     void check_gpu_particles() {
         world.query<const ParticleEmitter>().each(
             [&](Entity entity, const ParticleEmitter& emitter) {
-                for (const std::string_view one :
-                     {"particle_collision", "particle_mesh", "particle_light", "trail"}) {
+                for (const std::string_view one : {"particle_mesh", "particle_light", "trail"}) {
                     if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                         warn(
                             entity, fmt::format(
@@ -170,6 +169,19 @@ struct SceneCheck {
                                         "to cpu",
                                         one));
                     }
+                }
+            });
+        bool for_cpu = false;
+        world.query<const ParticleCollider>().each([&](const ParticleCollider& collider) {
+            for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;
+        });
+        world.query<const ParticleEmitter, const ParticleCollision>().each(
+            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision&) {
+                if (for_cpu && runs_on_gpu(emitter)) {
+                    warn(
+                        entity,
+                        "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
+                        "height fields and water set particle_emitter.executor to cpu");
                 }
             });
     }

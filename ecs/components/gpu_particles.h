@@ -98,6 +98,17 @@ struct EmitterPlace {
     Affine now;
 };
 
+enum class GpuColliderKind : std::uint32_t { Plane, Sphere, Box };
+
+/// What the GPU's particles meet in a step, in world space. Meshes, height fields and water are for
+/// the CPU.
+struct GpuCollider {
+    GpuColliderKind kind = GpuColliderKind::Plane;
+    Vec4 rows[3] = {};      ///< plane: normal, offset [m]; sphere: center, radius [m], then 1 if
+                            ///< it is hollow; box: of the matrix box_from_world
+    Vec3 half = {0, 0, 0};  ///< of a box [m]
+};
+
 /// A step for the GPU.
 struct GpuParticleStep {
     std::uint64_t first = 0;  ///< number of its first birth, of all time
@@ -106,6 +117,7 @@ struct GpuParticleStep {
     EmitterPlace place{};
     Vec3 inherited = {0, 0, 0};  ///< velocity that is added at birth [m/s]
     MotionStep motion{};
+    std::vector<GpuCollider> colliders{};  ///< none if its particles do not collide
 };
 
 /// Particles born in one step.

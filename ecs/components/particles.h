@@ -70,8 +70,9 @@ LIMN_FIELDS(CurveKey) {
 }
 
 /// Who moves the particles of an emitter. The same happens to them, but for rounding; on the GPU
-/// they are neither saved nor sorted among each other, have no collisions, sources, drops or
-/// lights, and the capacity holds those of the longest lifetime.
+/// they are neither saved nor sorted among other emitters' particles, have no sources, drops or
+/// lights, meet only planes, spheres and boxes, and the capacity holds those of the longest
+/// lifetime.
 enum class ParticleExecutor : std::uint8_t {
     Auto,  ///< the GPU from a capacity of 262,144 on
     Cpu,
@@ -116,7 +117,8 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(active, "whether particles are born; the living ones go on");
     LIMN_FIELD(
         executor,
-        .doc = "who moves them; on the GPU without order, collisions, sources, drops and lights",
+        .doc = "who moves them; on the GPU without sources, drops and lights, and only planes, spheres "
+               "and boxes collide",
         .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);

@@ -2,6 +2,7 @@
 
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
@@ -192,12 +193,16 @@ void ParticleEffect::collect(FrameData& frame) {
             }
         });
     gpu.begin_frame(world);
-    world.query<const ParticleLook, const ParticleEmitter, const GpuParticles>().each(
-        [&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
-            const GpuParticles& particles) {
+    world
+        .query<
+            const ParticleLook, const ParticleEmitter, const GpuParticles,
+            Optional<const ParticleCollision>>()
+        .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
+                  const GpuParticles& particles, const ParticleCollision* collision) {
             if (looks.size() < kMaxLooks) {
                 gpu.add(
-                    frame, entity, emitter, particles, add_look(frame, look), sort_passes(look));
+                    frame, entity, emitter, particles, add_look(frame, look), sort_passes(look),
+                    collision);
             }
         });
     gpu.forget_unused();

@@ -61,9 +61,11 @@ const uint kParticleShadowTexels = 5u;
 //   3  speed, give or take; lifetime, give or take; 0
 //   4  place, give or take; 0
 //   5  velocity, give or take; 0
+//   6  of collisions: bounce, friction, radius, action (word; 0: none)
 // then the steps, kStepTexels each, then the runs of births: instant of the first, spacing (shares of the step), number;
-// then the forces of fields: origin, kind (word); axis, strength times dt; speed, radius.
-const uint kEmitterTexels = 6u;
+// then the forces of fields: origin, kind (word); axis, strength times dt; speed, radius;
+// then the colliders, see particle_collide.glsl.
+const uint kEmitterTexels = 7u;
 //   0  number of its first birth (low word), births, first run, runs (words)
 //   1  acceleration times dt; dt
 //   2  velocity of the air; share of the velocity that is kept
@@ -76,7 +78,9 @@ const uint kEmitterTexels = 6u;
 //  14  orbit; loss of speed; seed of the turbulence (word); 0
 //  15  middle of the box that particles stay in; first texel of the forces of fields (word)
 //  16  its extents; number of forces (word)
-const uint kStepTexels = 17u;
+//  17  first texel of the colliders, number of them (words)
+const uint kStepTexels = 18u;
+const uint kColliderTexels = 4u;
 const uint kForceTexels = 3u;
 const uint kParticleGroup = 128u;  // particles of a work group
 

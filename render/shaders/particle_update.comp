@@ -21,6 +21,7 @@ uniform uint capacity;    // slots
 uniform int step_count;   // steps to do
 uniform int runs;         // texel of the first run of births
 uniform int forces;       // texel of the first force of a field
+uniform int colliders;    // texel of the first collider
 uniform uint look;
 uniform int closed_form;  // states are those of birth
 uniform vec3 gravity;
@@ -38,9 +39,11 @@ struct Particle {
     vec3 place;
     float age;
     vec3 velocity;
-    float life;
+    float life;  // negative: of one that sticks
     uint look_bits;
 };
+
+#include "particle_collide.glsl"
 
 // ---- random numbers: ecs/base/rng.h
 
@@ -327,9 +330,14 @@ void move(inout Particle p, int texel) {
         p.age += push_dt.w;
         return;
     }
+    if (p.life < 0.0) {  // sticks
+        p.age += push_dt.w;
+        return;
+    }
     vec4 air = texelFetch(steps, texel + 2);
     float old_share = texelFetch(steps, texel + 9).w;
     vec3 start = p.velocity;
+    vec3 start_place = p.place;
     stir(p, texel);
     push(p, texel);
     whirl_and_steer(p, texel);
@@ -340,6 +348,10 @@ void move(inout Particle p, int texel) {
     vec3 box = texelFetch(steps, texel + 16).xyz;
     vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
     p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
+    uvec4 met = floatBitsToUint(texelFetch(steps, texel + 17));
+    if (met.y > 0u) {
+        collide(p, start_place, push_dt.w, colliders + int(met.x), int(met.y), texelFetch(steps, 6));
+    }
 }
 
 void main() {
@@ -367,8 +379,9 @@ void main() {
     bits[slot] = p.look_bits;
 
     float age = p.age - back;
-    bool is_alive = p.age < p.life && age >= 0.0;
-    float share = clamp(age / max(p.life, 1e-6), 0.0, 1.0);
+    float life = abs(p.life);
+    bool is_alive = p.age < life && age >= 0.0;
+    float share = clamp(age / max(life, 1e-6), 0.0, 1.0);
     vec3 place = p.place - p.velocity * back;
     if (closed_form != 0) {
         place = p.place + (p.velocity + 0.5 * gravity * age) * age;

@@ -5,10 +5,15 @@
 #include "systems/particles/particle_births.h"
 #include "systems/particles/particle_motion.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <utility>
+#include <variant>
 
 namespace limn {
 namespace {
@@ -63,6 +68,41 @@ void add_step(
     ++particles.step;
 }
 
+std::optional<GpuCollider> to_gpu(const PlaneCollider& plane) {
+    return GpuCollider{GpuColliderKind::Plane, {Vec4(plane.normal, plane.offset)}};
+}
+std::optional<GpuCollider> to_gpu(const SphereCollider& sphere) {
+    return GpuCollider{
+        GpuColliderKind::Sphere,
+        {Vec4(sphere.center, sphere.radius), Vec4(sphere.inverted ? 1.0f : 0.0f)}};
+}
+std::optional<GpuCollider> to_gpu(const BoxCollider& box) {
+    GpuCollider found{.kind = GpuColliderKind::Box, .half = box.half};
+    const Affine& world = box.world_from_box;  // a rotation: its transpose is its inverse
+    const Vec3 center = {world.row[0].w, world.row[1].w, world.row[2].w};
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 unit = {world.row[0][axis], world.row[1][axis], world.row[2][axis]};
+        found.rows[axis] = Vec4(unit, -glm::dot(unit, center));
+    }
+    return found;
+}
+std::optional<GpuCollider> to_gpu(const HeightCollider&) {
+    return std::nullopt;
+}
+std::optional<GpuCollider> to_gpu(const MeshCollider&) {
+    return std::nullopt;
+}
+
+std::vector<GpuCollider> find_gpu_colliders(std::span<const Collider> colliders) {
+    std::vector<GpuCollider> found;
+    for (const Collider& collider : colliders) {
+        if (const auto one = std::visit([](const auto& its) { return to_gpu(its); }, collider)) {
+            found.push_back(*one);
+        }
+    }
+    return found;
+}
+
 }  // namespace
 
 void add_gpu_particles(
@@ -83,18 +123,21 @@ void add_gpu_particles(
 void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
+        const PreviousWorldTransform, Optional<const ParticleCollision>,
+        Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Query<const ForceField, const WorldTransform> fields,
+    Res<const ParticleObstacles> obstacles, Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time) {
     const float dt = std::min(time->step, kMaxParticleStep);
     const Vec3 wind = weather ? current_weather(*weather, *gusts).wind() : Vec3(0);
     const EmitterEye eye = find_eye(cameras);
     const std::vector<Force> forces = find_forces(fields, time->time);
+    const std::vector<GpuCollider> met = find_gpu_colliders(obstacles->solid.colliders);
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
-                      const ParticleWrap* wrap, GpuParticles& particles) {
+                      const ParticleCollision* collision, const ParticleWrap* wrap,
+                      GpuParticles& particles) {
         static const ParticleMotion kStill;
         const std::uint64_t subject = subject_of(emitter, entity);
         GpuParticleStep step;
@@ -105,6 +148,9 @@ void record_gpu_particles(
         if (wrap != nullptr && !step.motion.step.closed_form) {
             step.motion.wrap_size = wrap->size;
             step.motion.wrap_center = eye.place;
+        }
+        if (collision != nullptr && wrap == nullptr && !step.motion.step.closed_form) {
+            step.colliders = met;
         }
         const float scale = seen_share(emitter, now.world, eye);
         if (is_unused(particles.clock)) {

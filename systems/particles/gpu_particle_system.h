@@ -4,12 +4,14 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/components/weather.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
+#include "systems/particles/particle_obstacles.h"
 
 namespace limn {
 
@@ -19,13 +21,14 @@ void add_gpu_particles(
     Query<const ParticleEmitter, Without<GpuParticles>> bare,
     Query<const ParticleEmitter, const GpuParticles> emitters, Commands commands);
 
-/// Writes down a step. After update_transforms.
+/// Writes down a step. After update_transforms and find_particle_obstacles.
 void record_gpu_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
-        const PreviousWorldTransform, Optional<const ParticleWrap>, GpuParticles>
+        const PreviousWorldTransform, Optional<const ParticleCollision>,
+        Optional<const ParticleWrap>, GpuParticles>
         emitters,
-    Query<const ForceField, const WorldTransform> fields,
+    Res<const ParticleObstacles> obstacles, Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
     OptionalRes<const Weather> weather, Res<const RandomSeed> seed, Res<const FrameTime> time);
 

@@ -2,6 +2,7 @@
 
 #include "ecs/components/force_field.h"
 #include "ecs/components/gpu_particles.h"
+#include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
@@ -63,13 +64,25 @@ struct Executors : Scene {
     }
     GpuParticles& recorded() { return world.get<GpuParticles>(gpu); }
     const ParticlePool& pool() { return world.get<const ParticlePool>(cpu); }
+    void collide(const ParticleCollision& collision) {
+        world.add(cpu, collision);
+        world.add(gpu, collision);
+    }
+    void add_obstacle(
+        const ParticleCollider& collider, const Vec3& position,
+        const Quat& rotation = Quat(1, 0, 0, 0)) {
+        const Affine at = affine_from(position, rotation, Vec3(1));
+        world.create(collider, WorldTransform{at}, PreviousWorldTransform{at});
+    }
     /// Lets the GPU catch up, and reads those that may be alive, oldest first.
     std::vector<GpuParticle> read() {
         FrameData frame;
         frame.ring = &ring;
         ring.begin_frame();
         pools.begin_frame(world);
-        pools.add(frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0);
+        pools.add(
+            frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0, std::nullopt,
+            world.find<ParticleCollision>(gpu));
         graph.begin_frame();
         pools.update(graph, 0, {0, 0, 0}, {0, 0, -1});
         graph.execute();
@@ -80,7 +93,7 @@ struct Executors : Scene {
         std::vector<GpuParticle> alive;
         for (std::uint32_t i = 0; i < its.count; ++i) {
             const GpuParticle& one = slots[(its.first + i) % its.capacity];
-            if (one.place_age.w < one.velocity_life.w) {
+            if (one.place_age.w < std::abs(one.velocity_life.w)) {
                 alive.push_back(one);
             }
         }
@@ -136,6 +149,89 @@ TEST_CASE("gpu particles: for ten seconds they are where the CPU has them") {
         REQUIRE(gpu.size() == 4000);
         REQUIRE(both.pool().size() == 4000);
         CHECK(largest_difference(gpu, both.pool(), 10 * 3.0f) < 1e-4f);
+    }
+}
+
+TEST_CASE("gpu particles: they bounce off planes, spheres and boxes where those of the CPU do") {
+    for (const float radius : {0.0f, 0.03f}) {
+        CAPTURE(radius);
+        ParticleEmitter emitter = fountain();
+        emitter.shape = EmitterShape::Box;
+        emitter.size = {2, 0.5f, 2};
+        Executors both(emitter, {});
+        both.collide({.bounce = 0.4f, .friction = 0.7f, .radius = radius});
+        both.add_obstacle({.shape = ColliderShape::Plane}, {0, 0, 0}, Quat(0.99f, 0.1f, 0, 0.05f));
+        both.add_obstacle({.shape = ColliderShape::Sphere, .size = Vec3(0.8f)}, {1.5f, 1, 3});
+        both.add_obstacle(
+            {.shape = ColliderShape::Box, .size = {0.5f, 0.7f, 0.4f}}, {0, 1, 2.5f},
+            Quat(0.9f, 0.2f, 0.3f, 0.1f));
+        both.add_obstacle(
+            {.shape = ColliderShape::Sphere, .size = Vec3(6), .hollow = true}, {1, 2, 3});
+        both.step(90);
+        const std::vector<GpuParticle> gpu = both.read();
+        const ParticlePool& cpu = both.pool();
+        REQUIRE(gpu.size() == cpu.size());
+        REQUIRE(gpu.size() == 600);
+        // Where a particle touches an edge, rounding decides which side it leaves by.
+        std::size_t apart = 0;
+        std::size_t bounced = 0;
+        for (std::size_t i = 0; i < gpu.size(); ++i) {
+            const Vec3 place = {cpu.x[i], cpu.y[i], cpu.z[i]};
+            apart += glm::distance(Vec3(gpu[i].place_age), place) < 1e-3f ? 0 : 1;
+            bounced += cpu.vy[i] > 0 || std::abs(cpu.vy[i]) < 0.1f ? 1 : 0;
+        }
+        CHECK(bounced > 100);
+        CHECK(apart <= gpu.size() / 100);
+    }
+}
+
+TEST_CASE("gpu particles: at 60 m/s none gets through a wall of a millimeter") {
+    ParticleEmitter emitter = fountain();
+    emitter.shape = EmitterShape::Ball;
+    emitter.size = Vec3(0.5f);
+    emitter.speed = 60;
+    emitter.speed_spread = 0;
+    emitter.cone = kPi;
+    ParticleMotion motion;
+    motion.gravity = 0;
+    Executors both(emitter, motion);
+    both.collide({.bounce = 0.9f, .friction = 1});
+    const Vec3 center = {1, 2, 3};  // of the emitter: a closed box of six walls
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-2.0f, 2.0f}) {
+            Vec3 size(3);
+            size[axis] = 0.0005f;
+            Vec3 place = center;
+            place[axis] += side;
+            both.add_obstacle({.shape = ColliderShape::Box, .size = size}, place);
+        }
+    }
+    both.step(120);
+    const std::vector<GpuParticle> gpu = both.read();
+    REQUIRE(gpu.size() == 800);
+    for (const GpuParticle& one : gpu) {
+        const Vec3 offset = glm::abs(Vec3(one.place_age) - center);
+        CHECK(std::max({offset.x, offset.y, offset.z}) < 2.001f);
+    }
+}
+
+TEST_CASE("gpu particles: they stick where they hit, or die there, as on the CPU") {
+    for (const CollisionAction action : {CollisionAction::Stick, CollisionAction::Kill}) {
+        CAPTURE(static_cast<int>(action));
+        ParticleEmitter emitter = fountain();
+        emitter.life = 3;
+        Executors both(emitter, {});
+        both.collide({.action = action});
+        both.add_obstacle({.shape = ColliderShape::Plane}, {0, 0, 0});
+        both.step(150);
+        const std::vector<GpuParticle> gpu = both.read();
+        const ParticlePool& cpu = both.pool();
+        REQUIRE(gpu.size() == cpu.size());
+        CHECK(largest_difference(gpu, cpu, 1) < 1e-3f);
+        const auto resting = std::count_if(gpu.begin(), gpu.end(), [](const GpuParticle& one) {
+            return Vec3(one.velocity_life) == Vec3(0);
+        });
+        CHECK((action == CollisionAction::Stick) == (resting > 200));
     }
 }
 

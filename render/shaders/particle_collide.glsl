@@ -1,0 +1,165 @@
+// A step of a particle among planes, spheres and boxes: swept from contact to contact as in
+// systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp.
+
+const uint kColliderPlane = 0u, kColliderSphere = 1u, kColliderBox = 2u;
+const uint kBounce = 1u, kStick = 2u, kKill = 3u;  // of the emitter; 0: does not collide
+const float kSkin = 1e-4;       // distance kept from surfaces [m]
+const float kRestSpeed = 0.2;   // slower toward the surface: no rebound [m/s]
+const int kMaxBounces = 8;
+
+struct GpuCollider {
+    uint kind;
+    vec4 a;        // plane: normal, offset; sphere: center, radius; box: first row of box_from_world
+    vec4 b, c;     // sphere: b.x 1: hollow; box: further rows
+    vec3 half_size;
+};
+
+struct Touch {
+    float share;  // of the way; > 1: none
+    vec3 normal;
+};
+
+GpuCollider read_collider(int texel) {
+    vec4 last = texelFetch(steps, texel + 3);
+    return GpuCollider(
+        floatBitsToUint(last.w), texelFetch(steps, texel), texelFetch(steps, texel + 1), texelFetch(steps, texel + 2),
+        last.xyz);
+}
+
+vec3 to_box(GpuCollider box, vec3 v, float w) {
+    return vec3(dot(box.a, vec4(v, w)), dot(box.b, vec4(v, w)), dot(box.c, vec4(v, w)));
+}
+vec3 from_box(GpuCollider box, vec3 v) {
+    return box.a.xyz * v.x + box.b.xyz * v.y + box.c.xyz * v.z;
+}
+
+Touch touch_plane(GpuCollider plane, vec3 from, vec3 delta, float radius) {
+    float before = dot(plane.a.xyz, from) - plane.a.w - radius;
+    float change = dot(plane.a.xyz, delta);
+    bool meets = before >= 0.0 && before + change < 0.0;
+    return Touch(meets ? before / -change : 2.0, plane.a.xyz);
+}
+
+Touch touch_sphere(GpuCollider sphere, vec3 from, vec3 delta, float radius) {
+    bool hollow = sphere.b.x != 0.0;
+    float side = hollow ? -1.0 : 1.0;
+    float reach = sphere.a.w + side * radius;
+    vec3 start = from - sphere.a.xyz;
+    float a = dot(delta, delta);
+    float b = dot(start, delta);
+    float c = dot(start, start) - reach * reach;
+    float root = b * b - a * c;
+    if (!(reach > 0.0 && c * side >= 0.0) || (!hollow && !(root > 0.0 && b < 0.0))) {
+        return Touch(2.0, vec3(0.0));
+    }
+    float share = hollow && b <= 0.0 ? (sqrt(root) - b) / a : side * c / (sqrt(root) - side * b);
+    return Touch(share <= 1.0 ? share : 2.0, side * normalize(start + share * delta));
+}
+
+Touch touch_box(GpuCollider box, vec3 from, vec3 delta, float radius) {
+    vec3 start = to_box(box, from, 1.0);
+    vec3 way = to_box(box, delta, 0.0);
+    float enter = -1e30;
+    float leave = 1e30;
+    vec3 normal = vec3(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        float reach = box.half_size[axis] + radius;
+        if (way[axis] == 0.0) {
+            if (abs(start[axis]) >= reach) {
+                return Touch(2.0, vec3(0.0));
+            }
+            continue;
+        }
+        float toward = way[axis] > 0.0 ? reach : -reach;
+        float in_at = (-toward - start[axis]) / way[axis];
+        if (in_at > enter) {
+            enter = in_at;
+            normal = vec3(0.0);
+            normal[axis] = -sign(toward);
+        }
+        leave = min(leave, (toward - start[axis]) / way[axis]);
+    }
+    bool meets = enter >= 0.0 && enter <= 1.0 && enter <= leave;
+    return Touch(meets ? enter : 2.0, from_box(box, normal));
+}
+
+Touch touch(GpuCollider collider, vec3 from, vec3 delta, float radius) {
+    if (collider.kind == kColliderPlane) {
+        return touch_plane(collider, from, delta, radius);
+    }
+    return collider.kind == kColliderSphere ? touch_sphere(collider, from, delta, radius)
+                                            : touch_box(collider, from, delta, radius);
+}
+
+// Outward normal and depth > 0 of who is inside.
+vec4 find_exit(GpuCollider collider, vec3 place, float radius) {
+    if (collider.kind == kColliderPlane) {
+        return vec4(collider.a.xyz, collider.a.w + radius - dot(collider.a.xyz, place));
+    }
+    if (collider.kind == kColliderSphere) {
+        vec3 delta = place - collider.a.xyz;
+        float distance_ = length(delta);
+        vec3 outward = distance_ > 0.0 ? delta / distance_ : vec3(0.0, 1.0, 0.0);
+        return collider.b.x != 0.0 ? vec4(-outward, distance_ - max(collider.a.w - radius, 0.0))
+                                   : vec4(outward, collider.a.w + radius - distance_);
+    }
+    vec3 local = to_box(collider, place, 1.0);
+    vec3 inside = collider.half_size + radius - abs(local);
+    int nearest = inside.x < inside.y ? (inside.z < inside.x ? 2 : 0) : (inside.z < inside.y ? 2 : 1);
+    vec3 normal = vec3(0.0);
+    normal[nearest] = local[nearest] < 0.0 ? -1.0 : 1.0;
+    return vec4(from_box(collider, normal), inside[nearest]);
+}
+
+Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta, float radius) {
+    Touch nearest = Touch(2.0, vec3(0.0));
+    for (int i = 0; i < collider_count; ++i) {
+        Touch one = touch(read_collider(first_collider + i * int(kColliderTexels)), from, delta, radius);
+        if (one.share < nearest.share) {
+            nearest = one;
+        }
+    }
+    return nearest;
+}
+
+// From `start` to where the step has moved it, in `dt` seconds. `response`: bounce, friction, radius, action (word).
+void collide(inout Particle p, vec3 start, float dt, int first_collider, int collider_count, vec4 response) {
+    uint action = floatBitsToUint(response.w);
+    bool stops = action != kBounce;
+    vec3 place = start;
+    vec3 to = p.place;
+    bool stopped = false;
+    for (int i = 0; i < collider_count && !stopped; ++i) {
+        vec4 way_out = find_exit(read_collider(first_collider + i * int(kColliderTexels)), place, response.z + 0.5 * kSkin);
+        if (way_out.w > 0.0) {
+            vec3 way = to - place;
+            place += (way_out.w + 0.5 * kSkin) * way_out.xyz;
+            if (way_out.w > 0.5 * kSkin) {
+                p.velocity -= min(dot(p.velocity, way_out.xyz), 0.0) * way_out.xyz;
+                way -= min(dot(way, way_out.xyz), 0.0) * way_out.xyz;
+                stopped = stops;
+            }
+            to = place + way;
+        }
+    }
+    float time = dt;
+    for (int bounce = 0; !stopped; ++bounce) {
+        Touch found = first_touch(first_collider, collider_count, place, to - place, response.z);
+        if (found.share > 1.0) {
+            place = to;
+            break;
+        }
+        place += found.share * (to - place) + kSkin * found.normal;
+        float toward = -dot(p.velocity, found.normal);
+        stopped = stops || bounce + 1 >= kMaxBounces;
+        vec3 across = -toward * found.normal;
+        p.velocity = response.y * (p.velocity - across) - (toward < kRestSpeed ? 0.0 : response.x) * across;
+        time *= 1.0 - found.share;
+        to = place + time * p.velocity;
+    }
+    p.place = place;
+    if (stopped) {
+        p.velocity = vec3(0.0);
+        p.life = action == kKill ? min(p.life, p.age) : action == kStick ? -p.life : p.life;
+    }
+}
