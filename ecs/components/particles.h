@@ -14,6 +14,7 @@ namespace limn {
 //
 //     ParticleEmitter   when and where particles are born, and with what
 //     ParticleSource    that they are born where particles of another emitter are
+//     ParticleSurface   that they are born on a mesh or along a path (particle_surface.h)
 //     ParticleMotion    what moves them
 //     ParticleCollision what happens where they meet a ParticleCollider (particle_collider.h)
 //     ParticleWrap      that they stay about the camera
@@ -69,8 +70,8 @@ LIMN_FIELDS(CurveKey) {
 }
 
 /// Who moves the particles of an emitter. The same happens to them, but for rounding; on the GPU
-/// they are neither saved nor sorted among each other, have no collisions, sources, drops or
-/// lights, and the capacity holds those of the longest lifetime.
+/// they are neither saved nor sorted among each other, have no collisions, sources, surfaces, drops
+/// or lights, and the capacity holds those of the longest lifetime.
 enum class ParticleExecutor : std::uint8_t {
     Auto,  ///< the GPU from a capacity of 262,144 on
     Cpu,
@@ -106,7 +107,8 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(active, "whether particles are born; the living ones go on");
     LIMN_FIELD(
         executor,
-        .doc = "who moves them; on the GPU without order, collisions, sources, drops and lights",
+        .doc = "who moves them; on the GPU without order, collisions, sources, surfaces, drops and "
+               "lights",
         .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);
