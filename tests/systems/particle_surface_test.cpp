@@ -294,12 +294,13 @@ TEST_CASE("particle surface: a triangle that is not finite is left out, the othe
 }
 
 TEST_CASE("particle surface: a place depends on the number of the birth alone") {
-    const auto places = [](float rate, int steps) {
+    const auto places = [](float rate, int steps, float life = 1000) {
         Surfaces scene;
         const Entity mesh = scene.add_instance(scene.add_mesh(two_rectangles()), placed(Vec3(0)));
         ParticleEmitter emitter = resting(10000);
         emitter.bursts.clear();
         emitter.rate = rate;
+        emitter.life = life;
         emitter.seed = 3;
         scene.emit(emitter, {.entity = mesh});
         scene.run(steps);
@@ -313,6 +314,9 @@ TEST_CASE("particle surface: a place depends on the number of the birth alone") 
     REQUIRE(slow.size() == 600);
     CHECK(slow == places(6000, 6));
     CHECK(slow[0] != slow[1]);
+    const std::vector<Vec3> last = places(600, 60, 0.5f);  // the others are dead
+    REQUIRE(last.size() == 300);
+    CHECK(std::equal(last.begin(), last.end(), slow.end() - 300));
 }
 
 namespace {
