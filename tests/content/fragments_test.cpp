@@ -183,6 +183,7 @@ TEST_CASE("fragments: of nothing there are none, and no more than triangles") {
     assets.meshes.push_back(bad);
     CHECK(make_fragments({.mesh = {1}}, assets).pieces.empty());
     assets.meshes.push_back(make_plane({}));
+    assets.meshes[2].indices.insert(assets.meshes[2].indices.end(), {0, 0, 1});  // no area
     CHECK(make_fragments({.mesh = {2}, .count = 50}, assets).pieces.size() == 2);
     assets.meshes.push_back(make_plane({.divisions = 4}));
     CHECK(make_fragments({.mesh = {3}, .count = 1}, assets).pieces.size() == 1);
