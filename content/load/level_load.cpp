@@ -5,6 +5,7 @@
 #include "content/load/level_events.h"
 #include "content/load/level_hints.h"
 #include "content/load/level_names.h"
+#include "content/make/fragments.h"
 #include "ecs/base/log.h"
 #include "ecs/base/text.h"
 #include "ecs/components/camera_path.h"
@@ -540,6 +541,9 @@ Status make_meshes(Level& level, const LevelLimits& limits, MadeAssets& made) {
                 "{}: meshes.{}: found {} vertices so far, expected at most {} in all meshes",
                 level.file, mesh.name, vertices, limits.max_vertices);
         }
+    }
+    for (std::uint32_t i = 0; i < level.meshes.size(); ++i) {
+        add_piece_meshes(level.assets, {i});  // after those whose ids are their places in the file
     }
     return Done{};
 }

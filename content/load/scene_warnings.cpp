@@ -8,6 +8,8 @@
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
+#include "ecs/components/particle_mesh.h"
+#include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/rotation_track.h"
@@ -66,6 +68,7 @@ constexpr Need kNeeds[] = {
     {"particle_look", {"particle_emitter", "trail", "beam"}},
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
+    {"particle_surface", {"particle_emitter", "", ""}},
     {"particle_collision", {"particle_emitter", "", ""}},
 };
 
@@ -157,10 +160,37 @@ struct SceneCheck {
         });
     }
 
+    void check_surfaces() {
+        const auto* const assets = world.find_resource<Assets>();
+        const auto has_pieces = [&](Entity entity) {
+            const auto* const mesh = world.find<ParticleMesh>(entity);
+            return mesh != nullptr && assets != nullptr && !mesh->meshes.empty()
+                   && mesh->meshes[0].index < assets->meshes.size()
+                   && !assets->meshes[mesh->meshes[0].index].pieces.empty();
+        };
+        world.query<const ParticleSurface>().each([&](Entity entity,
+                                                      const ParticleSurface& surface) {
+            const Entity owner = surface.entity.is_null() ? entity : surface.entity;
+            if (world.has<ParticleSource>(entity)) {
+                warn(entity, "particle_surface has no effect beside a particle_source");
+            } else if (
+                surface.on == BirthSurface::Mesh && !has_component(world, owner, "mesh_instance")) {
+                warn(entity, "particle_surface on a mesh needs an entity with mesh_instance");
+            } else if (
+                surface.on == BirthSurface::Path
+                && (assets == nullptr || surface.path.index >= assets->paths.size())) {
+                warn(entity, "particle_surface on a path needs a path");
+            } else if (surface.on == BirthSurface::Pieces && !has_pieces(entity)) {
+                warn(entity, "particle_surface on pieces needs a particle_mesh of \"fragments\"");
+            }
+        });
+    }
+
     void check_gpu_particles() {
         world.query<const ParticleEmitter>().each(
             [&](Entity entity, const ParticleEmitter& emitter) {
-                for (const std::string_view one : {"particle_mesh", "particle_light", "trail"}) {
+                for (const std::string_view one :
+                     {"particle_mesh", "particle_light", "particle_surface", "trail"}) {
                     if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                         warn(
                             entity, fmt::format(
@@ -343,6 +373,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     world.each_entity([&](Entity entity) { check.check_needs(entity); });
     check.check_followers();
     check.check_particles();
+    check.check_surfaces();
     check.check_gpu_particles();
     check.check_colliders();
     check.check_cameras();

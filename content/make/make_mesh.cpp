@@ -2,6 +2,7 @@
 
 #include "content/make/bar.h"
 #include "content/make/boat.h"
+#include "content/make/fragments.h"
 #include "content/make/hovercraft.h"
 #include "content/make/masonry.h"
 #include "content/make/shapes.h"
@@ -53,6 +54,8 @@ std::span<const MeshKind> mesh_kinds() {
             "creature", "an animal on four legs that faces z, with skeleton, skin and clips"),
         mesh_kind<CylinderShape, make_cylinder>("cylinder", "a closed tube around +y"),
         mesh_kind<DiscShape, make_disc>("disc", "a disc or ring that faces +y"),
+        mesh_kind<FragmentsShape, make_fragments>(
+            "fragments", "another mesh of the level, broken into pieces that can fly apart"),
         mesh_kind<HovercraftShape, make_hovercraft>(
             "hovercraft", "a racing craft that hovers, facing z"),
         mesh_kind<LatheShape, make_lathe>("lathe", "a profile revolved around +y"),

@@ -24,6 +24,7 @@
 #include "ecs/components/ocean.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
+#include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/post.h"
@@ -71,6 +72,7 @@ void register_all_components() {
     register_component<ParticlePool>();
     register_component<ParticleMesh>();
     register_component<ParticleMeshState>();
+    register_component<ParticleSurface>();
     register_component<Trail>();
     register_component<TrailState>();
     register_component<Beam>();

@@ -13,11 +13,13 @@ namespace limn {
 enum class ParticleMeshFacing : std::uint8_t {
     Tumble,    ///< turned at random, about an axis of its own
     Velocity,  ///< its -z axis along the flight, about which it spins
+    Emitter,   ///< at its birth turned and scaled as the emitter, then as Tumble
 };
 
 /// The particles of an emitter are drawn as instances of meshes, lit and shadowed as any other:
 /// debris, leaves, projectiles (particle.mesh-particles, engine.projectile-instances). Beside a
-/// ParticleLook or without one.
+/// ParticleLook or without one. With a ParticleSurface on the pieces of a mesh, each particle is
+/// one of the pieces of the first of `meshes`.
 struct ParticleMesh {
     std::vector<MeshId> meshes = {};
     MaterialId material = {};
@@ -27,6 +29,7 @@ struct ParticleMesh {
     ParticleMeshFacing facing = ParticleMeshFacing::Tumble;
     float spin = 0;
     float spin_spread = 6;
+    float fade = 0;
 };
 
 LIMN_FIELDS(ParticleMesh) {
@@ -36,11 +39,13 @@ LIMN_FIELDS(ParticleMesh) {
     LIMN_FIELD(scale_spread, "give or take", "", 0, 1e4);
     LIMN_FIELD(scale_curve, "factor on the scale over the life");
     LIMN_FIELD(
-        facing, .doc = "how it is turned: at random, or -z along the flight",
-        .values = "tumble velocity");
+        facing,
+        .doc = "how it is turned: at random, -z along the flight, or at first as the emitter",
+        .values = "tumble velocity emitter");
     LIMN_FIELD(
         spin, "rotation; of particles that collide, slower below 1 m/s", "rad/s", -1000, 1000);
     LIMN_FIELD(spin_spread, "give or take", "rad/s", 0, 1000);
+    LIMN_FIELD(fade, "it shrinks to nothing over the last seconds of its life", "s", 0, 1e5);
 }
 
 struct MeshParticle {

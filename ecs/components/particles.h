@@ -15,6 +15,7 @@ namespace limn {
 //
 //     ParticleEmitter   when and where particles are born, and with what
 //     ParticleSource    that they are born where particles of another emitter are
+//     ParticleSurface   that they are born on a mesh or along a path (particle_surface.h)
 //     ParticleMotion    what moves them
 //     ParticleCollision what happens where they meet a ParticleCollider (particle_collider.h)
 //     ParticleWrap      that they stay about the camera
@@ -70,9 +71,9 @@ LIMN_FIELDS(CurveKey) {
 }
 
 /// Who moves the particles of an emitter. The same happens to them, but for rounding; on the GPU
-/// they are neither saved nor sorted among other emitters' particles, have no sources, drops or
-/// lights, meet only planes, spheres and boxes, and the capacity holds those of the longest
-/// lifetime.
+/// they are neither saved nor sorted among other emitters' particles, have no sources, surfaces,
+/// drops or lights, meet only planes, spheres and boxes, and the capacity holds those of the
+/// longest lifetime.
 enum class ParticleExecutor : std::uint8_t {
     Auto,  ///< the GPU from a capacity of 262,144 on
     Cpu,
@@ -117,8 +118,8 @@ LIMN_FIELDS(ParticleEmitter) {
     LIMN_FIELD(active, "whether particles are born; the living ones go on");
     LIMN_FIELD(
         executor,
-        .doc = "who moves them; on the GPU without sources, drops and lights, and only planes, spheres "
-               "and boxes collide",
+        .doc = "who moves them; on the GPU without sources, surfaces, drops and lights, and only "
+               "planes, spheres and boxes collide",
         .values = "auto cpu gpu");
     LIMN_FIELD(rate, "births per second", "1/s", 0, 1e7);
     LIMN_FIELD(rate_spread, "give or take, anew each step", "1/s", 0, 1e7);

@@ -37,6 +37,14 @@ inline constexpr const char* asset_kind<ImageId> = "image";
 template <>
 inline constexpr const char* asset_kind<MaterialId> = "material";
 
+/// A part of a mesh that is a mesh of its own, too.
+struct MeshPiece {
+    Vec3 center = {0, 0, 0};  ///< origin of that mesh, in the space of the whole [m]
+    std::uint32_t first = 0;  ///< of its indices in the whole
+    std::uint32_t count = 0;  ///< of its indices
+    MeshId mesh = {};
+};
+
 /// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
 /// empty. After editing it in place, increment `version`: the renderer uploads it again.
 struct MeshData {
@@ -52,6 +60,7 @@ struct MeshData {
         indices;                      ///< three per triangle, counter-clockwise seen from the front
     SkinWeights skin;                 ///< empty: not skinned
     std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
+    std::vector<MeshPiece> pieces;    ///< all of it in pieces, or empty
     Bounds bounds;                    ///< of the undeformed mesh
     std::uint32_t version = 0;
 };

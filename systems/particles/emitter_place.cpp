@@ -1,5 +1,7 @@
 #include "systems/particles/emitter_place.h"
 
+#include "systems/particles/particle_births.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -10,6 +12,14 @@ EmitterPlace place_of(const WorldTransform& now, const PreviousWorldTransform& p
     const Vec4& row = previous.world.row[0];
     const bool is_new = row.x == 0 && row.y == 0 && row.z == 0 && row.w == 0;
     return {is_new ? now.world : previous.world, now.world};
+}
+
+Affine mix_places(const EmitterPlace& place, float at) {
+    Affine mixed = place.before;
+    for (int i = 0; i < 3; ++i) {
+        mixed.row[i] += (place.now.row[i] - place.before.row[i]) * at;
+    }
+    return mixed;
 }
 
 EmitterEye find_eye(const Query<const Camera, const WorldTransform>& cameras) {
@@ -60,6 +70,10 @@ Random prewarm_random(std::uint64_t seed, std::uint64_t subject, int i) {
 
 Random attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
     return {seed, subject, name_hash("particles"), number};
+}
+
+Random surface_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number) {
+    return {seed, subject, name_hash("particle surface"), number};
 }
 
 }  // namespace limn

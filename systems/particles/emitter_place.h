@@ -2,11 +2,11 @@
 
 #include "ecs/base/rng.h"
 #include "ecs/components/camera.h"
+#include "ecs/components/gpu_particles.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/transform.h"
 #include "ecs/entity.h"
 #include "ecs/query.h"
-#include "systems/particles/particle_births.h"
 
 #include <cstdint>
 
@@ -18,6 +18,9 @@ namespace limn {
 /// One that is new has not moved.
 [[nodiscard]] EmitterPlace
 place_of(const WorldTransform& now, const PreviousWorldTransform& previous);
+
+/// At the share `at` of the step: matrices a step apart differ little, their elements are mixed.
+[[nodiscard]] Affine mix_places(const EmitterPlace& place, float at);
 
 /// The camera that decides how large an emitter appears.
 struct EmitterEye {
@@ -44,5 +47,8 @@ seen_share(const ParticleEmitter& emitter, const Affine& world, const EmitterEye
 /// Of the attributes of a birth, by its number.
 [[nodiscard]] Random
 attributes_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number);
+/// Of its place on a ParticleSurface.
+[[nodiscard]] Random
+surface_random(std::uint64_t seed, std::uint64_t subject, std::uint64_t number);
 
 }  // namespace limn

@@ -20,15 +20,6 @@ float spread(float mean, float width, Random& random) {
     return mean + width * random.uniform(-1.0f, 1.0f);
 }
 
-/// Matrices a step apart differ little: their elements are mixed.
-Affine between(const Affine& a, const Affine& b, float t) {
-    Affine mixed = a;
-    for (int i = 0; i < 3; ++i) {
-        mixed.row[i] += (b.row[i] - a.row[i]) * t;
-    }
-    return mixed;
-}
-
 /// Once for all particles that it may hold: what is not used yet costs address space alone.
 void reserve(ParticlePool& pool, std::size_t count) {
     for (auto* column :
@@ -110,13 +101,13 @@ Attributes draw_attributes(const ParticleEmitter& emitter, const Affine& world, 
     return its;
 }
 
-/// The same scale, with +y along the unit vector `up`.
-Affine with_up(const Affine& world, const Vec3& up) {
+/// The same scale, at another place and turned otherwise.
+Affine turned_to(const Affine& world, const Vec3& position, const Quat& turn) {
     const Vec3 size = {
         glm::length(transform_vector(world, {1, 0, 0})),
         glm::length(transform_vector(world, {0, 1, 0})),
         glm::length(transform_vector(world, {0, 0, 1}))};
-    return affine_from(Vec3(0), Quat(Vec3(0, 1, 0), up), size);
+    return affine_from(position, turn, size);
 }
 
 /// One piece of a step, without a restart of the emitter within it.
@@ -281,19 +272,35 @@ Vec3 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& plac
 
 void add_particles(
     const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
-    std::uint64_t seed, std::uint64_t subject, const std::vector<BirthRun>& births,
-    ParticlePool& pool) {
+    const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,
+    const std::vector<BirthRun>& births, ParticlePool& pool) {
     const Vec3 inherited = inherited_velocity(emitter, place, step.dt);
     std::size_t count = 0;
     for (const BirthRun& run : births) {
         count += run.count;
     }
+    thread_local SurfaceTable table;  // its memory is reused
+    if (surface != nullptr && count > 0 && !fill_surface_table(*surface, table)) {
+        pool.clock.dropped += count;
+        return;
+    }
     make_room(emitter, count, pool);
     const auto add = [&](float at) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
-        const Affine world = between(place.before, place.now, at);
-        const Attributes its = draw_attributes(emitter, world, random);
-        Vec3 velocity = its.velocity + inherited;
+        Affine world = mix_places(place, at);
+        Vec3 added = inherited;
+        SurfacePoint point;
+        if (surface != nullptr) {
+            Random places = surface_random(seed, subject, pool.clock.born - 1);
+            point = surface_point(*surface, table, pool.clock.born - 1, at, step.dt, places);
+            world = turned_to(world, point.position, point.turn);
+            added = point.velocity * finite_or(surface->surface->inherit, 0);
+        }
+        Attributes its = draw_attributes(emitter, world, random);
+        if (surface != nullptr && surface->surface->on == BirthSurface::Pieces) {
+            its.look = (its.look & ~kPieceMask) | point.piece;
+        }
+        Vec3 velocity = its.velocity + added;
         Vec3 position = transform_point(world, its.local);
         rewind(step, at, position, velocity);
         add_particle(pool, position, velocity, at * step.dt, its.life, its.look);
@@ -311,7 +318,9 @@ void add_spawns(
     make_room(emitter, spawns.size(), pool);
     for (const ParticleSpawn& spawn : spawns) {
         Random random = attributes_random(seed, subject, pool.clock.born++);
-        const Affine place = spawn.axis == Vec3(0) ? world : with_up(world, spawn.axis);
+        const Affine place = spawn.axis == Vec3(0)
+                                 ? world
+                                 : turned_to(world, Vec3(0), Quat(Vec3(0, 1, 0), spawn.axis));
         const Attributes its = draw_attributes(emitter, place, random);
         const Vec3 velocity = its.velocity + spawn.velocity;
         const Vec3 position =

@@ -6,6 +6,7 @@
 #include "ecs/components/particles.h"
 #include "ecs/components/water_spray.h"
 #include "systems/particles/particle_sources.h"
+#include "systems/particles/surface_births.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,11 +50,12 @@ void add_drops(
 inherited_velocity(const ParticleEmitter& emitter, const EmitterPlace& place, float dt);
 
 /// Adds a particle for every birth, at the emitter's place of that instant, as far back on its way
-/// as a whole step will bring it forward.
+/// as a whole step will bring it forward; on `surface` unless it is null. Where nothing can be born
+/// there, the births are added to `clock.dropped`.
 void add_particles(
     const ParticleEmitter& emitter, const EmitterPlace& place, const ParticleStep& step,
-    std::uint64_t seed, std::uint64_t subject, const std::vector<BirthRun>& births,
-    ParticlePool& pool);
+    const SurfaceSource* surface, std::uint64_t seed, std::uint64_t subject,
+    const std::vector<BirthRun>& births, ParticlePool& pool);
 
 /// Adds a particle for every birth by another one (ParticleSource), where it is at the end of the
 /// step. `world` turns and scales the emitter's shape.

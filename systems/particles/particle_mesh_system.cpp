@@ -1,5 +1,7 @@
 #include "systems/particles/particle_mesh_system.h"
 
+#include "systems/particles/surface_births.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -48,35 +50,64 @@ Affine moved_to(const Affine& pose, const Vec3& position) {
     return moved;
 }
 
+/// Rotation, scale and shear of `world`, about a point.
+Affine about(const Affine& world, const Vec3& position, const Quat& turn, float scale) {
+    return affine_from(position, turn, Vec3(scale)) * moved_to(world, Vec3(0));
+}
+
+MeshId mesh_of(const ParticleMesh& mesh, const MeshData* whole, std::uint32_t key) {
+    if (whole != nullptr) {
+        const std::uint32_t piece = key & kPieceMask;
+        return piece < whole->pieces.size() ? whole->pieces[piece].mesh : MeshId{};
+    }
+    if (mesh.meshes.empty()) {
+        return {};
+    }
+    const float pick = random_share(key, kMesh) * static_cast<float>(mesh.meshes.size());
+    return mesh.meshes[std::min(static_cast<std::size_t>(pick), mesh.meshes.size() - 1)];
+}
+
+/// Of all particles of an emitter in a step.
+struct MeshStep {
+    Affine world{};                   ///< of the emitter
+    const MeshData* whole = nullptr;  ///< whose pieces they are, or null
+    bool collides = false;
+    float dt = 0;
+};
+
 /// `old`: the same one a step earlier, null if it is new.
 MeshParticle step_instance(
-    const ParticleMesh& mesh, const ParticlePool& pool, std::size_t i, bool collides, float dt,
+    const ParticleMesh& mesh, const ParticlePool& pool, std::size_t i, const MeshStep& step,
     const MeshParticle* old) {
+    const float dt = step.dt;
     const std::uint32_t key = pool.look[i];
     const Vec3 position = {pool.x[i], pool.y[i], pool.z[i]};
     const Vec3 velocity = {pool.vx[i], pool.vy[i], pool.vz[i]};
     const float speed = glm::length(velocity);
     const bool stuck = i < pool.stuck.size() && pool.stuck[i] != 0;
-    const float free = stuck ? 0.0f : collides ? std::min(speed / kRestSpeed, 1.0f) : 1.0f;
+    const float free = stuck ? 0.0f : step.collides ? std::min(speed / kRestSpeed, 1.0f) : 1.0f;
     const float spin = give_or_take(mesh.spin, mesh.spin_spread, key, kSpin);
     MeshParticle its;
     its.key = key;
-    if (!mesh.meshes.empty()) {
-        const float pick = random_share(key, kMesh) * static_cast<float>(mesh.meshes.size());
-        its.mesh = mesh.meshes[std::min(static_cast<std::size_t>(pick), mesh.meshes.size() - 1)];
-    }
-    its.angle = old != nullptr ? old->angle + free * spin * dt
-                               : 2 * kPi * random_share(key, kAngle) + spin * pool.age[i];
+    its.mesh = mesh_of(mesh, step.whole, key);
+    const bool as_emitter = mesh.facing == ParticleMeshFacing::Emitter;
+    const float begin = as_emitter ? 0.0f : 2 * kPi * random_share(key, kAngle);
+    its.angle = old != nullptr ? old->angle + free * spin * dt : begin + spin * pool.age[i];
     const float share = std::clamp(pool.age[i] / std::max(pool.life[i], 1e-6f), 0.0f, 1.0f);
-    const float scale = give_or_take(mesh.scale, mesh.scale_spread, key, kScale)
-                        * sample_curve(mesh.scale_curve, share);
+    const float left = pool.life[i] - pool.age[i];
+    const float shrunk = mesh.fade > 0 ? std::clamp(left / mesh.fade, 0.0f, 1.0f) : 1.0f;
+    const float scale = std::max(
+        give_or_take(mesh.scale, mesh.scale_spread, key, kScale)
+            * sample_curve(mesh.scale_curve, share) * shrunk,
+        kMinScale);
     const bool flies = mesh.facing == ParticleMeshFacing::Velocity;
     if (old != nullptr && (stuck || (flies && !(speed > kMinSpeed)))) {
         its.now = moved_to(old->now, position);
     } else {
         const Quat turned = flies && speed > kMinSpeed ? toward(velocity, its.angle)
                                                        : glm::angleAxis(its.angle, axis_of(key));
-        its.now = affine_from(position, turned, Vec3(std::max(scale, kMinScale)));
+        its.now = as_emitter ? about(step.world, position, turned, scale)
+                             : affine_from(position, turned, Vec3(scale));
     }
     its.before = old != nullptr
                      ? old->now
@@ -94,12 +125,18 @@ void add_particle_mesh_states(
 
 void update_particle_meshes(
     Query<
-        const ParticleMesh, const ParticlePool, Optional<const ParticleCollision>,
-        ParticleMeshState>
+        const ParticleMesh, const ParticlePool, const WorldTransform,
+        Optional<const ParticleSurface>, Optional<const ParticleCollision>, ParticleMeshState>
         meshes,
-    Res<const FrameTime> time) {
+    Res<const Assets> assets, Res<const FrameTime> time) {
     meshes.each([&](const ParticleMesh& mesh, const ParticlePool& pool,
+                    const WorldTransform& transform, const ParticleSurface* surface,
                     const ParticleCollision* collision, ParticleMeshState& state) {
+        MeshStep step{.world = transform.world, .collides = collision != nullptr, .dt = time->step};
+        if (surface != nullptr && surface->on == BirthSurface::Pieces && !mesh.meshes.empty()
+            && mesh.meshes[0].index < assets->meshes.size()) {
+            step.whole = &assets->meshes[mesh.meshes[0].index];
+        }
         std::vector<MeshParticle>& list = state.instances;
         const std::size_t known = list.size();
         std::size_t next = 0;
@@ -110,8 +147,7 @@ void update_particle_meshes(
                 ++next;
             }
             const MeshParticle old = next < known ? list[next] : MeshParticle{};
-            list[i] = step_instance(
-                mesh, pool, i, collision != nullptr, time->step, next < known ? &old : nullptr);
+            list[i] = step_instance(mesh, pool, i, step, next < known ? &old : nullptr);
             ++next;
         }
         list.resize(pool.size());

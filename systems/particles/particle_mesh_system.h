@@ -3,7 +3,10 @@
 #include "ecs/commands.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
+#include "ecs/components/particle_surface.h"
+#include "ecs/components/surface.h"
 #include "ecs/components/time.h"
+#include "ecs/components/transform.h"
 #include "ecs/query.h"
 #include "ecs/resource.h"
 
@@ -21,9 +24,9 @@ void add_particle_mesh_states(
 /// A step of all of them. After update_particles.
 void update_particle_meshes(
     Query<
-        const ParticleMesh, const ParticlePool, Optional<const ParticleCollision>,
-        ParticleMeshState>
+        const ParticleMesh, const ParticlePool, const WorldTransform,
+        Optional<const ParticleSurface>, Optional<const ParticleCollision>, ParticleMeshState>
         meshes,
-    Res<const FrameTime> time);
+    Res<const Assets> assets, Res<const FrameTime> time);
 
 }  // namespace limn

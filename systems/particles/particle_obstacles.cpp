@@ -1,6 +1,6 @@
 #include "systems/particles/particle_obstacles.h"
 
-#include "systems/animation/deform_mesh.h"
+#include "systems/particles/mesh_source.h"
 
 #include <glm/geometric.hpp>
 
@@ -12,56 +12,39 @@ namespace limn {
 namespace {
 
 /// An entity that is a collider, of shape Mesh.
-struct MeshSource {
+struct MeshObstacle {
     Entity entity;
     const Affine* world = nullptr;
-    MeshId mesh;
-    const MeshData* data = nullptr;
-    const Deformed* deformed = nullptr;
-    const SkinData* skin = nullptr;
-    const Pose* pose = nullptr;
-    const MorphWeights* morphs = nullptr;
+    MeshSource source;
 };
-
-void place_vertices(const MeshSource& source, std::vector<Vec3>& positions) {
-    if (source.deformed != nullptr) {
-        deform_positions(
-            *source.data, *source.deformed, source.skin, source.pose, source.morphs, positions);
-    } else {
-        positions = source.data->positions;
-    }
-    for (Vec3& position : positions) {
-        position = transform_point(*source.world, position);
-    }
-}
 
 bool are_equal(const Affine& a, const Affine& b) {
     return a.row[0] == b.row[0] && a.row[1] == b.row[1] && a.row[2] == b.row[2];
 }
 
-void follow_mesh(const MeshSource& source, ParticleObstacles& obstacles) {
+void follow_mesh(const MeshObstacle& one, ParticleObstacles& obstacles) {
     std::vector<ObstacleMesh>& meshes = obstacles.meshes;
-    auto mesh = std::find_if(meshes.begin(), meshes.end(), [&](const ObstacleMesh& one) {
-        return one.entity == source.entity;
+    auto mesh = std::find_if(meshes.begin(), meshes.end(), [&](const ObstacleMesh& other) {
+        return other.entity == one.entity;
     });
-    const bool is_new = mesh == meshes.end() || !(mesh->mesh == source.mesh)
-                        || mesh->version != source.data->version;
+    const bool is_new = mesh == meshes.end() || !(mesh->mesh == one.source.mesh)
+                        || mesh->version != one.source.data->version;
     if (mesh == meshes.end()) {
-        mesh = meshes.insert(meshes.end(), ObstacleMesh{.entity = source.entity});
+        mesh = meshes.insert(meshes.end(), ObstacleMesh{.entity = one.entity});
     }
     mesh->frame = obstacles.frame;
-    const bool deforms = source.deformed != nullptr;
-    if (is_new || deforms || mesh->deforms || !are_equal(mesh->world, *source.world)) {
-        place_vertices(source, mesh->positions);
+    const bool deforms = one.source.deformed != nullptr;
+    if (is_new || deforms || mesh->deforms || !are_equal(mesh->world, *one.world)) {
+        place_vertices(one.source, *one.world, mesh->positions);
         if (is_new) {
-            mesh->bvh = build_mesh_bvh(mesh->positions, source.data->indices);
+            mesh->bvh = build_mesh_bvh(mesh->positions, one.source.data->indices);
         } else {
-            refit_mesh_bvh(mesh->bvh, mesh->positions, source.data->indices);
+            refit_mesh_bvh(mesh->bvh, mesh->positions, one.source.data->indices);
         }
     }
-    mesh->mesh = source.mesh;
-    mesh->version = source.data->version;
-    mesh->world = *source.world;
+    mesh->mesh = one.source.mesh;
+    mesh->version = one.source.data->version;
+    mesh->world = *one.world;
     mesh->deforms = deforms;
 }
 
@@ -124,9 +107,9 @@ void find_particle_obstacles(
     Query<const Pose> poses, Query<const MorphWeights> morphs, Res<const Assets> assets,
     Res<ParticleObstacles> obstacles) {
     thread_local std::vector<Collider> found;  // memory of both is reused
-    thread_local std::vector<MeshSource> sources;
+    thread_local std::vector<MeshObstacle> followed;
     found.clear();
-    sources.clear();
+    followed.clear();
     ++obstacles->frame;
     colliders.each([&](Entity entity, const ParticleCollider& collider,
                        const WorldTransform& transform, const MeshInstance* instance,
@@ -145,19 +128,12 @@ void find_particle_obstacles(
             found.emplace_back(make_box(axes, center, collider.size));
             break;
         case ColliderShape::Mesh:
-            if (instance != nullptr && instance->mesh.index < assets->meshes.size()) {
-                MeshSource source = {
-                    entity, &transform.world, instance->mesh,
-                    &assets->meshes[instance->mesh.index]};
-                if (deformed != nullptr) {
-                    source.deformed = deformed;
-                    source.skin = deformed->skin.index < assets->skins.size()
-                                      ? &assets->skins[deformed->skin.index]
-                                      : nullptr;
-                    source.pose = poses.find<const Pose>(deformed->character);
-                    source.morphs = morphs.find<const MorphWeights>(deformed->character);
+            if (instance != nullptr) {
+                const MeshSource source =
+                    find_mesh_source(*instance, deformed, poses, morphs, *assets);
+                if (source.data != nullptr) {
+                    followed.push_back({entity, &transform.world, source});
                 }
-                sources.push_back(source);
             }
             break;
         case ColliderShape::HeightField:
@@ -169,8 +145,8 @@ void find_particle_obstacles(
             break;  // not solid: update_particles asks the water
         }
     });
-    for (const MeshSource& source : sources) {
-        follow_mesh(source, *obstacles);
+    for (const MeshObstacle& one : followed) {
+        follow_mesh(one, *obstacles);
     }
     std::erase_if(obstacles->meshes, [&](const ObstacleMesh& mesh) {
         return mesh.frame != obstacles->frame;

@@ -33,6 +33,7 @@ struct Work {
     std::vector<ParticleSpawn> spawns = {};
     ParticlePool* pool = nullptr;
     EmitterPlace place;
+    SurfaceSource surface = {};
     float scale = 1;  ///< of its rate
     MotionStep motion = {};
 };
@@ -50,6 +51,10 @@ std::uint64_t subject_of(const Work& work) {
     return subject_of(*work.emitter, work.entity);
 }
 
+const SurfaceSource* surface_of(const Work& work) {
+    return work.surface.surface != nullptr ? &work.surface : nullptr;
+}
+
 /// The steps before the first one, at the places of that.
 void prewarm(const Work& work, std::uint64_t seed) {
     const ParticleEmitter& emitter = *work.emitter;
@@ -61,7 +66,9 @@ void prewarm(const Work& work, std::uint64_t seed) {
         const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
         births.clear();
         find_births(emitter, work.scale, dt, room, random, pool.clock, births);
-        add_particles(emitter, work.place, work.motion.step, seed, subject_of(work), births, pool);
+        add_particles(
+            emitter, work.place, work.motion.step, surface_of(work), seed, subject_of(work), births,
+            pool);
         if (move_block(work.motion, particle_block(pool, 0, pool.size())) > 0) {
             remove_dead(pool, 0);
         }
@@ -83,7 +90,8 @@ void emit(const Work& work, std::uint64_t seed, const FrameTime& time) {
     const std::size_t room = birth_room(emitter, pool.size(), pool.clock);
     std::vector<BirthRun> births;
     find_births(emitter, work.scale, work.motion.step.dt, room, random, pool.clock, births);
-    add_particles(emitter, work.place, work.motion.step, seed, subject, births, pool);
+    add_particles(
+        emitter, work.place, work.motion.step, surface_of(work), seed, subject, births, pool);
     if (work.drops != nullptr && emitter.active) {
         add_drops(emitter, work.drops->drops, work.motion.step, seed, subject, pool);
     }
@@ -160,9 +168,11 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
+        Optional<const ParticleSurface>, Optional<const ParticleMesh>,
         Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
-    Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    MeshQuery meshes, Query<const Pose> poses, Query<const MorphWeights> morphs,
+    Res<const Assets> assets, Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,
@@ -176,6 +186,7 @@ void update_particles(
     emitters.each([&](Entity entity, const ParticleEmitter& emitter, const ParticleMotion* motion,
                       const WorldTransform& now, const PreviousWorldTransform& previous,
                       const SprayDrops* drops, const ParticleSource* source,
+                      const ParticleSurface* surface, const ParticleMesh* mesh,
                       const ParticleCollision* collision, const ParticleWrap* wrap,
                       ParticlePool& pool) {
         const EmitterPlace place = place_of(now, previous);
@@ -187,6 +198,10 @@ void update_particles(
         work.emitter = &emitter;
         work.drops = drops;
         work.source = source;
+        if (surface != nullptr) {
+            work.surface =
+                find_surface_source(*surface, mesh, entity, place, meshes, poses, morphs, *assets);
+        }
         work.collision = wrap == nullptr ? collision : nullptr;
         if (wrap != nullptr && !work.motion.step.closed_form) {
             work.motion.wrap_size = wrap->size;

@@ -13,6 +13,7 @@
 #include "ecs/query.h"
 #include "ecs/resource.h"
 #include "systems/particles/particle_obstacles.h"
+#include "systems/particles/surface_births.h"
 #include "systems/water/water_query.h"
 
 #include <cstdint>
@@ -39,9 +40,11 @@ void update_particles(
     Query<
         const ParticleEmitter, Optional<const ParticleMotion>, const WorldTransform,
         const PreviousWorldTransform, Optional<const SprayDrops>, Optional<const ParticleSource>,
+        Optional<const ParticleSurface>, Optional<const ParticleMesh>,
         Optional<const ParticleCollision>, Optional<const ParticleWrap>, ParticlePool>
         emitters,
-    Res<const ParticleObstacles> obstacles, WaterQuery waters,
+    MeshQuery meshes, Query<const Pose> poses, Query<const MorphWeights> morphs,
+    Res<const Assets> assets, Res<const ParticleObstacles> obstacles, WaterQuery waters,
     Query<const ParticleCollider> colliders, Query<RippleState> ripples,
     Query<const ForceField, const WorldTransform> fields,
     Query<const Camera, const WorldTransform> cameras, Res<const WeatherState> gusts,

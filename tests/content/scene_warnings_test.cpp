@@ -60,6 +60,29 @@ TEST_CASE("scene warnings: components that do nothing without another") {
         == Warnings{"entity \"eye\": camera_path has no effect without camera"});
 }
 
+TEST_CASE("scene warnings: surfaces that are not there, or on which nothing is born") {
+    CHECK(
+        warnings_of(R"({"entities": [
+        {"name": "a", "particle_surface": {}},
+        {"name": "b", "particle_emitter": {}, "particle_look": {}, "particle_surface": {}},
+        {"name": "c", "particle_emitter": {}, "particle_look": {}, "particle_surface": {"on": "path"}},
+        {"name": "d", "particle_emitter": {}, "particle_look": {}, "particle_surface": {"on": "pieces"}},
+        {"name": "e", "particle_emitter": {"executor": "gpu"}, "particle_look": {}, "mesh_instance": {},
+            "particle_surface": {}},
+        {"name": "f", "particle_emitter": {}, "particle_look": {}, "mesh_instance": {},
+            "particle_surface": {}, "particle_source": {"emitter": "e"}},
+        {"name": "g", "particle_emitter": {}, "particle_look": {}, "particle_surface": {"entity": "e"}}]})")
+        == Warnings{
+            "entity \"a\": particle_surface has no effect without particle_emitter",
+            "entity \"a\": particle_surface on a mesh needs an entity with mesh_instance",
+            "entity \"b\": particle_surface on a mesh needs an entity with mesh_instance",
+            "entity \"c\": particle_surface on a path needs a path",
+            "entity \"d\": particle_surface on pieces needs a particle_mesh of \"fragments\"",
+            "entity \"f\": particle_surface has no effect beside a particle_source",
+            "entity \"e\": particle_surface has no effect on particles of the GPU; set "
+            "particle_emitter.executor to cpu"});
+}
+
 TEST_CASE("scene warnings: colliders that are not there") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "sparks", "particle_emitter": {},

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/surface.h"
+#include "ecs/query.h"
+
+#include <vector>
+
+namespace limn {
+
+/// A mesh as an entity has it in this step, with what deforms it. Points to components and assets.
+struct MeshSource {
+    MeshId mesh{};
+    const MeshData* data = nullptr;  ///< null: no such mesh
+    const Deformed* deformed = nullptr;
+    const SkinData* skin = nullptr;
+    const Pose* pose = nullptr;
+    const MorphWeights* morphs = nullptr;
+};
+
+/// `deformed` may be null.
+[[nodiscard]] MeshSource find_mesh_source(
+    const MeshInstance& instance, const Deformed* deformed, const Query<const Pose>& poses,
+    const Query<const MorphWeights>& morphs, const Assets& assets);
+
+/// Its vertices as they are deformed, moved by `world`, to `positions`, which is resized.
+void place_vertices(const MeshSource& source, const Affine& world, std::vector<Vec3>& positions);
+
+}  // namespace limn
