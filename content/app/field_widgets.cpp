@@ -1,6 +1,7 @@
 #include "content/app/field_widgets.h"
 
 #include "content/app/hud_style.h"
+#include "content/app/key_widgets.h"
 #include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
 #include "ecs/base/srgb.h"
@@ -394,7 +395,18 @@ void edit_elements(Context& context, FieldTable& table, const FieldInfo& field, 
     *fmt::format_to_n(name.data(), name.size() - 1, "{} ({})###{}", field.name, count, field.name)
          .out = '\0';
     table.close();
-    if (!ImGui::TreeNodeEx(name.data(), ImGuiTreeNodeFlags_SpanFullWidth)) {
+    const bool has_plot = is_key_list(field);
+    if (!ImGui::TreeNodeEx(
+            name.data(), ImGuiTreeNodeFlags_SpanFullWidth
+                             | (has_plot && count > 0 ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
+        return;
+    }
+    if (has_plot) {
+        if (edit_key_list(context.style, field, data)) {
+            context.change.changed = true;
+            context.change.field = field.name;
+        }
+        ImGui::TreePop();
         return;
     }
     FieldTable elements;

@@ -12,7 +12,8 @@ struct HudStyle;
 
 // ImGui widgets for the fields of any component, from its reflection: sliders where a range is
 // known, drags where it is not, degrees for radians, linear colors with a swatch in sRGB, combos
-// for enums and assets, yaw-pitch-roll for quaternions. Values stay within their range.
+// for enums and assets, yaw-pitch-roll for quaternions, plots for curves and gradients
+// (key_widgets.h). Values stay within their range.
 
 /// What the user did to the fields drawn.
 struct FieldChange {

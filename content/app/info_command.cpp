@@ -8,6 +8,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/path.h"
 #include "ecs/components/skeleton.h"
 #include "ecs/components/surface.h"
@@ -23,6 +24,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -122,6 +124,54 @@ void print_cameras_and_lights(const World& world, std::span<const Entity> entiti
     }
     print_list("camera", cameras);
     print_list("light", lights);
+}
+
+/// Capacity, bytes and executor of each emitter, those of copies in one line, and the sums.
+void print_particles(const World& world, std::span<const Entity> entities) {
+    struct Budget {
+        std::size_t emitters = 0;
+        std::uint64_t capacity = 0;
+        std::uint64_t bytes = 0;
+    };
+    std::map<std::string, std::size_t> lines;  // to their places in `budgets`
+    std::vector<std::pair<std::string, Budget>> budgets;
+    Budget sums[2];
+    for (const Entity entity : entities) {
+        const auto* const emitter = world.find<ParticleEmitter>(entity);
+        if (emitter == nullptr) {
+            continue;
+        }
+        const bool gpu = runs_on_gpu(*emitter);
+        std::string name = name_of(world, entity);
+        name = fmt::format("{}  {}", gpu ? "gpu" : "cpu", name.substr(0, name.find('[')));
+        const auto [line, is_new] = lines.try_emplace(name, budgets.size());
+        if (is_new) {
+            budgets.emplace_back(name, Budget{});
+        }
+        for (Budget* const budget : {&budgets[line->second].second, &sums[gpu ? 1 : 0]}) {
+            ++budget->emitters;
+            budget->capacity += emitter->capacity;
+            budget->bytes += particle_bytes(*emitter);
+        }
+    }
+    const auto text = [](const Budget& budget) {
+        return fmt::format(
+            "{:>4}  {:>8} particles  {:>9.1f} KiB", budget.emitters, budget.capacity,
+            static_cast<double>(budget.bytes) / 1024);
+    };
+    std::vector<std::string> rows;
+    for (const auto& [name, budget] : budgets) {
+        rows.push_back(fmt::format("{}  {}", text(budget), name));
+    }
+    if (rows.empty()) {
+        return;
+    }
+    fmt::print("{}\n", counted(sums[0].emitters + sums[1].emitters, "particle emitter"));
+    for (std::size_t i = 0; i < std::min(rows.size(), kMaxLines); ++i) {
+        fmt::print("    {}\n", rows[i]);
+    }
+    print_rest(rows.size());
+    fmt::print("    {}  cpu, in all\n    {}  gpu, in all\n", text(sums[0]), text(sums[1]));
 }
 
 /// Names, children indented below their parents.
@@ -270,6 +320,7 @@ Status print_scene(const std::string& file) {
     const std::vector<Entity> entities = own_entities(world, *scene);
     print_components(world, entities);
     print_cameras_and_lights(world, entities);
+    print_particles(world, entities);
     print_hierarchy(world, entities);
     const Assets& assets = world.resource<Assets>();
     const ModelView view = scene->model.value_or(ModelView{});

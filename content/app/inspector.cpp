@@ -1,12 +1,14 @@
 #include "content/app/inspector.h"
 
 #include "content/app/edit_json.h"
+#include "content/app/emitter_controls.h"
 #include "content/app/field_widgets.h"
 #include "content/app/hud_style.h"
 #include "content/load/level_hints.h"
 #include "ecs/archetype.h"
 #include "ecs/base/srgb.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
 #include "ecs/hierarchy.h"
 #include "ecs/world.h"
@@ -297,6 +299,9 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         edit.entity = selected_;
         const AnyComponent value = AnyComponent::read(world, selected_, info);
         draw_copy_menu(world, info, value.data());
+        if (info.id == component_id<ParticleEmitter>) {
+            draw_emitter(world);
+        }
         const std::string place = fmt::format("{}: {}", entity_label(world, selected_), info.name);
         edit_copy(style, world, std::move(edit), info, value.data(), place);
     }
@@ -309,6 +314,40 @@ void Inspector::draw_component(const HudStyle& style, World& world, const Compon
         undo_.record(std::move(edit));
     }
     ImGui::PopID();
+}
+
+void Inspector::draw_emitter(World& world) {
+    if (ImGui::SmallButton("Restart")) {
+        restart_emitter(world, selected_);
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Step")) {
+        step_ = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("New seed")) {
+        Edit edit;
+        edit.entity = selected_;
+        edit.before = AnyComponent::read(world, selected_, component_info<ParticleEmitter>());
+        edit.after = edit.before;
+        std::uint32_t& seed = edit.after.as<ParticleEmitter>().seed;
+        seed = next_seed(seed);
+        edit.label = fmt::format("{}: particle_emitter.seed", entity_label(world, selected_));
+        apply_edit_value(world, edit, edit.after);
+        undo_.record(std::move(edit));
+        restart_emitter(world, selected_);
+    }
+    const EmitterCounts counts = count_particles(world, selected_);
+    ImGui::TextColored(
+        kHudDim, "%s",
+        fmt::format(
+            "{}{} of {} alive, {} born, ", counts.on_gpu ? "up to " : "", counts.alive,
+            counts.capacity, counts.born)
+            .c_str());
+    ImGui::SameLine(0, 0);
+    ImGui::TextColored(
+        counts.dropped > 0 ? kHudBad : kHudDim, "%s",
+        fmt::format("{} dropped", counts.dropped).c_str());
 }
 
 void Inspector::edit_copy(

@@ -39,6 +39,8 @@ class Inspector {
     [[nodiscard]] std::string edits_as_json(const World& world) const;
     /// Whether "Focus" was pressed since the last call.
     [[nodiscard]] bool take_focus() { return std::exchange(focus_, false); }
+    /// Whether "Step" of an emitter was pressed since the last call.
+    [[nodiscard]] bool take_step() { return std::exchange(step_, false); }
     /// For a new world: clears the selection and the undo stack.
     void reset();
 
@@ -57,6 +59,8 @@ class Inspector {
     void draw_selected(const HudStyle& style, World& world);
     void draw_component(const HudStyle& style, World& world, const ComponentInfo& info);
     void draw_add_button(World& world);
+    /// Buttons and counts above the fields of a selected particle emitter.
+    void draw_emitter(World& world);
     void draw_resources(const HudStyle& style, World& world);
     void draw_materials(const HudStyle& style, World& world);
 
@@ -75,6 +79,7 @@ class Inspector {
     std::string resource_search_;
     std::string material_search_;
     bool focus_ = false;
+    bool step_ = false;
     std::vector<Row> rows_;
     std::unordered_set<Entity> collapsed_;
     double rows_built_at_ = -1.0;  // [s]

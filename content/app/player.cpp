@@ -26,7 +26,7 @@ namespace {
 constexpr int kMaxSteps = 4;             // per frame; beyond that, simulation time slows down
 constexpr double kMaxFrameTime = 0.25;   // [s] longer frames are clamped
 constexpr double kPickInterval = 0.15;   // [s] between measurements of the distance ahead
-constexpr double kShaderInterval = 0.5;  // [s] between checks of the shader files
+constexpr double kShaderInterval = 0.5;  // [s] between checks of the shader and level files
 
 double seconds_between(
     std::chrono::steady_clock::time_point begin, std::chrono::steady_clock::time_point end) {
@@ -134,6 +134,8 @@ Status Player::load(const std::string& scene, const std::string& show) {
     first_camera_ = stage_->scene.camera;
     options_.scene = scene;
     options_.show = show;
+    level_times_ = level_file_times();
+    level_error_.clear();
     inspector_.reset();
     camera_ = {};
     const Bounds& bounds = stage_->scene.bounds;
@@ -438,7 +440,7 @@ void Player::draw_hud(const RenderView& view, const IVec2& window_size, float dt
          .software_gl = device_->caps().software,
          .scale_auto = scale_.automatic,
          .paused = paused_,
-         .error = shader_error_.c_str()});
+         .error = (shader_error_.empty() ? level_error_ : shader_error_).c_str()});
     if (hud_->help_open) {
         hud_->help = player_help(stage_->world, help_state());
     }
@@ -505,6 +507,10 @@ Status Player::run() {
             accepted();
             quits = window_->wants_to_close();
         }
+        if (inspector_.take_step()) {
+            step_once_ = true;
+            paused_ = true;
+        }
         if (inspector_.take_focus()) {
             focus_selection();
         }
@@ -533,6 +539,7 @@ Status Player::run() {
         if (until_shader_check_ <= 0.0) {
             until_shader_check_ = kShaderInterval;
             reload_shaders(false);
+            follow_level_files();
         }
         simulate(dt, input);
         draw_frame(dt, input);

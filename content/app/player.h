@@ -23,6 +23,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -100,6 +101,11 @@ class Player {
     [[nodiscard]] HelpState help_state() const;
 
     void reload_shaders(bool all);
+    /// Brings what has changed in the level's files to its living entities (level_update.h); an
+    /// error is shown, and the level goes on as it was.
+    void follow_level_files();
+    /// When each of them was last written.
+    [[nodiscard]] std::vector<std::filesystem::file_time_type> level_file_times() const;
     void save_screenshot(const IVec2& size);
     void save_exr(const RenderView& view);
     /// Prints the path and shows a message, or the error.
@@ -133,6 +139,8 @@ class Player {
     FrameRequest request_;
     IVec2 last_window_size_ = {0, 0};
     std::string shader_error_;
+    std::string level_error_;
+    std::vector<std::filesystem::file_time_type> level_times_;
     FrameCost cost_;
 
     double unsimulated_ = 0.0;         ///< real time not yet simulated [s]

@@ -5,6 +5,7 @@
 #include "content/load/level_entities.h"
 #include "content/load/level_include.h"
 #include "content/load/level_show.h"
+#include "content/load/level_update.h"
 #include "content/load/made_assets.h"
 #include "content/make/make_mesh.h"
 #include "content/make/patterns.h"
@@ -158,5 +159,12 @@ parse_level(std::string_view text, const std::string& file, const LevelLimits& l
 /// Puts the level into the world: appends assets, replaces resources, creates entities in one
 /// batch, inserts the EventList. Returns the entities in the order of `level.entities`.
 std::vector<Entity> spawn_level(World& world, Level level);
+
+/// What update_level compares with, after load_level; `entities` are added when they are spawned.
+[[nodiscard]] LevelFields remember_fields(const Level& level, const std::string& path);
+/// Indices of level entities in a component become the entities that were spawned.
+void localize_component(AnyComponent& component, const std::vector<Entity>& entities);
+/// Replaces the events of a level that was spawned as `entities`, into a world without assets.
+void replace_events(World& world, EventList events, const std::vector<Entity>& entities);
 
 }  // namespace limn

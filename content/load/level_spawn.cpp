@@ -120,6 +120,17 @@ void set_resource(World& world, AnyComponent& resource, const AssetOffsets& offs
 
 }  // namespace
 
+void localize_component(AnyComponent& component, const std::vector<Entity>& entities) {
+    if (component.info().has_entities) {
+        set_entities(component, entities, false);
+    }
+}
+
+void replace_events(World& world, EventList events, const std::vector<Entity>& entities) {
+    localize(events, {}, entities);
+    world.insert_resource(std::move(events));
+}
+
 std::vector<Entity> spawn_level(World& world, Level level) {
     if (world.find_resource<Assets>() == nullptr) {
         world.insert_resource(Assets{});

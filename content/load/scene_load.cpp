@@ -109,10 +109,12 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
     scene.path = path;
     scene.shows = std::move(level.shows);
     scene.show = std::move(level.show);
+    scene.fields = remember_fields(level, path);
     const SourceFiles included = std::move(level.included);  // named by the positions
     const std::vector<SourcePosition> entity_positions = std::move(level.entity_positions);
     const std::vector<SourcePosition> event_positions = std::move(level.event_positions);
     const std::vector<Entity> entities = spawn_level(world, std::move(level));
+    scene.fields.entities = entities;
     complete_scene(world, options, scene);
     for (const SceneWarning& warning : find_scene_warnings(world)) {
         const auto entity = std::find(entities.begin(), entities.end(), warning.entity);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/level_show.h"
+#include "content/load/level_update.h"
 #include "content/load/model_view.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
@@ -35,6 +36,7 @@ struct LoadedScene {
     double duration = 0.0;  ///< of the longest camera path [s]; 0: none
     std::vector<LevelShow> shows;
     std::optional<LevelShow> show;   ///< the chosen one
+    LevelFields fields;              ///< of a level, for update_level
     std::optional<ModelView> model;  ///< of a glTF file by itself
 };
 

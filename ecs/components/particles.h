@@ -487,6 +487,14 @@ LIMN_FIELDS(ParticlePool) {
            || (emitter.executor == ParticleExecutor::Auto && emitter.capacity >= kMany);
 }
 
+/// Bytes of the particles of a full emitter: in a ParticlePool, where none sticks, or on the GPU,
+/// with what draws them there (render/gpu_particle_pools.h).
+[[nodiscard]] inline std::uint64_t particle_bytes(const ParticleEmitter& emitter) {
+    constexpr std::uint64_t kPool = 8 * sizeof(float) + sizeof(std::uint32_t);
+    constexpr std::uint64_t kGpu = (2 + 2) * sizeof(Vec4) + sizeof(std::uint32_t);
+    return emitter.capacity * (runs_on_gpu(emitter) ? kGpu : kPool);
+}
+
 /// Copies of a prefab start without particles.
 template <>
 struct ComponentTraits<ParticlePool> : DefaultTraits {

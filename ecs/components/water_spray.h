@@ -11,7 +11,7 @@ namespace limn {
 // Spray emission. Each step the systems write the start positions and velocities of new drops;
 // whoever moves and draws drops reads them here.
 
-/// With a Water that has WaterWaves: emits drops from breaking crests.
+/// With a Water that has WaterWaves or an Ocean: emits drops from breaking crests.
 struct SpraySource {
     float steepness = 0.1f;
     float rate = 300.0f;
@@ -21,8 +21,12 @@ struct SpraySource {
 };
 
 LIMN_FIELDS(SpraySource) {
-    LIMN_FIELD(steepness, "height / length above which a wave breaks", "", 0, 1);
-    LIMN_FIELD(rate, "drops per breaking wave and second", "1/s", 0, 1e6);
+    LIMN_FIELD(
+        steepness, "height / length above which a wave breaks; an ocean has its foam_threshold", "",
+        0, 1);
+    LIMN_FIELD(
+        rate, "drops per second of a breaking wave, or of 100 m^2 of a cusp of an ocean", "1/s", 0,
+        1e6);
     LIMN_FIELD(spread, "variation of speeds: standard deviation / mean", "", 0, 1);
     LIMN_FIELD(angle, "largest deviation of directions", "rad", 0, 1.5);
     LIMN_FIELD(window, "emitting area of unbounded water", "m", 0, 1e5);

@@ -56,6 +56,13 @@ int draw_count(float expected, Random& random) {
     return expected > 0 ? static_cast<int>(std::min(expected, kMaxDrops) + random.uniform()) : 0;
 }
 
+/// Extents of the area that emits [m].
+Vec2 spray_window(const WaterSurface& surface, const SpraySource& source) {
+    return {
+        surface.water.size.x > 0 ? surface.water.size.x : source.window.x,
+        surface.water.size.y > 0 ? surface.water.size.y : source.window.y};
+}
+
 }  // namespace
 
 float orbital_speed(float height, float length, float speed) {
@@ -76,9 +83,7 @@ void spray_crests(
     if (surface.waves == nullptr) {
         return;
     }
-    const Vec2 size = {
-        surface.water.size.x > 0 ? surface.water.size.x : source.window.x,
-        surface.water.size.y > 0 ? surface.water.size.y : source.window.y};
+    const Vec2 size = spray_window(surface, source);
     for (const WaveLine& line : surface.waves->lines) {
         if (!(steepness(line) >= source.steepness)) {
             continue;
@@ -101,6 +106,31 @@ void spray_crests(
             const Vec3 there = Vec3(rest.x, 0, rest.y) + displace_water(surface, rest).offset;
             drops.push_back({surface.frame.world(there), speed * way});
         }
+    }
+}
+
+void spray_breakers(
+    const WaterSurface& surface, const SpraySource& source, float step, Random& random,
+    std::vector<SprayDrop>& drops) {
+    if (surface.ocean == nullptr) {
+        return;
+    }
+    const Vec2 size = spray_window(surface, source);
+    const float threshold = surface.ocean->made_for.foam_threshold;
+    const int count = draw_count(0.01f * size.x * size.y * source.rate * step, random);
+    for (int i = 0; i < count; ++i) {
+        const Vec2 rest = Vec2(random.uniform(-0.5f, 0.5f), random.uniform(-0.5f, 0.5f)) * size;
+        const WavePoint point = displace_water(surface, rest);
+        const float jacobian =
+            (1 + point.by_x.x) * (1 + point.by_z.z) - point.by_x.z * point.by_z.x;
+        const float speed = glm::length(point.velocity);
+        if (!(random.uniform() < threshold - jacobian) || !(speed > 0)) {
+            continue;
+        }
+        const Vec3 way = draw_direction(point.velocity / speed, source.angle, random);
+        drops.push_back(
+            {surface.frame.world(Vec3(rest.x, 0, rest.y) + point.offset),
+             surface.frame.direction_to_world(way) * draw_speed(speed, source.spread, random)});
     }
 }
 

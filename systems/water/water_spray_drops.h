@@ -27,6 +27,14 @@ void spray_crests(
     const WaterSurface& surface, const SpraySource& source, float step, Random& random,
     std::vector<SprayDrop>& drops);
 
+/// The same for an Ocean, whose crests are not known: points of the window, at random, shed a drop
+/// with the chance `foam_threshold` - J, so where foam forms (J is the Jacobian determinant of the
+/// displacement). It starts with about the water's velocity. `source.rate` is that of 100 m^2 with
+/// the chance 1.
+void spray_breakers(
+    const WaterSurface& surface, const SpraySource& source, float step, Random& random,
+    std::vector<SprayDrop>& drops);
+
 /// Emission relative to its maximum at the phase offset `phase` [rad] from the crest: cos^4, 0
 /// beyond a quarter wave.
 [[nodiscard]] float impact_share(float phase);

@@ -29,14 +29,14 @@ void update_spray(
     const auto random_of = [&](Entity entity) {
         return Random(seed->seed, entity.bits(), name_hash("update_spray"), time->frame);
     };
-    std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
-    std::erase_if(surfaces, [](const WaterSurface& one) { return one.waves == nullptr; });
+    const std::vector<WaterSurface> surfaces = collect_water_surfaces(waters);
     for (const WaterSurface& surface : surfaces) {
         if (auto* const drops = sources.find<SprayDrops>(surface.entity)) {
             drops->drops.clear();
             Random random = random_of(surface.entity);
             const auto& source = *sources.find<const SpraySource>(surface.entity);
             spray_crests(surface, source, time->step, random, drops->drops);
+            spray_breakers(surface, source, time->step, random, drops->drops);
         }
     }
     obstacles.each([&](Entity entity, const SprayObstacle& obstacle, const WorldTransform& place,

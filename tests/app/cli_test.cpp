@@ -241,6 +241,29 @@ TEST_CASE("cli: info shows the hierarchy, skins, and what textures hold") {
     CHECK(run.out.find(" joints  fox\n") != std::string::npos);
 }
 
+TEST_CASE("cli: info tells what particles may cost, by emitter and in all") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("my.level.json"), R"({
+        "entities": [{"name": "smoke", "particle_emitter": {"capacity": 1024}, "repeat": {"count": [3, 1, 1]}},
+                     {"name": "spark", "particle_emitter": {"capacity": 512}},
+                     {"name": "dust", "particle_emitter": {"capacity": 300000}},
+                     {"name": "post"}]})");
+    const ProgramRun run = run_limn(folder, {"info", "my.level.json"});
+    CHECK(run.exit_code == 0);
+    CAPTURE(run.out);
+    // 36 bytes each; on the GPU as many and two vectors more, to draw it.
+    CHECK(
+        run.out.find("5 particle emitters\n"
+                     "       3      3072 particles      108.0 KiB  cpu  smoke\n"
+                     "       1       512 particles       18.0 KiB  cpu  spark\n"
+                     "       1    300000 particles    19921.9 KiB  gpu  dust\n"
+                     "       4      3584 particles      126.0 KiB  cpu, in all\n"
+                     "       1    300000 particles    19921.9 KiB  gpu, in all\n")
+        != std::string::npos);
+    test::write_text(folder.file("none.level.json"), R"({"entities": [{"name": "post"}]})");
+    CHECK(run_limn(folder, {"info", "none.level.json"}).out.find("emitter") == std::string::npos);
+}
+
 TEST_CASE("cli: check draws a level that is right, and warns of what has no effect") {
     const TemporaryFolder folder;
     const ProgramRun good = run_limn(folder, {"check", "lights"});

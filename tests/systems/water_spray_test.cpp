@@ -108,6 +108,48 @@ TEST_CASE("water spray: as many as the rate says, however long the step") {
     }
 }
 
+TEST_CASE("water spray: an ocean sheds drops where it breaks, as fast as its water") {
+    // A patch of 16 m that moves with (3, 4, 0) m/s; its half with x > 8 m is pressed together.
+    OceanState ocean{.made_for = {.foam_threshold = 0.9f}, .step = 0.5f, .cascades = {}};
+    OceanCascade& cascade = ocean.cascades.emplace_back();
+    cascade.size = 16;
+    cascade.patch = 16;
+    const std::vector<float> flat(16 * 16, 0.0f);
+    cascade.height = cascade.shift_x = cascade.shift_z = cascade.slope_x = cascade.slope_z =
+        cascade.shift_xx = cascade.shift_zz = cascade.shift_xz = cascade.previous_height =
+            cascade.previous_shift_x = cascade.previous_shift_z = flat;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        cascade.height[i] = 1;
+        cascade.previous_height[i] = -1;
+        cascade.previous_shift_x[i] = -1.5f;
+        cascade.shift_xx[i] = i % 16 > 8 ? -0.5f : 0.0f;
+    }
+    WaterSurface surface;
+    surface.ocean = &ocean;
+    const SpraySource source = {.rate = 2000, .spread = 0, .window = {20, 16}};
+    const auto spray = [&] {
+        std::vector<SprayDrop> drops;
+        Random random(1, 2, 3, 4);
+        spray_breakers(surface, source, 1, random, drops);
+        return drops;
+    };
+    const std::vector<SprayDrop> drops = spray();
+    // 6400 tries along 20 m. From -7 to -1 and from 9 to 10 m, J is 0.5 and the chance 0.4; beside
+    // that it rises over 0.8 m, thrice.
+    const double expected = 6400 * (7 * 0.4 + 3 * 0.5 * 0.8 * 0.4) / 20;
+    CHECK(static_cast<double>(drops.size()) == test::near(expected).epsilon(0.1).scale(0));
+    for (const SprayDrop& drop : drops) {
+        const float x = drop.position.x < 0 ? drop.position.x + 16 : drop.position.x;
+        CHECK(x > 8.19f);
+        CHECK(x < 15.81f);
+        CHECK(drop.position.y == 1);
+        CHECK(glm::length(drop.velocity) == test::near(5));
+        CHECK(glm::dot(drop.velocity, Vec3(0.6f, 0.8f, 0)) > 5 * std::cos(source.angle) - 1e-3f);
+    }
+    ocean.made_for.foam_threshold = 0.5f;  // it is pressed together as far, and no farther
+    CHECK(spray().empty());
+}
+
 TEST_CASE("water spray: a wall sprays most when a crest is at it, and not a quarter wave later") {
     CHECK(impact_share(0) == 1);
     CHECK(impact_share(0.5f * kPi) < 1e-20f);

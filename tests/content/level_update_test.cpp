@@ -1,0 +1,137 @@
+#include "content/load/level_load.h"
+#include "content/load/level_update.h"
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/script.h"
+#include "ecs/components/transform.h"
+#include "ecs/world.h"
+#include "tests/support.h"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+
+namespace limn {
+namespace {
+
+/// A level with two sparks of an included file, one of them at another rate.
+struct Playing {
+    Playing() {
+        register_all_components();
+        write_effect(R"({"prefabs": {"spark": {"particle_emitter": {"rate": 10, "speed": 2}}}})");
+        write_level("");
+        Result<Level> level = load_level(path());
+        REQUIRE_MESSAGE(level.ok(), (level ? "" : level.error().message));
+        fields = remember_fields(*level, path());
+        fields.entities = spawn_level(world, *std::move(level));
+    }
+    void write_effect(const std::string& text) const {
+        std::ofstream(folder.path() + "/a.effect.json") << text;
+    }
+    void write_level(const std::string& more) const {
+        std::ofstream(path()) << R"({"include": ["a.effect.json"], "entities": [
+            {"name": "one", "prefab": "spark", "transform": {"position": [1, 0, 0]}},
+            {"name": "two", "prefab": "spark", "particle_emitter": {"rate": 99},
+             "particle_source": {"emitter": "one"}})"
+                              << more << "]}";
+    }
+    [[nodiscard]] std::string path() const { return folder.path() + "/t.level.json"; }
+    [[nodiscard]] std::string update() {
+        const Result<std::size_t> updated = update_level(world, fields);
+        return updated ? std::to_string(*updated)
+                       : updated.error().message.substr(folder.path().size() + 1);
+    }
+    [[nodiscard]] const ParticleEmitter& emitter(std::size_t i) const {
+        return world.get<const ParticleEmitter>(fields.entities[i]);
+    }
+
+    test::TemporaryFolder folder;
+    World world;
+    LevelFields fields;
+};
+
+}  // namespace
+
+TEST_CASE("level update: what has changed in an included file comes to living entities") {
+    Playing level;
+    const Entity one = level.fields.entities[0];
+    // What has happened since then stays: a place, particles.
+    level.world.get<Transform>(one).position = {5, 6, 7};
+    ParticlePool pool;
+    pool.clock.born = 42;
+    level.world.add(one, pool);
+    CHECK(level.update() == "0");
+    level.write_effect(R"({"prefabs": {"spark": {"particle_emitter": {"rate": 30, "speed": 3}}}})");
+    CHECK(level.update() == "2");
+    CHECK(level.emitter(0).rate == 30);
+    CHECK(level.emitter(0).speed == 3);
+    CHECK(level.emitter(1).rate == 99);  // its own
+    CHECK(level.emitter(1).speed == 3);
+    CHECK(level.world.get<const Transform>(one).position == Vec3(5, 6, 7));
+    CHECK(level.world.get<const ParticlePool>(one).clock.born == 42);
+    CHECK(level.update() == "0");
+    // What an event destroyed is left out.
+    level.world.destroy(one);
+    level.write_effect(R"({"prefabs": {"spark": {"particle_emitter": {"rate": 31, "speed": 4}}}})");
+    CHECK(level.update() == "1");
+}
+
+TEST_CASE("level update: names of entities become those that were spawned") {
+    Playing level;
+    std::ofstream(level.path()) << R"({"include": ["a.effect.json"], "entities": [
+            {"name": "one", "prefab": "spark", "transform": {"position": [1, 0, 0]}},
+            {"name": "two", "prefab": "spark", "particle_emitter": {"rate": 99},
+             "particle_source": {"emitter": "one", "count": 7}}]})";
+    CHECK(level.update() == "1");
+    const auto& source = level.world.get<const ParticleSource>(level.fields.entities[1]);
+    CHECK(source.count == 7);
+    CHECK(source.emitter == level.fields.entities[0]);
+}
+
+TEST_CASE("level update: a broken file is told with its line, and changes nothing") {
+    Playing level;
+    level.write_effect("{\"prefabs\":\n {\"spark\": {\"particle_emitter\": {\"rate\": -4}}}}");
+    CHECK(level.update().starts_with("a.effect.json:2:"));
+    level.write_effect("{\"prefabs\":\n {\"spark\": ");
+    CHECK(level.update().starts_with("a.effect.json:2:"));
+    CHECK(level.emitter(0).rate == 10);
+    // As soon as it is right again, it counts.
+    level.write_effect(R"({"prefabs": {"spark": {"particle_emitter": {"rate": 20, "speed": 2}}}})");
+    CHECK(level.update() == "1");
+    CHECK(level.emitter(0).rate == 20);
+}
+
+TEST_CASE("level update: other entities, components or assets need the level loaded again") {
+    Playing level;
+    const std::string refusal =
+        "t.level.json: entities, components or assets were added or removed: load it again";
+    level.write_level(R"(, {"name": "three"})");
+    CHECK(level.update() == refusal);
+    level.write_level("");
+    CHECK(level.update() == "0");
+    level.write_effect(
+        R"({"prefabs": {"spark": {"particle_emitter": {"rate": 11}, "particle_motion": {}}}})");
+    CHECK(level.update() == refusal);
+    level.write_effect(
+        R"({"materials": {"m": {}}, "prefabs": {"spark": {"particle_emitter": {"rate": 11}}}})");
+    CHECK(level.update() == refusal);
+    CHECK(level.emitter(0).rate == 10);
+}
+
+TEST_CASE("level update: events spawn what the files say now") {
+    Playing level;
+    level.write_level("");
+    std::ofstream(level.path()) << R"({"include": ["a.effect.json"], "entities": [
+            {"name": "one", "prefab": "spark", "transform": {"position": [1, 0, 0]}},
+            {"name": "two", "prefab": "spark", "particle_emitter": {"rate": 99},
+             "particle_source": {"emitter": "one"}}],
+            "events": [{"at": 1, "destroy": ["two"]}]})";
+    CHECK(level.update() == "0");
+    const auto& events = std::as_const(level.world).resource<EventList>().events;
+    REQUIRE(events.size() == 1);
+    REQUIRE(events[0].actions.size() == 1);
+    CHECK(events[0].actions[0].entity == level.fields.entities[1]);
+}
+
+}  // namespace limn
