@@ -2,6 +2,7 @@
 
 #include "ecs/components/animation.h"
 #include "ecs/components/beam.h"
+#include "ecs/components/billboard.h"
 #include "ecs/components/buoyancy.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
@@ -73,6 +74,7 @@ void register_all_components() {
     register_component<ParticleMeshState>();
     register_component<Trail>();
     register_component<TrailState>();
+    register_component<Billboard>();
     register_component<Beam>();
     register_component<BeamState>();
     register_component<Parent>();

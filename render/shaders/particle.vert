@@ -1,8 +1,10 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
 //   LIT      some particle scatters light
 //   RIBBONS  some are segments of ribbons
+//   BILLBOARDS  some are quads of billboards
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
+#include "lib/periodic.glsl"
 #include "lib/view.glsl"
 #include "particle_gpu.h"
 #ifdef LIT
@@ -11,6 +13,11 @@
 #ifdef RIBBONS
 #include "lib/ribbon.glsl"
 layout(binding = 8) uniform samplerBuffer ribbon_points;
+#endif
+
+#ifdef BILLBOARDS
+#include "lib/billboard.glsl"
+layout(binding = 26) uniform samplerBuffer billboard_quads;
 #endif
 
 layout(binding = 2) uniform usamplerBuffer particles;
@@ -129,6 +136,25 @@ Quad quad_of(vec4 shape, vec4 streak, float tumble, vec3 position, vec3 velocity
     return Quad(half_size * right, half_size * up);
 }
 
+#ifdef BILLBOARDS
+const int kAlignedView = 1;
+const int kAlignedAxis = 2;
+
+Quad billboard_quad(int index, vec3 position) {
+    vec4 first = texelFetch(billboard_quads, index * int(kBillboardTexels));
+    vec3 right = first.xyz;
+    vec3 up = texelFetch(billboard_quads, index * int(kBillboardTexels) + 1).xyz;
+    vec3 camera_right = normalize(view.ray_right.xyz);
+    if (int(first.w) == kAlignedView) {
+        return Quad(length(right) * camera_right, length(up) * normalize(view.ray_up.xyz));
+    }
+    if (int(first.w) == kAlignedAxis) {
+        right = length(right) * billboard_right(normalize(up), to_viewer(position), camera_right);
+    }
+    return Quad(right, up);
+}
+#endif
+
 #ifdef RIBBONS
 // A segment from `begin` to `end`, between its neighbors; a join where these are one place.
 struct RibbonSegment {
@@ -199,7 +225,18 @@ void main() {
 #endif
     float at = share * float(kLookSamples - 1u);
     float size = max(shape.x + shape.y * random_share(rest.z, 0u), 0.0) * size_factor(look, at);
-    vec4 color = color_at(look, at);
+    vec4 wave = look_texel(look, kLookMore + 2u);
+    vec4 varied = look_texel(look, kLookMore + 3u);
+    float color_share = at;
+    if (age >= 0.0 && (wave.y != 0.0 || wave.z != 0.0) && int(glow.w) < int(kFacingRibbon)) {
+        float place_in_colors = wave.y + wave.z * periodic_wave(int(wave.x), varied.x * age, wave.w);
+        color_share = clamp(place_in_colors, 0.0, 1.0) * float(kLookSamples - 1u);
+    }
+    vec4 color = color_at(look, color_share);
+    if (varied.yzw != vec3(0.0)) {
+        vec3 chance = vec3(random_share(rest.z, 6u), random_share(rest.z, 7u), random_share(rest.z, 8u));
+        color.rgb = max(color.rgb + varied.yzw * chance, vec3(0.0));
+    }
     float away = distance(position, view.camera_ws.xyz);
     color.a *= more.y > 0.0 ? smoothstep(0.0, more.y, away) : 1.0;
     color.a *= more.z > 0.0 ? smoothstep(more.z, 0.6 * more.z, away) : 1.0;
@@ -211,7 +248,18 @@ void main() {
         size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(position);
     }
 
+#ifdef BILLBOARDS
+    bool is_billboard = uint(glow.w) == kFacingBillboard;
+    if (is_billboard) {
+        color.a *= uintBitsToFloat(rest.y);
+    }
+#endif
     Quad quad = quad_of(shape, streak, more.w, position, velocity, int(glow.w), rest.z, size, age);
+#ifdef BILLBOARDS
+    if (is_billboard) {
+        quad = billboard_quad(int(rest.x), position);
+    }
+#endif
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
 #ifdef RIBBONS
     if (is_ribbon) {
@@ -255,6 +303,9 @@ void main() {
     int frames_shown = int(more.x);
     float chance = floor((0.5 + 0.5 * random_share(rest.z, 5u)) * count);
     shown = frames_shown == kFramesPick ? chance : frames_shown == kFramesShuffle ? shown + chance : shown;
+#ifdef BILLBOARDS
+    shown = is_billboard ? texelFetch(billboard_quads, int(rest.x) * int(kBillboardTexels) + 1).w : shown;
+#endif
     bool loops = book.z > 0.0 || frames_shown == kFramesShuffle;
     float frame = mod(floor(shown), count);
     float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
@@ -265,6 +316,9 @@ void main() {
     bool is_gone = size <= 0.0 || color.a <= 0.0 || rest.w != 0u;
 #ifdef RIBBONS
     is_gone = is_gone && !is_ribbon;
+#endif
+#ifdef BILLBOARDS
+    is_gone = is_billboard ? color.a <= 0.0 : is_gone;
 #endif
     if (is_gone) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
