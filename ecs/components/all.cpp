@@ -8,6 +8,7 @@
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/dazzle.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
@@ -135,6 +136,7 @@ void register_all_components() {
     register_component<Lens>();
     register_component<Autofocus>();
     register_component<LensFlare>();
+    register_component<Dazzle>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();

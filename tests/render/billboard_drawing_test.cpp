@@ -206,8 +206,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    BillboardScene, "composite billboard: along the axis only the quad across it shows, from the "
-                    "side only the other") {
+    BillboardScene, "composite billboard: end-on one quad shows, from the side the other") {
     ParticleLook look = unlit({1, 1, 1});
     look.image = white();
     Billboard shot = {.alignment = BillboardAlignment::Composite, .aspect = 0.25f};
@@ -256,8 +255,7 @@ TEST_CASE_FIXTURE(
     CHECK(middle().x == near(0.5).epsilon(0.01));
 }
 
-TEST_CASE("particle visibility: those in view are those of a brute-force test, and no more than a "
-          "plane off") {
+TEST_CASE("particle visibility: those in view are those of a brute-force test") {
     std::vector<ParticleInstance> instances(2000);
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const auto n = static_cast<float>(i);
@@ -286,8 +284,7 @@ TEST_CASE("particle visibility: those in view are those of a brute-force test, a
     CHECK(shown < 1900);
 }
 
-TEST_CASE("particle visibility: by the emitter all are hidden with it; by their bounds, none while "
-          "one is in view") {
+TEST_CASE("particle visibility: an emitter hides all with it, bounds only if none is in view") {
     std::vector<ParticleInstance> instances(2);
     instances[0].position = {0, 0, 0};  // in view
     instances[1].position = {50, 0, 0};
