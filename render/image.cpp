@@ -4,6 +4,7 @@
 #include "render/passes/blend_pass.h"
 #include "render/passes/caustics_pass.h"
 #include "render/passes/cluster_pass.h"
+#include "render/passes/dazzle_pass.h"
 #include "render/passes/deform_pass.h"
 #include "render/passes/depth_of_field_pass.h"
 #include "render/passes/environment_pass.h"
@@ -65,6 +66,7 @@ constexpr EffectEntry kImage[] = {
     effect<MotionBlurEffect>(kMainViews),
     effect<DepthOfFieldEffect>(kMainViews),
     effect<LensFlareEffect>(kMainViews),
+    effect<DazzleEffect>(kMainViews),
     effect<GlareEffect>(kFilmViews),
     effect<GlowEffect>(kMainViews | kMeanView),
     effect<VignetteEffect>(kFilmViews),

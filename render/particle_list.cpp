@@ -30,6 +30,10 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
     record[layout::kLookMore] = {
         static_cast<float>(look.frames), look.near_fade, look.far_fade, look.tumble};
     record[layout::kLookMore + 1] = {look.attenuation, look.fade};
+    const PeriodicFunction& place = look.color_function;
+    record[layout::kLookMore + 2] = {
+        static_cast<float>(place.wave), place.base, place.amplitude, place.phase};
+    record[layout::kLookMore + 3] = {place.frequency, look.color_spread};
     record[layout::kLookShadow] = shadow_texel(look);
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);

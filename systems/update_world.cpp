@@ -14,6 +14,7 @@
 #include "systems/mesh_level_system.h"
 #include "systems/orbit_camera_system.h"
 #include "systems/particles/beam_system.h"
+#include "systems/particles/billboard_system.h"
 #include "systems/particles/gpu_particle_system.h"
 #include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
@@ -94,6 +95,7 @@ void add_water_systems(SystemList& systems) {
 }
 
 void add_particle_systems(SystemList& systems) {
+    systems.add<update_billboards>(Events);
     systems.add<add_particle_pools>(Create, Both);
     systems.add<add_gpu_particles>(Create, Both);
     systems.add<add_particle_mesh_states>(Create, Both);

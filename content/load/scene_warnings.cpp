@@ -39,7 +39,7 @@ namespace {
 /// `component` has no effect on an entity that has none of `needs`.
 struct Need {
     std::string_view component;
-    std::array<std::string_view, 3> needs;
+    std::array<std::string_view, 4> needs;
 };
 constexpr Need kNeeds[] = {
     {"shadow", {"point_light", "spot_light", "directional_light"}},
@@ -65,7 +65,8 @@ constexpr Need kNeeds[] = {
     {"trail", {"particle_look", "", ""}},
     {"beam", {"particle_look", "", ""}},
     {"particle_motion", {"particle_emitter", "", ""}},
-    {"particle_look", {"particle_emitter", "trail", "beam"}},
+    {"billboard", {"particle_look", "", ""}},
+    {"particle_look", {"particle_emitter", "trail", "beam", "billboard"}},
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_surface", {"particle_emitter", "", ""}},

@@ -399,6 +399,8 @@ std::span<const PatternKind> pattern_kinds() {
         pattern_kind<StarsPattern, make_stars>("stars", "a painted sky with gilded stars"),
         pattern_kind<StonePattern, make_stone>("stone", "irregular flagstones"),
         pattern_kind<TilesPattern, make_tiles>("tiles", "glazed tiles in grout"),
+        pattern_kind<TreePattern, make_tree>(
+            "tree", "a flipbook of trees in leaf, each another one"),
         pattern_kind<WindowsPattern, make_windows>(
             "windows", "facade of a tower at night; black except for lit windows"),
         pattern_kind<WoodPattern, make_wood>("wood", "planks with rings, fibers and pores"),

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace limn {
 namespace {
@@ -373,6 +375,128 @@ PatternMaps make_leaf(const LeafPattern& pattern) {
         PatternTexel t;
         t.color = glm::clamp(color, Vec3(0), Vec3(1));
         t.opacity = std::max(blade, stalk);
+        return t;
+    });
+}
+
+namespace {
+
+/// A clump of leaves: a ball in front of the image plane.
+struct LeafClump {
+    Vec3 middle;
+    float radius;
+};
+
+struct TreeForm {
+    std::vector<LeafClump> clumps;
+    Vec2 crown;  ///< its middle
+    Vec2 extent;
+};
+
+TreeForm grow_tree(const TreePattern& pattern, std::uint32_t number) {
+    const auto random = [&](std::uint32_t i) {
+        return frame_random({{}, 0}, 1, seed_of(pattern.image) + 977u * number + 13u * i, i);
+    };
+    TreeForm tree;
+    const float slim = pattern.slimness;
+    tree.extent = {0.66f - 0.42f * slim + 0.08f * random(0), 0.60f + 0.08f * slim};
+    tree.crown = {0.06f * (random(1) - 0.5f), 0.20f};
+    constexpr std::uint32_t kClumps = 90;
+    for (std::uint32_t i = 0; i < kClumps; ++i) {
+        const float z = 2.0f * random(4 * i + 2) - 1.0f;
+        const float angle = 2.0f * kPi * random(4 * i + 3);
+        const float ring = std::sqrt(1.0f - z * z);
+        const float away = std::cbrt(0.25f + 0.75f * random(4 * i + 4));
+        const Vec3 unit = away * Vec3(ring * std::cos(angle), ring * std::sin(angle), z);
+        const float widest = 1.0f - 0.25f * unit.y;  // narrower at the top
+        const Vec2 place = tree.crown + 0.8f * tree.extent * Vec2(unit.x * widest, unit.y);
+        const float radius = (0.13f + 0.10f * random(4 * i + 5)) * (1.0f - 0.35f * slim);
+        tree.clumps.push_back({{place, 0.8f * tree.extent.x * unit.z}, radius});
+    }
+    return tree;
+}
+
+/// Trunk and boughs: how far `p` is within them, in units of the image; negative outside.
+float bark_depth(const TreeForm& tree, const Vec2& p) {
+    const float wobble = 0.02f * std::sin(7.0f * p.y);
+    const float up = std::clamp((p.y + 1.0f) / 1.3f, 0.0f, 1.0f);
+    const float flare = 0.05f * glm::smoothstep(0.25f, 0.0f, up);
+    float depth =
+        p.y < 0.3f ? 0.055f * (1.0f - 0.75f * up) + flare - std::abs(p.x - wobble) : -1.0f;
+    for (std::size_t i = 0; i < tree.clumps.size(); i += 6) {
+        const Vec2 end = Vec2(tree.clumps[i].middle);
+        const Vec2 foot = {0.01f, std::min(-0.45f + 0.5f * (end.y + 0.4f), end.y - 0.1f)};
+        depth = std::max(depth, 0.014f - line_distance(p, foot, end));
+    }
+    return depth;
+}
+
+}  // namespace
+
+PatternMaps make_tree(const TreePattern& pattern) {
+    const std::uint32_t seed = seed_of(pattern.image);
+    const int frames = pattern.frames;
+    const float texel = 2.0f * static_cast<float>(frames) / static_cast<float>(pattern.image.size);
+    std::vector<TreeForm> trees;
+    for (int i = 0; i < frames * frames; ++i) {
+        trees.push_back(grow_tree(pattern, static_cast<std::uint32_t>(i)));
+    }
+    const Vec3 sun = glm::normalize(Vec3(-0.45f, 0.75f, 0.5f));
+    return make_pattern_maps(pattern.image.size, [&](const Vec2& uv) {
+        const Vec2 cell = glm::floor(uv * static_cast<float>(frames));
+        const Vec2 inside = 2.0f * (uv * static_cast<float>(frames) - cell) - 1.0f;
+        const Vec2 p = {inside.x, -inside.y};
+        const auto number = static_cast<std::uint32_t>(cell.y) * static_cast<std::uint32_t>(frames)
+                            + static_cast<std::uint32_t>(cell.x);
+        const TreeForm& tree = trees[number % trees.size()];
+        const Vec2 q = p + 10.0f * Vec2(cell);
+        // Twigs shift the rims of clumps, leaves break them up.
+        const Vec2 shift = {
+            fbm(9.0f * q, seed + 1, {0, 0}, 3), fbm(9.0f * q + 31.0f, seed + 2, {0, 0}, 3)};
+        const float leaf = fbm(34.0f * q, seed + 3, {0, 0}, 2);
+        const Vec2 moved = p + 0.05f * shift;
+        float front = -10.0f;
+        float cover = 0;
+        Vec3 normal(0, 0, 1);
+        for (const LeafClump& clump : tree.clumps) {
+            const Vec2 offset = (moved - Vec2(clump.middle)) / clump.radius;
+            const float inward =
+                1.0f - glm::dot(offset, offset) + 1.3f * pattern.gaps * (leaf - 0.05f);
+            if (inward <= 0) {
+                continue;
+            }
+            const float z = std::sqrt(std::max(1.0f - glm::dot(offset, offset), 0.0f));
+            const float depth = clump.middle.z + clump.radius * z + 0.05f * leaf;
+            cover = std::max(cover, glm::smoothstep(0.0f, 0.08f + 3.0f * texel, inward));
+            if (depth > front) {
+                front = depth;
+                normal = Vec3(offset, z);
+            }
+        }
+        const Vec2 in_crown = (p - tree.crown) / tree.extent;
+        const Vec3 leaning =
+            glm::normalize(normal + 1.1f * Vec3(in_crown, 0.4f) + 0.9f * Vec3(shift, 0));
+        const float lit = glm::smoothstep(-0.5f, 1.0f, glm::dot(leaning, sun));
+        const float buried = glm::smoothstep(-0.5f, 0.35f, front / std::max(tree.extent.x, 0.1f));
+        const float shade =
+            (0.16f + 0.84f * lit * lit) * (0.4f + 0.6f * buried) * (1.0f + 0.9f * leaf);
+        const Vec3 warm = pattern.color * Vec3(1.35f, 1.1f, 0.7f);
+        Vec3 color = glm::mix(pattern.color, warm, std::clamp(0.5f + 0.8f * shift.x, 0.0f, 1.0f))
+                     * shade * 1.5f;
+        float opacity = cover;
+        const float bark = bark_depth(tree, p);
+        const float trunk = glm::smoothstep(0.0f, 1.5f * texel, bark);
+        if (front < 0.1f || cover <= 0) {
+            const float ridges = 1.0f + 1.2f * fbm({40.0f * q.x, 7.0f * q.y}, seed + 5, {0, 0}, 3);
+            const float round = std::clamp(0.75f - 6.0f * (p.x + 0.02f), 0.3f, 1.2f);
+            const float under = glm::smoothstep(0.1f, -0.6f, p.y) * 0.7f + 0.3f;
+            color = glm::mix(color, pattern.bark_color * ridges * round * under, trunk);
+            opacity = std::max(opacity, trunk);
+        }
+        const float edge = std::max(std::abs(p.x), std::abs(p.y));
+        PatternTexel t;
+        t.color = glm::clamp(color, Vec3(0), Vec3(1));
+        t.opacity = opacity * glm::smoothstep(0.97f, 0.93f, edge);
         return t;
     });
 }

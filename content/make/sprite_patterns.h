@@ -90,6 +90,25 @@ LIMN_FIELDS(LeafPattern) {
     LIMN_FIELD(second_color, "of the others", "", 0, 1);
 }
 
+/// Trees that stand on the lower edge of their frame, another one in each: for billboards.
+struct TreePattern {
+    PatternSize image;
+    int frames = 4;
+    Vec3 color = {0.10f, 0.16f, 0.03f};
+    Vec3 bark_color = {0.10f, 0.07f, 0.045f};
+    float slimness = 0.25f;
+    float gaps = 0.45f;
+};
+
+LIMN_FIELDS(TreePattern) {
+    visit_fields(self.image, visit);
+    LIMN_FIELD(frames, "side by side, and one below the other", "", 1, 16);
+    LIMN_FIELD(color, "linear RGB of the leaves in the light", "", 0, 1);
+    LIMN_FIELD(bark_color, "linear RGB of trunk and branches", "", 0, 1);
+    LIMN_FIELD(slimness, "0: a round crown, 1: a poplar", "", 0, 1);
+    LIMN_FIELD(gaps, "how far one sees through the rim of the crown", "", 0, 1);
+}
+
 /// Cut paper in bright colors, another piece in each frame.
 struct ConfettiPattern {
     PatternSize image;
@@ -152,6 +171,7 @@ LIMN_FIELDS(RingPattern) {
 }
 
 [[nodiscard]] PatternMaps make_leaf(const LeafPattern& pattern);
+[[nodiscard]] PatternMaps make_tree(const TreePattern& pattern);
 [[nodiscard]] PatternMaps make_confetti(const ConfettiPattern& pattern);
 [[nodiscard]] PatternMaps make_snowflake(const SnowflakePattern& pattern);
 [[nodiscard]] PatternMaps make_shard(const ShardPattern& pattern);

@@ -2,11 +2,13 @@
 
 #include "ecs/components/animation.h"
 #include "ecs/components/beam.h"
+#include "ecs/components/billboard.h"
 #include "ecs/components/buoyancy.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_lens.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
+#include "ecs/components/dazzle.h"
 #include "ecs/components/env_probe.h"
 #include "ecs/components/environment.h"
 #include "ecs/components/force_field.h"
@@ -75,6 +77,7 @@ void register_all_components() {
     register_component<ParticleSurface>();
     register_component<Trail>();
     register_component<TrailState>();
+    register_component<Billboard>();
     register_component<Beam>();
     register_component<BeamState>();
     register_component<Parent>();
@@ -135,6 +138,7 @@ void register_all_components() {
     register_component<Lens>();
     register_component<Autofocus>();
     register_component<LensFlare>();
+    register_component<Dazzle>();
     register_component<OrbitCamera>();
     register_component<FlyCamera>();
     register_component<CameraPath>();

@@ -152,7 +152,7 @@ Vec3 illuminance_at(const Vec3& eye, const layout::LightRecord& light) {
 /// A light in the image, and how it is seen.
 struct SeenLight {
     FlareLight light;
-    FlareSource source;
+    DiskSource source;
 };
 
 /// The brightest lights in or close to the image.
@@ -210,7 +210,7 @@ bool LensFlareEffect::is_used(const FrameData& frame) {
 
 Result<LensFlareEffect> LensFlareEffect::create(gpu::Device& device, const RenderSettings&) {
     return LensFlareEffect{
-        LIMN_TRY(load_fullscreen(device, "lens_flare_visibility.frag")),
+        LIMN_TRY(load_fullscreen(device, "disk_visibility.frag")),
         LIMN_TRY(
             device.shaders().load({.vertex = "lens_flare.vert", .fragment = "lens_flare.frag"})),
         LIMN_TRY(load_fullscreen(device, "glow_add.frag"))};

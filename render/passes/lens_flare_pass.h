@@ -2,6 +2,7 @@
 
 #include "ecs/components/lens_flare.h"
 #include "render/buffer_texture.h"
+#include "render/disk_visibility.h"
 #include "render/effect.h"
 
 #include <vector>
@@ -14,7 +15,7 @@ namespace limn {
 // Writes   radiance, a new texture
 // Order    after depth of field, which blurs what is before the lens, not what is within it; before
 //          glow
-// Shaders  lens_flare_visibility.frag, lens_flare.vert, lens_flare.frag, glow_add.frag
+// Shaders  disk_visibility.frag, lens_flare.vert, lens_flare.frag, glow_add.frag
 //
 // A ghost is a sprite at half resolution. A pixel p of it is light that met the aperture stop at
 // scale p + offset, both from the ABCD matrices of the ghost (lens_ghosts.h); where that is outside
@@ -52,19 +53,12 @@ static_assert(sizeof(FlareSprite) == 96);
 [[nodiscard]] std::vector<FlareSprite>
 make_flare_sprites(const LensFlare& flare, const FlareLight& light, float tangent_y, int height);
 
-/// What the visibility of a light is found from: one texel.
-struct FlareSource {
-    Vec2 uv = {0, 0};
-    float depth = 0;   ///< what has a greater one is before it
-    float radius = 0;  ///< of its disk [px]
-};
-
 struct LensFlareEffect {
     const gpu::Program* visibility = nullptr;
     const gpu::Program* sprite = nullptr;
     const gpu::Program* add = nullptr;
     LensFlare flare = {};
-    std::vector<FlareSource> sources = {};
+    std::vector<DiskSource> sources = {};
     std::vector<FlareSprite> sprites = {};
     BufferTexture source_records = BufferTexture("flare sources", GL_RGBA32F);
     BufferTexture sprite_records = BufferTexture("flare sprites", GL_RGBA32F);

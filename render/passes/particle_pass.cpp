@@ -11,10 +11,14 @@
 #include "render/material_pool.h"
 #include "render/view_block.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace limn {
@@ -25,6 +29,7 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
 constexpr unsigned kRibbonsUnit = 8;
+constexpr unsigned kBillboardsUnit = 26;
 constexpr std::uint32_t kSortPasses = 4;    // a frame, of an amortized sort (Latta 2004)
 constexpr std::uint32_t kMaxLooks = 65536;  // that an instance can name
 
@@ -36,15 +41,53 @@ float max_width(const ParticleLook& look) {
     return look.size * factor;
 }
 
-/// Where an entity is seen; none without a transform.
-std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {
+/// As an entity is seen; none without a transform.
+std::optional<Affine> pose_of(const World& world, Entity entity, float alpha) {
     const auto* const now = world.find<WorldTransform>(entity);
     const auto* const before = world.find<PreviousWorldTransform>(entity);
     if (now == nullptr) {
         return std::nullopt;
     }
-    const Affine& from = before != nullptr ? before->world : now->world;
-    return transform_point(mix_affine(from, now->world, alpha), Vec3(0));
+    return mix_affine(before != nullptr ? before->world : now->world, now->world, alpha);
+}
+
+std::optional<Vec3> place_of(const World& world, Entity entity, float alpha) {
+    const std::optional<Affine> pose = pose_of(world, entity, alpha);
+    return pose ? std::optional(transform_point(*pose, Vec3(0))) : std::nullopt;
+}
+
+/// The box about an emitter's shape, of which no birth is outside.
+Bounds shape_bounds(const ParticleEmitter& emitter, const Affine& world) {
+    const bool is_point = emitter.shape == EmitterShape::Point;
+    const Vec3 tube =
+        emitter.shape == EmitterShape::Torus ? Vec3(emitter.size.y, 0, emitter.size.y) : Vec3(0);
+    const Vec3 half = (is_point ? Vec3(0) : emitter.size + tube) + emitter.size_spread;
+    return transform_bounds(world, {-half, half});
+}
+
+Bounds bounds_of(std::span<const ParticleInstance> instances) {
+    Bounds bounds;
+    for (const ParticleInstance& instance : instances) {
+        bounds.min = glm::min(bounds.min, instance.position);
+        bounds.max = glm::max(bounds.max, instance.position);
+    }
+    return bounds;
+}
+
+/// False where the box, `margin` larger, is outside one of the planes. NaN counts as inside.
+bool may_be_in_view(const Frustum& frustum, const Vec3& middle, const Vec3& half, float margin) {
+    return std::none_of(
+        std::begin(frustum.planes), std::end(frustum.planes), [&](const Vec4& plane) {
+            const Vec3 normal = Vec3(plane);
+            const float reach = glm::dot(glm::abs(normal), half) + margin * glm::length(normal);
+            return glm::dot(normal, middle) + plane.w < -reach;
+        });
+}
+
+bool is_group_in_view(const LookExtent& extent, const Frustum& frustum) {
+    const Bounds& group = extent.group;
+    return is_empty(group)
+           || may_be_in_view(frustum, center(group), half_extent(group), extent.radius);
 }
 
 /// Passes of a sort on the GPU a frame, 0: all; none for particles that need no order.
@@ -69,6 +112,43 @@ void append_births_of(
 }
 
 }  // namespace
+
+LookExtent make_look_extent(const ParticleLook& look) {
+    LookExtent extent;
+    extent.culling = look.culling;
+    if (look.facing != ParticleFacing::Pixels) {
+        // Half the diagonal of the square, at its largest.
+        const float spread = look.size > 0 ? 1 + std::abs(look.size_spread) / look.size : INFINITY;
+        extent.radius = 0.7072f * max_width(look) * spread + look.cull_margin;
+        extent.stretch =
+            look.facing == ParticleFacing::Velocity ? 0.5f * std::abs(look.stretch) : 0;
+    }
+    return extent;
+}
+
+void cull_particles(
+    const std::vector<ParticleInstance>& instances, const std::vector<LookExtent>& extents,
+    const Frustum& frustum, std::vector<std::uint8_t>& visible) {
+    std::vector<std::uint8_t> group_visible(extents.size());
+    for (std::size_t i = 0; i < extents.size(); ++i) {
+        group_visible[i] = is_group_in_view(extents[i], frustum) ? 1 : 0;
+    }
+    visible.resize(instances.size());
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const std::uint32_t look = instances[i].look_and_share >> 16;
+        const LookExtent& extent = extents[look];
+        if (extent.culling != ParticleCulling::Particles) {
+            visible[i] = group_visible[look];
+            continue;
+        }
+        float radius = extent.radius;
+        if (extent.stretch > 0) {
+            radius += extent.stretch
+                      * glm::length(Vec3(glm::unpackHalf4x16(instances[i].velocity_and_age)));
+        }
+        visible[i] = may_be_in_view(frustum, instances[i].position, Vec3(0), radius);
+    }
+}
 
 float particle_step(const FrameData& frame) {
     const auto* const time = frame.world->find_resource<FrameTime>();
@@ -122,6 +202,7 @@ std::uint32_t ParticleEffect::add_look(
     looks.push_back(make_look_record(look, has_image ? static_cast<int>(image.layer) : -1));
     arrays.push_back(image.array);
     places.push_back(place);
+    extents.push_back(make_look_extent(look));
     lit = lit || look.lit > 0;
     images = images || has_image;
     return static_cast<std::uint32_t>(looks.size() - 1);
@@ -133,6 +214,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
         has_ribbons = true;
         const std::uint32_t index = add_look(frame, look);
         looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        extents[index] = {};
         for (const std::uint32_t before : ribbons.segments) {
             const Vec3 middle =
                 0.5f * (ribbons.points[before + 1].position + ribbons.points[before + 2].position);
@@ -165,6 +247,60 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
         });
 }
 
+void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
+    const auto add_once = [&](const ParticleLook& look) {
+        const std::uint32_t index = add_look(frame, look);
+        looks[index][2].w = static_cast<float>(layout::kFacingBillboard);
+        looks[index][layout::kLookMore + 1].w = 0;  // no life to fade at the end of
+        const bool is_repeated = index > 0 && looks[index] == looks[index - 1]
+                                 && arrays[index] == arrays[index - 1]
+                                 && extents[index].culling == extents[index - 1].culling;
+        if (!is_repeated) {
+            extents[index].radius = extents[index].stretch = 0;
+            return index;
+        }
+        looks.pop_back();
+        arrays.pop_back();
+        places.pop_back();
+        extents.pop_back();
+        return index - 1;
+    };
+    const World& world = *frame.world;
+    world.query<const Billboard, const ParticleLook>().each([&](Entity entity,
+                                                                const Billboard& billboard,
+                                                                const ParticleLook& look) {
+        const std::optional<Affine> pose = pose_of(world, entity, frame.camera.alpha);
+        const std::size_t first = billboards.quads.size();
+        const std::uint32_t random = entity.index * 0x9e3779b9u;
+        if (!pose || looks.size() + 2 > kMaxLooks) {
+            return;
+        }
+        const double time = std::max(billboard.time - static_cast<double>(back), 0.0);
+        append_billboard(billboard, look, *pose, time, random, billboards);
+        for (std::size_t i = first; i < billboards.quads.size(); ++i) {
+            const BillboardPlace& place = billboards.places[i];
+            const BillboardQuad& quad = billboards.quads[i];
+            ParticleLook its = look;
+            if (place.is_section) {
+                its.image = billboard.section;
+                its.columns = its.rows = 1;
+            }
+            its.culling = ParticleCulling::Particles;
+            const std::uint32_t index = add_once(its);
+            extents[index].radius = std::max(
+                extents[index].radius,
+                glm::length(quad.right) + glm::length(quad.up) + look.cull_margin);
+            instances.push_back(
+                {.position = place.position,
+                 .look_and_share = index << 16 | static_cast<std::uint32_t>(place.share * 65535.0f),
+                 .velocity_and_age =
+                     std::uint64_t{std::bit_cast<std::uint32_t>(place.opacity)} << 32 | i,
+                 .random = random});
+        }
+    });
+    has_billboards = !billboards.quads.empty();
+}
+
 void ParticleEffect::collect(FrameData& frame) {
     const World& world = *frame.world;
     const float step = particle_step(frame);
@@ -175,8 +311,16 @@ void ParticleEffect::collect(FrameData& frame) {
     places.clear();
     instances.clear();
     ribbons.clear();
-    lit = images = has_ribbons = false;
+    billboards.quads.clear();
+    billboards.places.clear();
+    extents.clear();
+    lit = images = has_ribbons = has_billboards = false;
     const float alpha = frame.camera.alpha;
+    const auto shape_in_world = [&](Entity entity) {
+        const auto* const emitter = world.find<ParticleEmitter>(entity);
+        const std::optional<Affine> pose = pose_of(world, entity, alpha);
+        return emitter != nullptr && pose ? shape_bounds(*emitter, *pose) : Bounds{};
+    };
     world.query<const ParticleLook, const ParticlePool, Optional<const Trail>>().each(
         [&](Entity entity, const ParticleLook& look, const ParticlePool& particles,
             const Trail* trail) {
@@ -187,9 +331,15 @@ void ParticleEffect::collect(FrameData& frame) {
                 if (look.sort == ParticleSort::Births) {
                     place = place_of(world, entity, alpha);
                 }
+                const std::size_t first = instances.size();
+                const std::uint32_t index = add_look(frame, look, place);
                 append_particles(
-                    particles, add_look(frame, look, place), back, instances,
-                    look.camera_streak * eye_velocity);
+                    particles, index, back, instances, look.camera_streak * eye_velocity);
+                if (look.culling == ParticleCulling::Bounds) {
+                    extents[index].group = bounds_of(std::span(instances).subspan(first));
+                } else if (look.culling == ParticleCulling::Emitter) {
+                    extents[index].group = shape_in_world(entity);
+                }
             }
         });
     gpu.begin_frame(world);
@@ -200,13 +350,16 @@ void ParticleEffect::collect(FrameData& frame) {
         .each([&](Entity entity, const ParticleLook& look, const ParticleEmitter& emitter,
                   const GpuParticles& particles, const ParticleCollision* collision) {
             if (looks.size() < kMaxLooks) {
-                gpu.add(
-                    frame, entity, emitter, particles, add_look(frame, look), sort_passes(look),
-                    collision);
+                const std::uint32_t index = add_look(frame, look);
+                gpu.add(frame, entity, emitter, particles, index, sort_passes(look), collision);
+                if (look.culling == ParticleCulling::Emitter) {
+                    extents[index].group = shape_in_world(entity);
+                }
             }
         });
     gpu.forget_unused();
     collect_ribbons(frame, back, step);
+    collect_billboards(frame, back);
     if (frame.warm_up && instances.empty() && !looks.empty()) {
         instances.emplace_back();  // drawn with size 0 or transparent: compiles the program
     }
@@ -216,16 +369,7 @@ void ParticleEffect::collect(FrameData& frame) {
         instances, places, transform_point(camera, Vec3(0)),
         transform_vector(camera, Vec3(0, 0, -1)), order);
     sorted.clear();
-    runs.clear();
     for (const std::uint32_t i : order.indices) {
-        // Discs fit any array.
-        const std::uint32_t look = instances[i].look_and_share >> 16;
-        const bool is_disc = looks[look][3].w < 0;
-        if (runs.empty() || (!is_disc && runs.back().array != arrays[look])) {
-            runs.push_back(
-                {.array = arrays[look], .first = static_cast<int>(sorted.size()), .count = 0});
-        }
-        ++runs.back().count;
         sorted.push_back(instances[i]);
     }
     auto& sprites = frame.data.publish<ParticleSprites>();
@@ -233,9 +377,34 @@ void ParticleEffect::collect(FrameData& frame) {
     sprites.looks = looks;
     sprites.arrays = arrays;
     sprites.look_texels = &look_texels;
-    particle_texels.upload(*frame.ring, sorted);
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
+    billboard_texels.upload(*frame.ring, billboards.quads);
+}
+
+bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
+    auto& seen = view.data.publish<ViewParticles>();
+    seen.instances.clear();
+    seen.runs.clear();
+    cull_particles(sorted, extents, make_frustum(view.camera.clip_from_world), visible);
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (visible[i] == 0 && !frame.warm_up) {
+            continue;
+        }
+        // Discs fit any array.
+        const std::uint32_t look = sorted[i].look_and_share >> 16;
+        const bool is_disc = looks[look][3].w < 0;
+        if (seen.runs.empty() || (!is_disc && seen.runs.back().array != arrays[look])) {
+            seen.runs.push_back(
+                {.array = arrays[look],
+                 .first = static_cast<int>(seen.instances.size()),
+                 .count = 0});
+        }
+        ++seen.runs.back().count;
+        seen.instances.push_back(sorted[i]);
+    }
+    seen.texels.upload(*frame.ring, seen.instances);
+    return !seen.runs.empty() || !gpu.pools().empty();
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
@@ -246,9 +415,6 @@ void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
 }
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    if (runs.empty() && gpu.pools().empty()) {
-        return;
-    }
     std::vector<Use> reads = lighting_reads(
         view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
     for (const auto& [entity, pool] : gpu.pools()) {
@@ -265,6 +431,7 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
             variant.add_if(lit, "LIT");
             variant.add_if(images, "IMAGES");
             variant.add_if(has_ribbons, "RIBBONS");
+            variant.add_if(has_billboards, "BILLBOARDS");
             const gpu::Program* const program = programs.get(variant);
             if (program == nullptr) {
                 return;
@@ -277,10 +444,12 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
                  .cull = GL_NONE,
                  .clip = clipped}});
             bind_lighting(context, view);
-            particle_texels.bind(device, kParticlesUnit);
+            const auto& seen = view.data.get<ViewParticles>();
+            seen.texels.bind(device, kParticlesUnit);
             look_texels.bind(device, kLooksUnit);
             ribbon_texels.bind(device, kRibbonsUnit);
-            for (const ParticleRun& run : runs) {
+            billboard_texels.bind(device, kBillboardsUnit);
+            for (const ParticleRun& run : seen.runs) {
                 program->set("first", run.first);
                 if (images) {
                     device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
@@ -288,7 +457,11 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
                 device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
             }
             program->set("first", 0);
+            const Frustum frustum = make_frustum(view.camera.clip_from_world);
             for (const auto& [entity, pool] : gpu.pools()) {
+                if (!is_group_in_view(extents[pool->look], frustum)) {
+                    continue;
+                }
                 if (images) {
                     device.bind_texture(
                         kImagesUnit, frame.materials->images().array(arrays[pool->look]));

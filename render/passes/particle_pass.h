@@ -1,7 +1,10 @@
 #pragma once
 
 #include "ecs/base/depth_sort.h"
+#include "ecs/components/particles.h"
+#include "render/billboard_list.h"
 #include "render/buffer_texture.h"
+#include "render/culling.h"
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
@@ -19,14 +22,16 @@ namespace limn {
 // (engine.billboard, particle.gpu-draw, particle.light-source-render); and segments of ribbons
 // among them, as quads that share their corners (engine.trail).
 //
-// Reads    depth, light clusters, environment; ParticlePool, Trail, Beam with ParticleLook
+// Reads    depth, light clusters, environment; ParticlePool, Trail, Beam, Billboard with
+//          ParticleLook
 // Writes   radiance
 // Order    after blended surfaces, before the lens
 // Shaders  particle.vert, particle.frag; layout in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
-// format. Sorted by distance of their centers; blended surfaces are all behind.
+// format. Sorted by distance of their centers; blended surfaces are all behind. Each view leaves
+// out what it does not see; of particles on the GPU, emitters whose shape alone counts.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -49,27 +54,54 @@ void order_by_distance(
     const std::vector<ParticleInstance>& instances, std::span<const std::optional<Vec3>> places,
     const Vec3& eye, const Vec3& forward, DistanceOrder& order);
 
+/// What is known of the particles of a look before they are drawn (particle.visibility).
+struct LookExtent {
+    ParticleCulling culling = ParticleCulling::Particles;
+    float radius = INFINITY;  ///< about a particle's middle, beside what its speed adds [m]
+    float stretch = 0;        ///< half the time whose way a streak is as long as [s]
+    Bounds group{};           ///< of all of them, unless each counts by itself
+};
+
+/// Without a group; pixels and ribbons have no extent in meters and are always drawn.
+[[nodiscard]] LookExtent make_look_extent(const ParticleLook& look);
+
+/// visible[i] = 1 if instance i may be seen within the frustum.
+void cull_particles(
+    const std::vector<ParticleInstance>& instances, const std::vector<LookExtent>& extents,
+    const Frustum& frustum, std::vector<std::uint8_t>& visible);
+
 struct ParticleEffect {
+    /// What a view draws.
+    struct ViewParticles {
+        std::vector<ParticleInstance> instances{};  ///< those in view
+        std::vector<ParticleRun> runs{};
+        BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
+    };
+
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
     RibbonList ribbons = {};
+    BillboardList billboards = {};
+    std::vector<LookExtent> extents = {};  ///< of each look
     std::vector<ParticleInstance> instances = {};
     std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
     DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
-    std::vector<ParticleRun> runs = {};
+    std::vector<std::uint8_t> visible = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
     bool lit = false;
     bool images = false;
     bool has_ribbons = false;
-    BufferTexture particle_texels = BufferTexture("particles", GL_RGBA32UI);
+    bool has_billboards = false;
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
+    BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
 
     [[nodiscard]] static Result<ParticleEffect> create(gpu::Device& device, const RenderSettings&);
     static bool is_used(const FrameData& frame);
     void collect(FrameData& frame);
+    bool prepare(const FrameData& frame, ViewData& view);
     void draw_shared(FrameGraph& graph, const FrameData& frame);
     void draw(FrameGraph& graph, const FrameData& frame, ViewData& view);
 
@@ -77,6 +109,7 @@ struct ParticleEffect {
     std::uint32_t add_look(
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void collect_ribbons(const FrameData& frame, float back, float step);
+    void collect_billboards(const FrameData& frame, float back);
 };
 
 }  // namespace limn

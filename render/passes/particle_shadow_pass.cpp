@@ -64,7 +64,7 @@ float size_at(const LookRecord& look, float share) {
 }
 
 bool can_cast(const LookRecord& look) {
-    return look[layout::kLookShadow].w > 0 && look[2].w != static_cast<float>(layout::kFacingRibbon)
+    return look[layout::kLookShadow].w > 0 && look[2].w < static_cast<float>(layout::kFacingRibbon)
            && look[2].w != static_cast<float>(ParticleFacing::Pixels);
 }
 

@@ -1,6 +1,7 @@
 // A particle as a quad, lit at its corners. Definitions: those of lib/lighting.glsl, and
 //   LIT      some particle scatters light
 //   RIBBONS  some are segments of ribbons
+//   BILLBOARDS  some are quads of billboards
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #include "lib/particle.glsl"
@@ -11,6 +12,11 @@
 #ifdef RIBBONS
 #include "lib/ribbon.glsl"
 layout(binding = 8) uniform samplerBuffer ribbon_points;
+#endif
+
+#ifdef BILLBOARDS
+#include "lib/billboard.glsl"
+layout(binding = 26) uniform samplerBuffer billboard_quads;
 #endif
 
 uniform int first;  // of the particles to draw
@@ -103,6 +109,25 @@ Quad quad_of(Particle p, vec4 shape, vec4 streak, float tumble, int facing, floa
     return Quad(half_size * right, half_size * up);
 }
 
+#ifdef BILLBOARDS
+const int kAlignedView = 1;
+const int kAlignedAxis = 2;
+
+Quad billboard_quad(int index, vec3 position) {
+    vec4 first = texelFetch(billboard_quads, index * int(kBillboardTexels));
+    vec3 right = first.xyz;
+    vec3 up = texelFetch(billboard_quads, index * int(kBillboardTexels) + 1).xyz;
+    vec3 camera_right = normalize(view.ray_right.xyz);
+    if (int(first.w) == kAlignedView) {
+        return Quad(length(right) * camera_right, length(up) * normalize(view.ray_up.xyz));
+    }
+    if (int(first.w) == kAlignedAxis) {
+        right = length(right) * billboard_right(normalize(up), to_viewer(position), camera_right);
+    }
+    return Quad(right, up);
+}
+#endif
+
 #ifdef RIBBONS
 // A segment from `begin` to `end`, between its neighbors; a join where these are one place.
 struct RibbonSegment {
@@ -157,7 +182,7 @@ void main() {
     bool is_ribbon = uint(glow.w) == kFacingRibbon;
     RibbonSegment segment;
     if (is_ribbon) {
-        segment = ribbon_segment(p.ribbon_point, gl_VertexID & 1);
+        segment = ribbon_segment(p.record, gl_VertexID & 1);
         p.position = segment.place.xyz;
         p.share = segment.rest.w;
     }
@@ -172,7 +197,18 @@ void main() {
         size *= inversesqrt(max(point.x + away * (point.y + away * point.z), 1e-12)) * pixel_extent(p.position);
     }
 
+#ifdef BILLBOARDS
+    bool is_billboard = uint(glow.w) == kFacingBillboard;
+    if (is_billboard) {
+        color.a *= p.opacity;
+    }
+#endif
     Quad quad = quad_of(p, shape, streak, more.w, int(glow.w), size);
+#ifdef BILLBOARDS
+    if (is_billboard) {
+        quad = billboard_quad(p.record, p.position);
+    }
+#endif
     vec3 offset = corner.x * quad.right + corner.y * quad.up;
 #ifdef RIBBONS
     if (is_ribbon) {
@@ -216,7 +252,11 @@ void main() {
 #endif
     light = vec4(color.rgb * radiance * color.a, color.a);
 
-    Flipbook flipbook = flipbook_of(p, book, int(more.x));
+    float shown = frame_shown(p, book, int(more.x));
+#ifdef BILLBOARDS
+    shown = is_billboard ? texelFetch(billboard_quads, p.record * int(kBillboardTexels) + 1).w : shown;
+#endif
+    Flipbook flipbook = flipbook_at(shown, book, int(more.x));
     frames = flipbook.frames;
     next_frame = flipbook.next;
     blend = vec4(glow.z, streak.z, flipbook.progress, book.w);
@@ -224,6 +264,9 @@ void main() {
     bool is_gone = size <= 0.0 || color.a <= 0.0 || p.is_dead;
 #ifdef RIBBONS
     is_gone = is_gone && !is_ribbon;
+#endif
+#ifdef BILLBOARDS
+    is_gone = is_billboard ? color.a <= 0.0 : is_gone;
 #endif
     if (is_gone) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);

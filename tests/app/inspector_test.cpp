@@ -5,6 +5,7 @@
 #include "ecs/components/environment.h"
 #include "ecs/components/light.h"
 #include "ecs/components/name.h"
+#include "ecs/components/ripple.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/transform.h"
 #include "ecs/hierarchy.h"
@@ -104,7 +105,7 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     register_all_components();
     // One field with a range: a slider as wide as the right part of the panel.
     world.insert_resource(Assets{});
-    const Entity entity = world.create(LightPulse{});
+    const Entity entity = world.create(HeatHaze{});
     Inspector inspector;
     inspector.open = true;
     inspector.select(entity);
@@ -112,31 +113,32 @@ TEST_CASE("inspector: a drag of a slider sets the component and is one step of u
     for (int i = 0; i < 3; ++i) {
         hud.frame(draw);
     }
-    const auto amplitude = [&] { return world.get<const LightPulse>(entity).function.amplitude; };
-    // Look for it: press at every height until the amplitude changes.
+    constexpr float kStrength = HeatHaze{}.strength;
+    const auto strength = [&] { return world.get<const HeatHaze>(entity).strength; };
+    // Look for it: press at every height until the strength changes.
     const float x = 1130.0f;
     float y = 150.0f;
-    for (; y < 700.0f && amplitude() == 0.5f; y += 5.0f) {
+    for (; y < 700.0f && strength() == kStrength; y += 5.0f) {
         hud.frame(draw, {x, y});
         hud.frame(draw, {x, y}, true);
-        if (amplitude() != 0.5f) {
+        if (strength() != kStrength) {
             break;
         }
         hud.frame(draw, {x, y});
     }
-    REQUIRE(amplitude() != 0.5f);
+    REQUIRE(strength() != kStrength);
     for (int i = 0; i < 20; ++i) {
         hud.frame(draw, {x + 4.0f * static_cast<float>(i), y}, true);
     }
     hud.frame(draw, {x + 80.0f, y});
-    const float dragged = amplitude();
-    CHECK(dragged > 0.5f);
-    CHECK(dragged <= 1.0f);
+    const float dragged = strength();
+    CHECK(dragged > kStrength);
+    CHECK(dragged <= 0.2f);
     CHECK(inspector.undo_stack().undo_count() == 1);
-    CHECK(inspector.undo_stack().undo(world).find("light_pulse.amplitude") != std::string::npos);
-    CHECK(amplitude() == 0.5f);
+    CHECK(inspector.undo_stack().undo(world).find("heat_haze.strength") != std::string::npos);
+    CHECK(strength() == kStrength);
     CHECK_FALSE(inspector.undo_stack().redo(world).empty());
-    CHECK(amplitude() == dragged);
+    CHECK(strength() == dragged);
 }
 
 TEST_CASE("inspector: nameless entities are called by what they show or do") {

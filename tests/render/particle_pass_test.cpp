@@ -6,6 +6,7 @@
 #include "tests/near.h"
 #include "tests/render/scene_fixture.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 
@@ -147,6 +148,63 @@ TEST_CASE_FIXTURE(ParticleScene, "particle pass: the last seconds of a life fade
     CHECK(faded(0.5f) == near(1).epsilon(1e-3));
     CHECK(faded(1) == near(0.5).epsilon(2e-3));
     CHECK(faded(2) == near(0.25).epsilon(2e-3));
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: the color at half the life is the mean of first and last") {
+    ParticleLook look = disc({1, 0, 0}, 1, 1);
+    look.colors.push_back({.at = 1, .color = {0, 0, 0.5f}});
+    emit({{0, 0, 0}}, look);
+    CHECK(middle().x == near(0.5).epsilon(2e-3));
+    CHECK(middle().z == near(0.25).epsilon(2e-3));
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene, "particle pass: a periodic function of the age chooses the color") {
+    ParticleLook look = disc({1, 0, 0}, 1, 1);
+    look.colors.push_back({.at = 1, .color = {0, 0, 1}});
+    emit({{0, 0, 0}}, look);
+    const float lag = 0;  // the frame shows the end of the step
+    for (const Wave wave :
+         {Wave::Sine, Wave::Triangle, Wave::Square, Wave::Sawtooth, Wave::Noise}) {
+        for (const float phase : {0.0f, 0.15f, 0.6f}) {
+            CAPTURE(static_cast<int>(wave));
+            const PeriodicFunction function = {
+                .wave = wave, .base = 0.4f, .amplitude = 0.5f, .phase = phase, .frequency = 1.3f};
+            world.query<ParticleLook>().each(
+                [&](ParticleLook& its) { its.color_function = function; });
+            const double share = evaluate_share(function, 0.5 - static_cast<double>(lag));
+            const Vec3 color = middle();
+            CHECK(color.z == near(share).scale(1).epsilon(5e-3));
+            CHECK(color.x == near(1 - share).scale(1).epsilon(5e-3));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    ParticleScene,
+    "particle pass: colors vary within their spread, each channel by itself, never below 0") {
+    ParticleLook look = disc({0.5f, 0.5f, 0.1f}, 1, 1);
+    look.color_spread = {0.2f, 0, 0.4f};
+    emit({{0, 0, 0}}, look);
+    Vec3 low(10);
+    Vec3 high(-10);
+    for (std::uint32_t i = 0; i < 60; ++i) {
+        world.query<ParticlePool>().each(
+            [&](ParticlePool& pool) { pool.look[0] = i * 0x9e3779b9u; });
+        const Vec3 color = middle();
+        low = glm::min(low, color);
+        high = glm::max(high, color);
+    }
+    const float slack = 0.004f;
+    CHECK(low.x >= 0.3f - slack);
+    CHECK(low.x < 0.35f);
+    CHECK(high.x <= 0.7f + slack);
+    CHECK(high.x > 0.65f);
+    CHECK(high.y - low.y < slack);
+    CHECK(low.z == 0);
+    CHECK(high.z <= 0.5f + slack);
+    CHECK(high.z > 0.4f);
 }
 
 TEST_CASE("particle pass: between steps they are back on their way, and not there before birth") {

@@ -1,5 +1,6 @@
 // A particle and its look (particle_gpu.h), for shaders that draw it as a quad.
 
+#include "lib/periodic.glsl"
 #include "particle_gpu.h"
 
 layout(binding = 2) uniform usamplerBuffer particles;
@@ -16,7 +17,8 @@ struct Particle {
     int look;
     uint random;
     bool is_dead;
-    int ribbon_point;  // before it, if it is a segment of a ribbon
+    int record;     // of a segment of a ribbon: the point before it; of a billboard: its quad
+    float opacity;  // of a billboard
 };
 
 Particle read_particle(int index) {
@@ -25,7 +27,8 @@ Particle read_particle(int index) {
     vec2 velocity_xy = unpackHalf2x16(rest.x);
     vec2 velocity_z_age = unpackHalf2x16(rest.y);
     return Particle(uintBitsToFloat(place.xyz), vec3(velocity_xy, velocity_z_age.x), velocity_z_age.y,
-                    float(place.w & 0xffffu) / 65535.0, int(place.w >> 16), rest.z, rest.w != 0u, int(rest.x));
+                    float(place.w & 0xffffu) / 65535.0, int(place.w >> 16), rest.z, rest.w != 0u, int(rest.x),
+                    uintBitsToFloat(rest.y));
 }
 
 // Of the quad's vertices, -1 .. 1, as a strip.
@@ -58,10 +61,21 @@ float size_of(Particle p, vec4 shape) {
 
 // Color and opacity at its age, wherever it is seen from.
 vec4 color_of(Particle p) {
-    float at = p.share * float(kLookSamples - 1u);
+    vec4 wave = look_texel(p.look, kLookMore + 2u);
+    vec4 varied = look_texel(p.look, kLookMore + 3u);
+    float place = p.share;
+    bool has_age = uint(look_texel(p.look, 2u).w) < kFacingRibbon;
+    if (has_age && p.age >= 0.0 && (wave.y != 0.0 || wave.z != 0.0)) {
+        place = clamp(wave.y + wave.z * periodic_wave(int(wave.x), varied.x * p.age, wave.w), 0.0, 1.0);
+    }
+    float at = place * float(kLookSamples - 1u);
     int i = min(int(at), int(kLookSamples) - 2);
     vec4 color = mix(look_texel(p.look, kLookColors + uint(i)), look_texel(p.look, kLookColors + uint(i) + 1u),
                      at - float(i));
+    if (varied.yzw != vec3(0.0)) {
+        vec3 chance = vec3(random_share(p.random, 6u), random_share(p.random, 7u), random_share(p.random, 8u));
+        color.rgb = max(color.rgb + varied.yzw * chance, vec3(0.0));
+    }
     float fade = look_texel(p.look, kLookMore + 1u).w;
     if (fade > 0.0 && p.share > 0.0) {
         color.a *= clamp(p.age * (1.0 - p.share) / (p.share * fade), 0.0, 1.0);
@@ -79,15 +93,21 @@ struct Flipbook {
     vec2 next;       // offset of the next frame
     float progress;  // toward it, 0 .. 1
 };
-// `book`: texel 3 of the look; `kind`: ParticleFrames.
-Flipbook flipbook_of(Particle p, vec4 book, int kind) {
+// Which frame it shows; `book`: texel 3 of the look; `kind`: ParticleFrames.
+float frame_shown(Particle p, vec4 book, int kind) {
     float count = book.x * book.y;
     float shown = book.z > 0.0 ? p.age * book.z : p.share * (count - 1.0);
     float chance = floor((0.5 + 0.5 * random_share(p.random, 5u)) * count);
-    shown = kind == kFramesPick ? chance : kind == kFramesShuffle ? shown + chance : shown;
+    return kind == kFramesPick ? chance : kind == kFramesShuffle ? shown + chance : shown;
+}
+Flipbook flipbook_at(float shown, vec4 book, int kind) {
+    float count = book.x * book.y;
     bool loops = book.z > 0.0 || kind == kFramesShuffle;
     float frame = mod(floor(shown), count);
     float next = loops ? mod(frame + 1.0, count) : min(frame + 1.0, count - 1.0);
     return Flipbook(vec4(1.0 / book.xy, vec2(mod(frame, book.x), floor(frame / book.x)) / book.xy),
                     vec2(mod(next, book.x), floor(next / book.x)) / book.xy, count > 1.0 ? fract(shown) : 0.0);
+}
+Flipbook flipbook_of(Particle p, vec4 book, int kind) {
+    return flipbook_at(frame_shown(p, book, kind), book, kind);
 }

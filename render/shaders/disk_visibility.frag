@@ -1,8 +1,8 @@
-// The part of each light's disk that nothing hides, one texel per light (lens_flare_pass.h).
+// The part of each disk in the image that nothing hides, one texel per disk (disk_visibility.h).
 #version 450
 
 layout(binding = 0) uniform sampler2D scene_depth;
-layout(binding = 1) uniform samplerBuffer sources;  // FlareSource
+layout(binding = 1) uniform samplerBuffer sources;  // DiskSource
 
 layout(location = 0) out float visible;
 

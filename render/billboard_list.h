@@ -1,0 +1,44 @@
+#pragma once
+
+#include "ecs/base/math.h"
+#include "ecs/components/billboard.h"
+#include "render/shaders/particle_gpu.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace limn {
+
+// Quads of all Billboards, in the order in which they are added (engine.billboard). Their corners
+// are found where they are drawn, because each view faces them its own way (lib/billboard.glsl).
+
+/// What particle.vert reads of a quad: texels of four floats.
+struct BillboardQuad {
+    Vec3 right = {1, 0, 0};  ///< half of its width [m]; only the length counts where it turns
+    float alignment = 0;     ///< BillboardAlignment
+    Vec3 up = {0, 1, 0};     ///< half of its height [m]
+    float frame = 0;
+};
+static_assert(sizeof(BillboardQuad) == 16 * layout::kBillboardTexels);
+
+/// The rest of a quad.
+struct BillboardPlace {
+    Vec3 position = {0, 0, 0};  ///< of its middle
+    float share = 0;            ///< of its colors, 0 .. 1
+    float opacity = 1;
+    bool is_section = false;  ///< has its own image
+};
+
+struct BillboardList {
+    std::vector<BillboardQuad> quads{};
+    std::vector<BillboardPlace> places{};  ///< of each quad
+};
+
+/// Adds the quads of a billboard at `world` as they are `time` seconds after it began: one, or two
+/// of a composite one. None without extent, or where a number is not finite. `random` chooses the
+/// frame to begin with, unless it is the first.
+void append_billboard(
+    const Billboard& billboard, const ParticleLook& look, const Affine& world, double time,
+    std::uint32_t random, BillboardList& list);
+
+}  // namespace limn
