@@ -209,7 +209,7 @@ void Hud::draw_status(const HudStatus& status) {
         ImGui::PushStyleColor(ImGuiCol_Border, kHudBad);
         if (ImGui::Begin("##error", nullptr, kOverlay)) {
             ImGui::PushTextWrapPos(std::min(0.6f * display.x, 760.0f * style_.scale));
-            ImGui::TextColored(kHudBad, "A shader does not compile; the last good one is shown.");
+            ImGui::TextColored(kHudBad, "A file has an error; what was right last goes on.");
             ImGui::PushFont(style_.numbers);
             ImGui::TextUnformatted(status.error);
             ImGui::PopFont();

@@ -28,7 +28,7 @@ struct HudStatus {
     bool software_gl = false;    ///< OpenGL runs on the CPU
     bool scale_auto = false;
     bool paused = false;
-    const char* error = "";  ///< shown until it is fixed: a shader that does not compile
+    const char* error = "";  ///< shown until it is fixed: of a shader or the level
 };
 
 /// A line of the key help.

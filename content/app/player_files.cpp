@@ -87,7 +87,9 @@ void Player::follow_level_files() {
         updated += *result;
     }
     level_times_ = level_file_times();  // it may include others now
-    hud_->toast(fmt::format("{} components updated", updated), ToastKind::Good);
+    hud_->toast(
+        fmt::format("the level has changed, in {} place{}", updated, updated == 1 ? "" : "s"),
+        ToastKind::Good);
 }
 
 std::string Player::next_file(const char* ending) {

@@ -222,6 +222,42 @@ TEST_CASE("play: who drives does not fly: the keys move the car, and not the cam
     session.quit();
 }
 
+TEST_CASE("play: effects follow their file, and a broken one is told and changes nothing") {
+    if (!can_play()) {
+        return;
+    }
+    PlaySession session;
+    const auto write_effect = [&](const char* rate) {
+        test::write_text(
+            session.folder.file("a.effect.json"),
+            std::string(R"({"prefabs": {"puffs": {"particle_emitter": {"rate": )") + rate
+                + R"(, "speed": 0, "life": 60}}}})");
+    };
+    write_effect("0");
+    session.start(R"({
+      "include": ["a.effect.json"],
+      "resources": {"environment": {"sky": "uniform", "zenith": [0.1, 0.1, 0.1]}},
+      "entities": [
+        {"name": "puffs", "prefab": "puffs", "particle_motion": {"gravity": 0},
+          "particle_look": {"size": 0.5, "emission": 3}},
+        {"name": "eye", "transform": {"position": [0, 0, 4]}, "camera": {}}
+      ]
+    })");
+    xdotool("key F8");
+    const Pixels empty = session.wait_until_still();
+    // An error is told, once, and the level goes on; a number that is right again counts.
+    write_effect("-5");
+    const auto errors = [&] { return session.program->error_text(); };
+    CHECK(wait_for([&] { return errors().find("a.effect.json:1:") != std::string::npos; }));
+    CHECK(errors().find("rate: found the number -5") != std::string::npos);
+    sleep_ms(1500);
+    CHECK(errors().find("a.effect.json:1:") == errors().rfind("a.effect.json:1:"));
+    write_effect("50");
+    CHECK(session.changes_from(empty, 5000));
+    session.quit();
+    CHECK(session.program->wait().exit_code == 0);
+}
+
 TEST_CASE("play: F7 shows a technique with, without and side by side, F6 lists them all") {
     if (!can_play()) {
         return;
