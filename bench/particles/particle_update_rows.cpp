@@ -67,7 +67,9 @@ void add_birth_rows(ParticleBench& bench) {
         }
         pool.look.clear();
     };
-    const auto bear = [&] { add_particles(emitter, {}, {.dt = kStep}, 1, 2, births, pool); };
+    const auto bear = [&] {
+        add_particles(emitter, {}, {.dt = kStep}, nullptr, 1, 2, births, pool);
+    };
     ParticlePool bare = make_pool(kCount);
     const auto [born, arrays] = race(kCount, clear, bear, kUnprepared, [&] { step_arrays(bare); });
     bench.add(GateRow{"7", "birth in a ball, 10k", born, arrays, "six arrays, gravity", "ns", 6});
