@@ -30,7 +30,7 @@ const std::map<std::string, int> kMaxPrograms = {
     {"cistern", 62}, {"cloister", 58}, {"forge", 52},     {"gallery", 43}, {"herd", 43},
     {"lagoon", 70},  {"lights", 43},   {"million", 52},   {"museum", 72},  {"ocean", 49},
     {"pond", 60},    {"raceway", 70},  {"stilllife", 73}, {"storm", 58},   {"stress-instances", 41},
-    {"vale", 66}};
+    {"vale", 74}};
 
 HeadlessRenderer& shared_headless() {
     static HeadlessRenderer shared = [] {
