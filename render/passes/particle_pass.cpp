@@ -1,5 +1,6 @@
 #include "render/passes/particle_pass.h"
 
+#include "ecs/base/log.h"
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/time.h"
@@ -52,6 +53,19 @@ std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
         return std::nullopt;
     }
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
+}
+
+constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
+
+/// Where it may be seen.
+Bounds bounds_of(const ParticleInstance& instance, const LookRecord& look) {
+    const float facing = look[2].w;
+    const bool is_quad = facing == static_cast<float>(ParticleFacing::Camera)
+                         || facing == static_cast<float>(ParticleFacing::Ground);
+    const Vec3& p = instance.position;
+    const float reach = reach_of(instance, look);
+    const bool is_finite = std::isfinite(p.x + p.y + p.z + reach);
+    return is_quad && is_finite ? Bounds{p - reach, p + reach} : kAnywhere;
 }
 
 void append_births_of(
@@ -121,6 +135,8 @@ std::uint32_t ParticleEffect::add_look(
     looks.push_back(make_look_record(look, has_image ? static_cast<int>(image.layer) : -1));
     arrays.push_back(image.array);
     places.push_back(place);
+    halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
+    has_halves = has_halves || halves.back() != 0;
     lit = lit || look.lit > 0;
     images = images || has_image;
     return static_cast<std::uint32_t>(looks.size() - 1);
@@ -172,9 +188,10 @@ void ParticleEffect::collect(FrameData& frame) {
     looks.clear();
     arrays.clear();
     places.clear();
+    halves.clear();
     instances.clear();
     ribbons.clear();
-    lit = images = has_ribbons = false;
+    lit = images = has_ribbons = has_halves = false;
     const float alpha = frame.camera.alpha;
     world.query<const ParticleLook, const ParticlePool, Optional<const Trail>>().each(
         [&](Entity entity, const ParticleLook& look, const ParticlePool& particles,
@@ -212,17 +229,15 @@ void ParticleEffect::collect(FrameData& frame) {
         transform_vector(camera, Vec3(0, 0, -1)), order);
     sorted.clear();
     runs.clear();
-    for (const std::uint32_t i : order.indices) {
-        // Discs fit any array.
-        const std::uint32_t look = instances[i].look_and_share >> 16;
-        const bool is_disc = looks[look][3].w < 0;
-        if (runs.empty() || (!is_disc && runs.back().array != arrays[look])) {
-            runs.push_back(
-                {.array = arrays[look], .first = static_cast<int>(sorted.size()), .count = 0});
+    if (has_halves) {
+        half_bounds = {};
+        append_runs(true);
+        for (const auto& [entity, pool] : gpu.pools()) {
+            grow(half_bounds, halves[pool->look] != 0 ? kAnywhere : Bounds{});
         }
-        ++runs.back().count;
-        sorted.push_back(instances[i]);
     }
+    half_runs = runs.size();
+    append_runs(false);
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = instances;
     sprites.looks = looks;
@@ -231,6 +246,28 @@ void ParticleEffect::collect(FrameData& frame) {
     particle_texels.upload(*frame.ring, sorted);
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
+}
+
+/// Of the looks of this resolution, from back to front.
+void ParticleEffect::append_runs(bool half) {
+    const std::size_t first_run = runs.size();
+    for (const std::uint32_t i : order.indices) {
+        const std::uint32_t look = instances[i].look_and_share >> 16;
+        if ((halves[look] != 0) != half) {
+            continue;
+        }
+        // Discs fit any array.
+        const bool is_disc = looks[look][3].w < 0;
+        if (runs.size() == first_run || (!is_disc && runs.back().array != arrays[look])) {
+            runs.push_back(
+                {.array = arrays[look], .first = static_cast<int>(sorted.size()), .count = 0});
+        }
+        ++runs.back().count;
+        sorted.push_back(instances[i]);
+        if (half) {
+            grow(half_bounds, bounds_of(instances[i], looks[look]));
+        }
+    }
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
@@ -244,58 +281,77 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     if (runs.empty() && gpu.pools().empty()) {
         return;
     }
-    std::vector<Use> reads = lighting_reads(
-        view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
-    for (const auto& [entity, pool] : gpu.pools()) {
-        reads.emplace_back(
-            pool->sorted ? graph.import("sorted particles", pool->sort.instances)
-                         : graph.import("particles", pool->instances));
-    }
-    const Use writes[] = {view.radiance};
-    graph.add_pass(
-        "particles", std::span(reads), writes, [this, &frame, &view](PassContext& context) {
-            const bool clipped = is_clipped(view);
-            Variant variant = view.lighting.variant;
-            variant.add_if(clipped, "CLIPPED");
-            variant.add_if(lit, "LIT");
-            variant.add_if(images, "IMAGES");
-            variant.add_if(has_ribbons, "RIBBONS");
-            const gpu::Program* const program = programs.get(variant);
-            if (program == nullptr) {
-                return;
-            }
-            gpu::Device& device = context.device();
-            device.use(gpu::Pipeline{
-                program,
-                {.depth = {.write = false},
-                 .blend = gpu::kBlendPremultiplied,
-                 .cull = GL_NONE,
-                 .clip = clipped}});
-            bind_lighting(context, view);
-            particle_texels.bind(device, kParticlesUnit);
-            look_texels.bind(device, kLooksUnit);
-            ribbon_texels.bind(device, kRibbonsUnit);
-            for (const ParticleRun& run : runs) {
-                program->set("first", run.first);
-                if (images) {
-                    device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
-                }
-                device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
-            }
-            program->set("first", 0);
-            for (const auto& [entity, pool] : gpu.pools()) {
-                if (images) {
-                    device.bind_texture(
-                        kImagesUnit, frame.materials->images().array(arrays[pool->look]));
-                }
-                const BufferTexture& texels = pool->sorted ? pool->sort.texels : pool->texels;
-                texels.bind(device, kParticlesUnit);
-                const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
-                if (count > 0) {
-                    device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
-                }
-            }
+    const auto add_pass = [&](const char* name, TextureId depth, const Use& target, bool half) {
+        std::vector<Use> reads =
+            lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+        for (const auto& [entity, pool] : gpu.pools()) {
+            reads.emplace_back(
+                pool->sorted ? graph.import("sorted particles", pool->sort.instances)
+                             : graph.import("particles", pool->instances));
+        }
+        const Use writes[] = {target};
+        graph.add_pass(name, std::span(reads), writes, [this, half, &view](PassContext& context) {
+            draw_sprites(context, view, half);
         });
+    };
+    if (has_halves && !layer_programs) {
+        Result<ParticleLayerPrograms> made = create_particle_layer_programs(*frame.device);
+        if (made) {
+            layer_programs = *made;
+        } else {
+            log_error("{}", made.error().message);
+        }
+    }
+    if (has_halves && layer_programs && !is_empty(half_bounds)) {
+        const ParticleLayer layer = begin_particle_layer(graph, *layer_programs, view, half_bounds);
+        add_pass("particles.half", layer.depth, cleared(layer.radiance), true);
+        end_particle_layer(graph, *layer_programs, layer, view);
+    }
+    add_pass("particles", view.gbuffer.depth, view.radiance, false);
+}
+
+/// Those that are drawn at half the resolution, or all others.
+void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, bool half) {
+    const bool clipped = is_clipped(view);
+    Variant variant = view.lighting.variant;
+    variant.add_if(clipped, "CLIPPED");
+    variant.add_if(lit, "LIT");
+    variant.add_if(images, "IMAGES");
+    variant.add_if(has_ribbons, "RIBBONS");
+    const gpu::Program* const program = programs.get(variant);
+    if (program == nullptr) {
+        return;
+    }
+    gpu::Device& device = context.device();
+    device.use(gpu::Pipeline{
+        program,
+        {.depth = {.write = false},
+         .blend = gpu::kBlendPremultiplied,
+         .cull = GL_NONE,
+         .clip = clipped}});
+    bind_lighting(context, view);
+    particle_texels.bind(device, kParticlesUnit);
+    look_texels.bind(device, kLooksUnit);
+    ribbon_texels.bind(device, kRibbonsUnit);
+    const auto bind_images = [&](std::uint32_t array) {
+        if (images) {
+            device.bind_texture(kImagesUnit, view.frame->materials->images().array(array));
+        }
+    };
+    for (std::size_t i = half ? 0 : half_runs; i < (half ? half_runs : runs.size()); ++i) {
+        program->set("first", runs[i].first);
+        bind_images(runs[i].array);
+        device.draw(GL_TRIANGLE_STRIP, 0, 4, runs[i].count);
+    }
+    program->set("first", 0);
+    for (const auto& [entity, pool] : gpu.pools()) {
+        const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
+        if (count > 0 && (halves[pool->look] != 0) == half) {
+            bind_images(arrays[pool->look]);
+            (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
+            device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
+        }
+    }
 }
 
 }  // namespace limn

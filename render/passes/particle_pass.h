@@ -5,6 +5,7 @@
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
+#include "render/particle_layer.h"
 #include "render/particle_list.h"
 #include "render/ribbon_list.h"
 
@@ -26,7 +27,8 @@ namespace limn {
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
-// format. Sorted by distance of their centers; blended surfaces are all behind.
+// format. Sorted by distance of their centers; blended surfaces are all behind. Looks of half the
+// resolution are sorted among themselves, in a layer (particle_layer.h) behind all others.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -53,16 +55,21 @@ struct ParticleEffect {
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
+    std::vector<char> halves = {};           ///< of each look: drawn at half the resolution
     RibbonList ribbons = {};
     std::vector<ParticleInstance> instances = {};
     std::vector<std::optional<Vec3>> places = {};  ///< of each look, for order_by_distance()
     DistanceOrder order = {};
     std::vector<ParticleInstance> sorted = {};
     std::vector<ParticleRun> runs = {};
+    std::size_t half_runs = 0;  ///< of them, the first ones are drawn at half the resolution
     GpuParticlePools gpu = {};  ///< drawn after the others
     bool lit = false;
     bool images = false;
     bool has_ribbons = false;
+    bool has_halves = false;
+    Bounds half_bounds = {};  ///< of those that are drawn at half the resolution
+    std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     BufferTexture particle_texels = BufferTexture("particles", GL_RGBA32UI);
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
@@ -77,6 +84,8 @@ struct ParticleEffect {
     std::uint32_t add_look(
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void collect_ribbons(const FrameData& frame, float back, float step);
+    void append_runs(bool half);
+    void draw_sprites(PassContext& context, const ViewData& view, bool half);
 };
 
 }  // namespace limn
