@@ -1,5 +1,8 @@
 #include "render/particle_list.h"
 
+#include <glm/common.hpp>
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 
 namespace limn {
@@ -42,6 +45,18 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
         record[layout::kLookColors + i] = sample_colors(look.colors, at);
     }
     return record;
+}
+
+float reach_of(const ParticleInstance& instance, const LookRecord& look) {
+    const float share = static_cast<float>(instance.look_and_share & 0xffffu) / 65535.0f;
+    const float at = share * static_cast<float>(layout::kLookSamples - 1);
+    const auto i = std::min(static_cast<std::uint32_t>(at), layout::kLookSamples - 2);
+    const auto factor = [&](std::uint32_t n) {
+        return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
+    };
+    const float size =
+        (look[0].x + look[0].y) * glm::mix(factor(i), factor(i + 1), at - static_cast<float>(i));
+    return 0.7072f * size;  // half the diagonal of the quad, however it is turned
 }
 
 void append_particles(

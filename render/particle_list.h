@@ -29,6 +29,10 @@ void append_particles(
     const ParticlePool& pool, std::uint32_t look, float back,
     std::vector<ParticleInstance>& instances, const Vec3& observer = {0, 0, 0});
 
+/// Distance of its corners from its middle [m] at most, if its size is in meters and it is no
+/// streak.
+[[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
+
 /// Particles that follow one another in the order and have images of one texture array.
 struct ParticleRun {
     std::uint32_t array = 0;  ///< of ImagePool

@@ -309,7 +309,6 @@ struct ParticleLook {
     std::uint32_t rows = 1;
     ParticleFrames frames = ParticleFrames::Play;
     float frame_rate = 0;
-    ImageId motion;
     float size = 0.1f;
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
@@ -348,10 +347,6 @@ LIMN_FIELDS(ParticleLook) {
         frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
         .values = "play shuffle pick");
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
-    LIMN_FIELD(
-        motion,
-        "motion vectors of the flipbook (made images: `motion`), along which a frame becomes the "
-        "next; none: they fade into each other");
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");

@@ -1,5 +1,6 @@
 #include "render/passes/particle_pass.h"
 
+#include "ecs/base/log.h"
 #include "ecs/components/beam.h"
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particle_collider.h"
@@ -96,6 +97,19 @@ std::optional<std::uint32_t> sort_passes(const ParticleLook& look) {
         return std::nullopt;
     }
     return look.sort == ParticleSort::Amortized ? kSortPasses : 0;
+}
+
+constexpr Bounds kAnywhere = {Vec3(-INFINITY), Vec3(INFINITY)};
+
+/// Where it may be seen.
+Bounds bounds_of(const ParticleInstance& instance, const LookRecord& look) {
+    const float facing = look[2].w;
+    const bool is_quad = facing == static_cast<float>(ParticleFacing::Camera)
+                         || facing == static_cast<float>(ParticleFacing::Ground);
+    const Vec3& p = instance.position;
+    const float reach = reach_of(instance, look);
+    const bool is_finite = std::isfinite(p.x + p.y + p.z + reach);
+    return is_quad && is_finite ? Bounds{p - reach, p + reach} : kAnywhere;
 }
 
 void append_births_of(
@@ -203,6 +217,8 @@ std::uint32_t ParticleEffect::add_look(
     arrays.push_back(image.array);
     places.push_back(place);
     extents.push_back(make_look_extent(look));
+    halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
+    has_halves = has_halves || halves.back() != 0;
     lit = lit || look.lit > 0;
     images = images || has_image;
     return static_cast<std::uint32_t>(looks.size() - 1);
@@ -309,12 +325,13 @@ void ParticleEffect::collect(FrameData& frame) {
     looks.clear();
     arrays.clear();
     places.clear();
+    halves.clear();
     instances.clear();
     ribbons.clear();
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
-    lit = images = has_ribbons = has_billboards = false;
+    lit = images = has_ribbons = has_billboards = has_halves = false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -386,15 +403,35 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     auto& seen = view.data.publish<ViewParticles>();
     seen.instances.clear();
     seen.runs.clear();
-    cull_particles(sorted, extents, make_frustum(view.camera.clip_from_world), visible);
+    seen.half_bounds = {};
+    const Frustum frustum = make_frustum(view.camera.clip_from_world);
+    cull_particles(sorted, extents, frustum, visible);
+    if (frame.warm_up) {
+        visible.assign(sorted.size(), 1);
+    }
+    if (has_halves) {
+        append_runs(true, seen);
+        for (const auto& [entity, pool] : gpu.pools()) {
+            grow(seen.half_bounds, halves[pool->look] != 0 ? kAnywhere : Bounds{});
+        }
+    }
+    seen.half_runs = seen.runs.size();
+    append_runs(false, seen);
+    seen.texels.upload(*frame.ring, seen.instances);
+    return !seen.runs.empty() || !gpu.pools().empty();
+}
+
+/// Of the looks of this resolution that are visible, from back to front.
+void ParticleEffect::append_runs(bool half, ViewParticles& seen) {
+    const std::size_t first_run = seen.runs.size();
     for (std::size_t i = 0; i < sorted.size(); ++i) {
-        if (visible[i] == 0 && !frame.warm_up) {
+        const std::uint32_t look = sorted[i].look_and_share >> 16;
+        if (visible[i] == 0 || (halves[look] != 0) != half) {
             continue;
         }
         // Discs fit any array.
-        const std::uint32_t look = sorted[i].look_and_share >> 16;
         const bool is_disc = looks[look][3].w < 0;
-        if (seen.runs.empty() || (!is_disc && seen.runs.back().array != arrays[look])) {
+        if (seen.runs.size() == first_run || (!is_disc && seen.runs.back().array != arrays[look])) {
             seen.runs.push_back(
                 {.array = arrays[look],
                  .first = static_cast<int>(seen.instances.size()),
@@ -402,9 +439,10 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
         }
         ++seen.runs.back().count;
         seen.instances.push_back(sorted[i]);
+        if (half) {
+            grow(seen.half_bounds, bounds_of(sorted[i], looks[look]));
+        }
     }
-    seen.texels.upload(*frame.ring, seen.instances);
-    return !seen.runs.empty() || !gpu.pools().empty();
 }
 
 void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
@@ -415,65 +453,85 @@ void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
 }
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
-    std::vector<Use> reads = lighting_reads(
-        view, {depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)});
-    for (const auto& [entity, pool] : gpu.pools()) {
-        reads.emplace_back(
-            pool->sorted ? graph.import("sorted particles", pool->sort.instances)
-                         : graph.import("particles", pool->instances));
-    }
-    const Use writes[] = {view.radiance};
-    graph.add_pass(
-        "particles", std::span(reads), writes, [this, &frame, &view](PassContext& context) {
-            const bool clipped = is_clipped(view);
-            Variant variant = view.lighting.variant;
-            variant.add_if(clipped, "CLIPPED");
-            variant.add_if(lit, "LIT");
-            variant.add_if(images, "IMAGES");
-            variant.add_if(has_ribbons, "RIBBONS");
-            variant.add_if(has_billboards, "BILLBOARDS");
-            const gpu::Program* const program = programs.get(variant);
-            if (program == nullptr) {
-                return;
-            }
-            gpu::Device& device = context.device();
-            device.use(gpu::Pipeline{
-                program,
-                {.depth = {.write = false},
-                 .blend = gpu::kBlendPremultiplied,
-                 .cull = GL_NONE,
-                 .clip = clipped}});
-            bind_lighting(context, view);
-            const auto& seen = view.data.get<ViewParticles>();
-            seen.texels.bind(device, kParticlesUnit);
-            look_texels.bind(device, kLooksUnit);
-            ribbon_texels.bind(device, kRibbonsUnit);
-            billboard_texels.bind(device, kBillboardsUnit);
-            for (const ParticleRun& run : seen.runs) {
-                program->set("first", run.first);
-                if (images) {
-                    device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
-                }
-                device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
-            }
-            program->set("first", 0);
-            const Frustum frustum = make_frustum(view.camera.clip_from_world);
-            for (const auto& [entity, pool] : gpu.pools()) {
-                if (!is_group_in_view(extents[pool->look], frustum)) {
-                    continue;
-                }
-                if (images) {
-                    device.bind_texture(
-                        kImagesUnit, frame.materials->images().array(arrays[pool->look]));
-                }
-                const BufferTexture& texels = pool->sorted ? pool->sort.texels : pool->texels;
-                texels.bind(device, kParticlesUnit);
-                const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
-                if (count > 0) {
-                    device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
-                }
-            }
+    const auto& seen = view.data.get<ViewParticles>();
+    const auto add_pass = [&](const char* name, TextureId depth, const Use& target, bool half) {
+        std::vector<Use> reads =
+            lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
+        for (const auto& [entity, pool] : gpu.pools()) {
+            reads.emplace_back(
+                pool->sorted ? graph.import("sorted particles", pool->sort.instances)
+                             : graph.import("particles", pool->instances));
+        }
+        const Use writes[] = {target};
+        graph.add_pass(name, std::span(reads), writes, [this, half, &view](PassContext& context) {
+            draw_sprites(context, view, half);
         });
+    };
+    if (has_halves && !layer_programs) {
+        Result<ParticleLayerPrograms> made = create_particle_layer_programs(*frame.device);
+        if (made) {
+            layer_programs = *made;
+        } else {
+            log_error("{}", made.error().message);
+        }
+    }
+    if (has_halves && layer_programs && !is_empty(seen.half_bounds)) {
+        const ParticleLayer layer =
+            begin_particle_layer(graph, *layer_programs, view, seen.half_bounds);
+        add_pass("particles.half", layer.depth, cleared(layer.radiance), true);
+        end_particle_layer(graph, *layer_programs, layer, view);
+    }
+    add_pass("particles", view.gbuffer.depth, view.radiance, false);
+}
+
+/// Those that are drawn at half the resolution, or all others.
+void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, bool half) {
+    const bool clipped = is_clipped(view);
+    Variant variant = view.lighting.variant;
+    variant.add_if(clipped, "CLIPPED");
+    variant.add_if(lit, "LIT");
+    variant.add_if(images, "IMAGES");
+    variant.add_if(has_ribbons, "RIBBONS");
+    variant.add_if(has_billboards, "BILLBOARDS");
+    const gpu::Program* const program = programs.get(variant);
+    if (program == nullptr) {
+        return;
+    }
+    gpu::Device& device = context.device();
+    device.use(gpu::Pipeline{
+        program,
+        {.depth = {.write = false},
+         .blend = gpu::kBlendPremultiplied,
+         .cull = GL_NONE,
+         .clip = clipped}});
+    bind_lighting(context, view);
+    const auto& seen = view.data.get<ViewParticles>();
+    seen.texels.bind(device, kParticlesUnit);
+    look_texels.bind(device, kLooksUnit);
+    ribbon_texels.bind(device, kRibbonsUnit);
+    billboard_texels.bind(device, kBillboardsUnit);
+    const auto bind_images = [&](std::uint32_t array) {
+        if (images) {
+            device.bind_texture(kImagesUnit, view.frame->materials->images().array(array));
+        }
+    };
+    const std::span<const ParticleRun> all(seen.runs);
+    for (const ParticleRun& run : half ? all.first(seen.half_runs) : all.subspan(seen.half_runs)) {
+        program->set("first", run.first);
+        bind_images(run.array);
+        device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
+    }
+    program->set("first", 0);
+    const Frustum frustum = make_frustum(view.camera.clip_from_world);
+    for (const auto& [entity, pool] : gpu.pools()) {
+        const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
+        if (count > 0 && (halves[pool->look] != 0) == half
+            && is_group_in_view(extents[pool->look], frustum)) {
+            bind_images(arrays[pool->look]);
+            (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
+            device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));
+        }
+    }
 }
 
 }  // namespace limn

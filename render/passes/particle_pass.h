@@ -8,6 +8,7 @@
 #include "render/effect.h"
 #include "render/gpu_particle_pools.h"
 #include "render/image_pool.h"
+#include "render/particle_layer.h"
 #include "render/particle_list.h"
 #include "render/ribbon_list.h"
 
@@ -30,8 +31,9 @@ namespace limn {
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
-// format. Sorted by distance of their centers; blended surfaces are all behind. Each view leaves
-// out what it does not see; of particles on the GPU, emitters whose shape alone counts.
+// format. Sorted by distance of their centers; blended surfaces are all behind. Looks of half the
+// resolution are sorted among themselves, in a layer (particle_layer.h) behind all others. Each
+// view leaves out what it does not see; of particles on the GPU, emitters whose shape alone counts.
 
 /// Length of a step [s].
 [[nodiscard]] float particle_step(const FrameData& frame);
@@ -75,12 +77,15 @@ struct ParticleEffect {
     struct ViewParticles {
         std::vector<ParticleInstance> instances{};  ///< those in view
         std::vector<ParticleRun> runs{};
+        std::size_t half_runs = 0;  ///< of them, the first ones are drawn at half the resolution
+        Bounds half_bounds{};       ///< of those
         BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
     };
 
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
     std::vector<std::uint32_t> arrays = {};  ///< of each look's image
+    std::vector<char> halves = {};           ///< of each look: drawn at half the resolution
     RibbonList ribbons = {};
     BillboardList billboards = {};
     std::vector<LookExtent> extents = {};  ///< of each look
@@ -94,6 +99,8 @@ struct ParticleEffect {
     bool images = false;
     bool has_ribbons = false;
     bool has_billboards = false;
+    bool has_halves = false;
+    std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
@@ -110,6 +117,8 @@ struct ParticleEffect {
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void collect_ribbons(const FrameData& frame, float back, float step);
     void collect_billboards(const FrameData& frame, float back);
+    void append_runs(bool half, ViewParticles& seen);
+    void draw_sprites(PassContext& context, const ViewData& view, bool half);
 };
 
 }  // namespace limn

@@ -20,7 +20,7 @@ constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kMapsUnit = 30;
 constexpr unsigned kRecordUnit = 31;
-constexpr int kSide = 256;             // of the maps [texels]
+constexpr int kSide = 128;             // of the maps [texels]
 constexpr int kLayers = 3;             // two of coefficients, one of tints
 constexpr float kLeastExtent = 1e-3f;  // of what the maps cover [m]
 constexpr int kInSunlight = 1;         // values of PARTICLE_SHADOWS
@@ -51,16 +51,6 @@ void set_axes(ParticleShadowView& view, const Vec3& axis, const Vec3& near_right
         view.right = glm::normalize(glm::cross(axis, any));
     }
     view.up = glm::cross(view.right, axis);
-}
-
-/// Diameter [m] at most, at this share of the life.
-float size_at(const LookRecord& look, float share) {
-    const float at = share * static_cast<float>(layout::kLookSamples - 1);
-    const auto i = std::min(static_cast<std::uint32_t>(at), layout::kLookSamples - 2);
-    const auto factor = [&](std::uint32_t n) {
-        return look[layout::kLookSizes + n / 4][static_cast<int>(n % 4)];
-    };
-    return (look[0].x + look[0].y) * glm::mix(factor(i), factor(i + 1), at - static_cast<float>(i));
 }
 
 bool can_cast(const LookRecord& look) {
@@ -166,9 +156,7 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
     for (const ParticleInstance& instance : sprites->instances) {
         const std::uint32_t number = instance.look_and_share >> 16;
         const LookRecord& look = sprites->looks[number];
-        const float share = static_cast<float>(instance.look_and_share & 0xffffu) / 65535.0f;
-        // The diagonal of the quad, as it is turned.
-        const ShadowBall ball = {instance.position, 0.7072f * size_at(look, share)};
+        const ShadowBall ball = {instance.position, reach_of(instance, look)};
         const float sum = ball.middle.x + ball.middle.y + ball.middle.z + ball.radius;
         if (!can_cast(look) || ball.radius <= 0 || !std::isfinite(sum)) {
             continue;

@@ -1,0 +1,195 @@
+#include "ecs/components/all.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/time.h"
+#include "render/graph/frame_graph.h"
+#include "tests/near.h"
+#include "tests/render/scene_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::test {
+namespace {
+
+/// Smoke that shines by itself, and bars in front of it.
+struct LayerScene : Scene {
+    Entity bars[5] = {};
+
+    LayerScene() { world.insert_resource(FrameTime{}); }
+
+    /// White, 5 cm wide, in z = 0, leaning a little.
+    void add_bars() {
+        const MeshId square = add(make_square());
+        const MaterialId white =
+            add(Material{.base_color = {0, 0, 0, 1}, .emission = {0.6f, 0.6f, 0.6f}});
+        for (int i = 0; i < 5; ++i) {
+            bars[i] = place(
+                square, white,
+                affine_from(
+                    {0.4f * static_cast<float>(i) - 0.77f, 0, 0},
+                    glm::angleAxis(0.1f, Vec3(0, 0, 1)), {0.05f, 2, 1}));
+        }
+    }
+    Entity emit(const std::vector<Vec3>& places, const ParticleLook& look) {
+        ParticlePool pool;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            pool.x.push_back(places[i].x);
+            pool.y.push_back(places[i].y);
+            pool.z.push_back(places[i].z);
+            for (auto* column : {&pool.vx, &pool.vy, &pool.vz}) {
+                column->push_back(0);
+            }
+            pool.age.push_back(0.5f);
+            pool.life.push_back(1);
+            pool.look.push_back(static_cast<std::uint32_t>(7 * i));
+        }
+        return world.create(ParticleEmitter{}, look, pool);
+    }
+    /// Thirty puffs behind the bars.
+    void add_smoke() {
+        std::vector<Vec3> places;
+        for (int i = 1; i <= 30; ++i) {
+            const auto share = [&](double step) { return std::fmod(step * i, 1.0); };
+            places.emplace_back(
+                3 * share(0.8191725134) - 1.5, 3 * share(0.6710436067) - 1.5,
+                -0.5 - 2 * share(0.5497004779));
+        }
+        emit(places, puff({0.9f, 0.2f, 0.1f}, 0.6f, 1.4f));
+    }
+    static ParticleLook puff(const Vec3& color, float opacity, float size) {
+        ParticleLook look;
+        look.size = size;
+        look.colors = {{.at = 0, .color = color, .opacity = opacity}};
+        look.emission = 1;
+        look.lit = 0;
+        return look;
+    }
+    void set_resolution(ParticleResolution resolution) {
+        world.query<ParticleLook>().each([&](ParticleLook& its) { its.resolution = resolution; });
+    }
+    gpu::FloatImage drawn(ParticleResolution resolution, int width = 128, int height = 96) {
+        set_resolution(resolution);
+        return radiance(look({0, 0, 1}, {0, 0, 0}, width, height));
+    }
+};
+
+double decibels(const gpu::FloatImage& a, const gpu::FloatImage& b) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < a.height; ++y) {
+        for (int x = 0; x < a.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const auto off = static_cast<double>(a.at(x, y, c) - b.at(x, y, c));
+                sum += off * off;
+                ++count;
+            }
+        }
+    }
+    return -10 * std::log10(sum / count);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke behind bars is that of all pixels, to 36 dB") {
+    add_bars();
+    add_smoke();
+    const gpu::FloatImage full = drawn(ParticleResolution::Full);
+    const gpu::FloatImage half = drawn(ParticleResolution::Half);
+    CHECK(decibels(half, full) >= 36);
+    CHECK(largest_difference(half, full) > 1e-4f);
+    // At odd sizes too.
+    CHECK(
+        decibels(drawn(ParticleResolution::Half, 127, 95), drawn(ParticleResolution::Full, 127, 95))
+        >= 36);
+}
+
+TEST_CASE_FIXTURE(
+    LayerScene,
+    "particle layer: a puff anywhere in the image is drawn whole, and when it is gone") {
+    for (const Vec3& place : {Vec3(0.6f, 0.4f, 0), Vec3(-0.9f, -0.7f, 0), Vec3(0, 0.9f, -3)}) {
+        const Entity smoke = emit({place}, puff({0.9f, 0.2f, 0.1f}, 0.8f, 0.5f));
+        const gpu::FloatImage full = drawn(ParticleResolution::Full);
+        CHECK(decibels(drawn(ParticleResolution::Half), full) >= 40);
+        CHECK(*std::max_element(full.pixels.begin(), full.pixels.end()) > 0.2f);
+        world.add(smoke, ParticlePool{});
+        const gpu::FloatImage none = drawn(ParticleResolution::Half);
+        CHECK(none.at(64, 48, 0) == 0);
+        world.destroy(smoke);
+    }
+}
+
+TEST_CASE_FIXTURE(LayerScene, "particle layer: smoke does not spill over what stands before it") {
+    add_bars();
+    const gpu::FloatImage bare = drawn(ParticleResolution::Full);
+    add_smoke();
+    const gpu::FloatImage half = drawn(ParticleResolution::Half);
+    int on_bars = 0;
+    float spilled = 0;
+    for (int y = 0; y < half.height; ++y) {
+        for (int x = 0; x < half.width; ++x) {
+            if (bare.at(x, y, 0) > 0.5f) {
+                ++on_bars;
+                spilled = std::max(spilled, std::abs(half.at(x, y, 1) - bare.at(x, y, 1)));
+            }
+        }
+    }
+    CHECK(on_bars > 800);
+    CHECK(spilled <= 0.01f);
+}
+
+TEST_CASE_FIXTURE(LayerScene, "particle layer: it is behind all that is drawn fully") {
+    ParticleLook near = puff({1, 0, 0}, 0.9f, 4);
+    near.resolution = ParticleResolution::Half;
+    emit({{0, 0, 0}}, near);
+    emit({{0, 0, -1}}, puff({0, 1, 0}, 0.9f, 4));
+    const Vec3 found = rgb_at(radiance(look({0, 0, 1}, {0, 0, 0})), 32, 32);
+    CHECK(found.y == test::near(0.9).epsilon(0.01));
+    CHECK(found.x == test::near(0.09).epsilon(0.05));
+    // Among each other they cover as ever.
+    set_resolution(ParticleResolution::Half);
+    const Vec3 alike = rgb_at(radiance(look({0, 0, 1}, {0, 0, 0})), 32, 32);
+    CHECK(alike.x == test::near(0.9).epsilon(0.01));
+    CHECK(alike.y == test::near(0.09).epsilon(0.05));
+}
+
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: its depths are the nearest and the farthest of four, in turn") {
+    add_bars();
+    add_smoke();
+    FrameGraph& graph = frame_graph(shared_renderer());
+    graph.keep_named("particles.layer depth");
+    graph.keep_named("gbuffer.depth");
+    set_resolution(ParticleResolution::Half);
+    draw(look({0, 0, 1}, {0, 0, 0}, 128, 96));
+    const gpu::FloatImage full = gpu::read_floats(*graph.texture(graph.find("gbuffer.depth")));
+    const gpu::FloatImage half =
+        gpu::read_floats(*graph.texture(graph.find("particles.layer depth")));
+    graph.forget_named("particles.layer depth");
+    graph.forget_named("gbuffer.depth");
+    REQUIRE(half.width == 64);
+    REQUIRE(half.height == 48);
+    int edges = 0;
+    for (int y = 0; y < half.height; ++y) {
+        for (int x = 0; x < half.width; ++x) {
+            const float four[] = {
+                full.at(2 * x, 2 * y, 0), full.at(2 * x + 1, 2 * y, 0),
+                full.at(2 * x, 2 * y + 1, 0), full.at(2 * x + 1, 2 * y + 1, 0)};
+            const auto [low, high] = std::minmax_element(std::begin(four), std::end(four));
+            const int row = half.height - 1 - y;  // of the texture, from the bottom
+            CHECK(half.at(x, y, 0) == ((x + row) % 2 == 0 ? *high : *low));
+            edges += *low < *high ? 1 : 0;
+        }
+    }
+    CHECK(edges > 100);
+}
+
+TEST_CASE_FIXTURE(
+    LayerScene, "particle layer: without looks of half the resolution there is none") {
+    add_smoke();
+    (void)drawn(ParticleResolution::Full);
+    CHECK_FALSE(frame_graph(shared_renderer()).was_run("particles.enlarge"));
+    (void)drawn(ParticleResolution::Half);
+    CHECK(frame_graph(shared_renderer()).was_run("particles.enlarge"));
+}
+
+}  // namespace limn::test
