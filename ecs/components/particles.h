@@ -300,7 +300,7 @@ enum class ParticleCulling : std::uint8_t {
 /// How finely particles are drawn.
 enum class ParticleResolution : std::uint8_t {
     Full,
-    Half,  ///< a quarter of the pixels, enlarged along depth edges; behind all that are drawn fully
+    Half,  ///< a quarter of the pixels, enlarged along depth edges; as one layer in their middle
 };
 
 struct ParticleLook {
@@ -409,8 +409,8 @@ LIMN_FIELDS(ParticleLook) {
         .min = 0, .max = 1);
     LIMN_FIELD(
         resolution,
-        .doc = "half: a quarter of the pixels, for smoke that covers much of the image; drawn "
-               "behind all full ones",
+        .doc = "half: a quarter of the pixels, for smoke that covers much of the image; one layer "
+               "where the middle one of them is in the order",
         .values = "full half");
 }
 

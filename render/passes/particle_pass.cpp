@@ -404,27 +404,52 @@ bool ParticleEffect::prepare(const FrameData& frame, ViewData& view) {
     seen.instances.clear();
     seen.runs.clear();
     seen.half_bounds = {};
+    seen.half_begin = 0;
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     cull_particles(sorted, extents, frustum, visible);
     if (frame.warm_up) {
         visible.assign(sorted.size(), 1);
     }
+    std::size_t middle = 0;
     if (has_halves) {
-        append_runs(true, seen);
+        middle = middle_half();
+        append_runs(false, 0, middle, seen);
+        seen.half_begin = seen.runs.size();
+        append_runs(true, 0, sorted.size(), seen);
         for (const auto& [entity, pool] : gpu.pools()) {
             grow(seen.half_bounds, halves[pool->look] != 0 ? kAnywhere : Bounds{});
         }
     }
-    seen.half_runs = seen.runs.size();
-    append_runs(false, seen);
+    seen.half_end = seen.runs.size();
+    append_runs(false, middle, sorted.size(), seen);
     seen.texels.upload(*frame.ring, seen.instances);
     return !seen.runs.empty() || !gpu.pools().empty();
 }
 
-/// Of the looks of this resolution that are visible, from back to front.
-void ParticleEffect::append_runs(bool half, ViewParticles& seen) {
-    const std::size_t first_run = seen.runs.size();
+/// Of those that are visible and drawn at half the resolution, the index of the middle one in the
+/// order; 0 without one.
+std::size_t ParticleEffect::middle_half() const {
+    const auto is_seen_half = [&](std::size_t i) {
+        return visible[i] != 0 && halves[sorted[i].look_and_share >> 16] != 0;
+    };
+    std::size_t count = 0;
     for (std::size_t i = 0; i < sorted.size(); ++i) {
+        count += is_seen_half(i) ? 1 : 0;
+    }
+    std::size_t rank = count / 2;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (is_seen_half(i) && rank-- == 0) {
+            return i;
+        }
+    }
+    return 0;
+}
+
+/// Those of this resolution in [first, last) that are visible, from back to front.
+void ParticleEffect::append_runs(
+    bool half, std::size_t first, std::size_t last, ViewParticles& seen) {
+    const std::size_t first_run = seen.runs.size();
+    for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t look = sorted[i].look_and_share >> 16;
         if (visible[i] == 0 || (halves[look] != 0) != half) {
             continue;
@@ -454,7 +479,7 @@ void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
     const auto& seen = view.data.get<ViewParticles>();
-    const auto add_pass = [&](const char* name, TextureId depth, const Use& target, bool half) {
+    const auto add_pass = [&](const char* name, TextureId depth, const Use& target, Part part) {
         std::vector<Use> reads =
             lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
         for (const auto& [entity, pool] : gpu.pools()) {
@@ -463,8 +488,8 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
                              : graph.import("particles", pool->instances));
         }
         const Use writes[] = {target};
-        graph.add_pass(name, std::span(reads), writes, [this, half, &view](PassContext& context) {
-            draw_sprites(context, view, half);
+        graph.add_pass(name, std::span(reads), writes, [this, part, &view](PassContext& context) {
+            draw_sprites(context, view, part);
         });
     };
     if (has_halves && !layer_programs) {
@@ -475,17 +500,20 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
             log_error("{}", made.error().message);
         }
     }
+    if (seen.half_begin > 0) {
+        add_pass("particles.behind", view.gbuffer.depth, view.radiance, Part::Behind);
+    }
     if (has_halves && layer_programs && !is_empty(seen.half_bounds)) {
         const ParticleLayer layer =
             begin_particle_layer(graph, *layer_programs, view, seen.half_bounds);
-        add_pass("particles.half", layer.depth, cleared(layer.radiance), true);
+        add_pass("particles.half", layer.depth, cleared(layer.radiance), Part::Half);
         end_particle_layer(graph, *layer_programs, layer, view);
     }
-    add_pass("particles", view.gbuffer.depth, view.radiance, false);
+    add_pass("particles", view.gbuffer.depth, view.radiance, Part::Front);
 }
 
-/// Those that are drawn at half the resolution, or all others.
-void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, bool half) {
+/// What the GPU moves at full resolution is in front.
+void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
     const bool clipped = is_clipped(view);
     Variant variant = view.lighting.variant;
     variant.add_if(clipped, "CLIPPED");
@@ -516,7 +544,11 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, bo
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
-    for (const ParticleRun& run : half ? all.first(seen.half_runs) : all.subspan(seen.half_runs)) {
+    const auto runs = part == Part::Behind ? all.first(seen.half_begin)
+                      : part == Part::Half
+                          ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
+                          : all.subspan(seen.half_end);
+    for (const ParticleRun& run : runs) {
         program->set("first", run.first);
         bind_images(run.array);
         device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
@@ -525,8 +557,8 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, bo
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
         const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
-        if (count > 0 && (halves[pool->look] != 0) == half
-            && is_group_in_view(extents[pool->look], frustum)) {
+        const Part its = halves[pool->look] != 0 ? Part::Half : Part::Front;
+        if (count > 0 && its == part && is_group_in_view(extents[pool->look], frustum)) {
             bind_images(arrays[pool->look]);
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
             device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));

@@ -73,12 +73,17 @@ void cull_particles(
     const Frustum& frustum, std::vector<std::uint8_t>& visible);
 
 struct ParticleEffect {
+    /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by.
+    enum class Part { Behind, Half, Front };
+
     /// What a view draws.
     struct ViewParticles {
         std::vector<ParticleInstance> instances{};  ///< those in view
         std::vector<ParticleRun> runs{};
-        std::size_t half_runs = 0;  ///< of them, the first ones are drawn at half the resolution
-        Bounds half_bounds{};       ///< of those
+        std::size_t half_begin =
+            0;  ///< of the runs at half the resolution; those before are behind
+        std::size_t half_end = 0;
+        Bounds half_bounds{};  ///< of those
         BufferTexture texels = BufferTexture("particles in view", GL_RGBA32UI);
     };
 
@@ -117,8 +122,9 @@ struct ParticleEffect {
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
     void collect_ribbons(const FrameData& frame, float back, float step);
     void collect_billboards(const FrameData& frame, float back);
-    void append_runs(bool half, ViewParticles& seen);
-    void draw_sprites(PassContext& context, const ViewData& view, bool half);
+    [[nodiscard]] std::size_t middle_half() const;
+    void append_runs(bool half, std::size_t first, std::size_t last, ViewParticles& seen);
+    void draw_sprites(PassContext& context, const ViewData& view, Part part);
 };
 
 }  // namespace limn
