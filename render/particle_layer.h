@@ -7,7 +7,7 @@ namespace limn {
 
 namespace gpu {
 class Device;
-struct Program;
+class Program;
 }  // namespace gpu
 
 // A layer of half the width and height over the scene, for what is soft and covers much: its depth
