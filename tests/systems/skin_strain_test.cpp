@@ -348,7 +348,7 @@ TEST_CASE("skin_strain: real faces are compressed where anatomy says") {
         {"mouthPucker", {"FH", "GL", "NR", "UL", "CF"}},
         {"mouthFunnel", {"FH", "GL", "NR", "UL", "CF"}},
         {"jawOpen", {"FH", "GL", "NR", "NS", "UL", "LL", "CF"}},
-        {"eyeBlink", {"FH", "GL", "NR", "NS", "CK", "NL", "UP", "MC", "ML", "CH"}},
+        {"eyeBlink", {"FH", "GL", "NR", "NS", "UL", "CK", "NL", "UP", "MC", "ML", "CH"}},
         {"eyeSquint", {"FH", "GL", "NR", "NL", "UP", "ML", "CH"}},
         {"browDown", {"NS", "LL", "CK", "NL", "UP", "MC", "ML", "CH"}},
         {"browInnerUp+browOuterUp", {"CK", "NL", "UP", "MC", "ML", "CH"}},
