@@ -41,8 +41,7 @@ void check_strain(const SkinStrain& found, float uu, float vv, float uv) {
     CHECK(found.uv == near(uv).epsilon(2e-6).scale(1));
 }
 
-// ---- the faces of ICT FaceKit
-// ---------------------------------------------------------------------
+// The faces of ICT FaceKit.
 
 constexpr std::uint32_t kSkinVertices = 9409;
 
@@ -280,6 +279,51 @@ TEST_CASE("skin_strain: vertices duplicated along a seam get one average") {
         CHECK(vertices[a].vv == vertices[b].vv);
         CHECK(vertices[a].uv == vertices[b].uv);
     }
+}
+
+TEST_CASE("skin_strain: an average is that of tensors in space, weighted by area") {
+    // A pyramid without base, whose sides differ in area and normal.
+    const std::vector<Vec3> rest = {
+        {0.1f, 0.2f, 1}, {1, -0.3f, 0}, {0.2f, 1.4f, 0.1f}, {-0.5f, -0.4f, 0.3f}};
+    const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3, 0, 3, 1};
+    const SkinTriangles skin = make_skin_triangles(rest, indices);
+    const std::vector<SkinStrain> strain = {
+        {.uu = -0.3f, .vv = 0.1f, .uv = 0.05f},
+        {.uu = 0.2f, .vv = -0.1f, .uv = -0.15f},
+        {.uu = 0.05f, .vv = -0.25f, .uv = 0.1f}};
+    REQUIRE(skin.area.size() == strain.size());
+    glm::dmat3 sum(0.0);
+    double area = 0;
+    for (std::size_t t = 0; t < strain.size(); ++t) {
+        const glm::dvec3 u = skin.u[t];
+        const glm::dvec3 v = skin.v[t];
+        const SkinStrain& s = strain[t];
+        const glm::dmat3 uv = glm::outerProduct(u, v);
+        const glm::dmat3 tensor = double(s.uu) * glm::outerProduct(u, u)
+                                  + double(s.vv) * glm::outerProduct(v, v)
+                                  + double(s.uv) * (uv + glm::transpose(uv));
+        sum += double(skin.area[t]) * tensor;
+        area += skin.area[t];
+    }
+    std::vector<SkinStrain> vertices(rest.size());
+    average_strain(skin, strain, vertices);
+    const glm::dvec3 u = skin.vertex_u[0];
+    const glm::dvec3 v = skin.vertex_v[0];
+    check_strain(
+        vertices[0], float(glm::dot(u, sum * u) / area), float(glm::dot(v, sum * v) / area),
+        float(glm::dot(u, sum * v) / area));
+}
+
+TEST_CASE("skin_strain: a triangle whose normal points up has strain like any other") {
+    const std::vector<Vec3> floor = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.2f}};
+    const SkinTriangles skin = make_skin_triangles(floor, kCorners);
+    const std::vector<Vec3> deformed = {{0, 0, 0}, {0, 0, 0.9f}, {0.9f, 0, 0.18f}};
+    std::vector<SkinStrain> strain(skin.area.size());
+    find_strain(skin, deformed, strain);
+    REQUIRE(strain.size() == 1);
+    check_strain(strain[0], -0.1f, -0.1f, 0);
+    CHECK(std::abs(glm::dot(skin.u[0], Vec3{0, 1, 0})) < 1e-6f);
+    CHECK(glm::length(skin.u[0]) == near(1).epsilon(1e-6));
 }
 
 TEST_CASE("skin_strain: real faces are compressed where anatomy says") {
