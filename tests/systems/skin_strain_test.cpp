@@ -400,8 +400,8 @@ TEST_CASE("skin_strain: real faces are compressed where anatomy says") {
     for (const auto& [expression, regions] : quiet) {
         const std::vector<SkinStrain> strain = face.strain(expression);
         for (const std::string& region : regions) {
-            CAPTURE(expression);
-            CAPTURE(region);
+            const std::string where = expression + " " + region;
+            CAPTURE(where);
             CHECK(std::abs(face.measure(strain, region).mean) < 1);
         }
     }
