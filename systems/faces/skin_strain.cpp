@@ -1,12 +1,10 @@
 #include "systems/faces/skin_strain.h"
 
 #include "ecs/base/check.h"
+#include "ecs/base/weld.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstddef>
-#include <numeric>
 
 namespace limn {
 
@@ -16,28 +14,6 @@ namespace {
 Vec3 tangent_of(const Vec3& normal) {
     const Vec3 u = glm::cross(Vec3{0, 1, 0}, normal);
     return glm::dot(u, u) > 1e-8f ? glm::normalize(u) : any_perpendicular(normal);
-}
-
-/// Equal for equal positions, ordered for all, NaN included.
-std::array<std::uint32_t, 3> key_of(const Vec3& position) {
-    const Vec3 p = position + 0.0f;  // -0 becomes 0
-    return {
-        std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
-        std::bit_cast<std::uint32_t>(p.z)};
-}
-
-std::vector<std::uint32_t> weld(std::span<const Vec3> positions) {
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(
-        order, {}, [&](std::uint32_t vertex) { return key_of(positions[vertex]); });
-    std::vector<std::uint32_t> welded(positions.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool repeated =
-            i > 0 && key_of(positions[order[i]]) == key_of(positions[order[i - 1]]);
-        welded[order[i]] = repeated ? welded[order[i - 1]] : order[i];
-    }
-    return welded;
 }
 
 void append_triangle(
@@ -85,7 +61,7 @@ SkinTriangles make_skin_triangles(
             skin, positions, indices.subspan(i, 3), static_cast<std::uint32_t>(i / 3), min_edge);
     }
 
-    skin.welded = weld(positions);
+    skin.welded = weld_positions(positions);
     std::vector<Vec3> normals(positions.size(), Vec3{0, 0, 0});
     for (std::size_t i = 0; i < skin.corners.size(); ++i) {
         const std::size_t t = i / 3;
