@@ -27,6 +27,7 @@
 #include "render/passes/vignette_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
+#include "render/passes/wrinkle_pass.h"
 #include "render/tone_mapper.h"
 #include "render/water/water_surfaces.h"
 
@@ -37,6 +38,7 @@ constexpr EffectEntry kImage[] = {
     // What is in the world, and what of it each view shows.
     effect<TextureCombineEffect>(0),
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
+    effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed
     effect<LightListEffect>(kSceneViews),  // records and clusters
     effect<EnvironmentEffect>(kSceneViews),
     effect<GbufferEffect>(kSceneViews),

@@ -289,6 +289,9 @@ void InstanceCollector::add_command(
         run.features.maps.remove(layout::kNormalSlot);
         list.without_tangents.push_back(mesh_index);
     }
+    if (!state.deformed || !items.shapes()[state.index].wrinkled || !mesh.tangents) {
+        run.features.maps.remove(layout::kWrinkleSlot);
+    }
     run.textures = batch.textures;
     run.mirrored = state.mirrored;
     run.first_command = static_cast<std::uint32_t>(commands_.size());

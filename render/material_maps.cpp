@@ -15,6 +15,7 @@ constexpr MapSlot kSlots[] = {
     {layout::kNormalSlot, "NORMAL_MAP", &Material::normal_texture, false},
     {layout::kOcclusionSlot, "OCCLUSION_MAP", &Material::occlusion_texture, false},
     {layout::kEmissionSlot, "EMISSION_MAP", &Material::emission_texture, false},
+    {layout::kWrinkleSlot, "WRINKLE_MAP", &Material::wrinkle_texture, false},
 };
 
 constexpr bool numbers_fit() {

@@ -28,6 +28,7 @@ constexpr StreamInfo kStreams[kVertexStreams] = {
     {"second uvs", sizeof(Vec2), false, VertexStream::Uv},
     {"colors", 8, false, VertexStream::Color},
     {"previous positions", sizeof(Vec3), false, VertexStream::Position},
+    {"wrinkles", 8, false, VertexStream::Wrinkle},
 };
 
 constexpr std::uint16_t kWhite[4] = {0x3c00, 0x3c00, 0x3c00, 0x3c00};  // half floats
@@ -38,6 +39,7 @@ constexpr GLuint kUv = static_cast<GLuint>(VertexStream::Uv);
 constexpr GLuint kUv1 = static_cast<GLuint>(VertexStream::Uv1);
 constexpr GLuint kColor = static_cast<GLuint>(VertexStream::Color);
 constexpr GLuint kPreviousPosition = static_cast<GLuint>(VertexStream::PreviousPosition);
+constexpr GLuint kWrinkle = static_cast<GLuint>(VertexStream::Wrinkle);
 
 constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 0, .stream = kPosition, .components = 3},
@@ -69,6 +71,7 @@ constexpr gpu::VertexAttribute kMeshAttributes[] = {
     {.location = 11, .stream = kPreviousTransformStream, .components = 4, .offset = 32},
     {.location = 12, .stream = kPreviousPosition, .components = 3},
     {.location = 13, .stream = kUv1, .components = 2},
+    {.location = 14, .stream = kWrinkle, .components = 4, .type = GL_HALF_FLOAT},
 };
 
 }  // namespace

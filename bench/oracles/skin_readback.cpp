@@ -6,7 +6,11 @@
 #include "render/graph/frame_graph.h"
 #include "render/mesh_pool.h"
 #include "render/passes/deform_pass.h"
+#include "render/passes/wrinkle_pass.h"
+#include "render/render_frame.h"
 #include "render/skinning/deformed_list.h"
+
+#include <glm/gtc/packing.hpp>
 
 namespace limn::oracle {
 namespace {
@@ -25,11 +29,12 @@ std::vector<T> read(const gpu::Buffer& buffer, std::size_t first, std::size_t co
 }  // namespace
 
 struct SkinReadback::Machine {
-    Machine(gpu::Device& device, DeformPass made, std::size_t storage_bytes)
-        : pass(std::move(made)), shapes(storage_bytes), ring(device.caps(), "readback", 1 << 16),
+    Machine(gpu::Device& device, DeformPass made, WrinkleEffect its, std::size_t storage_bytes)
+        : pass(std::move(made)), wrinkles(std::move(its)), shapes(storage_bytes), ring(device.caps(), "readback", 1 << 16),
           graph(device) {}
 
     DeformPass pass;
+    WrinkleEffect wrinkles;
     MeshPool meshes;
     DeformedList shapes;
     gpu::RingBuffer ring;
@@ -48,9 +53,14 @@ Result<SkinReadback> SkinReadback::create(gpu::Device& device, std::size_t stora
     if (!pass) {
         return pass.error();
     }
+    Result<WrinkleEffect> wrinkles = WrinkleEffect::create(device, RenderSettings{});
+    if (!wrinkles) {
+        return wrinkles.error();
+    }
     const auto most = static_cast<std::size_t>(device.caps().max_storage_bytes);
     return SkinReadback(std::unique_ptr<Machine, Deleter>(
-        new Machine(device, *std::move(pass), storage_bytes > 0 ? storage_bytes : most)));
+        new Machine(
+        device, *std::move(pass), *std::move(wrinkles), storage_bytes > 0 ? storage_bytes : most)));
 }
 
 const DeformedList& SkinReadback::shapes() const {
@@ -81,6 +91,11 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
     }
     m.shapes.write_jobs(m.ring);
     deform_meshes(m.graph, m.pass, m.shapes);
+    FrameData frame;
+    frame.world = &world;
+    frame.shapes = &m.shapes;
+    frame.ring = &m.ring;
+    m.wrinkles.draw_shared(m.graph, frame);
     m.graph.execute();
     m.ring.end_frame();
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -98,6 +113,12 @@ std::vector<SkinReadbackVertices> SkinReadback::run(
         skin.positions = read<Vec3>(vertices.positions(), first, count);
         if (before) {
             skin.before = read<Vec3>(vertices.before(), first, count);
+        }
+        if (m.shapes[index].wrinkled) {
+            for (const std::uint64_t packed :
+                 read<std::uint64_t>(vertices.wrinkles(), first, count)) {
+                skin.wrinkles.push_back(glm::unpackHalf4x16(packed));
+            }
         }
         for (const PackedFrame& v : read<PackedFrame>(vertices.frames(), first, count)) {
             skin.normals.emplace_back(

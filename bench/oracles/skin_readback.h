@@ -23,9 +23,10 @@ struct SkinReadbackVertices {
     std::vector<Vec3> before;  ///< empty unless asked for
     std::vector<Vec3> normals;
     std::vector<Vec4> tangents;
+    std::vector<Vec4> wrinkles;  ///< their strengths, see lib/material.glsl; empty: it has none
 };
 
-/// Runs only the deform pass, frame by frame, and reads back its results.
+/// Runs only the passes that deform and measure skin, frame by frame, and reads back their results.
 class SkinReadback {
   public:
     /// `storage_bytes`: limit of a storage block; 0: the device's.

@@ -263,7 +263,7 @@ class LevelParser {
             for (TextureSlot* const slot :
                  {&material.base_color_texture, &material.metal_rough_texture,
                   &material.normal_texture, &material.occlusion_texture,
-                  &material.emission_texture}) {
+                  &material.emission_texture, &material.wrinkle_texture}) {
                 slot->scale = scaled.scale;
             }
         }

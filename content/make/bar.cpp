@@ -46,12 +46,18 @@ void add_side(MeshData& mesh, const BarShape& shape, int side) {
     const Vec2 from = corner(side);
     const Vec2 to = corner(side + 1);
     const Vec2 out = glm::normalize(from + to);
+    const float lean = shape.radius * (1 - shape.taper) / shape.height;  // of a cone's normal
     for (int ring = 0; ring <= shape.rings; ++ring) {
         const float share = static_cast<float>(ring) / static_cast<float>(shape.rings);
         for (const Vec2& at : {from, to}) {
-            mesh.positions.emplace_back(at.x, share * shape.height, at.y);
-            mesh.normals.emplace_back(out.x, 0, out.y);
-            mesh.uvs.emplace_back(at == from ? 0.0f : 1.0f, 1.0f - share);
+            const Vec2 place = at * std::lerp(1.0f, shape.taper, share);
+            const Vec2 normal = shape.smooth ? glm::normalize(at) : out;
+            const float u = at == from ? 0.0f : 1.0f;
+            mesh.positions.emplace_back(place.x, share * shape.height, place.y);
+            mesh.normals.push_back(glm::normalize(Vec3(normal.x, lean, normal.y)));
+            mesh.uvs.emplace_back(
+                shape.smooth ? (static_cast<float>(side) + u) / static_cast<float>(shape.sides) : u,
+                1.0f - share);
             const float tip = tip_weight(share);
             mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
             for (const auto& [joint, weight] : {std::pair(0, 1.0f - tip), std::pair(1, tip)}) {
@@ -79,8 +85,19 @@ MeshData make_bar(const BarShape& shape) {
         add_side(mesh, shape, side);
     }
     mesh.skin.first.push_back(static_cast<std::uint32_t>(mesh.skin.joints.size()));
-    mesh.bounds = {
-        Vec3(-shape.radius, 0, -shape.radius), Vec3(shape.radius, shape.height, shape.radius)};
+    const float widest = shape.radius * std::max(shape.taper, 1.0f);
+    mesh.bounds = {Vec3(-widest, 0, -widest), Vec3(widest, shape.height, widest)};
+    const std::size_t vertices = mesh.positions.size();
+    mesh.regions.push_back(
+        {.name = "along",
+         .weights = std::vector<float>(vertices, 1.0f),
+         .across = std::vector<Vec3>(vertices, Vec3(0, 1, 0))});
+    VertexRegion& around = mesh.regions.emplace_back();
+    around.name = "around";
+    around.weights.assign(vertices, 1.0f);
+    for (const Vec3& normal : mesh.normals) {
+        around.across.push_back(normalize_or(glm::cross(Vec3(0, 1, 0), normal), {1, 0, 0}));
+    }
     generate_tangents(mesh);
     return mesh;
 }

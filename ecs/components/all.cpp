@@ -54,6 +54,7 @@
 #include "ecs/components/water_walls.h"
 #include "ecs/components/water_waves.h"
 #include "ecs/components/weather.h"
+#include "ecs/components/wrinkle.h"
 #include "ecs/hierarchy.h"
 
 namespace limn {
@@ -97,6 +98,7 @@ void register_all_components() {
     register_component<MorphWeights>();
     register_component<MorphPlayer>();
     register_component<Deformed>();
+    register_component<WrinkleSurface>();
     register_component<JointAttachment>();
     register_component<PathFollower>();
     register_component<RotationTrack>();

@@ -45,6 +45,17 @@ struct MeshPiece {
     MeshId mesh = {};
 };
 
+/// A named region of a mesh, such as "forehead": how much each vertex belongs to it and, where skin
+/// folds there, across which direction. In glTF: the vertex attributes `_REGION_<NAME>` (float) and
+/// `_ACROSS_<NAME>` (vec3).
+struct VertexRegion {
+    std::string name;
+    std::vector<float> weights;  ///< one per vertex, 0 .. 1
+    std::vector<Vec3>
+        across;  ///< one per vertex, mesh space at rest: unit, along which shortening raises
+                 ///< wrinkles, perpendicular to the wrinkles' lines; 0: none there. Or empty
+};
+
 /// Triangle mesh. All vertex arrays have the length of `positions`; `uvs1` and `colors` may be
 /// empty. After editing it in place, increment `version`: the renderer uploads it again.
 struct MeshData {
@@ -61,7 +72,8 @@ struct MeshData {
     SkinWeights skin;                 ///< empty: not skinned
     std::vector<MorphTarget> morphs;  ///< morph targets, in the file's order
     std::vector<MeshPiece> pieces;    ///< all of it in pieces, or empty
-    Bounds bounds;                    ///< of the undeformed mesh
+    std::vector<VertexRegion> regions;  ///< names differ; may overlap
+    Bounds bounds;                      ///< of the undeformed mesh
     std::uint32_t version = 0;
 };
 
@@ -137,6 +149,7 @@ struct Material {
     TextureSlot normal_texture = {};
     TextureSlot occlusion_texture = {};
     TextureSlot emission_texture = {};
+    TextureSlot wrinkle_texture = {};
 };
 
 LIMN_FIELDS(Material) {
@@ -165,6 +178,10 @@ LIMN_FIELDS(Material) {
     LIMN_FIELD(normal_texture, "tangent-space normals, green up");
     LIMN_FIELD(occlusion_texture, "ambient occlusion in red");
     LIMN_FIELD(emission_texture, "sRGB emission");
+    LIMN_FIELD(
+        wrinkle_texture,
+        "tangent-space normals, green up, 128 flat, of wrinkles in full: drawn where a "
+        "wrinkle_surface is compressed");
 }
 
 /// Unique ID of an Assets object within this run, even if another one reuses its address: the

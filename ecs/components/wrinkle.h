@@ -1,27 +1,101 @@
 #pragma once
 
 #include "ecs/base/math.h"
+#include "ecs/components/surface.h"
+#include "ecs/reflect.h"
 
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace limn {
 
+// Skin that wrinkles where it is compressed (wrinkle.compression.*). A deformed mesh says where it
+// may wrinkle, and across which direction (MeshData::regions); the wrinkle map of its material says
+// what the wrinkles are; a WrinkleSurface, how much compression raises them and how they are drawn.
+
+/// How wrinkles are drawn.
+enum class WrinkleMethod : std::uint8_t {
+    None,         ///< not at all
+    Alpha,        ///< darkened slopes: C (1 - I W), without light (wrinkle.compression.alpha-shading)
+    Directional,  ///< only slopes that face down the map, as if lit from above
+    Bump,         ///< slopes times I: wrinkles as high as I (wrinkle.compression.interp-bump)
+    Sphere,       ///< x and y of the normal times I, lifted to the unit sphere (.normal-fit)
+    Isometric,    ///< slopes as steep as keep the length of the skin
+};
+
+/// Shares of the triangles at a vertex in its compression (wrinkle.compression.vertex-weight).
+enum class WrinkleWeight : std::uint8_t {
+    Angle,    ///< at the vertex: does not depend on how the surface is divided into triangles
+    Area,     ///< of the triangle
+    Uniform,  ///< depends on the division; for comparison
+};
+
+struct WrinkleSurface {
+    WrinkleMethod method = WrinkleMethod::Isometric;
+    std::vector<std::string> regions{};
+    WrinkleWeight weight = WrinkleWeight::Angle;
+    float lambda = 1.05f;
+    float beta = 4;
+    float slack = 0.03f;
+    float share = 0.3f;
+};
+
+LIMN_FIELDS(WrinkleSurface) {
+    LIMN_FIELD(
+        method, .doc = "how wrinkles are drawn",
+        .values = "none alpha directional bump sphere isometric");
+    LIMN_FIELD(regions, "of the mesh, by name, that wrinkle; none: all that it has");
+    LIMN_FIELD(
+        weight, .doc = "by what triangles count at a vertex: their angle there, area, or alike",
+        .values = "angle area uniform");
+    LIMN_FIELD(
+        lambda,
+        "by what the square of the length is multiplied: wrinkles begin where that is 1; above 1 "
+        "some compression passes without; not for isometric",
+        "", 0.1, 10);
+    LIMN_FIELD(beta, "how suddenly they rise; not for isometric", "", 0.1, 50);
+    LIMN_FIELD(slack, "isometric: shortening that skin takes without folding", "", 0, 1);
+    LIMN_FIELD(
+        share, "isometric: of the shortening beyond that becomes folds; 1: all of it", "", 0, 1);
+}
+
 /// A triangle at a vertex, and its share of the vertex's compression.
 struct WrinkleCorner {
-    std::uint32_t triangle = 0;
-    float weight = 0.0f;  ///< of all at a vertex: sum 1
+    std::uint32_t corner = 0;  ///< in WrinkleRest::corners; its triangle is corner / 3
+    float weight = 0.0f;       ///< sum 1 at each vertex
 };
 
 /// A mesh at rest with one direction across its wrinkles, prepared for measuring how much shorter
-/// its skin has become in that direction. Made once per mesh.
+/// its skin has become in that direction.
 struct WrinkleRest {
     std::vector<std::uint32_t> corners;  ///< three vertices per triangle
-    std::vector<Vec2>
-        across;  ///< per triangle the unit direction in its plane as x e1 + y e2, e1
-                 ///< and e2 the edges from its first vertex at rest [1/m]; (0, 0): none
+    std::vector<Vec2> across;  ///< per triangle the unit direction in its plane as x e1 + y e2, e1
+                               ///< and e2 the edges from its first vertex [1/m]; (0, 0): none
     std::vector<WrinkleCorner> around;  ///< triangles that have a direction, vertex after vertex
     std::vector<std::uint32_t> first;   ///< per vertex and one more: index of its first in `around`
+};
+
+inline constexpr int kFoldSteps = 16;
+
+/// How steep the folds of a wrinkle map must be to take up an excess of length e = rest / now - 1:
+/// factors on its slopes, divided by sqrt(e), at e = i / (kFoldSteps - 1).
+using FoldTable = std::array<float, kFoldSteps>;
+
+/// What the wrinkle system prepares for each WrinkleSurface on a mesh that has such regions.
+struct WrinkleState {
+    WrinkleRest rest;
+    std::vector<float> mask;  ///< per vertex: 0 .. 1 of the wrinkles
+    FoldTable folds = {};
+    std::uint64_t source = 0;  ///< hash of the mesh, its version, the map and the regions
+};
+
+template <>
+struct ComponentTraits<WrinkleState> : DefaultTraits {
+    static constexpr bool saved = false;  // follows from the mesh
+    static constexpr bool hashed = false;
+    static constexpr bool in_prefabs = false;
 };
 
 }  // namespace limn

@@ -4,6 +4,7 @@
 #include "ecs/base/jobs.h"
 #include "ecs/base/log.h"
 #include "ecs/components/transform.h"
+#include "ecs/components/wrinkle.h"
 #include "ecs/world.h"
 #include "render/buffer_texture.h"
 #include "render/mesh_pool.h"
@@ -180,7 +181,13 @@ void DeformedList::update(
         });
     // Adding a mesh may have reallocated the pool.
     for (const std::uint32_t i : active_) {
-        entries_[i].rest = &rest_.get(*assets, entries_[i].mesh);
+        Entry& entry = entries_[i];
+        entry.rest = &rest_.get(*assets, entry.mesh);
+        const auto* wrinkles = world.find<WrinkleState>(entry.entity);
+        const auto* surface = world.find<WrinkleSurface>(entry.entity);
+        entry.wrinkled = wrinkles != nullptr && surface != nullptr
+                         && surface->method != WrinkleMethod::None
+                         && wrinkles->mask.size() == entry.rest->vertex_count;
     }
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
         Entry& entry = entries_[i];

@@ -35,6 +35,7 @@ struct DeformedInstance {
     Bounds bounds;            ///< of the shape, in mesh space; conservative
     std::uint64_t shape = 0;  ///< hash: equal for equal shapes; never 0
     MeshId mesh;
+    bool wrinkled = false;  ///< has a WrinkleState, and draws it
 };
 
 /// Jobs that share one dispatch: of the same kind, with their vertices within the range that a
@@ -83,6 +84,16 @@ class DeformedList {
     /// Requests an instance's vertices, with `before` also its previous positions. Returns its base
     /// vertex.
     std::int32_t request(std::uint32_t index, bool before);
+    /// Calls f(entity, instance, first vertex, number of vertices) of every requested instance.
+    template <typename F>
+    void each_requested(F&& f) const {
+        for (const std::uint32_t i : active_) {
+            if (entries_[i].requested) {
+                f(entries_[i].entity, static_cast<const DeformedInstance&>(entries_[i]),
+                  entries_[i].first_vertex, entries_[i].vertex_count);
+            }
+        }
+    }
     /// Fills work() with the jobs that bring all requested shapes up to date.
     void write_jobs(gpu::RingBuffer& ring);
 

@@ -36,6 +36,9 @@ std::vector<BufferId> import_deformed(FrameGraph& graph, const DeformedVertices&
     if (vertices.before()) {
         buffers.push_back(graph.import("previous deformed positions", vertices.before()));
     }
+    if (vertices.wrinkles()) {
+        buffers.push_back(graph.import("wrinkle strengths", vertices.wrinkles()));
+    }
     return buffers;
 }
 

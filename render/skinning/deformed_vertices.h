@@ -27,6 +27,7 @@ class DeformedVertices {
     void release(std::uint32_t first, std::uint32_t count) { slots_.release(first, count); }
     void clear() { slots_.clear(); }
     void require_previous_positions() { streams_.require(VertexStream::PreviousPosition); }
+    void require_wrinkles() { streams_.require(VertexStream::Wrinkle); }
     /// Binds the mesh pool's index buffer, which is replaced when it grows.
     void use_indices_of(const MeshPool& meshes);
 
@@ -38,6 +39,10 @@ class DeformedVertices {
     [[nodiscard]] const gpu::Buffer& before() const {
         return streams_.buffer(VertexStream::PreviousPosition);
     }
+    /// Null until needed.
+    [[nodiscard]] const gpu::Buffer& wrinkles() const {
+        return streams_.buffer(VertexStream::Wrinkle);
+    }
     [[nodiscard]] VertexStreams& streams() { return streams_; }
     [[nodiscard]] const SlotAllocator& slots() const { return slots_; }
 
@@ -46,7 +51,7 @@ class DeformedVertices {
     VertexStreams streams_;
 };
 
-/// The buffers that deform_pass writes, as the graph knows them.
+/// The buffers that deform_pass and wrinkle_pass write, as the graph knows them.
 [[nodiscard]] std::vector<BufferId>
 import_deformed(FrameGraph& graph, const DeformedVertices& vertices);
 

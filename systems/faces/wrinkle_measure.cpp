@@ -89,7 +89,7 @@ WrinkleRest make_wrinkle_rest(
         if (std::ranges::max(v) >= positions.size()) {
             continue;
         }
-        const auto number = static_cast<std::uint32_t>(rest.across.size());
+        const auto first = static_cast<std::uint32_t>(rest.corners.size());
         rest.corners.insert(rest.corners.end(), v.begin(), v.end());
         rest.across.push_back({0, 0});
         const RestTriangle triangle =
@@ -105,8 +105,8 @@ WrinkleRest make_wrinkle_rest(
         }
         rest.across.back() = coefficients;
         const std::array<float, 3> weights = corner_weights(triangle, weight);
-        for (std::size_t k = 0; k < 3; ++k) {
-            corners.push_back({welded[v[k]], {number, weights[k]}});
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            corners.push_back({welded[v[k]], {first + k, weights[k]}});
         }
     }
     std::ranges::stable_sort(corners, {}, &Corner::vertex);
@@ -120,7 +120,7 @@ WrinkleRest make_wrinkle_rest(
             sum += corner.at.weight;
         }
         for (const Corner& corner : own) {
-            rest.around.push_back({corner.at.triangle, corner.at.weight / sum});
+            rest.around.push_back({corner.at.corner, corner.at.weight / sum});
         }
     }
     rest.first.push_back(static_cast<std::uint32_t>(rest.around.size()));
@@ -149,7 +149,7 @@ void average_compression(
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         float sum = 0;
         for (std::uint32_t i = rest.first[v]; i < rest.first[v + 1]; ++i) {
-            sum += rest.around[i].weight * ratio[rest.around[i].triangle];
+            sum += rest.around[i].weight * ratio[rest.around[i].corner / 3];
         }
         vertices[v] = rest.first[v] == rest.first[v + 1] ? 1.0f : sum;
     }

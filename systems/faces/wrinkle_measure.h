@@ -18,13 +18,6 @@ namespace limn {
 // since a triangle deforms affinely: no chord needs to be found, and only shortening in that
 // direction counts, neither shortening along the wrinkles nor shear that keeps the chord.
 
-/// Shares of the triangles at a vertex.
-enum class WrinkleWeight : std::uint8_t {
-    Angle,    ///< at the vertex: does not depend on how the surface is divided into triangles
-    Area,     ///< of the triangle
-    Uniform,  ///< depends on the division; for comparison
-};
-
 /// `across` has a direction per vertex, of either sign: the mean of three is used, without its part
 /// along the normal. A triangle has none where they cancel or are parallel to the normal, where it
 /// has no area, and where a coordinate is not finite or an index beyond the positions. Vertices at

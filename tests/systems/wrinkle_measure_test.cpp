@@ -253,8 +253,8 @@ TEST_CASE("wrinkle measure: weights at a vertex sum to 1, and a mean lies betwee
         float highest = 0;
         for (std::uint32_t i = rest.first[v]; i < rest.first[v + 1]; ++i) {
             sum += rest.around[i].weight;
-            lowest = std::min(lowest, ratio[rest.around[i].triangle]);
-            highest = std::max(highest, ratio[rest.around[i].triangle]);
+            lowest = std::min(lowest, ratio[rest.around[i].corner / 3]);
+            highest = std::max(highest, ratio[rest.around[i].corner / 3]);
         }
         CHECK(sum == near(1).epsilon(1e-6));
         CHECK(vertices[v] >= lowest * (1 - 1e-6f));

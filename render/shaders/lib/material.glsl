@@ -1,6 +1,6 @@
 // The surface of a material at a point: factors times textures. Which textures exist is fixed at compile time,
 // since a software OpenGL executes both sides of every branch:
-//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP  each is the texture unit of the map
+//   BASE_COLOR_MAP METAL_ROUGH_MAP NORMAL_MAP OCCLUSION_MAP EMISSION_MAP WRINKLE_MAP  each is the texture unit of the map
 //   OCCLUSION_SHARED  occlusion is the red channel of the metal-rough map
 //   VERTEX_COLOR   the mesh has colors
 //   UV_MAP         all maps share a uv set and transform; otherwise they use the first set untransformed
@@ -12,10 +12,18 @@
 
 #include "lib/gbuffer.glsl"
 #include "lib/material_maps.glsl"
+#include "lib/wrinkle.glsl"
+
+#if defined(WRINKLE_MAP) && !defined(LIT_AT_VERTICES)
+#define WRINKLES
+#endif
 
 #ifndef LIT_AT_VERTICES
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
+#endif
+#ifdef WRINKLES
+layout(location = 8) in vec4 wrinkle_strength;  // x, y: of slopes, as they are and lifted; z, w: of shade
 #endif
 layout(location = 2) in vec4 uv;
 layout(location = 3) in vec4 vertex_color;
@@ -63,8 +71,18 @@ vec4 base_color_texel() {
     return texel;
 }
 
+#ifdef WRINKLES
+vec2 wrinkle_slope_here() {
+    return wrinkle_slope(texture(material_maps[WRINKLE_MAP], map_place(kWrinkleSlot)).xyz);
+}
+#endif
+
 vec4 surface_color() {
     vec4 color = material_texel(0) * base_color_texel();
+#ifdef WRINKLES
+    vec2 slope = wrinkle_slope_here();
+    color.rgb *= 1.0 - clamp(wrinkle_strength.z * wrinkle_shade(slope, false) + wrinkle_strength.w * wrinkle_shade(slope, true), 0.0, 1.0);
+#endif
 #ifdef VERTEX_COLOR
     color *= max(vertex_color, 0.0);
 #endif
@@ -82,10 +100,19 @@ vec3 surface_emission() {
 #ifndef LIT_AT_VERTICES
 vec3 surface_normal(float strength) {
     vec3 n = normal_ws;
+#if defined(NORMAL_MAP) || defined(WRINKLES)
+    vec3 n_ts = vec3(0.0, 0.0, 1.0);
 #ifdef NORMAL_MAP
-    vec3 n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
+    n_ts = texture(material_maps[NORMAL_MAP], map_place(kNormalSlot)).xyz * 2.0 - 1.0;
+    n_ts.xy *= strength;
+#endif
+#ifdef WRINKLES
+    vec2 slope = wrinkle_slope_here();
+    slope = wrinkle_strength.x * slope + lifted_slope(slope, wrinkle_strength.y);
+    n_ts.xy -= n_ts.z * slope;  // slopes of both heights add up
+#endif
     vec3 bitangent = cross(normal_ws, tangent_ws.xyz) * tangent_ws.w;
-    n = n_ts.x * strength * tangent_ws.xyz + n_ts.y * strength * bitangent + n_ts.z * normal_ws;
+    n = n_ts.x * tangent_ws.xyz + n_ts.y * bitangent + n_ts.z * normal_ws;
 #endif
     n *= inversesqrt(max(dot(n, n), 1e-20));
 #ifdef DOUBLE_SIDED
@@ -101,7 +128,7 @@ vec3 surface_normal(float strength) {
 // of meshes, since roughness blurs their reflections too.
 // Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
 float widen_roughness(float roughness, vec3 normal) {
-#ifdef NORMAL_MAP
+#if defined(NORMAL_MAP) || defined(WRINKLES)
     vec3 dx = dFdx(normal);
     vec3 dy = dFdy(normal);
     float variance = 0.159 * (dot(dx, dx) + dot(dy, dy));

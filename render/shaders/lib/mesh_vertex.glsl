@@ -13,6 +13,9 @@ layout(location = 6) in vec4 world_row1;
 layout(location = 7) in vec4 world_row2;
 layout(location = 8) in uvec4 instance;   // material, flags, place; w: bits of the distance to inflate by
 layout(location = 13) in vec2 second_uv;
+#ifdef WRINKLE_MAP
+layout(location = 14) in vec4 wrinkle;    // strengths, see lib/material.glsl
+#endif
 
 // Inflated or not.
 vec3 moved_vertex(vec3 position) {

@@ -1,0 +1,183 @@
+#include "render/passes/wrinkle_pass.h"
+
+#include "ecs/world.h"
+#include "render/gpu/device.h"
+#include "render/gpu/grown_buffer.h"
+#include "render/gpu/shader_library.h"
+#include "render/shaders/wrinkle_gpu.h"
+#include "render/skinning/deformed_list.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace limn {
+namespace {
+
+constexpr unsigned kJobsUnit = 0;
+constexpr unsigned kGroupsUnit = 1;
+constexpr unsigned kRestUnit = 2;
+constexpr unsigned kPositionsBinding = 0;
+constexpr unsigned kWrinklesBinding = 1;
+constexpr std::uint32_t kInitialTexels = 1 << 14;
+
+static_assert(kFoldSteps == layout::kFoldSteps);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Isometric) == layout::kWrinkleIsometric);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Alpha) == layout::kWrinkleAlpha);
+static_assert(static_cast<std::uint32_t>(WrinkleMethod::Bump) == layout::kWrinkleBump);
+
+struct Texel {
+    std::uint32_t x;
+    std::uint32_t y;
+};
+
+std::uint32_t bits(float x) {
+    return std::bit_cast<std::uint32_t>(x);
+}
+
+/// The two other corners of a triangle, and the direction across wrinkles in the edges to them.
+void append_corner(const WrinkleRest& rest, const WrinkleCorner& at, std::vector<Texel>& texels) {
+    const std::uint32_t triangle = at.corner / 3;
+    const std::uint32_t corner = at.corner % 3;
+    const Vec2& across = rest.across[triangle];
+    const float share[3] = {-across.x - across.y, across.x, across.y};  // of each corner's position
+    const std::uint32_t next = (corner + 1) % 3;
+    const std::uint32_t last = (corner + 2) % 3;
+    const float root = std::sqrt(at.weight);
+    texels.push_back({rest.corners[3 * triangle + next], rest.corners[3 * triangle + last]});
+    texels.push_back({bits(root * share[next]), bits(root * share[last])});
+}
+
+std::vector<Texel> rest_texels(const WrinkleState& state) {
+    const WrinkleRest& rest = state.rest;
+    std::vector<Texel> texels;
+    texels.reserve(rest.first.size() + 2 * rest.around.size());
+    for (std::size_t v = 0; v < rest.first.size(); ++v) {
+        const float mask = v < state.mask.size() ? state.mask[v] : 0.0f;
+        const auto first = static_cast<std::uint32_t>(rest.first.size() + 2 * rest.first[v]);
+        texels.push_back({first, bits(mask)});
+    }
+    for (const WrinkleCorner& corner : rest.around) {
+        append_corner(rest, corner, texels);
+    }
+    return texels;
+}
+
+/// The texels of a state, uploaded on first use.
+const WrinkleRestPool::Range& find_rest(WrinkleRestPool& pool, const WrinkleState& state) {
+    const auto [found, fresh] = pool.ranges.try_emplace(state.source);
+    WrinkleRestPool::Range& range = found->second;
+    range.used = true;
+    if (fresh) {
+        const std::vector<Texel> texels = rest_texels(state);
+        range.texel_count = static_cast<std::uint32_t>(texels.size());
+        const std::uint32_t old = pool.slots.capacity();
+        range.first_texel = pool.slots.allocate_or_grow(range.texel_count, kInitialTexels);
+        if (pool.slots.capacity() > old) {
+            pool.texels = gpu::grown_buffer(
+                "wrinkle rest", pool.texels, old * sizeof(Texel),
+                pool.slots.capacity() * sizeof(Texel));
+        }
+        pool.texels.write(range.first_texel * sizeof(Texel), std::span<const Texel>(texels));
+    }
+    return range;
+}
+
+void forget_unused(WrinkleRestPool& pool) {
+    for (auto at = pool.ranges.begin(); at != pool.ranges.end();) {
+        WrinkleRestPool::Range& range = at->second;
+        if (range.used) {
+            range.used = false;
+            ++at;
+        } else {
+            pool.slots.release(range.first_texel, range.texel_count);
+            at = pool.ranges.erase(at);
+        }
+    }
+}
+
+layout::WrinkleJob make_job(
+    const WrinkleSurface& surface, const WrinkleState& state, const WrinkleRestPool::Range& rest) {
+    layout::WrinkleJob job{};
+    job.rest = rest.first_texel;
+    job.method = static_cast<std::uint32_t>(surface.method);
+    job.lambda = surface.lambda;
+    job.beta = surface.beta;
+    job.slack = surface.slack;
+    job.share = Vec4(surface.share, 0, 0, 0);
+    for (int i = 0; i < kFoldSteps; ++i) {
+        job.folds[i / 4][i % 4] = state.folds[static_cast<std::size_t>(i)];
+    }
+    return job;
+}
+
+}  // namespace
+
+bool WrinkleEffect::is_used(const FrameData& frame) {
+    return frame.world->query<const WrinkleState>().count() > 0;
+}
+
+Result<WrinkleEffect> WrinkleEffect::create(gpu::Device& device, const RenderSettings&) {
+    WrinkleEffect effect;
+    effect.program = LIMN_TRY(device.shaders().load({.compute = "wrinkle.comp"}));
+    return effect;
+}
+
+void WrinkleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
+    std::vector<layout::WrinkleJob> job_list;
+    std::vector<std::uint32_t> group_list;
+    std::uint32_t first = ~0u;
+    std::uint32_t end = 0;
+    frame.shapes->each_requested([&](Entity entity, const DeformedInstance& shape,
+                                     std::uint32_t slot, std::uint32_t count) {
+        if (!shape.wrinkled) {
+            return;
+        }
+        const auto& state = *frame.world->find<WrinkleState>(entity);
+        layout::WrinkleJob job = make_job(
+            *frame.world->find<WrinkleSurface>(entity), state, find_rest(pool, state));
+        job.vertex_count = count;
+        job.slot = slot;
+        job.first_group = static_cast<std::uint32_t>(group_list.size());
+        const std::uint32_t needed = (count + layout::kWrinkleGroup - 1) / layout::kWrinkleGroup;
+        group_list.insert(group_list.end(), needed, static_cast<std::uint32_t>(job_list.size()));
+        job_list.push_back(job);
+        first = std::min(first, slot);
+        end = std::max(end, slot + count);
+    });
+    forget_unused(pool);
+    if (job_list.empty()) {
+        return;
+    }
+    jobs.upload(*frame.ring, job_list);
+    groups.upload(*frame.ring, group_list);
+    rest.set(pool.texels);
+    DeformedVertices& vertices = frame.shapes->vertices();
+    vertices.require_wrinkles();
+    const BufferId positions = graph.import("deformed positions", vertices.positions());
+    const BufferId strengths = graph.import("wrinkle strengths", vertices.wrinkles());
+    const std::uint32_t aligned = first / layout::kWrinkleGroup * layout::kWrinkleGroup;
+    const auto group_count = static_cast<std::uint32_t>(group_list.size());
+    graph.add_pass(
+        "wrinkles", {positions}, {strengths},
+        [this, &vertices, aligned, end, group_count](PassContext& context) {
+            gpu::Device& device = context.device();
+            device.use(*program);
+            jobs.bind(device, kJobsUnit);
+            groups.bind(device, kGroupsUnit);
+            rest.bind(device, kRestUnit);
+            const auto bind = [&](unsigned binding, const gpu::Buffer& buffer, std::size_t stride) {
+                device.bind_storage(
+                    binding, buffer.id(), aligned * stride, (end - aligned) * stride);
+            };
+            bind(kPositionsBinding, vertices.positions(), sizeof(Vec3));
+            bind(kWrinklesBinding, vertices.wrinkles(), stream_stride(VertexStream::Wrinkle));
+            program->set("group_count", group_count);
+            program->set("first_vertex", aligned);
+            const unsigned wide = std::min(group_count, layout::kWrinkleGroupsWide);
+            device.dispatch(wide, (group_count + wide - 1) / wide);
+        });
+}
+
+}  // namespace limn

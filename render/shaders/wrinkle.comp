@@ -1,0 +1,76 @@
+// How strong wrinkles are at each vertex of deformed skin: measures how much shorter its triangles are across them, in
+// the buffers that deform.comp wrote. One invocation per vertex gathers its triangles in a fixed order.
+#version 450
+#include "lib/wrinkle.glsl"
+
+layout(local_size_x = 64) in;  // kWrinkleGroup
+layout(binding = 0) uniform usamplerBuffer jobs;        // WrinkleJob
+layout(binding = 1) uniform usamplerBuffer group_jobs;  // job of each work group
+layout(binding = 2) uniform usamplerBuffer rest;        // see wrinkle_gpu.h
+layout(std430, binding = 0) readonly buffer Positions {
+    float positions[];
+};
+layout(std430, binding = 1) writeonly buffer Wrinkles {
+    uvec2 wrinkles[];  // four half floats, as mesh.vert reads them
+};
+
+uniform uint group_count;
+uniform uint first_vertex;  // in the bound range of the buffers
+
+vec3 position_of(uint vertex) {
+    return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
+}
+
+// Square of the length across wrinkles by that at rest; 1 without a triangle, or where it is no number.
+float compression(int triangle, int end, uint vertex, uint first) {
+    vec3 at = position_of(vertex);
+    float ratio = triangle == end ? 1.0 : 0.0;
+    for (; triangle < end; triangle += 2) {
+        uvec2 corners = texelFetch(rest, triangle).xy;
+        vec2 across = uintBitsToFloat(texelFetch(rest, triangle + 1).xy);
+        vec3 chord = across.x * (position_of(first + corners.x) - at) + across.y * (position_of(first + corners.y) - at);
+        ratio += dot(chord, chord);
+    }
+    return ratio >= 0.0 && ratio < 1e30 ? ratio : 1.0;
+}
+
+// FoldTable of a job, straight between its steps.
+float fold_strength(int job, float e) {
+    float place = clamp(e, 0.0, 1.0) * float(kFoldSteps - 1u);
+    int i = min(int(place), int(kFoldSteps) - 2);
+    float low = uintBitsToFloat(texelFetch(jobs, job + 3 + i / 4)[i % 4]);
+    float high = uintBitsToFloat(texelFetch(jobs, job + 3 + (i + 1) / 4)[(i + 1) % 4]);
+    return mix(low, high, place - float(i)) * sqrt(clamp(e, 0.0, 1.0));
+}
+
+void main() {
+    uint group = gl_WorkGroupID.y * kWrinkleGroupsWide + gl_WorkGroupID.x;
+    if (group >= group_count) {
+        return;
+    }
+    int job = int(kWrinkleJobTexels * texelFetch(group_jobs, int(group)).x);
+    uvec4 job0 = texelFetch(jobs, job);      // rest, vertex_count, slot, first_group
+    uvec4 job1 = texelFetch(jobs, job + 1);  // method, lambda, beta, slack
+    uint number = (group - job0.w) * kWrinkleGroup + gl_LocalInvocationID.x;
+    if (number >= job0.y) {
+        return;
+    }
+    uint first = job0.z - first_vertex;
+    uvec2 vertex = texelFetch(rest, int(job0.x + number)).xy;
+    int begin = int(job0.x + vertex.x);
+    int end = int(job0.x + texelFetch(rest, int(job0.x + number) + 1).x);
+    float ratio = compression(begin, end, first + number, first);
+
+    uint method = job1.x;
+    float strength = method == kWrinkleIsometric
+        ? fold_strength(job, fold_excess(ratio, uintBitsToFloat(job1.w), uintBitsToFloat(texelFetch(jobs, job + 2).x)))
+        : max(wrinkle_intensity(ratio, uintBitsToFloat(job1.y), uintBitsToFloat(job1.z)), 0.0);
+    strength *= uintBitsToFloat(vertex.y);
+    bool steep = method == kWrinkleBump || method == kWrinkleIsometric;
+    vec4 by_method = strength * vec4(
+        steep ? 1.0 : 0.0,
+        method == kWrinkleSphere ? 1.0 : 0.0,
+        method == kWrinkleAlpha ? 1.0 : 0.0,
+        method == kWrinkleDirectional ? 1.0 : 0.0);
+    wrinkles[first + number] = uvec2(packHalf2x16(by_method.xy), packHalf2x16(by_method.zw));
+}

@@ -1,0 +1,44 @@
+// Input of wrinkle.comp. Shared by C++ and GLSL.
+//
+// A mesh at rest is a block of texels of two 32-bit numbers. One per vertex and one more, which ends the last: its
+// first triangle as a texel of the block, and its mask as a float. Then two per triangle at a vertex, whose third corner
+// is that vertex: the two other corners, and the direction across its wrinkles in the edges to them, times the square
+// root of the triangle's weight at the vertex.
+
+#ifdef __cplusplus
+#pragma once
+#include "render/shaders/lib/gpu_types.h"
+namespace limn::layout {
+#endif
+
+// One instance: seven texels of four 32-bit numbers.
+struct WrinkleJob {
+    uint rest;         // first texel of the mesh
+    uint vertex_count;
+    uint slot;         // its first vertex in the buffers of deformed vertices
+    uint first_group;  // work group of its first vertex
+    uint method;       // kWrinkle*
+    float lambda;
+    float beta;
+    float slack;
+    vec4 share;        // x
+    vec4 folds[4];     // FoldTable
+};
+
+const uint kWrinkleJobTexels = 7u;
+const uint kWrinkleGroup = 64u;        // vertices
+const uint kWrinkleGroupsWide = 1024u; // groups of a dispatch along x
+
+// WrinkleMethod
+const uint kWrinkleAlpha = 1u;
+const uint kWrinkleDirectional = 2u;
+const uint kWrinkleBump = 3u;
+const uint kWrinkleSphere = 4u;
+const uint kWrinkleIsometric = 5u;
+
+const uint kFoldSteps = 16u;
+
+#ifdef __cplusplus
+static_assert(sizeof(WrinkleJob) == 16 * kWrinkleJobTexels);
+}  // namespace limn::layout
+#endif

@@ -1,0 +1,103 @@
+#include "systems/faces/wrinkle_system.h"
+
+#include "ecs/base/hash.h"
+#include "systems/faces/wrinkle_fold.h"
+#include "systems/faces/wrinkle_measure.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace limn {
+
+namespace {
+
+const MeshData* mesh_of(const MeshInstance& instance, const Assets& assets) {
+    const std::uint32_t index = instance.mesh.index;
+    return index < assets.meshes.size() ? &assets.meshes[index] : nullptr;
+}
+
+const ImageData* map_of(const MeshInstance& instance, const Assets& assets) {
+    const std::uint32_t material = instance.material.index;
+    if (material >= assets.materials.size()) {
+        return nullptr;
+    }
+    const std::uint32_t image = assets.materials[material].wrinkle_texture.image.index;
+    return image < assets.images.size() ? &assets.images[image] : nullptr;
+}
+
+/// Whether it says where and across which direction a vertex wrinkles.
+bool is_used(const VertexRegion& region, const WrinkleSurface& surface, std::size_t vertices) {
+    const bool named =
+        surface.regions.empty() || std::ranges::find(surface.regions, region.name) != surface.regions.end();
+    return named && region.weights.size() == vertices && region.across.size() == vertices;
+}
+
+}  // namespace
+
+std::uint64_t wrinkle_source(
+    const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
+    const MeshData* const mesh = mesh_of(instance, assets);
+    if (mesh == nullptr) {
+        return 0;
+    }
+    std::uint64_t hash = hash_combine(instance.mesh.index, mesh->version);
+    hash = hash_combine(hash, static_cast<std::uint64_t>(surface.weight));
+    const ImageData* const map = map_of(instance, assets);
+    hash = hash_combine(hash, map == nullptr ? kNoAsset : map - assets.images.data());
+    bool any = false;
+    for (std::size_t i = 0; i < mesh->regions.size(); ++i) {
+        if (is_used(mesh->regions[i], surface, mesh->positions.size())) {
+            hash = hash_combine(hash, i);
+            any = true;
+        }
+    }
+    return any ? hash | 1 : 0;
+}
+
+WrinkleState make_wrinkle_state(
+    const WrinkleSurface& surface, const MeshInstance& instance, const Assets& assets) {
+    WrinkleState state;
+    state.source = wrinkle_source(surface, instance, assets);
+    if (state.source == 0) {
+        return state;
+    }
+    const MeshData& mesh = *mesh_of(instance, assets);
+    const std::size_t vertices = mesh.positions.size();
+    std::vector<Vec3> across(vertices, Vec3{0, 0, 0});
+    std::vector<float> strongest(vertices, 0.0f);
+    state.mask.assign(vertices, 0.0f);
+    for (const VertexRegion& region : mesh.regions) {
+        if (!is_used(region, surface, vertices)) {
+            continue;
+        }
+        for (std::size_t v = 0; v < vertices; ++v) {
+            const float weight = region.weights[v];
+            state.mask[v] = std::min(state.mask[v] + std::max(finite_or(weight, 0), 0.0f), 1.0f);
+            if (weight > strongest[v]) {
+                strongest[v] = weight;
+                across[v] = region.across[v];
+            }
+        }
+    }
+    state.rest = make_wrinkle_rest(mesh.positions, mesh.indices, across, surface.weight);
+    if (const ImageData* const map = map_of(instance, assets)) {
+        state.folds = make_fold_table(wrinkle_slopes(*map));
+    }
+    return state;
+}
+
+void prepare_wrinkles(
+    Query<const WrinkleSurface, const MeshInstance> surfaces, Query<const WrinkleState> states,
+    Res<const Assets> assets, Commands commands) {
+    surfaces.each([&](Entity entity, const WrinkleSurface& surface, const MeshInstance& instance) {
+        const WrinkleState* const made = states.find<const WrinkleState>(entity);
+        const std::uint64_t source = wrinkle_source(surface, instance, *assets);
+        if (source == 0 && made != nullptr) {
+            commands.remove<WrinkleState>(entity);
+        } else if (source != 0 && (made == nullptr || made->source != source)) {
+            commands.add(entity, make_wrinkle_state(surface, instance, *assets));
+        }
+    });
+}
+
+}  // namespace limn

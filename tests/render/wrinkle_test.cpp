@@ -1,0 +1,185 @@
+// clang-format off: gcc 12 crashes on component_id<WorldTransform> when the fixture is not the first include
+#include "tests/render/skin_fixture.h"
+// clang-format on
+#include "ecs/components/wrinkle.h"
+#include "systems/faces/wrinkle_fold.h"
+#include "systems/faces/wrinkle_measure.h"
+#include "systems/faces/wrinkle_system.h"
+#include "tests/near.h"
+
+#include <glm/geometric.hpp>
+
+#include <limits>
+#include <vector>
+
+namespace limn::test {
+namespace {
+
+constexpr std::uint8_t kSlopeByte = 128 + 60;  // of a wrinkle map: y of the normal is 60 / 127
+
+/// Skin that a morph target shortens.
+struct WrinkleScene : SkinScene {
+    /// One texel: a slope along v, up the map.
+    ImageId slope_map() {
+        return add(ImageData{
+            .name = "slope", .width = 1, .height = 1, .pixels = {128, kSlopeByte, 240, 255}});
+    }
+    static Vec2 map_slope() { return {0, -60.0f / 112.0f}; }
+
+    Entity skin(MeshData mesh, const WrinkleSurface& surface, float weight) {
+        mesh.regions = {
+            {.name = "all",
+             .weights = std::vector<float>(mesh.positions.size(), 1.0f),
+             .across = std::vector<Vec3>(mesh.positions.size(), Vec3{0, 1, 0})}};
+        const Entity entity = place(add(std::move(mesh)), add(material), {});
+        world.add(entity, Deformed{entity, {}});
+        world.add(entity, MorphWeights{.weights = {weight}, .previous = {weight}});
+        world.add(entity, surface);
+        world.run(prepare_wrinkles);
+        return entity;
+    }
+    /// The square, whose height becomes a share `1 - weight` of what it was.
+    Entity square(const WrinkleSurface& surface, float weight) {
+        MeshData mesh = make_square();
+        MorphTarget& flat = mesh.morphs.emplace_back();
+        flat.name = "flat";
+        for (std::uint32_t v = 0; v < 4; ++v) {
+            flat.vertices.push_back(v);
+            flat.positions.push_back(mesh.positions[v] * Vec3{0, -1, 0});
+        }
+        return skin(std::move(mesh), surface, weight);
+    }
+
+    const RenderView view = look({0, 0, 1}, {0, 0, 0}, 32, 32);
+    Material material = {
+        .base_color = {0.5f, 0.4f, 0.3f, 1}, .wrinkle_texture = {.image = slope_map()}};
+};
+
+/// The factor on the slopes of the map that its normal was drawn with.
+float drawn_factor(const gpu::FloatImage& normal) {
+    const Vec3 n = rgb_at(normal, normal.width / 2, normal.height / 2);
+    return n.y / n.z / -WrinkleScene::map_slope().y;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: strengths are those of the CPU") {
+    Result<oracle::SkinReadback> readback = oracle::SkinReadback::create(device());
+    REQUIRE(readback);
+    Random random(5, 0, 0, 0);
+    for (const WrinkleMethod method :
+         {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha,
+          WrinkleMethod::Directional, WrinkleMethod::Isometric}) {
+        MeshData tube = make_tube(24, 12, 1);
+        add_morphs(tube, 1, 1, 0.03f, random);
+        const Entity entity = skin(
+            std::move(tube), {.method = method, .lambda = 1.1f, .beta = 3, .slack = 0.01f}, 1);
+        const oracle::SkinReadbackVertices found =
+            readback->run(world, std::vector<Entity>{entity})[0];
+        const WrinkleState& state = world.get<WrinkleState>(entity);
+        const WrinkleSurface& surface = world.get<WrinkleSurface>(entity);
+        std::vector<float> triangles(state.rest.across.size());
+        std::vector<float> ratio(found.positions.size());
+        find_compression(state.rest, found.positions, triangles);
+        average_compression(state.rest, triangles, ratio);
+        const int component = method == WrinkleMethod::Sphere        ? 1
+                              : method == WrinkleMethod::Alpha       ? 2
+                              : method == WrinkleMethod::Directional ? 3
+                                                                     : 0;
+        REQUIRE(found.wrinkles.size() == ratio.size());
+        int strong = 0;
+        for (std::size_t v = 0; v < ratio.size(); ++v) {
+            const float strength =
+                method == WrinkleMethod::Isometric
+                    ? fold_strength(state.folds, fold_excess(ratio[v], surface.slack, surface.share))
+                    : std::max(wrinkle_intensity(ratio[v], surface.lambda, surface.beta), 0.0f);
+            Vec4 expected = {0, 0, 0, 0};
+            expected[component] = strength;
+            CHECK(glm::length(found.wrinkles[v] - expected) <= 1e-3f * std::max(strength, 1.0f));
+            strong += strength > 0.1f ? 1 : 0;
+        }
+        CHECK(strong > 3);
+        readback->forget();
+        world.destroy(entity);
+    }
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: slopes are scaled, lifted, or keep the length of skin") {
+    const float ratio = 0.8f * 0.8f;
+    const float intensity = wrinkle_intensity(ratio, 1, 4);
+    CHECK(intensity == near(0.712663));
+
+    const Entity bump = square({.method = WrinkleMethod::Bump, .lambda = 1}, 0.2f);
+    CHECK(drawn_factor(aov(view, "normal")) == near(intensity).epsilon(2e-3));
+    world.destroy(bump);
+
+    // x and y of the unit normal times the intensity, lifted to the sphere.
+    const Entity sphere = square({.method = WrinkleMethod::Sphere, .lambda = 1}, 0.2f);
+    const Vec3 unit = glm::normalize(Vec3(-map_slope(), 1.0f));
+    const float y = intensity * unit.y;
+    CHECK(drawn_factor(aov(view, "normal"))
+          == near(y / std::sqrt(1 - y * y) / -map_slope().y).epsilon(2e-3));
+    world.destroy(sphere);
+
+    // The one slope of the map times the factor is as long as the skin was.
+    square({.method = WrinkleMethod::Isometric, .slack = 0, .share = 1}, 0.2f);
+    const float slope = drawn_factor(aov(view, "normal")) * map_slope().y;
+    CHECK(std::sqrt(1 + slope * slope) == near(1 / 0.8).epsilon(3e-3));
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: shading darkens slopes, whatever the light") {
+    const float intensity = wrinkle_intensity(0.64f, 1, 4);
+    const auto darkening = [&](WrinkleMethod method, bool upside_down) {
+        material.wrinkle_texture.image =
+            upside_down ? add(ImageData{
+                              .name = "down",
+                              .width = 1,
+                              .height = 1,
+                              .pixels = {128, 256 - kSlopeByte, 240, 255}})
+                        : slope_map();
+        const Entity entity = square({.method = method, .lambda = 1}, 0.2f);
+        const gpu::FloatImage albedo = aov(view, "albedo");
+        world.destroy(entity);
+        return rgb_at(albedo, 16, 16).x / 0.5f;
+    };
+    const float full = 1 - intensity * -map_slope().y;
+    CHECK(darkening(WrinkleMethod::Alpha, false) == near(full).epsilon(4e-3));
+    CHECK(darkening(WrinkleMethod::Alpha, true) == near(full).epsilon(4e-3));
+    CHECK(darkening(WrinkleMethod::Directional, true) == near(full).epsilon(4e-3));
+    CHECK(darkening(WrinkleMethod::Directional, false) == near(1).epsilon(4e-3));
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: at rest, stretched, or without a method skin is as without") {
+    shine(DirectionalLight{}, look_at({1, 2, 3}, {0, 0, 0}));
+    const auto pixels = [&](const WrinkleSurface& surface, float weight, bool with) {
+        const Entity entity = square(surface, weight);
+        if (!with) {
+            world.remove<WrinkleSurface>(entity);
+        }
+        std::vector<float> result = radiance(view).pixels;
+        world.destroy(entity);
+        return result;
+    };
+    for (const WrinkleMethod method :
+         {WrinkleMethod::Bump, WrinkleMethod::Sphere, WrinkleMethod::Alpha, WrinkleMethod::Isometric}) {
+        CHECK(pixels({.method = method}, 0, true) == pixels({.method = method}, 0, false));
+        CHECK(pixels({.method = method}, -0.3f, true) == pixels({.method = method}, -0.3f, false));
+        CHECK(pixels({.method = method}, 0.3f, true) != pixels({.method = method}, 0.3f, false));
+    }
+    CHECK(pixels({.method = WrinkleMethod::None}, 0.3f, true)
+          == pixels({.method = WrinkleMethod::None}, 0.3f, false));
+}
+
+TEST_CASE_FIXTURE(WrinkleScene, "wrinkle pass: across the fold only; along it nothing happens") {
+    MeshData mesh = make_square();
+    MorphTarget& narrow = mesh.morphs.emplace_back();
+    narrow.name = "narrow";
+    for (std::uint32_t v = 0; v < 4; ++v) {
+        narrow.vertices.push_back(v);
+        narrow.positions.push_back(mesh.positions[v] * Vec3{-1, 0, 0});
+    }
+    skin(std::move(mesh), {.method = WrinkleMethod::Bump}, 0.3f);
+    CHECK(drawn_factor(aov(view, "normal")) == 0);
+}
+
+}  // namespace limn::test

@@ -1,0 +1,78 @@
+#include "systems/faces/wrinkle_system.h"
+
+#include "ecs/world.h"
+#include "tests/near.h"
+
+#include <doctest/doctest.h>
+
+using namespace limn;
+using limn::test::near;
+
+namespace {
+
+/// Two triangles with a region "brow" over the first three vertices and "cheek" over all.
+Assets two_regions() {
+    Assets assets;
+    MeshData& mesh = assets.meshes.emplace_back();
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    mesh.indices = {0, 1, 2, 2, 1, 3};
+    mesh.regions.push_back(
+        {.name = "brow",
+         .weights = {1, 0.8f, 0.7f, 0},
+         .across = std::vector<Vec3>(4, Vec3{1, 0, 0})});
+    mesh.regions.push_back(
+        {.name = "cheek",
+         .weights = {0, 0.5f, 0.4f, 0.6f},
+         .across = std::vector<Vec3>(4, Vec3{0, 1, 0})});
+    assets.materials.emplace_back();
+    return assets;
+}
+
+constexpr MeshInstance kInstance = {.mesh = {0}, .material = {0}};
+
+}  // namespace
+
+TEST_CASE("wrinkle system: a mask is the sum of the regions, and the stronger gives the direction") {
+    const Assets assets = two_regions();
+    const WrinkleState all = make_wrinkle_state({}, kInstance, assets);
+    CHECK(all.mask == std::vector<float>{1, 1, 1, 0.6f});
+    const WrinkleState brow = make_wrinkle_state({.regions = {"brow"}}, kInstance, assets);
+    CHECK(brow.mask == std::vector<float>{1, 0.8f, 0.7f, 0});
+    CHECK(brow.rest.across[0] == Vec2{1, 0});
+    const WrinkleState cheek = make_wrinkle_state({.regions = {"cheek"}}, kInstance, assets);
+    CHECK(cheek.rest.across[0] == Vec2{0, 1});
+}
+
+TEST_CASE("wrinkle system: a state follows its mesh, its regions and what is asked for") {
+    World world;
+    world.insert_resource(two_regions());
+    const Entity entity = world.create(WrinkleSurface{}, kInstance);
+    world.run(prepare_wrinkles);
+    REQUIRE(world.find<WrinkleState>(entity) != nullptr);
+    const std::uint64_t first = world.find<WrinkleState>(entity)->source;
+    world.run(prepare_wrinkles);
+    CHECK(world.find<WrinkleState>(entity)->source == first);
+
+    world.find<WrinkleSurface>(entity)->regions = {"cheek"};
+    world.run(prepare_wrinkles);
+    CHECK(world.find<WrinkleState>(entity)->mask[0] == 0);
+
+    ++world.find_resource<Assets>()->meshes[0].version;
+    world.find_resource<Assets>()->meshes[0].regions[1].weights[0] = 0.25f;
+    world.run(prepare_wrinkles);
+    CHECK(world.find<WrinkleState>(entity)->mask[0] == 0.25f);
+
+    world.find<WrinkleSurface>(entity)->regions = {"nose"};
+    world.run(prepare_wrinkles);
+    CHECK(world.find<WrinkleState>(entity) == nullptr);
+}
+
+TEST_CASE("wrinkle system: regions of the wrong length and instances without a mesh have no state") {
+    Assets assets = two_regions();
+    CHECK(wrinkle_source({}, {.mesh = {7}, .material = {0}}, assets) == 0);
+    CHECK(wrinkle_source({}, {.mesh = {0}, .material = {9}}, assets) != 0);
+    assets.meshes[0].regions[0].weights.pop_back();
+    assets.meshes[0].regions[1].across.clear();
+    CHECK(wrinkle_source({}, kInstance, assets) == 0);
+    CHECK(make_wrinkle_state({}, kInstance, assets).rest.first.empty());
+}
