@@ -1,5 +1,6 @@
 #include "content/load/component_json.h"
 
+#include "content/load/color_names.h"
 #include "content/load/level_hints.h"
 #include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
@@ -277,24 +278,26 @@ struct Reader {
     }
 
     static std::string expected_color(std::span<const float> floats) {
-        return floats.size() == 4 ? R"([r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"
-                                  : R"([r, g, b] or "#rrggbb")";
+        return floats.size() == 4
+                   ? R"([r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"
+                   : R"([r, g, b], "#rrggbb" or a name such as "orange")";
     }
 
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
         const std::string& text = json.text;
         const std::size_t digits = text.size() - 1;
-        std::uint32_t code = 0;
+        const std::optional<std::uint32_t> named = find_color(text);
+        std::uint32_t code = named.value_or(0);
         bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
         if (good) {
             const char* const end = text.data() + text.size();
             const std::from_chars_result parsed = std::from_chars(text.data() + 1, end, code, 16);
             good = parsed.ec == std::errc() && parsed.ptr == end;
         }
-        if (!good) {
-            return unexpected(json, at, expected_color(floats));
+        if (!good && !named) {
+            return unexpected(json, at, expected_color(floats) + did_you_mean(text, color_names()));
         }
-        if (digits == 8) {
+        if (!named && digits == 8) {
             floats[3] = static_cast<float>(code & 0xff) / 255.0f;
             code >>= 8;
         }

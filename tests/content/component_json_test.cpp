@@ -1,3 +1,4 @@
+#include "content/load/color_names.h"
 #include "content/load/component_json.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/all.h"
@@ -10,6 +11,7 @@
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 using namespace limn;
@@ -227,6 +230,35 @@ TEST_CASE("component json: a color may be written in sRGB, and its alpha left ou
     CHECK(all.glass == Vec4(0, 1, 0, 128.0f / 255.0f));
     CHECK(read<Everything>(R"({"glass": [0, 0, 1]})").glass == Vec4(0, 0, 1, 0.5f));
     CHECK(read<Everything>(R"({"glass": "#0000ff"})").glass == Vec4(0, 0, 1, 0.5f));
+}
+
+TEST_CASE("component json: a color may be named as in CSS, which keeps the alpha") {
+    const auto code_of = [](std::string_view name) { return find_color(name).value_or(1); };
+    CHECK(code_of("aliceblue") == 0xf0f8ff);  // the first and the last
+    CHECK(code_of("yellowgreen") == 0x9acd32);
+    CHECK(code_of("gray") == 0x808080);  // not that of X11
+    CHECK(code_of("green") == 0x008000);
+    CHECK(code_of("rebeccapurple") == 0x663399);
+    CHECK_FALSE(find_color("Orange"));
+    CHECK_FALSE(find_color(""));
+    const std::vector<std::string_view> names = color_names();
+    CHECK(names.size() == 148);
+    CHECK(std::is_sorted(names.begin(), names.end()));
+    for (const std::string_view name : names) {
+        CAPTURE(name);
+        const auto named =
+            read<Everything>(fmt::format(R"({{"tint": "{0}", "glass": "{0}"}})", name));
+        const std::string code = fmt::format("#{:06x}", code_of(name));
+        const auto coded =
+            read<Everything>(fmt::format(R"({{"tint": "{0}", "glass": "{0}"}})", code));
+        CHECK(named.tint == coded.tint);
+        CHECK(named.glass == coded.glass);
+        CHECK(named.glass.w == 0.5f);
+    }
+    CHECK(
+        error_of<Everything>(R"({"tint": "ornage"})")
+        == "t.json:1:10: thing.tint: found the string \"ornage\", expected [r, g, b], "
+           "\"#rrggbb\" or a name such as \"orange\" (did you mean orange?)");
 }
 
 TEST_CASE("component json: angles turn about y, then x, then z") {

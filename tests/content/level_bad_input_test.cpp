@@ -88,10 +88,10 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
          R"(("intensity" is a field of particle_light or point_light or spot_light))"},
         {R"({"entities": [{"point_light": {"fov_y": 1}}]})", R"(("fov_y" is a field of camera))"},
         {R"({"resources": {"ev": 1}})", R"(("ev" is a field of exposure))"},
-        {R"({"entities": [{"point_light": {"color": "orange"}}]})",
-         R"(found the string "orange", expected [r, g, b] or "#rrggbb")"},
+        {R"({"entities": [{"point_light": {"color": "ornage"}}]})",
+         R"(expected [r, g, b], "#rrggbb" or a name such as "orange" (did you mean orange?))"},
         {R"({"materials": {"m": {"base_color": [1, 1]}}})",
-         R"(expected [r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"},
+         R"(expected [r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"},
         {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
          R"(expected the name of a made image in "images" (for a file write )"
          R"("base_color_texture": {"image": "leaf"}, and "leaf": {"file": "leaf.png"} in "images"))"},
