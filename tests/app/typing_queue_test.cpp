@@ -72,6 +72,8 @@ TEST_CASE("typing queue: what is typed after Backspace or Enter does not overtak
             queue, {press('5'), text('5'), release('5'), press(kBack), release(kBack), press('3'),
                     text('3'), release('3'), press(kEnter), release(kEnter)})
         == Frames{"+5'5-5+Back", "-Back+3'3-3+Enter", "-Enter"});
+    // Nor while it is still down.
+    CHECK(frames_of(queue, {press(kBack), press('3'), text('3')}) == Frames{"+Back", "+3'3"});
 }
 
 TEST_CASE("typing queue: plain text does not wait, however much is typed in a frame") {
