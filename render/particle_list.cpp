@@ -22,7 +22,7 @@ Vec4 shadow_texel(const ParticleLook& look) {
 
 }  // namespace
 
-LookRecord make_look_record(const ParticleLook& look, int layer) {
+LookRecord make_look_record(const ParticleLook& look, int layer, int motion_layer) {
     LookRecord record{};
     record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
     record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
@@ -38,6 +38,7 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
         static_cast<float>(place.wave), place.base, place.amplitude, place.phase};
     record[layout::kLookMore + 3] = {place.frequency, look.color_spread};
     record[layout::kLookShadow] = shadow_texel(look);
+    record[layout::kLookMotion] = {static_cast<float>(motion_layer), look.motion_strength, 0, 0};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =

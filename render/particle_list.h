@@ -20,8 +20,10 @@ static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
 
-/// `layer`: of the texture array that its image is in; -1: a soft disc.
-[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
+/// `layer`: of the texture array that its image is in; -1: a soft disc. `motion_layer`: likewise of
+/// its motion map; -1: none.
+[[nodiscard]] LookRecord
+make_look_record(const ParticleLook& look, int layer, int motion_layer = -1);
 
 /// Appends the particles that exist `back` seconds before the end of the step, where they are then.
 /// Streaks show velocities relative to `observer` [m/s].
@@ -33,9 +35,17 @@ void append_particles(
 /// streak.
 [[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
 
-/// Particles that follow one another in the order and have images of one texture array.
+/// Where the image of a look and its motion map are, in ImagePool; 0: it has none.
+struct ParticleArrays {
+    std::uint32_t images = 0;
+    std::uint32_t motions = 0;
+
+    bool operator==(const ParticleArrays&) const = default;
+};
+
+/// Particles that follow one another in the order and have images of the same texture arrays.
 struct ParticleRun {
-    std::uint32_t array = 0;  ///< of ImagePool
+    ParticleArrays arrays{};
     int first = 0;
     int count = 0;
 };
@@ -45,7 +55,8 @@ struct ParticleRun {
 struct ParticleSprites {
     std::span<const ParticleInstance> instances;
     std::span<const LookRecord> looks;
-    std::span<const std::uint32_t> arrays;  ///< of each look's image, in ImagePool
+    std::span<const ParticleArrays> arrays;  ///< of each look
+    bool motions = false;                    ///< some look has a motion map
     const BufferTexture* look_texels = nullptr;
 };
 

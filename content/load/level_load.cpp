@@ -36,7 +36,11 @@ constexpr LevelKey kLevelKeys[] = {
     {"bindings", JsonKind::Object},  {"shows", JsonKind::Array},
     {"$schema", JsonKind::String},  // for editors
 };
-constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm"};
+constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm", ".motion"};
+
+std::span<const char* const> pattern_maps(const PatternKind& kind) {
+    return std::span(kPatternMaps).first(kind.has_motion ? 4 : 3);
+}
 
 using Names = std::unordered_map<std::string, std::uint32_t>;
 
@@ -222,7 +226,7 @@ class LevelParser {
             image.parameters = LIMN_TRY(
                 read_component(without(json, {"make"}), *image.pattern->parameters, at, {}));
             patterns_[member.key] = image.index;
-            for (const char* const map : kPatternMaps) {
+            for (const char* const map : pattern_maps(*image.pattern)) {
                 const std::string name = member.key + map;
                 images_[name] = static_cast<std::uint32_t>(level_.assets.images.size());
                 level_.assets.images.emplace_back().name = name;
@@ -476,7 +480,8 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));
-    const auto pixels = static_cast<std::uint64_t>(3.0 * side * side);
+    const auto maps_of_it = pattern_maps(*image.pattern).size();
+    const auto pixels = static_cast<std::uint64_t>(static_cast<double>(maps_of_it) * side * side);
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
@@ -485,7 +490,8 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     pixels_left -= pixels;
     PatternMaps maps = made.pattern(*image.pattern, image.parameters);
     std::size_t index = image.index;
-    for (ImageData* const map : {&maps.base_color, &maps.normal, &maps.orm}) {
+    ImageData* const made_maps[] = {&maps.base_color, &maps.normal, &maps.orm, &maps.motion};
+    for (ImageData* const map : std::span(made_maps).first(maps_of_it)) {
         map->name = level.assets.images[index].name;
         level.assets.images[index++] = std::move(*map);
     }

@@ -356,11 +356,11 @@ PatternMaps make_asphalt(const AsphaltPattern& pattern) {
 namespace {
 
 template <typename Pattern, PatternMaps (*make)(const Pattern&)>
-PatternKind pattern_kind(const char* name, const char* doc) {
+PatternKind pattern_kind(const char* name, const char* doc, bool has_motion = false) {
     const auto call = [](const void* parameters) {
         return make(*static_cast<const Pattern*>(parameters));
     };
-    return {name, doc, &component_info<Pattern>(), call};
+    return {name, doc, &component_info<Pattern>(), call, has_motion};
 }
 
 }  // namespace
@@ -378,9 +378,10 @@ std::span<const PatternKind> pattern_kinds() {
             "confetti", "a flipbook of cut paper in bright colors"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<FirePattern, make_fire>(
-            "fire", "a flipbook of fire from a simulation, in color"),
+            "fire", "a flipbook of fire from a simulation, in color, with its motion", true),
         pattern_kind<FireballPattern, make_fireball>(
-            "fireball", "a flipbook of a burst of fire that turns to soot, in color"),
+            "fireball",
+            "a flipbook of a burst of fire that turns to soot, in color, with its motion", true),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),

@@ -309,6 +309,8 @@ struct ParticleLook {
     std::uint32_t rows = 1;
     ParticleFrames frames = ParticleFrames::Play;
     float frame_rate = 0;
+    ImageId motion;
+    float motion_strength = 0.25f;
     float size = 0.1f;
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
@@ -347,6 +349,14 @@ LIMN_FIELDS(ParticleLook) {
         frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
         .values = "play shuffle pick");
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
+    LIMN_FIELD(
+        motion,
+        "of a flipbook: how far what is seen moves until the next frame, an image of the same "
+        "frames that is not sRGB: red to the right, green downward, 128 of 255 at rest; none: "
+        "frames cross-fade");
+    LIMN_FIELD(
+        motion_strength, "how far 255 in that image means, as a share of a frame; 1 is 0", "", 0,
+        1);
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");

@@ -26,6 +26,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kImagesUnit = 0;
+constexpr unsigned kMotionsUnit = 1;
 constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
@@ -213,14 +214,19 @@ std::uint32_t ParticleEffect::add_look(
     const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place) {
     const bool has_image = frame.assets->images.size() > look.image.index;
     const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
-    looks.push_back(make_look_record(look, has_image ? static_cast<int>(image.layer) : -1));
-    arrays.push_back(image.array);
+    const ImageLayer motion = frame.materials->images().find(look.motion);
+    const bool has_motion = has_image && motion.array != 0;
+    looks.push_back(make_look_record(
+        look, has_image ? static_cast<int>(image.layer) : -1,
+        has_motion ? static_cast<int>(motion.layer) : -1));
+    arrays.push_back({.images = image.array, .motions = has_motion ? motion.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
     halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
     has_halves = has_halves || halves.back() != 0;
     lit = lit || look.lit > 0;
     images = images || has_image;
+    motions = motions || has_motion;
     return static_cast<std::uint32_t>(looks.size() - 1);
 }
 
@@ -230,6 +236,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
         has_ribbons = true;
         const std::uint32_t index = add_look(frame, look);
         looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
         extents[index] = {};
         for (const std::uint32_t before : ribbons.segments) {
             const Vec3 middle =
@@ -277,6 +284,7 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
         }
         looks.pop_back();
         arrays.pop_back();
+        halves.pop_back();
         places.pop_back();
         extents.pop_back();
         return index - 1;
@@ -331,7 +339,7 @@ void ParticleEffect::collect(FrameData& frame) {
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
-    lit = images = has_ribbons = has_billboards = has_halves = false;
+    lit = images = motions = has_ribbons = has_billboards = has_halves = false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -393,6 +401,7 @@ void ParticleEffect::collect(FrameData& frame) {
     sprites.instances = instances;
     sprites.looks = looks;
     sprites.arrays = arrays;
+    sprites.motions = motions;
     sprites.look_texels = &look_texels;
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
@@ -445,6 +454,14 @@ std::size_t ParticleEffect::middle_half() const {
     return 0;
 }
 
+/// Discs fit any arrays.
+bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
+    const bool is_disc = looks[look][3].w < 0;
+    const bool is_still = looks[look][layout::kLookMotion].x < 0;
+    return (is_disc || run.arrays.images == arrays[look].images)
+           && (is_still || run.arrays.motions == arrays[look].motions);
+}
+
 /// Those of this resolution in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
     bool half, std::size_t first, std::size_t last, ViewParticles& seen) {
@@ -454,11 +471,9 @@ void ParticleEffect::append_runs(
         if (visible[i] == 0 || (halves[look] != 0) != half) {
             continue;
         }
-        // Discs fit any array.
-        const bool is_disc = looks[look][3].w < 0;
-        if (seen.runs.size() == first_run || (!is_disc && seen.runs.back().array != arrays[look])) {
+        if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
-                {.array = arrays[look],
+                {.arrays = arrays[look],
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
@@ -519,6 +534,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     variant.add_if(clipped, "CLIPPED");
     variant.add_if(lit, "LIT");
     variant.add_if(images, "IMAGES");
+    variant.add_if(motions, "MOTION");
     variant.add_if(has_ribbons, "RIBBONS");
     variant.add_if(has_billboards, "BILLBOARDS");
     const gpu::Program* const program = programs.get(variant);
@@ -538,9 +554,13 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
-    const auto bind_images = [&](std::uint32_t array) {
+    const auto bind_images = [&](const ParticleArrays& its) {
+        const ImagePool& pool = view.frame->materials->images();
         if (images) {
-            device.bind_texture(kImagesUnit, view.frame->materials->images().array(array));
+            device.bind_texture(kImagesUnit, pool.array(its.images));
+        }
+        if (motions) {
+            device.bind_texture(kMotionsUnit, pool.array(its.motions));
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
@@ -550,7 +570,7 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
                           : all.subspan(seen.half_end);
     for (const ParticleRun& run : runs) {
         program->set("first", run.first);
-        bind_images(run.array);
+        bind_images(run.arrays);
         device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
     }
     program->set("first", 0);

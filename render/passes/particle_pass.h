@@ -89,8 +89,8 @@ struct ParticleEffect {
 
     ProgramVariants programs;
     std::vector<LookRecord> looks = {};
-    std::vector<std::uint32_t> arrays = {};  ///< of each look's image
-    std::vector<char> halves = {};           ///< of each look: drawn at half the resolution
+    std::vector<ParticleArrays> arrays = {};  ///< of each look
+    std::vector<char> halves = {};            ///< of each look: drawn at half the resolution
     RibbonList ribbons = {};
     BillboardList billboards = {};
     std::vector<LookExtent> extents = {};  ///< of each look
@@ -102,6 +102,7 @@ struct ParticleEffect {
     GpuParticlePools gpu = {};  ///< drawn after the others
     bool lit = false;
     bool images = false;
+    bool motions = false;
     bool has_ribbons = false;
     bool has_billboards = false;
     bool has_halves = false;
@@ -123,6 +124,7 @@ struct ParticleEffect {
     void collect_ribbons(const FrameData& frame, float back, float step);
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
+    [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
     void append_runs(bool half, std::size_t first, std::size_t last, ViewParticles& seen);
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
 };

@@ -16,6 +16,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kImagesUnit = 0;
+constexpr unsigned kMotionsUnit = 1;
 constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kMapsUnit = 30;
@@ -161,9 +162,9 @@ void ParticleShadowEffect::request_views(FrameData& frame) {
         if (!can_cast(look) || ball.radius <= 0 || !std::isfinite(sum)) {
             continue;
         }
-        if (runs.empty() || runs.back().array != sprites->arrays[number]) {
+        if (runs.empty() || runs.back().arrays != sprites->arrays[number]) {
             const int first = static_cast<int>(casters.size());
-            runs.push_back({.array = sprites->arrays[number], .first = first, .count = 0});
+            runs.push_back({.arrays = sprites->arrays[number], .first = first, .count = 0});
         }
         ++runs.back().count;
         casters.push_back(instance);
@@ -192,7 +193,9 @@ void ParticleShadowEffect::draw_shared(FrameGraph& graph, const FrameData& frame
         target_level(cleared(target), 0, 2)};
     graph.add_pass("particle shadows", {}, writes, [this, &frame](PassContext& context) {
         Variant variant;
+        const auto& sprites = frame.data.get<ParticleSprites>();
         variant.add_if(!frame.assets->images.empty(), "IMAGES");
+        variant.add_if(sprites.motions, "MOTION");
         const gpu::Program* const program = programs.get(variant);
         if (program == nullptr || view.record[4].x < 0) {
             return;
@@ -206,11 +209,15 @@ void ParticleShadowEffect::draw_shared(FrameGraph& graph, const FrameData& frame
         program->set("depth_scale", view.depth_scale);
         texels.bind(device, kParticlesUnit);
         record.bind(device, kRecordUnit);
-        frame.data.get<ParticleSprites>().look_texels->bind(device, kLooksUnit);
+        sprites.look_texels->bind(device, kLooksUnit);
         for (const ParticleRun& run : runs) {
             program->set("first", run.first);
+            const ImagePool& pool = frame.materials->images();
             if (!frame.assets->images.empty()) {
-                device.bind_texture(kImagesUnit, frame.materials->images().array(run.array));
+                device.bind_texture(kImagesUnit, pool.array(run.arrays.images));
+            }
+            if (sprites.motions) {
+                device.bind_texture(kMotionsUnit, pool.array(run.arrays.motions));
             }
             device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
         }

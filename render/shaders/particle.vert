@@ -25,7 +25,7 @@ layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multipli
 layout(location = 1) out vec4 light;                   // radiance of the middle, premultiplied by a: its opacity
 layout(location = 2) flat out vec4 frames;             // texture coordinates: scale xy, offset of the frame zw
 layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
-layout(location = 4) flat out vec2 next_frame;         // its offset
+layout(location = 4) flat out vec4 next_frame;         // its offset; layer of the motion map, its full value
 layout(location = 5) out float distance_ahead;         // along the view axis [m]
 
 const int kFacingVelocity = 1;
@@ -258,7 +258,7 @@ void main() {
 #endif
     Flipbook flipbook = flipbook_at(shown, book, int(more.x));
     frames = flipbook.frames;
-    next_frame = flipbook.next;
+    next_frame = vec4(flipbook.next, look_texel(look, kLookMotion).xy);
     blend = vec4(glow.z, streak.z, flipbook.progress, book.w);
     // Too small to draw, transparent or dead.
     bool is_gone = size <= 0.0 || color.a <= 0.0 || p.is_dead;

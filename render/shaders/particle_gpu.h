@@ -46,7 +46,9 @@ const uint kLookColors = 12u;
 const uint kLookMore = 44u;
 //  48  factors on the optical depth of its shadow for red, green and blue; factor on the opacity, 0: casts none
 const uint kLookShadow = 48u;
-const uint kLookTexels = 49u;
+//  49  layer of the motion map, -1: none; what its full value means, as a share of a frame
+const uint kLookMotion = 49u;
+const uint kLookTexels = 50u;
 
 // ParticleShadowRecord: rows that map the world to the opacity maps (lib/particle_shadow.glsl).
 //   0, 1, 3  texture coordinates s and t, as rows 0 and 1 divided by row 3

@@ -13,6 +13,7 @@ layout(location = 1) flat out vec4 slab;  // opacity, depth, thickness (shares o
 layout(location = 2) flat out vec4 frames;
 layout(location = 3) flat out vec3 next_frame;  // its offset; layer of the image
 layout(location = 4) flat out vec3 tint;
+layout(location = 5) flat out vec2 motion;  // layer of the motion map, its full value
 
 void main() {
     Particle p = read_particle(first + gl_InstanceID);
@@ -34,6 +35,7 @@ void main() {
     frames = flipbook.frames;
     next_frame = vec3(flipbook.next, book.w);
     tint = opacity.rgb;
+    motion = look_texel(p.look, kLookMotion).xy;
     if (size <= 0.0 || slab.x <= 0.0 || p.is_dead) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }
