@@ -31,9 +31,15 @@ bool covers(const FurrowTriangle& triangle, const Vec2& p) {
     return true;
 }
 
+/// `i` within an image that repeats; rarely more than one step away.
 int wrapped(int i, int size) {
-    const int rest = i % size;
-    return rest < 0 ? rest + size : rest;
+    while (i < 0) {
+        i += size;
+    }
+    while (i >= size) {
+        i -= size;
+    }
+    return i;
 }
 
 /// The image that furrows are drawn on.
@@ -142,6 +148,7 @@ void draw(
     const float line = 0.5f * shape.width + 0.5f;
     const float owned = std::max(0.5f * shape.width, 0.5f);
     const float reach = std::max(std::max(band, line), owned);
+    const float reach2 = reach * reach;
     const float band2 = band * band;
     const float line2 = line * line;
     const float owned2 = owned * owned;
@@ -155,7 +162,7 @@ void draw(
                 std::clamp(offset.x * direction.x + offset.y * direction.y, 0.0f, length);
             const Vec2 away = offset - direction * along;
             const float distance2 = away.x * away.x + away.y * away.y;
-            if (distance2 > reach * reach) {
+            if (distance2 > reach2) {
                 continue;
             }
             const int index = canvas.pixel({x, y});
@@ -163,12 +170,9 @@ void draw(
                 continue;
             }
             const auto pixel = static_cast<std::size_t>(index);
-            if (distance2 <= band2) {
-                canvas.drawing.cells[pixel] |= kFurrowBand;
-            }
-            if (distance2 <= owned2) {
-                canvas.own({x, y}, furrow);
-            }
+            std::uint32_t& cell = canvas.drawing.cells[pixel];
+            cell |= distance2 <= band2 ? kFurrowBand : 0;
+            cell |= distance2 <= owned2 && (cell & ~kFurrowBand) == 0 ? furrow | kFurrowBand : 0;
             if (distance2 < line2 && canvas.cover[pixel] >= 0) {
                 const float distance =
                     distance2 > 1e-12f ? distance2 * repeatable_inverse_root(distance2) : 0.0f;

@@ -1,5 +1,6 @@
 #include "content/bake/furrow_trace.h"
 #include "ecs/base/rng.h"
+#include "tests/content/furrow_shapes.h"
 #include "tests/near.h"
 
 #include <doctest/doctest.h>
@@ -14,24 +15,6 @@
 using namespace limn;
 
 namespace {
-
-/// A rectangle of pixels with constant fields.
-FurrowMap make_flat_map(IVec2 size, const Vec2& first, const Vec2& second = {1, 0}) {
-    FurrowMap map;
-    map.size = size;
-    FurrowTriangle triangle = {};
-    triangle.field[0] = first;
-    triangle.field[1] = second;
-    triangle.normal = {0, 0, 1};
-    const Vec2 s(size);
-    for (const bool lower : {false, true}) {
-        triangle.corner[0] = {0, 0};
-        triangle.corner[1] = lower ? s : Vec2(s.x, 0);
-        triangle.corner[2] = lower ? Vec2(0, s.y) : s;
-        map.triangles.push_back(triangle);
-    }
-    return map;
-}
 
 FurrowStyle make_straight_style() {
     FurrowStyle style;
@@ -104,7 +87,7 @@ TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments
     for (const auto& [x, segments, length] :
          {std::tuple{0.001f, 30, 120.0f}, std::tuple{0.5f, 26, 117.0f},
           std::tuple{1.0f, 21, 105.0f}, std::tuple{1.5f, 16, 88.0f}, std::tuple{2.0f, 11, 66.0f}}) {
-        const FurrowMap map = make_flat_map({200, 40}, {x, 0});
+        const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
         const FurrowDrawing drawing = trace_half(map, style, {20.5f, 20.5f});
         CHECK(drawing.segments.size() == static_cast<std::size_t>(segments));
         CHECK(length_of(drawing) == test::near(length).epsilon(1e-3));
@@ -116,7 +99,7 @@ TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments
 }
 
 TEST_CASE("furrow trace: a wall 12 px ahead ends a furrow there, in its third segment") {
-    const FurrowMap map = make_flat_map({100, 40}, {1, 0});
+    const FurrowMap map = test::make_flat_furrow_map({100, 40}, {1, 0});
     auto cover = cover_furrow_map(map);
     FurrowDrawing drawing = make_furrow_drawing(map);
     for (std::size_t y = 0; y < 40; ++y) {
@@ -136,7 +119,7 @@ TEST_CASE("furrow trace: a wall 12 px ahead ends a furrow there, in its third se
 }
 
 TEST_CASE("furrow trace: the shortest limit met on the way counts") {
-    FurrowMap map = make_flat_map({300, 40}, {0.05f, 0});
+    FurrowMap map = test::make_flat_furrow_map({300, 40}, {0.05f, 0});
     FurrowTriangle strong = map.triangles[0];
     strong.field[0] = {2, 0};
     strong.corner[0] = {24, 0};
@@ -149,7 +132,7 @@ TEST_CASE("furrow trace: the shortest limit met on the way counts") {
 }
 
 TEST_CASE("furrow trace: where the field is zero a furrow is one point of the band") {
-    const FurrowMap map = make_flat_map({20, 20}, {0, 0});
+    const FurrowMap map = test::make_flat_furrow_map({20, 20}, {0, 0});
     const FurrowDrawing drawing = trace_half(map, {}, {10.5f, 10.5f});
     CHECK(drawing.segments.empty());
     CHECK(drawing.cells[10 * 20 + 10] == kFurrowBand);
@@ -157,7 +140,7 @@ TEST_CASE("furrow trace: where the field is zero a furrow is one point of the ba
 }
 
 TEST_CASE("furrow trace: segments turn at random by up to the angle, evenly to both sides") {
-    const FurrowMap map = make_flat_map({400, 400}, {1, 0});
+    const FurrowMap map = test::make_flat_furrow_map({400, 400}, {1, 0});
     FurrowStyle style;
     double sum = 0;
     double square_sum = 0;
@@ -192,7 +175,8 @@ TEST_CASE("furrow trace: furrows of one field never cross, they end on each othe
     for (int run = 0; run < 4; ++run) {
         const float angle = random.uniform(0, 2 * kPi);
         const float x = random.uniform(0.4f, 2.0f);
-        const FurrowMap map = make_flat_map({160, 160}, x * Vec2(std::cos(angle), std::sin(angle)));
+        const FurrowMap map =
+            test::make_flat_furrow_map({160, 160}, x * Vec2(std::cos(angle), std::sin(angle)));
         FurrowStyle style;
         style.seed = run;
         const FurrowDrawing drawing = trace_all(map, style);
@@ -217,7 +201,7 @@ TEST_CASE("furrow trace: furrows of one field never cross, they end on each othe
 
 TEST_CASE("furrow trace: afterwards every pixel of the surface is in a band, and none beyond it is "
           "drawn on") {
-    FurrowMap map = make_flat_map({120, 120}, {0.8f, 0.3f});
+    FurrowMap map = test::make_flat_furrow_map({120, 120}, {0.8f, 0.3f});
     map.triangles.resize(1);  // the upper right half
     const auto cover = cover_furrow_map(map);
     const FurrowDrawing drawing = trace_furrows(map, cover, {}, 0);
@@ -234,7 +218,7 @@ TEST_CASE("furrow trace: afterwards every pixel of the surface is in a band, and
 }
 
 TEST_CASE("furrow trace: no furrow starts within half the band of an earlier one") {
-    const FurrowMap map = make_flat_map({200, 200}, {1.1f, -0.4f});
+    const FurrowMap map = test::make_flat_furrow_map({200, 200}, {1.1f, -0.4f});
     const FurrowDrawing drawing = trace_all(map, {});
     std::map<std::uint32_t, std::size_t> first;  // segment of each furrow
     for (std::size_t i = 0; i < drawing.segments.size(); ++i) {
@@ -255,14 +239,15 @@ TEST_CASE("furrow trace: no furrow starts within half the band of an earlier one
 TEST_CASE("furrow trace: stronger fields have fewer, sparser furrows") {
     std::size_t before = SIZE_MAX;
     for (const float x : {0.5f, 1.0f, 1.5f, 2.0f}) {
-        const std::size_t furrows = count_furrows(trace_all(make_flat_map({256, 256}, {x, 0}), {}));
+        const std::size_t furrows =
+            count_furrows(trace_all(test::make_flat_furrow_map({256, 256}, {x, 0}), {}));
         CHECK(furrows < before);
         before = furrows;
     }
 }
 
 TEST_CASE("furrow trace: the same seed gives the same furrows, another seed others") {
-    const FurrowMap map = make_flat_map({100, 100}, {1, 0.5f});
+    const FurrowMap map = test::make_flat_furrow_map({100, 100}, {1, 0.5f});
     FurrowStyle style;
     const FurrowDrawing once = trace_all(map, style);
     CHECK(trace_all(map, style).cells == once.cells);
@@ -272,7 +257,7 @@ TEST_CASE("furrow trace: the same seed gives the same furrows, another seed othe
 }
 
 TEST_CASE("furrow trace: furrows pass over the border of an image that repeats") {
-    FurrowMap map = make_flat_map({64, 48}, {0.995f, 0.0995f});
+    FurrowMap map = test::make_flat_furrow_map({64, 48}, {0.995f, 0.0995f});
     map.wrap_s = true;
     const FurrowDrawing drawing = trace_half(map, make_straight_style(), {50.5f, 20.5f});
     CHECK(drawing.segments.size() == 21);
@@ -283,7 +268,7 @@ TEST_CASE("furrow trace: furrows pass over the border of an image that repeats")
 
 TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
     for (const float x : {0.3f, 0.7f, 1.0f, 1.6f}) {
-        const FurrowMap map = make_flat_map({200, 40}, {x, 0});
+        const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
         for (const float y : {20.5f, 20.3f, 20.0f}) {
             const FurrowDrawing drawing = trace_half(map, make_straight_style(), {20.5f, y});
             const float depth = furrow_shape({}, x).depth;
