@@ -115,7 +115,7 @@ TEST_CASE("furrow noise: heights fall by a uniform share of the noise, from the 
     CHECK(
         mean_of(growth.height) - mean_of(add_furrow_noise(growth, style))
         == test::near(2 * decrease).epsilon(1e-4));
-    style.seed = 4;
+    style = {.noise = 0.3f, .seed = 4};
     CHECK(add_furrow_noise(growth, style) != noisy);
 }
 
