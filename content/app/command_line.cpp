@@ -35,7 +35,7 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
-constexpr const char* kSceneDoc = "level name, .level.json, .gltf or .glb";
+constexpr const char* kSceneDoc = "level name, .level.json, .gltf, .glb or .obj";
 
 /// A command, and the function that runs it once its options are parsed.
 struct Command {
@@ -479,7 +479,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
 Command add_info(CLI::App& program, std::string& file) {
     CLI::App* app = program.add_subcommand(
         "info", "Print the contents of a file; for a scene, the number of shader programs, too");
-    app->add_option("file", file, ".level.json, .gltf, .glb, .png, .exr ...")
+    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
         ->type_name("FILE")
         ->required();
     app->footer("Example:\n  limn info model.glb");
