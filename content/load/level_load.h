@@ -140,7 +140,7 @@ struct Level {
 };
 
 /// Reads and checks `text`. `file` is the prefix of messages and gives the level its name. An error
-/// is one line, or up to ten for parts that do not depend on each other.
+/// is one line, or up to ten for parts that do not depend on each other, and how many are left.
 /// Components must be registered (ecs/components/all.h).
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});

@@ -1,5 +1,7 @@
 #include "content/load/scene_warnings.h"
 
+#include "content/load/inside_mesh.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
@@ -22,6 +24,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -73,6 +76,7 @@ constexpr Need kNeeds[] = {
     {"particle_collision", {"particle_emitter", "", ""}},
 };
 
+constexpr double kInside = 0.5;       // winding number of what is rather closed
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
 
 std::string label_of(const World& world, Entity entity) {
@@ -94,6 +98,36 @@ Vec3 back_of(const World& world, Entity entity) {
         back = transform != nullptr ? transform->rotation * back : back;
     }
     return back;
+}
+
+/// From the world to the entity's space.
+Vec3 local_point(const World& world, Entity entity, Vec3 point) {
+    const Entity parent = parent_of(world, entity);
+    point = parent.is_null() ? point : local_point(world, parent, point);
+    const auto* const t = world.find<Transform>(entity);
+    return t == nullptr ? point : glm::conjugate(t->rotation) * (point - t->position) / t->scale;
+}
+
+Vec3 world_position(const World& world, Entity entity) {
+    Vec3 point(0);
+    for (; !entity.is_null(); entity = parent_of(world, entity)) {
+        if (const auto* const t = world.find<Transform>(entity)) {
+            point = t->position + t->rotation * (t->scale * point);
+        }
+    }
+    return point;
+}
+
+bool contains(const Bounds& box, const Vec3& point) {
+    return glm::all(glm::greaterThan(point, box.min)) && glm::all(glm::lessThan(point, box.max));
+}
+
+/// Whether something opaque has an outside only: what is inside sees nothing of it.
+bool is_solid(const Assets& assets, const MeshInstance& instance) {
+    return instance.mesh.index < assets.meshes.size()
+           && (instance.material.index >= assets.materials.size()
+               || (assets.materials[instance.material.index].alpha_mode == AlphaMode::Opaque
+                   && !assets.materials[instance.material.index].double_sided));
 }
 
 struct SceneCheck {
@@ -229,6 +263,33 @@ struct SceneCheck {
                 "{} active cameras: {}; the first is used, set \"active\": false on the others",
                 active.size(), fmt::join(active, ", "))});
         }
+    }
+
+    /// Cameras that start inside of a closed mesh, where they see neither it nor light.
+    void check_camera_places() {
+        const auto* const assets = world.find_resource<Assets>();
+        world.query<const Camera, const Transform>().each([&](Entity camera, const Camera& settings,
+                                                              const Transform&) {
+            if (assets == nullptr || !settings.active || world.has<OrbitCamera>(camera)
+                || world.has<PathFollower>(camera)) {  // placed by the first step
+                return;
+            }
+            const Vec3 place = world_position(world, camera);
+            world.query<const MeshInstance>().each([&](Entity entity,
+                                                       const MeshInstance& instance) {
+                if (!is_solid(*assets, instance) || world.has<Deformed>(entity)) {
+                    return;
+                }
+                const MeshData& mesh = assets->meshes[instance.mesh.index];
+                const Vec3 point = local_point(world, entity, place);
+                if (contains(mesh.bounds, point) && winding_number(mesh, point) > kInside) {
+                    warn(
+                        camera, fmt::format(
+                                    "the camera starts inside of {}, at [{:.3g}, {:.3g}, {:.3g}]",
+                                    label_of(world, entity), place.x, place.y, place.z));
+                }
+            });
+        });
     }
 
     /// Caustics need a sun above the horizon, which may still be off.
@@ -378,6 +439,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_gpu_particles();
     check.check_colliders();
     check.check_cameras();
+    check.check_camera_places();
     check.check_caustics();
     check.check_colors<PointLight>();
     check.check_colors<SpotLight>();

@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -188,7 +190,8 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
         error_of(R"({"entities": [{"mesh_instance": {"mesh": "a"}}]})"), "no names of that kind"));
 }
 
-TEST_CASE("bad level: errors that do not depend on each other come together, at most ten") {
+TEST_CASE(
+    "bad level: errors that do not depend on each other come together, ten and how many more") {
     register_all_components();
     const auto lines_of = [](const std::string& text) {
         const Result<Level> level = parse_level(text, "t.level.json");
@@ -217,11 +220,25 @@ TEST_CASE("bad level: errors that do not depend on each other come together, at 
     CHECK(
         lines_of(R"({"events": [{"at": -1}, {"at": 2}, {"at": "soon"}]})")
         == Lines{"t.level.json:1:20", "t.level.json:1:43"});
-    std::string many = R"({"entities": [3)";
-    for (int i = 0; i < 50; ++i) {
-        many += ", 3";
-    }
-    CHECK(lines_of(many + "]}").size() == 10);
+    CHECK(
+        lines_of(R"({"prefabs": {"unused": {"spinn": {}}},
+"entities": [{"autofocus": {"target": "nobody"}}],
+"events": [{"at": 1, "destroy": ["nobody"]}]})")
+        == Lines{"t.level.json:2:39", "t.level.json:3:34", "t.level.json:1:25"});
+    const auto last_line_of = [](std::size_t errors) {
+        std::string many = R"({"entities": [3)";
+        for (std::size_t i = 1; i < errors; ++i) {
+            many += ", 3";
+        }
+        register_all_components();
+        const std::string message = parse_level(many + "]}", "t.level.json").error().message;
+        CHECK(std::count(message.begin(), message.end(), '\n') == (errors > 10 ? 10 : 9));
+        return message.substr(message.rfind('\n') + 1);
+    };
+    CHECK(last_line_of(10).starts_with("t.level.json:1:42: entities[9]: found the number 3"));
+    CHECK(last_line_of(11) == "t.level.json: and 1 more");
+    CHECK(last_line_of(50) == "t.level.json: and 40 more");
+    CHECK(last_line_of(5000) == "t.level.json: and at least 990 more");
 }
 
 TEST_CASE("bad level: wrong types and numbers out of range") {
