@@ -18,6 +18,8 @@ namespace limn {
 namespace {
 
 constexpr unsigned kStepsUnit = 0;
+constexpr unsigned kSeenDepthUnit = 1;
+constexpr unsigned kViewBinding = 0;
 constexpr unsigned kStateBinding = 0;
 constexpr unsigned kBitsBinding = 1;
 constexpr unsigned kInstancesBinding = 2;
@@ -173,6 +175,25 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
     return true;
 }
 
+bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
+    if (depth_program_ == nullptr) {
+        const Result<const gpu::Program*> made =
+            device.shaders().load({.compute = "particle_update.comp", .defines = {{"SEEN_DEPTH"}}});
+        if (!made) {
+            log_error("{}", made.error().message);
+            return false;
+        }
+        depth_program_ = *made;
+    }
+    return true;
+}
+
+bool GpuParticlePools::meets_depth() const {
+    return std::any_of(pools_.begin(), pools_.end(), [](const auto& pool) {
+        return pool.second->collide_depth > 0;
+    });
+}
+
 void GpuParticlePools::add(
     FrameData& frame, Entity entity, const ParticleEmitter& emitter, const GpuParticles& particles,
     std::uint32_t look, std::optional<std::uint32_t> sort_passes,
@@ -203,13 +224,17 @@ void GpuParticlePools::add(
         pool.closed_form = step.closed_form;
         pool.gravity = step.gravity;
     }
+    const bool closed_form = pool.closed_form;
+    const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
+    pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
     }
 }
 
-void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward) {
+void GpuParticlePools::update(
+    FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward, const SeenDepth& seen) {
     if (pools_.empty()) {
         return;
     }
@@ -219,25 +244,36 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
             writes.emplace_back(graph.import("particles", *buffer));
         }
     }
-    graph.add_pass("move particles", {}, writes, [this, back](PassContext& context) {
+    std::vector<Use> reads;
+    if (seen.depth != nullptr) {
+        reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
+    }
+    graph.add_pass("move particles", reads, writes, [this, back, seen](PassContext& context) {
         gpu::Device& device = context.device();
-        device.use(*program_);
+        if (seen.depth != nullptr) {
+            device.bind_uniforms(
+                kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+        }
         for (const auto& [entity, pool] : pools_) {
+            const bool meets = pool->collide_depth > 0 && seen.depth != nullptr;
+            const gpu::Program* const program = meets ? depth_program_ : program_;
+            device.use(*program);
+            program->set("thickness", pool->collide_depth);
             pool->steps.bind(device, kStepsUnit);
             device.bind_storage(kStateBinding, pool->state);
             device.bind_storage(kBitsBinding, pool->bits);
             device.bind_storage(kInstancesBinding, pool->instances);
-            program_->set("first", pool->first);
-            program_->set("count", pool->count);
-            program_->set("capacity", pool->capacity);
-            program_->set("step_count", pool->layout.steps);
-            program_->set("runs", pool->layout.runs);
-            program_->set("forces", pool->layout.forces);
-            program_->set("colliders", pool->layout.colliders);
-            program_->set("look", pool->look);
-            program_->set("back", back);
-            program_->set("closed_form", pool->closed_form ? 1 : 0);
-            program_->set("gravity", pool->gravity);
+            program->set("first", pool->first);
+            program->set("count", pool->count);
+            program->set("capacity", pool->capacity);
+            program->set("step_count", pool->layout.steps);
+            program->set("runs", pool->layout.runs);
+            program->set("forces", pool->layout.forces);
+            program->set("colliders", pool->layout.colliders);
+            program->set("look", pool->look);
+            program->set("back", back);
+            program->set("closed_form", pool->closed_form ? 1 : 0);
+            program->set("gravity", pool->gravity);
             device.dispatch((pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
         }
     });
@@ -246,12 +282,12 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
         if (!pool.sorted) {
             continue;
         }
-        const Use reads[] = {graph.import("particles", pool.instances)};
+        const Use unsorted[] = {graph.import("particles", pool.instances)};
         const Use order[] = {
             graph.import("particle order", pool.sort.entries[0]),
             graph.import("particle order", pool.sort.entries[1]),
             graph.import("sorted particles", pool.sort.instances)};
-        graph.add_pass("sort particles", reads, order, [=, this, &pool](PassContext& context) {
+        graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
                 context, *sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
                 pool.sort);

@@ -6,6 +6,7 @@
 #include "render/gpu/buffer.h"
 #include "render/gpu/program.h"
 #include "render/gpu_particle_sort.h"
+#include "render/seen_depth.h"
 
 #include <cstdint>
 #include <map>
@@ -52,6 +53,7 @@ struct GpuParticlePool {
     GpuParticleSort sort{};
     bool closed_form = false;  ///< states are those of birth
     Vec3 gravity = {0, 0, 0};  ///< of the last step [m/s^2]
+    float collide_depth = 0;   ///< as ParticleCollision::collide_depth
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
@@ -77,8 +79,12 @@ class GpuParticlePools {
     /// After they have been added: forgets all others.
     void forget_unused();
     /// Adds the passes that move and sort them. They are seen from `eye` along `forward`, `back`
-    /// seconds before the end of the last step.
-    void update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward);
+    /// seconds before the end of the last step. `seen`: what those with a collide_depth meet.
+    void update(
+        FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward,
+        const SeenDepth& seen = {});
+    /// Whether some of this frame meet what the camera saw.
+    [[nodiscard]] bool meets_depth() const;
 
     [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
         return pools_;
@@ -86,8 +92,10 @@ class GpuParticlePools {
 
   private:
     bool can_sort(gpu::Device& device);
+    bool can_meet_depth(gpu::Device& device);
 
     const gpu::Program* program_ = nullptr;
+    const gpu::Program* depth_program_ = nullptr;          ///< loaded when some meet what was seen
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity

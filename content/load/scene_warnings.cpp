@@ -241,12 +241,19 @@ struct SceneCheck {
             for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;
         });
         world.query<const ParticleEmitter, const ParticleCollision>().each(
-            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision&) {
-                if (for_cpu && runs_on_gpu(emitter)) {
+            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision& collision) {
+                const bool meets_seen = collision.collide_depth > 0;
+                if (for_cpu && runs_on_gpu(emitter) && !meets_seen) {
                     warn(
                         entity,
                         "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
-                        "height fields and water set particle_emitter.executor to cpu");
+                        "height fields and water set particle_emitter.executor to cpu, or "
+                        "particle_collision.collide_depth to meet what is in view");
+                } else if (meets_seen && !runs_on_gpu(emitter)) {
+                    warn(
+                        entity,
+                        "particle_collision.collide_depth has no effect on particles of the CPU; "
+                        "set particle_emitter.executor to gpu");
                 }
             });
     }

@@ -7,6 +7,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
@@ -203,6 +204,7 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
     ParticleEffect effect{
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"})};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
+    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
     return effect;
 }
 
@@ -489,7 +491,8 @@ void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
     const Affine& camera = frame.camera.world_from_camera;
     gpu.update(
         graph, particle_lag(frame), transform_point(camera, Vec3(0)),
-        transform_vector(camera, Vec3(0, 0, -1)));
+        transform_vector(camera, Vec3(0, 0, -1)),
+        gpu.meets_depth() ? recall_depth(seen_depth, frame) : SeenDepth{});
 }
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
@@ -525,6 +528,9 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
         end_particle_layer(graph, *layer_programs, layer, view);
     }
     add_pass("particles", view.gbuffer.depth, view.radiance, Part::Front);
+    if (view.is(kMainViews) && gpu.meets_depth()) {
+        remember_depth(graph, *depth_copy, view, seen_depth);
+    }
 }
 
 /// What the GPU moves at full resolution is in front.

@@ -107,6 +107,8 @@ struct ParticleEffect {
     bool has_billboards = false;
     bool has_halves = false;
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
+    const gpu::Program* depth_copy = nullptr;
+    DepthMemory seen_depth = {};  ///< while some on the GPU meet what the camera sees
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);

@@ -1,5 +1,6 @@
 // Births and motion of particles, one invocation each: all steps since it last ran (particle.gpu-init,
-// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp.
+// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definition: that of
+// particle_collide.glsl.
 #version 450
 #include "particle_gpu.h"
 
@@ -349,7 +350,11 @@ void move(inout Particle p, int texel) {
     vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
     p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
     uvec4 met = floatBitsToUint(texelFetch(steps, texel + 17));
-    if (met.y > 0u) {
+    bool collides = met.y > 0u;
+#ifdef SEEN_DEPTH
+    collides = collides || thickness > 0.0;
+#endif
+    if (collides) {
         collide(p, start_place, push_dt.w, colliders + int(met.x), int(met.y), texelFetch(steps, 6));
     }
 }
