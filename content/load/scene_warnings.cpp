@@ -12,6 +12,7 @@
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
+#include "ecs/components/point_mass.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
@@ -70,7 +71,11 @@ constexpr Need kNeeds[] = {
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_surface", {"particle_emitter", "", ""}},
-    {"particle_collision", {"particle_emitter", "", ""}},
+    {"particle_balls", {"particle_emitter", "", ""}},
+    {"particle_collision", {"particle_emitter", "point_mass", ""}},
+    {"point_mass", {"transform", "", ""}},
+    {"air_drag", {"point_mass", "", ""}},
+    {"variable_mass", {"point_mass", "", ""}},
 };
 
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
@@ -191,7 +196,8 @@ struct SceneCheck {
         world.query<const ParticleEmitter>().each(
             [&](Entity entity, const ParticleEmitter& emitter) {
                 for (const std::string_view one :
-                     {"particle_mesh", "particle_light", "particle_surface", "trail"}) {
+                     {"particle_mesh", "particle_light", "particle_surface", "particle_balls",
+                      "trail"}) {
                     if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                         warn(
                             entity, fmt::format(
@@ -214,6 +220,13 @@ struct SceneCheck {
                         "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
                         "height fields and water set particle_emitter.executor to cpu");
                 }
+            });
+    }
+
+    void check_point_masses() {
+        world.query<const PointMass, const Parent>().each(
+            [&](Entity entity, const PointMass&, const Parent&) {
+                warn(entity, "point_mass has no effect on an entity that has a parent");
             });
     }
 
@@ -377,6 +390,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_surfaces();
     check.check_gpu_particles();
     check.check_colliders();
+    check.check_point_masses();
     check.check_cameras();
     check.check_caustics();
     check.check_colors<PointLight>();
