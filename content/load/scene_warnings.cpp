@@ -14,6 +14,7 @@
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
+#include "ecs/components/point_mass.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
@@ -73,7 +74,11 @@ constexpr Need kNeeds[] = {
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_surface", {"particle_emitter", "", ""}},
-    {"particle_collision", {"particle_emitter", "", ""}},
+    {"particle_balls", {"particle_emitter", "", ""}},
+    {"particle_collision", {"particle_emitter", "point_mass", ""}},
+    {"point_mass", {"transform", "", ""}},
+    {"air_drag", {"point_mass", "", ""}},
+    {"variable_mass", {"point_mass", "", ""}},
 };
 
 constexpr double kInside = 0.5;       // winding number of what is rather closed
@@ -225,7 +230,8 @@ struct SceneCheck {
         world.query<const ParticleEmitter>().each(
             [&](Entity entity, const ParticleEmitter& emitter) {
                 for (const std::string_view one :
-                     {"particle_mesh", "particle_light", "particle_surface", "trail"}) {
+                     {"particle_mesh", "particle_light", "particle_surface", "particle_balls",
+                      "trail"}) {
                     if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                         warn(
                             entity, fmt::format(
@@ -255,6 +261,13 @@ struct SceneCheck {
                         "particle_collision.collide_depth has no effect on particles of the CPU; "
                         "set particle_emitter.executor to gpu");
                 }
+            });
+    }
+
+    void check_point_masses() {
+        world.query<const PointMass, const Parent>().each(
+            [&](Entity entity, const PointMass&, const Parent&) {
+                warn(entity, "point_mass has no effect on an entity that has a parent");
             });
     }
 
@@ -445,6 +458,7 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_surfaces();
     check.check_gpu_particles();
     check.check_colliders();
+    check.check_point_masses();
     check.check_cameras();
     check.check_camera_places();
     check.check_caustics();

@@ -24,11 +24,13 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
+#include "ecs/components/point_mass.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
 #include "ecs/components/rendering.h"
@@ -67,6 +69,7 @@ void register_all_components() {
     register_component<ParticleSource>();
     register_component<ParticleCollision>();
     register_component<ParticleCollider>();
+    register_component<ParticleBalls>();
     register_component<ParticleMotion>();
     register_component<ParticleWrap>();
     register_component<ParticleLook>();
@@ -75,6 +78,9 @@ void register_all_components() {
     register_component<ParticleMesh>();
     register_component<ParticleMeshState>();
     register_component<ParticleSurface>();
+    register_component<PointMass>();
+    register_component<AirDrag>();
+    register_component<VariableMass>();
     register_component<Trail>();
     register_component<TrailState>();
     register_component<Billboard>();

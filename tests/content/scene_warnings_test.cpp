@@ -114,6 +114,19 @@ TEST_CASE("scene warnings: what particles of the GPU cannot do") {
                     "particle_emitter.executor to cpu"});
 }
 
+TEST_CASE("scene warnings: bodies with a mass that cannot move, and what acts on none") {
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "cart", "transform": {}, "children": [
+            {"name": "shot", "transform": {}, "point_mass": {}}]}]})")
+        == std::vector<std::string>{
+            R"(entity "shot": point_mass has no effect on an entity that has a parent)"});
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "shot", "transform": {}, "air_drag": {}}]})")
+        == std::vector<std::string>{R"(entity "shot": air_drag has no effect without point_mass)"});
+    CHECK(warnings_of(R"({"entities": [{"transform": {}, "point_mass": {}, "air_drag": {}}]})")
+              .empty());
+}
+
 TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {},
