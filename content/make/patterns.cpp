@@ -1,5 +1,6 @@
 #include "content/make/patterns.h"
 
+#include "content/make/furrow_patterns.h"
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -383,6 +384,8 @@ std::span<const PatternKind> pattern_kinds() {
             "fireball",
             "a flipbook of a burst of fire that turns to soot, in color, with its motion", true),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
+        pattern_kind<FurrowsPattern, make_furrows>(
+            "furrows", "skin with wrinkle furrows that grow along two vector fields"),
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),

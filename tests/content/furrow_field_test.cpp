@@ -174,8 +174,7 @@ TEST_CASE("furrow map: a plane seen from the front keeps lengths and directions"
     CHECK(first.field_right[0] == Vec2(0, 0));
 }
 
-TEST_CASE("furrow map: a planar projection leaves out what it sees from behind, and scales areas "
-          "by the slope") {
+TEST_CASE("furrow map: from the front the back is left out, and areas shrink by the slope") {
     MeshData tilted = make_square();
     for (Vec3& p : tilted.positions) {
         p = {0.6f * p.x, p.y, 0.8f * p.x};  // its normal is (-0.8, 0, 0.6)
@@ -202,8 +201,7 @@ TEST_CASE("furrow map: a planar projection leaves out what it sees from behind, 
     CHECK(none.error().message.find("found no triangle") != std::string::npos);
 }
 
-TEST_CASE("furrow map: a tube unrolls to a whole turn without a gap, with lengths equal along and "
-          "around") {
+TEST_CASE("furrow map: a tube unrolls to a whole turn, with lengths equal along and around") {
     const MeshData tube =
         make_cylinder({.radius = 0.5f, .height = 2, .segments = 64, .caps = false});
     const auto field = make_furrow_field(tube.positions, tube.normals, {});

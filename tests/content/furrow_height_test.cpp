@@ -85,8 +85,7 @@ TEST_CASE("furrow height: swapping the fields with their random numbers gives th
     CHECK(grow_furrows(swapped, {}).height != a.height);
 }
 
-TEST_CASE("furrow height: a field of magnitude 0 leaves the skin as it is, one of 2 goes to the "
-          "bottom") {
+TEST_CASE("furrow height: a field of magnitude 0 changes nothing, one of 2 goes to the bottom") {
     const FurrowMap still = test::make_flat_furrow_map({40, 40}, {0, 0}, {0, 0});
     for (const float h : grow_furrows(still, {}).height) {
         CHECK(h == 1.0f);
@@ -97,8 +96,7 @@ TEST_CASE("furrow height: a field of magnitude 0 leaves the skin as it is, one o
     CHECK(mean_of(growth.height) > 0.6);
 }
 
-TEST_CASE("furrow noise: heights fall by a uniform share of the noise, from the same start each "
-          "time") {
+TEST_CASE("furrow noise: heights fall by a uniform share of it, from the same start each time") {
     const FurrowGrowth growth = grow_furrows(skin_map(), {});
     FurrowStyle style;
     style.noise = 0.3f;
@@ -253,8 +251,7 @@ TEST_CASE("furrow presets: they are the rows of Table 6.2") {
     }
 }
 
-TEST_CASE("furrow presets: faint and distinct differ in bump alone, smooth and rough in noise "
-          "alone, and need no new furrows") {
+TEST_CASE("furrow presets: faint and distinct differ in bump alone, smooth and rough in noise") {
     const auto style = [](std::string_view name) {
         for (const FurrowPreset& preset : furrow_presets()) {
             if (preset.name == name) {

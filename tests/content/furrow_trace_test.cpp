@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 using namespace limn;
@@ -199,8 +200,8 @@ TEST_CASE("furrow trace: furrows of one field never cross, they end on each othe
     }
 }
 
-TEST_CASE("furrow trace: afterwards every pixel of the surface is in a band, and none beyond it is "
-          "drawn on") {
+TEST_CASE(
+    "furrow trace: afterwards the whole surface is in a band, and nothing is drawn beyond it") {
     FurrowMap map = test::make_flat_furrow_map({120, 120}, {0.8f, 0.3f});
     map.triangles.resize(1);  // the upper right half
     const auto cover = cover_furrow_map(map);
@@ -280,4 +281,67 @@ TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
             CHECK(sum == test::near(static_cast<double>(x)).epsilon(1e-3));
         }
     }
+}
+
+TEST_CASE("furrow topography: furrows of both fields cross and mostly enclose four-sided skin") {
+    constexpr int kSide = 240;
+    const FurrowMap map = test::make_flat_furrow_map({kSide, kSide}, {1, 0.2f}, {-0.2f, 1});
+    FurrowStyle style;
+    style.functions.angle = {0.1f, 0};
+    const FurrowDrawing drawings[] = {trace_all(map, style, 0), trace_all(map, style, 1)};
+    const auto owner = [&](int field, int pixel) {
+        return drawings[field].cells[static_cast<std::size_t>(pixel)] & ~kFurrowBand;
+    };
+    int crossings = 0;
+    for (int pixel = 0; pixel < kSide * kSide; ++pixel) {
+        crossings += owner(0, pixel) != 0 && owner(1, pixel) != 0 ? 1 : 0;
+    }
+    CHECK(crossings > 500);
+    // The sides of a patch of skin are the furrows around it. Patches at the border are left out.
+    std::vector<bool> seen(kSide * kSide);
+    std::map<std::size_t, int> patches;  // by number of sides
+    for (int start = 0; start < kSide * kSide; ++start) {
+        if (seen[start] || owner(0, start) != 0 || owner(1, start) != 0) {
+            continue;
+        }
+        std::vector<int> open = {start};
+        std::map<std::pair<int, std::uint32_t>, int> contacts;  // pixels at each furrow
+        bool inside = true;
+        std::size_t area = 0;
+        seen[start] = true;
+        while (!open.empty()) {
+            const int pixel = open.back();
+            open.pop_back();
+            ++area;
+            const int x = pixel % kSide;
+            const int y = pixel / kSide;
+            inside = inside && x > 0 && y > 0 && x < kSide - 1 && y < kSide - 1;
+            for (const int next : {pixel - 1, pixel + 1, pixel - kSide, pixel + kSide}) {
+                if (!inside || seen[next]) {
+                    continue;
+                }
+                const bool free = owner(0, next) == 0 && owner(1, next) == 0;
+                seen[next] = free;
+                if (free) {
+                    open.push_back(next);
+                }
+                for (const int field : {0, 1}) {
+                    if (owner(field, next) != 0) {
+                        ++contacts[{field, owner(field, next)}];
+                    }
+                }
+            }
+        }
+        if (inside && area >= 6) {
+            const auto sides = std::count_if(
+                contacts.begin(), contacts.end(), [](const auto& c) { return c.second >= 2; });
+            ++patches[static_cast<std::size_t>(sides)];
+        }
+    }
+    int all = 0;
+    for (const auto& sides : patches) {
+        all += sides.second;
+    }
+    REQUIRE(all > 300);
+    CHECK(patches[4] > 0.85 * all);
 }
