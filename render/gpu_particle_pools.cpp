@@ -154,6 +154,7 @@ void GpuParticlePools::begin_frame(const World& world) {
     if (std::exchange(epoch_, world.core().epoch) != world.core().epoch) {
         pools_.clear();
     }
+    updated_ = false;
     for (auto& [entity, pool] : pools_) {
         pool->used = false;
     }
@@ -233,8 +234,10 @@ void GpuParticlePools::add(
     }
 }
 
-void GpuParticlePools::update(
-    FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward, const SeenDepth& seen) {
+void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
+    if (std::exchange(updated_, true)) {
+        return;
+    }
     if (pools_.empty()) {
         return;
     }
@@ -244,39 +247,42 @@ void GpuParticlePools::update(
             writes.emplace_back(graph.import("particles", *buffer));
         }
     }
+    const SeenDepth seen = view.seen;
     std::vector<Use> reads;
     if (seen.depth != nullptr) {
         reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
     }
-    graph.add_pass("move particles", reads, writes, [this, back, seen](PassContext& context) {
-        gpu::Device& device = context.device();
-        if (seen.depth != nullptr) {
-            device.bind_uniforms(
-                kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
-        }
-        for (const auto& [entity, pool] : pools_) {
-            const bool meets = pool->collide_depth > 0 && seen.depth != nullptr;
-            const gpu::Program* const program = meets ? depth_program_ : program_;
-            device.use(*program);
-            program->set("thickness", pool->collide_depth);
-            pool->steps.bind(device, kStepsUnit);
-            device.bind_storage(kStateBinding, pool->state);
-            device.bind_storage(kBitsBinding, pool->bits);
-            device.bind_storage(kInstancesBinding, pool->instances);
-            program->set("first", pool->first);
-            program->set("count", pool->count);
-            program->set("capacity", pool->capacity);
-            program->set("step_count", pool->layout.steps);
-            program->set("runs", pool->layout.runs);
-            program->set("forces", pool->layout.forces);
-            program->set("colliders", pool->layout.colliders);
-            program->set("look", pool->look);
-            program->set("back", back);
-            program->set("closed_form", pool->closed_form ? 1 : 0);
-            program->set("gravity", pool->gravity);
-            device.dispatch((pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
-        }
-    });
+    graph.add_pass(
+        "move particles", reads, writes, [this, back = view.back, seen](PassContext& context) {
+            gpu::Device& device = context.device();
+            if (seen.depth != nullptr) {
+                device.bind_uniforms(
+                    kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+            }
+            for (const auto& [entity, pool] : pools_) {
+                const bool meets = pool->collide_depth > 0 && seen.depth != nullptr;
+                const gpu::Program* const program = meets ? depth_program_ : program_;
+                device.use(*program);
+                program->set("thickness", pool->collide_depth);
+                pool->steps.bind(device, kStepsUnit);
+                device.bind_storage(kStateBinding, pool->state);
+                device.bind_storage(kBitsBinding, pool->bits);
+                device.bind_storage(kInstancesBinding, pool->instances);
+                program->set("first", pool->first);
+                program->set("count", pool->count);
+                program->set("capacity", pool->capacity);
+                program->set("step_count", pool->layout.steps);
+                program->set("runs", pool->layout.runs);
+                program->set("forces", pool->layout.forces);
+                program->set("colliders", pool->layout.colliders);
+                program->set("look", pool->look);
+                program->set("back", back);
+                program->set("closed_form", pool->closed_form ? 1 : 0);
+                program->set("gravity", pool->gravity);
+                device.dispatch(
+                    (pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+            }
+        });
     for (const auto& [entity, found] : pools_) {
         GpuParticlePool& pool = *found;
         if (!pool.sorted) {
@@ -289,8 +295,8 @@ void GpuParticlePools::update(
             graph.import("sorted particles", pool.sort.instances)};
         graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, *sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
-                pool.sort);
+                context, *sort_programs_, {pool.first, pool.count}, pool.instances, view.eye,
+                view.forward, pool.sort);
         });
     }
 }

@@ -56,6 +56,14 @@ struct GpuParticlePool {
     float collide_depth = 0;   ///< as ParticleCollision::collide_depth
 };
 
+/// When and from where they are seen.
+struct GpuParticleView {
+    float back = 0;             ///< before the end of the last step [s]
+    Vec3 eye = {0, 0, 0};       ///< [m]
+    Vec3 forward = {0, 0, -1};  ///< unit
+    SeenDepth seen{};           ///< what those with a collide_depth meet
+};
+
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
 /// beyond. `collision`: null: they do not collide.
 [[nodiscard]] std::vector<Vec4> pack_particle_steps(
@@ -78,11 +86,8 @@ class GpuParticlePools {
         const ParticleCollision* collision = nullptr);
     /// After they have been added: forgets all others.
     void forget_unused();
-    /// Adds the passes that move and sort them. They are seen from `eye` along `forward`, `back`
-    /// seconds before the end of the last step. `seen`: what those with a collide_depth meet.
-    void update(
-        FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward,
-        const SeenDepth& seen = {});
+    /// Adds the passes that move and sort them, unless someone has in this frame.
+    void update(FrameGraph& graph, const GpuParticleView& view);
     /// Whether some of this frame meet what the camera saw.
     [[nodiscard]] bool meets_depth() const;
 
@@ -98,6 +103,7 @@ class GpuParticlePools {
     const gpu::Program* depth_program_ = nullptr;          ///< loaded when some meet what was seen
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
+    bool updated_ = false;                                 ///< in this frame
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
 };
 

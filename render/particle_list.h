@@ -25,6 +25,9 @@ using LookRecord = std::array<Vec4, layout::kLookTexels>;
 [[nodiscard]] LookRecord
 make_look_record(const ParticleLook& look, int layer, int motion_layer = -1);
 
+/// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
+[[nodiscard]] bool moves_pixels(const LookRecord& look);
+
 /// Appends the particles that exist `back` seconds before the end of the step, where they are then.
 /// Streaks show velocities relative to `observer` [m/s].
 void append_particles(
@@ -50,10 +53,15 @@ struct ParticleRun {
     int count = 0;
 };
 
-/// All that is drawn but what the GPU moves, for effects that draw it once more; published in
-/// collect(), until the end of the frame.
+class GpuParticlePools;
+struct GpuParticleView;
+
+/// All that is drawn, for effects that draw it once more; published in collect(), until the end of
+/// the frame.
 struct ParticleSprites {
-    std::span<const ParticleInstance> instances;
+    std::span<const ParticleInstance> instances;  ///< but for those that the GPU moves
+    GpuParticlePools* gpu = nullptr;              ///< those; update() them before they are read
+    const GpuParticleView* gpu_view = nullptr;    ///< for that
     std::span<const LookRecord> looks;
     std::span<const ParticleArrays> arrays;  ///< of each look
     bool motions = false;                    ///< some look has a motion map

@@ -96,7 +96,7 @@ struct SeenScene : Scene {
         const SeenDepth seen = {
             &depth, ring.push_value(make_view_block(camera, ClusterShape{}, LightList{}, false))};
         graph.begin_frame();
-        pools.update(graph, 0, {0, 0, 0}, {0, 0, -1}, seen);
+        pools.update(graph, {.seen = seen});
         graph.execute();
         ring.end_frame();
         const GpuParticlePool& its = *pools.pools().begin()->second;
