@@ -3,6 +3,7 @@
 #include "content/app/image_file.h"
 #include "content/app/progress.h"
 #include "content/bake/furrow_recipe.h"
+#include "content/bake/furrow_trace.h"
 #include "content/game/game.h"
 #include "content/load/component_json.h"
 #include "content/load/exr_file.h"
@@ -13,6 +14,9 @@
 #include "ecs/base/check.h"
 #include "ecs/base/text.h"
 #include "ecs/components/surface.h"
+#include "render/furrow_maker.h"
+#include "render/gpu/context.h"
+#include "render/gpu/readback.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +24,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -98,6 +103,28 @@ Status write_furrow_height(const std::string& path, ImageFileKind kind, const Fu
     return write_png16(path, size.x, size.y, 1, gray);
 }
 
+/// The same as make_furrow_maps, by compute shaders.
+Result<FurrowMaps> make_furrow_maps_on_gpu(const FurrowMap& map, const FurrowStyle& style) {
+    const std::unique_ptr<gpu::Context> context = LIMN_TRY(gpu::create_headless_context());
+    const std::unique_ptr<gpu::Device> device = LIMN_TRY(gpu::Device::from_current_context());
+    const FurrowMaker maker = LIMN_TRY(create_furrow_maker(*device));
+    FurrowMaps maps;
+    maps.growth.size = map.size;
+    maps.growth.cover = cover_furrow_map(map);
+    const FurrowTextures made = make_furrow_textures(*device, maker, map, maps.growth.cover, style);
+    const gpu::FloatImage height = gpu::read_floats(made.height);
+    const gpu::FloatImage normal = gpu::read_floats(made.normal);
+    for (int y = map.size.y - 1; y >= 0; --y) {  // images are read with the last row first
+        for (int x = 0; x < map.size.x; ++x) {
+            maps.growth.first.push_back(height.at(x, y, 0));
+            maps.growth.second.push_back(height.at(x, y, 1));
+            maps.height.push_back(height.at(x, y, 2));
+            maps.normals.emplace_back(normal.at(x, y, 0), normal.at(x, y, 1), normal.at(x, y, 2));
+        }
+    }
+    return maps;
+}
+
 Status bake_furrows(const BakeOptions& options) {
     const ImageFileKind kind = LIMN_TRY(image_file_kind(options.out));
     FurrowRecipe recipe;
@@ -107,7 +134,8 @@ Status bake_furrows(const BakeOptions& options) {
     progress.update(1);
     const FurrowMap map = LIMN_TRY(lay_out_furrows(mesh, recipe));
     progress.update(2);
-    const FurrowMaps maps = make_furrow_maps(map, style_of(recipe));
+    const FurrowMaps maps = options.gpu ? LIMN_TRY(make_furrow_maps_on_gpu(map, style_of(recipe)))
+                                        : make_furrow_maps(map, style_of(recipe));
     progress.update(3);
     const std::size_t dot = options.out.rfind('.');
     const std::string stem = options.out.substr(0, dot);

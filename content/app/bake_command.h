@@ -16,6 +16,7 @@ struct BakeOptions {
     std::string out;                      ///< NAME.png or NAME.exr; a kind adds to the name
     std::string recipe;                   ///< JSON of the kind; empty = its defaults
     std::string mesh;                     ///< name of a mesh of the file; empty = its largest
+    bool gpu = false;                     ///< compute on the GPU, to the same maps
     std::vector<Assignment> assignments;  ///< FIELD=VALUE of the recipe
 };
 

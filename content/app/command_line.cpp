@@ -458,6 +458,7 @@ Command add_bake(CLI::App& program, BakeOptions& options) {
     app->add_option("--recipe", options.recipe, "settings of the kind")->type_name("FILE.json");
     app->add_option("--mesh", options.mesh, "name of the mesh; default: the largest of the file")
         ->type_name("NAME");
+    app->add_flag("--gpu", options.gpu, "compute on the GPU, to the same maps");
     add_assignments(*app, options.assignments);
     app->footer(fmt::format(
         "KIND is one of\n{}\n"

@@ -2,9 +2,7 @@
 
 #include "content/bake/furrow_trace.h"
 #include "ecs/base/check.h"
-#include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
-#include "ecs/base/rng.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -63,8 +61,7 @@ std::vector<float> add_furrow_noise(const FurrowGrowth& growth, const FurrowStyl
         constexpr std::size_t kWords = 4;  // that one counter gives: of four pixels in a row
         parallel_for((height.size() + 3) / kWords, 2048, [&](std::size_t begin, std::size_t end) {
             for (std::size_t group = begin; group < end; ++group) {
-                Random random(
-                    static_cast<std::uint64_t>(style.seed), group, name_hash("furrow_noise"), 0);
+                Random random = furrow_noise(style, group);
                 const std::size_t last = std::min(kWords * group + kWords, height.size());
                 for (std::size_t pixel = kWords * group; pixel < last; ++pixel) {
                     height[pixel] -= random.uniform() * style.noise;

@@ -1,9 +1,7 @@
 #include "content/bake/furrow_trace.h"
 
 #include "ecs/base/check.h"
-#include "ecs/base/hash.h"
 #include "ecs/base/repeatable_math.h"
-#include "ecs/base/rng.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -194,16 +192,6 @@ Vec2 field_at(const FurrowTriangle& triangle, int field, const Vec2& p) {
         triangle.field[field].y + (right.y * offset.x + down.y * offset.y)};
 }
 
-/// Uniform in -1 .. 1, for segment `segment` of half a furrow.
-float random_turn(
-    const FurrowStyle& style, std::uint32_t stream, std::uint32_t furrow, bool backward,
-    std::uint32_t segment) {
-    Random random(
-        static_cast<std::uint64_t>(style.seed), furrow, name_hash("furrow_trace") + stream,
-        segment * 2 + (backward ? 1 : 0));
-    return 2.0f * random.uniform() - 1.0f;
-}
-
 /// `p` within the image where that repeats.
 Vec2 within(const FurrowMap& map, Vec2 p) {
     const Vec2 size(map.size);
@@ -290,9 +278,11 @@ void trace_half_furrow(
         const float magnitude = size2 * inverse;
         d = backward ? -(d * inverse) : d * inverse;
         const FurrowShape shape = furrow_shape(style, magnitude);
-        const float turn = style.literal_turn
-                               ? 1.0f
-                               : random_turn(style, map.stream[field], furrow, backward, segment);
+        const float turn =
+            style.literal_turn
+                ? 1.0f
+                : 2.0f * furrow_turns(style, map.stream[field], furrow, backward, segment).uniform()
+                      - 1.0f;
         const Vec2 rotation = repeatable_cos_sin(shape.angle * turn);
         const Vec2 direction(
             d.x * rotation.x - d.y * rotation.y, d.x * rotation.y + d.y * rotation.x);

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "ecs/base/hash.h"
 #include "ecs/base/math.h"
+#include "ecs/base/rng.h"
 #include "ecs/reflect.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -76,7 +79,7 @@ enum class FurrowProjection : std::uint8_t {
 };
 
 /// A triangle of a FurrowMap. What varies over it is a value at corner 0 with the increase per
-/// pixel to the right and downwards. The members of furrow_gpu.h.
+/// pixel to the right and downwards. Read by furrow_trace.comp as floats.
 struct FurrowTriangle {
     Vec2 corner[3];  ///< [px], clockwise on the screen: rows run downwards
     Vec2 field[2];   ///< both fields at corner 0, in pixel directions
@@ -97,5 +100,19 @@ struct FurrowMap {
     std::vector<FurrowTriangle> triangles;
     std::uint32_t stream[2] = {0, 1};  ///< random numbers of the two fields
 };
+
+/// Random numbers for the turn of a segment: of field `stream`, furrow `furrow`, its half.
+[[nodiscard]] inline Random furrow_turns(
+    const FurrowStyle& style, std::uint32_t stream, std::uint32_t furrow, bool backward,
+    std::uint32_t segment) {
+    return {
+        static_cast<std::uint64_t>(style.seed), furrow, name_hash("furrow_trace") + stream,
+        segment * 2 + (backward ? 1 : 0)};
+}
+
+/// Random numbers for the noise of pixels 4 `group` .. 4 `group` + 3.
+[[nodiscard]] inline Random furrow_noise(const FurrowStyle& style, std::size_t group) {
+    return {static_cast<std::uint64_t>(style.seed), group, name_hash("furrow_noise"), 0};
+}
 
 }  // namespace limn

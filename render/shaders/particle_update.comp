@@ -2,6 +2,7 @@
 // particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definition: that of
 // particle_collide.glsl.
 #version 450
+#include "lib/philox.glsl"
 #include "particle_gpu.h"
 
 layout(local_size_x = 128) in;  // kParticleGroup
@@ -55,17 +56,6 @@ struct Random {
     uint left;
 };
 
-uvec4 philox(uvec4 counter, uvec2 key) {
-    for (int i = 0; i < 10; ++i) {
-        uint a_high, a_low, b_high, b_low;
-        umulExtended(0xd2511f53u, counter.x, a_high, a_low);
-        umulExtended(0xcd9e8d57u, counter.z, b_high, b_low);
-        counter = uvec4(b_high ^ counter.y ^ key.x, b_low, a_high ^ counter.w ^ key.y, a_low);
-        key += uvec2(0x9e3779b9u, 0xbb67ae85u);
-    }
-    return counter;
-}
-
 uint next_word(inout Random random) {
     if (random.left == 0u) {
         random.words = philox(random.counter, random.key);
@@ -77,7 +67,7 @@ uint next_word(inout Random random) {
     return word;
 }
 float next_share(inout Random random) {
-    return float(next_word(random) >> 8) * (1.0 / 16777216.0);
+    return share_of(next_word(random));
 }
 float next_signed(inout Random random) {
     return -1.0 + 2.0 * next_share(random);

@@ -104,6 +104,20 @@ TEST_CASE("bake: the same command writes the same files, another seed others") {
     CHECK(a != test::read_text(folder.file("c_height.png")));
 }
 
+TEST_CASE("bake: the GPU makes the same height map") {
+    const TemporaryFolder folder;
+    const Words settings = {"--set", "size=48", "--set", "projection=planar", "--set", "noise=0.2"};
+    Words cpu = {"-o", "cpu.png"};
+    Words gpu = {"-o", "gpu.png", "--gpu"};
+    cpu.insert(cpu.end(), settings.begin(), settings.end());
+    gpu.insert(gpu.end(), settings.begin(), settings.end());
+    REQUIRE(bake(folder, cpu).exit_code == 0);
+    REQUIRE(bake(folder, gpu).exit_code == 0);
+    CHECK(
+        test::read_text(folder.file("cpu_height.png"))
+        == test::read_text(folder.file("gpu_height.png")));
+}
+
 TEST_CASE("bake: what is wrong is one line that says what was found and what was expected") {
     const TemporaryFolder folder;
     const ProgramRun unknown = run_limn(folder, {"bake", "furows", kModel, "-o", "a.png"});
