@@ -12,6 +12,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
@@ -20,7 +21,9 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -93,7 +96,10 @@ load_gltf_scene(World& world, const std::string& path, const SceneOptions& optio
     scene.name = gltf.name;
     scene.path = path;
     insert_missing<Assets>(world);
-    (void)spawn_gltf(world, world.resource<Assets>(), std::move(gltf));
+    const std::string file = std::filesystem::path(path).filename().string();
+    for (const Entity root : spawn_gltf(world, world.resource<Assets>(), std::move(gltf)).roots) {
+        world.add(root, GltfSource{file});
+    }
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);
     scene.camera = scene.model->camera;
