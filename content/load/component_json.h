@@ -108,7 +108,8 @@ read_struct(const JsonValue& json, T& object, const JsonPlace& place, const Name
     const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const NameResolver& names);
 
-/// Writes all fields of `object`; reading them into any value of the type restores `object`.
+/// Writes all fields of `object`; reading them into any value of the type restores `object`:
+/// rotations, which are written in degrees, to 1e-6 rad, all else to the bit.
 [[nodiscard]] JsonValue
 write_component(const ComponentInfo& info, const void* object, const NameProvider& names);
 [[nodiscard]] JsonValue

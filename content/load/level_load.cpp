@@ -369,6 +369,7 @@ class LevelParser {
         level_.entities = std::move(entities.entities());
         level_.entity_positions = std::move(entities.positions());
         level_.gltfs = std::move(entities.gltfs());
+        level_.node_changes = std::move(entities.node_changes());
         return Done{};
     }
 
@@ -600,6 +601,7 @@ Status load_level_assets(
         }
         level.scenes.push_back(std::move(scene));
     }
+    LIMN_TRY(find_changed_nodes(level));
     return resolve_deferred_names(level);
 }
 

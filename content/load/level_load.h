@@ -4,6 +4,7 @@
 #include "content/load/json_document.h"
 #include "content/load/level_entities.h"
 #include "content/load/level_include.h"
+#include "content/load/level_nodes.h"
 #include "content/load/level_show.h"
 #include "content/load/level_update.h"
 #include "content/load/made_assets.h"
@@ -62,6 +63,7 @@ class World;
 //       "point_light": {"color": "#ffcc80", "intensity": 30},
 //       "spin": null,              // removes the prefab's
 //       "gltf": "fox.glb",         // its roots become children
+//       "nodes": NODES,            // changes of them: level_nodes.h
 //       "clip_player": {"clip": "Run"},     // a clip of that file
 //       "repeat": REPEAT,          // copies of it and its descendants
 //       "children": [NODE, ...]    // after those of the prefab
@@ -121,6 +123,7 @@ struct Level {
     std::vector<LevelMesh> meshes;
     std::vector<LevelImage> images;
     std::vector<GltfUse> gltfs;
+    std::vector<NodeChange> node_changes;
     /// All initial entities; roots have no Parent. Assets are indices into `assets`.
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(index in `entities`).

@@ -311,6 +311,10 @@ JsonValue schema_of_node() {
                  of_type("string"), "a node of \"prefabs\", whose fields this one overrides")),
          member(
              "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
+         member(
+             "nodes", described(
+                          map_of(reference("components")),
+                          "changes of the nodes of \"gltf\", by name; null removes a component")),
          member("repeat", any_of({reference("repeat of a node"), of_type("null")})),
          member(
              "children",
@@ -397,7 +401,7 @@ JsonValue schema_of_show() {
 JsonValue definitions() {
     Members all = {
         member("node", schema_of_node()), member("repeat of a node", schema_of_repeat()),
-        member("event", schema_of_event()),
+        member("components", schema_of_components({}, true)), member("event", schema_of_event()),
         member(kColorName, described(one_of_words(color_names()), "a color of CSS, in sRGB"))};
     for (const std::vector<const ComponentInfo*>& infos : {all_components(), all_resources()}) {
         for (const ComponentInfo* const info : infos) {

@@ -13,6 +13,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
@@ -21,7 +22,9 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -89,13 +92,18 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
 Result<LoadedScene>
 load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
-    GltfScene model =
-        LIMN_TRY(ends_with_any(path, {".obj"}) ? load_obj_scene(path) : load_gltf(path));
+    const bool is_obj = ends_with_any(path, {".obj"});
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path) : load_gltf(path));
     LoadedScene scene;
     scene.name = model.name;
     scene.path = path;
     insert_missing<Assets>(world);
-    (void)spawn_gltf(world, world.resource<Assets>(), std::move(model));
+    const std::string file = std::filesystem::path(path).filename().string();
+    for (const Entity root : spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots) {
+        if (!is_obj) {  // which levels cannot place
+            world.add(root, GltfSource{file});
+        }
+    }
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);
     scene.camera = scene.model->camera;

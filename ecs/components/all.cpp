@@ -62,6 +62,7 @@ namespace limn {
 
 void register_all_components() {
     register_component<Name>();
+    register_component<FromGltf>();
     register_component<GltfSource>();
     register_component<Lifetime>();
     register_component<ForceField>();

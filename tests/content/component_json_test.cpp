@@ -1,5 +1,6 @@
 #include "content/load/color_names.h"
 #include "content/load/component_json.h"
+#include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
@@ -428,6 +429,32 @@ TEST_CASE("component json: what is written reads back the same, to the bit") {
         < 1e-6f);
     all.turn = back.turn;
     CHECK(same(component_info<Everything>(), &all, &back));
+}
+
+TEST_CASE("component json: rotations are written in degrees and turn as before, also straight up") {
+    const FieldInfo& turn = *find_field(component_info<Everything>().fields, "turn");
+    Random random(7, 0, 0, 0);
+    const auto draw = [&] { return random.uniform(-1.0f, 1.0f); };
+    const auto turns_alike = [&](const Quat& q) {
+        const JsonValue json = write_field(turn, &q, {});
+        REQUIRE(json.items.size() == 3);
+        Quat back(1, 0, 0, 0);
+        REQUIRE(read_field(json, turn, &back, {"t.json", ""}, {}).ok());
+        for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+            CHECK(glm::length(q * axis - back * axis) < 1e-6f);
+        }
+    };
+    for (int i = 0; i < 1000; ++i) {
+        const Quat any(draw(), draw(), draw(), draw());
+        turns_alike(glm::normalize(any));
+    }
+    for (const float pitch : {90.0f, -90.0f, 89.9999f, 89.99f}) {
+        for (const float yaw : {0.0f, 40.0f, 170.0f, -120.0f}) {
+            turns_alike(rotation_from_degrees({yaw, pitch, 25}));
+        }
+    }
+    const Quat q = rotation_from_degrees({30, -20, 45});
+    CHECK(write_json(write_field(turn, &q, {})) == "[30, -20, 45]");
 }
 
 TEST_CASE("component json: the defaults of every registered component survive a round trip") {

@@ -7,6 +7,7 @@
 #include "ecs/components/all.h"
 #include "ecs/components/surface.h"
 #include "ecs/world.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
@@ -189,20 +190,20 @@ TEST_CASE("inside mesh: the winding number is 1 in a closed mesh and 0 outside")
     MeshData tetrahedron;
     tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     tetrahedron.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-    CHECK(winding_number(tetrahedron, {0.2f, 0.2f, 0.2f}) == doctest::Approx(1));
-    CHECK(winding_number(tetrahedron, {0.01f, 0.01f, 0.97f}) == doctest::Approx(1));
+    CHECK(winding_number(tetrahedron, {0.2f, 0.2f, 0.2f}) == test::near(1));
+    CHECK(winding_number(tetrahedron, {0.01f, 0.01f, 0.97f}) == test::near(1));
     CHECK(std::abs(winding_number(tetrahedron, {0.4f, 0.4f, 0.4f})) < 1e-12);
     CHECK(std::abs(winding_number(tetrahedron, {-3, 1, 2})) < 1e-12);
     MeshData turned = tetrahedron;
     for (std::size_t i = 0; i < turned.indices.size(); i += 3) {
         std::swap(turned.indices[i], turned.indices[i + 1]);
     }
-    CHECK(winding_number(turned, {0.2f, 0.2f, 0.2f}) == doctest::Approx(-1));
+    CHECK(winding_number(turned, {0.2f, 0.2f, 0.2f}) == test::near(-1));
     // From its center, a face of a cube fills a sixth of the sphere.
     MeshData face;
     face.positions = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
     face.indices = {0, 1, 2, 0, 2, 3};
-    CHECK(winding_number(face, {0, 0, 0}) == doctest::Approx(1.0 / 6));
+    CHECK(winding_number(face, {0, 0, 0}) == test::near(1.0 / 6));
 }
 
 TEST_CASE("scene warnings: caustics without a sun above the horizon") {
