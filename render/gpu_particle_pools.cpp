@@ -295,8 +295,8 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
             graph.import("sorted particles", pool.sort.instances)};
         graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, *sort_programs_, {pool.first, pool.count}, pool.instances, view.eye,
-                view.forward, pool.sort);
+                context, *sort_programs_, {pool.first, pool.count}, pool.instances,
+                {view.eye, view.forward}, pool.sort);
         });
     }
 }
