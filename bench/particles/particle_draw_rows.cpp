@@ -391,15 +391,15 @@ layout(std430, binding = 0) buffer State { vec4 state[]; };
 layout(std430, binding = 1) buffer Bits { uint bits[]; };
 layout(std430, binding = 2) writeonly buffer Instances { uvec4 instances[]; };
 uniform uint count;
+uniform vec4 shift;  // so that no compiler leaves out what is written
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i < count) {
-        vec4 place = state[2u * i];
-        vec4 velocity = state[2u * i + 1u];
+        vec4 place = state[2u * i] + shift;
+        vec4 velocity = state[2u * i + 1u] + shift;
         uint word = bits[i];
         state[2u * i] = place;
         state[2u * i + 1u] = velocity;
-        bits[i] = word;
         instances[2u * i] = floatBitsToUint(place);
         instances[2u * i + 1u] = uvec4(floatBitsToUint(velocity.xyz), word);
     }
@@ -415,6 +415,7 @@ void main() {
     const auto bare = [&] {
         device.use(**program);
         (*program)->set("count", kCount);
+        (*program)->set("shift", Vec4(0));
         device.bind_storage(0, pool.state);
         device.bind_storage(1, pool.bits);
         device.bind_storage(2, pool.instances);
