@@ -86,6 +86,21 @@ void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<
     texels.emplace_back(word(first.collider), word(step.colliders.size()), 0.0f, 0.0f);
 }
 
+Result<const gpu::Program*>
+load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
+    return device.shaders().load(
+        {.compute = "particle_update.comp", .defines = std::move(defines)});
+}
+
+/// Whether gravity and drag alone move particles in a step.
+bool is_plain(const GpuParticleStep& step) {
+    const MotionStep& motion = step.motion;
+    const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
+    const bool whirls = motion.vortex.around != 0 || motion.vortex.toward != 0;
+    return !motion.step.closed_form && motion.turbulence.strength == 0 && !steers && !whirls
+           && motion.forces.empty() && motion.wrap_size == Vec3(0) && step.colliders.empty();
+}
+
 void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     const std::size_t slots = std::max(capacity, 1u);
     pool.state = gpu::Buffer("particle state", slots * 2 * sizeof(Vec4), gpu::BufferUse::GpuOnly);
@@ -146,7 +161,9 @@ std::vector<Vec4> pack_particle_steps(
 
 Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     GpuParticlePools pools;
-    pools.program_ = LIMN_TRY(device.shaders().load({.compute = "particle_update.comp"}));
+    pools.programs_.births = LIMN_TRY(load_update(device, {}));
+    pools.programs_.old = LIMN_TRY(load_update(device, {{"OLD"}}));
+    pools.programs_.plain = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
     return pools;
 }
 
@@ -177,14 +194,15 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
 }
 
 bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
-    if (depth_program_ == nullptr) {
-        const Result<const gpu::Program*> made =
-            device.shaders().load({.compute = "particle_update.comp", .defines = {{"SEEN_DEPTH"}}});
-        if (!made) {
-            log_error("{}", made.error().message);
+    if (programs_.seen_old == nullptr) {
+        const Result<const gpu::Program*> births = load_update(device, {{"SEEN_DEPTH"}});
+        const Result<const gpu::Program*> old = load_update(device, {{"SEEN_DEPTH"}, {"OLD"}});
+        if (!births || !old) {
+            log_error("{}", (births ? old : births).error().message);
             return false;
         }
-        depth_program_ = *made;
+        programs_.seen_births = *births;
+        programs_.seen_old = *old;
     }
     return true;
 }
@@ -215,11 +233,20 @@ void GpuParticlePools::add(
     }
     pool.steps.upload(
         *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
+    const std::span<const GpuParticleStep> to_do =
+        particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
     pool.count = static_cast<std::uint32_t>(window);
+    const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
+    pool.old =
+        static_cast<std::uint32_t>(std::max(born_before, particles.oldest()) - particles.oldest());
+    pool.plain.reset();
+    if (to_do.size() == 1 && is_plain(to_do.front())) {
+        pool.plain = to_do.front().motion.step;
+    }
     if (!particles.kept().empty()) {
         const ParticleStep& step = particles.kept().back().motion.step;
         pool.closed_form = step.closed_form;
@@ -232,6 +259,49 @@ void GpuParticlePools::add(
     if (pool.sorted) {
         plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
     }
+}
+
+/// Those born before the steps to do, and those born in them.
+void GpuParticlePools::move(
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const {
+    const bool meets = seen && pool.collide_depth > 0;
+    const bool is_plain_step = pool.plain.has_value() && !meets;
+    pool.steps.bind(device, kStepsUnit);
+    device.bind_storage(kStateBinding, pool.state);
+    device.bind_storage(kBitsBinding, pool.bits);
+    device.bind_storage(kInstancesBinding, pool.instances);
+    const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end) {
+        if (begin >= end) {
+            return;
+        }
+        device.use(program);
+        program.set("first", pool.first);
+        program.set("begin", begin);
+        program.set("end", end);
+        program.set("first_slot", pool.first % pool.capacity);
+        program.set("capacity", pool.capacity);
+        program.set("step_count", pool.layout.steps);
+        program.set("runs", pool.layout.runs);
+        program.set("forces", pool.layout.forces);
+        program.set("colliders", pool.layout.colliders);
+        program.set("look", pool.look);
+        program.set("back", back);
+        program.set("closed_form", pool.closed_form ? 1 : 0);
+        program.set("gravity", pool.gravity);
+        program.set("thickness", pool.collide_depth);
+        if (pool.plain) {
+            const ParticleStep& step = *pool.plain;
+            program.set("push_dt", Vec4(step.gravity * step.dt, step.dt));
+            program.set("air", Vec4(step.air, step.keep));
+            program.set("old_share", step.old_share);
+        }
+        device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
+    };
+    const gpu::Program* const old = is_plain_step ? programs_.plain
+                                    : meets       ? programs_.seen_old
+                                                  : programs_.old;
+    dispatch(*old, 0, pool.old);
+    dispatch(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
 }
 
 void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
@@ -260,27 +330,7 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
                     kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
             }
             for (const auto& [entity, pool] : pools_) {
-                const bool meets = pool->collide_depth > 0 && seen.depth != nullptr;
-                const gpu::Program* const program = meets ? depth_program_ : program_;
-                device.use(*program);
-                program->set("thickness", pool->collide_depth);
-                pool->steps.bind(device, kStepsUnit);
-                device.bind_storage(kStateBinding, pool->state);
-                device.bind_storage(kBitsBinding, pool->bits);
-                device.bind_storage(kInstancesBinding, pool->instances);
-                program->set("first", pool->first);
-                program->set("count", pool->count);
-                program->set("capacity", pool->capacity);
-                program->set("step_count", pool->layout.steps);
-                program->set("runs", pool->layout.runs);
-                program->set("forces", pool->layout.forces);
-                program->set("colliders", pool->layout.colliders);
-                program->set("look", pool->look);
-                program->set("back", back);
-                program->set("closed_form", pool->closed_form ? 1 : 0);
-                program->set("gravity", pool->gravity);
-                device.dispatch(
-                    (pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
+                move(device, *pool, back, seen.depth != nullptr);
             }
         });
     for (const auto& [entity, found] : pools_) {
@@ -295,8 +345,8 @@ void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
             graph.import("sorted particles", pool.sort.instances)};
         graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, *sort_programs_, {pool.first, pool.count}, pool.instances, view.eye,
-                view.forward, pool.sort);
+                context, *sort_programs_, {pool.first, pool.count}, pool.instances,
+                {view.eye, view.forward}, pool.sort);
         });
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/components/gpu_particles.h"
 #include "ecs/entity.h"
 #include "render/buffer_texture.h"
 #include "render/frame_data.h"
@@ -16,7 +17,6 @@
 
 namespace limn {
 
-struct GpuParticles;
 struct ParticleCollision;
 struct ParticleEmitter;
 class World;
@@ -53,7 +53,10 @@ struct GpuParticlePool {
     GpuParticleSort sort{};
     bool closed_form = false;  ///< states are those of birth
     Vec3 gravity = {0, 0, 0};  ///< of the last step [m/s^2]
-    float collide_depth = 0;   ///< as ParticleCollision::collide_depth
+    std::uint32_t old = 0;     ///< of `count`, born before the steps to do
+    /// The one step to do, if nothing but gravity and drag moves them in it.
+    std::optional<ParticleStep> plain{};
+    float collide_depth = 0;  ///< as ParticleCollision::collide_depth
 };
 
 /// When and from where they are seen.
@@ -99,8 +102,18 @@ class GpuParticlePools {
     bool can_sort(gpu::Device& device);
     bool can_meet_depth(gpu::Device& device);
 
-    const gpu::Program* program_ = nullptr;
-    const gpu::Program* depth_program_ = nullptr;          ///< loaded when some meet what was seen
+    /// For those born in the steps to do; those born before; those that meet what was seen,
+    /// likewise, loaded when there are some; those of a plain step.
+    struct Programs {
+        const gpu::Program* births = nullptr;
+        const gpu::Program* old = nullptr;
+        const gpu::Program* seen_births = nullptr;
+        const gpu::Program* seen_old = nullptr;
+        const gpu::Program* plain = nullptr;
+    };
+    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const;
+
+    Programs programs_{};
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
     bool updated_ = false;                                 ///< in this frame

@@ -5,6 +5,7 @@
 #include "render/buffer_texture.h"
 #include "render/particle_packing.h"
 #include "render/shaders/particle_gpu.h"
+#include "render/variant.h"
 
 #include <array>
 #include <cstdint>
@@ -46,6 +47,19 @@ struct ParticleArrays {
     bool operator==(const ParticleArrays&) const = default;
 };
 
+/// What some look has: definitions of lib/sprite.glsl.
+struct SpriteFeatures {
+    bool images = false;
+    bool flipbooks = false;  ///< of several frames
+    bool motions = false;    ///< with a motion map
+
+    void add_to(Variant& variant) const {
+        variant.add_if(images, "IMAGES");
+        variant.add_if(images && flipbooks, "FLIPBOOKS");
+        variant.add_if(images && motions, "MOTION");
+    }
+};
+
 /// Particles that follow one another in the order and have images of the same texture arrays.
 struct ParticleRun {
     ParticleArrays arrays{};
@@ -64,7 +78,7 @@ struct ParticleSprites {
     const GpuParticleView* gpu_view = nullptr;    ///< for that
     std::span<const LookRecord> looks;
     std::span<const ParticleArrays> arrays;  ///< of each look
-    bool motions = false;                    ///< some look has a motion map
+    SpriteFeatures features{};
     const BufferTexture* look_texels = nullptr;
 };
 

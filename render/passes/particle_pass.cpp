@@ -205,6 +205,11 @@ Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderS
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
         ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"})};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
+    // As of materials: between mip levels only where that costs nothing.
+    const GLenum minify =
+        device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
+    effect.image_sampler =
+        gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
     effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
     return effect;
 }
@@ -228,8 +233,10 @@ std::uint32_t ParticleEffect::add_look(
     halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
     has_halves = has_halves || halves.back() != 0;
     lit = lit || look.lit > 0;
-    images = images || has_image;
-    motions = motions || has_motion;
+    features.images = features.images || has_image;
+    features.flipbooks = features.flipbooks || look.columns > 1 || look.rows > 1;
+    features.motions = features.motions || has_motion;
+    soft = soft || look.softness > 0;
     moving = moving || moves_pixels(looks.back());
     return static_cast<std::uint32_t>(looks.size() - 1);
 }
@@ -354,7 +361,8 @@ void ParticleEffect::collect(FrameData& frame) {
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
-    lit = images = motions = moving = has_ribbons = has_billboards = has_halves = false;
+    features = {};
+    lit = soft = moving = has_ribbons = has_billboards = has_halves = false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -423,7 +431,7 @@ void ParticleEffect::collect(FrameData& frame) {
     sprites.gpu_view = &gpu_view;
     sprites.looks = looks;
     sprites.arrays = arrays;
-    sprites.motions = motions;
+    sprites.features = features;
     sprites.look_texels = &look_texels;
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
@@ -562,14 +570,20 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     }
 }
 
+Variant ParticleEffect::sprite_variant(const ViewData& view) const {
+    Variant variant;
+    features.add_to(variant);
+    variant.add_if(is_clipped(view), "CLIPPED");
+    variant.add_if(soft, "SOFT");
+    variant.add_if(has_ribbons, "RIBBONS");
+    variant.add_if(has_billboards, "BILLBOARDS");
+    return variant;
+}
+
 void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
     const bool clipped = is_clipped(view);
     Variant variant("VELOCITY");
-    variant.add_if(clipped, "CLIPPED");
-    variant.add_if(images, "IMAGES");
-    variant.add_if(motions, "MOTION");
-    variant.add_if(has_ribbons, "RIBBONS");
-    variant.add_if(has_billboards, "BILLBOARDS");
+    variant.add(sprite_variant(view));
     const gpu::Program* const program = velocity_programs.get(variant);
     if (program == nullptr) {
         return;
@@ -593,12 +607,8 @@ void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
 void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
     const bool clipped = is_clipped(view);
     Variant variant = view.lighting.variant;
-    variant.add_if(clipped, "CLIPPED");
     variant.add_if(lit, "LIT");
-    variant.add_if(images, "IMAGES");
-    variant.add_if(motions, "MOTION");
-    variant.add_if(has_ribbons, "RIBBONS");
-    variant.add_if(has_billboards, "BILLBOARDS");
+    variant.add(sprite_variant(view));
     const gpu::Program* const program = programs.get(variant);
     if (program == nullptr) {
         return;
@@ -624,11 +634,11 @@ void ParticleEffect::draw_runs(
     billboard_texels.bind(device, kBillboardsUnit);
     const auto bind_images = [&](const ParticleArrays& its) {
         const ImagePool& pool = view.frame->materials->images();
-        if (images) {
-            device.bind_texture(kImagesUnit, pool.array(its.images));
+        if (features.images) {
+            device.bind_texture(kImagesUnit, pool.array(its.images), &image_sampler);
         }
-        if (motions) {
-            device.bind_texture(kMotionsUnit, pool.array(its.motions));
+        if (features.motions) {
+            device.bind_texture(kMotionsUnit, pool.array(its.motions), &image_sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);

@@ -103,14 +103,15 @@ struct ParticleEffect {
     GpuParticlePools gpu = {};  ///< drawn after the others
     GpuParticleView gpu_view = {};
     bool lit = false;
-    bool images = false;
-    bool motions = false;
+    bool soft = false;  ///< some fade where they meet a surface
+    SpriteFeatures features = {};
     bool moving = false;  ///< some look may cover enough to move pixels
     bool has_ribbons = false;
     bool has_billboards = false;
     bool has_halves = false;
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
     const gpu::Program* depth_copy = nullptr;
+    gpu::Sampler image_sampler = {};
     DepthMemory seen_depth = {};  ///< while some on the GPU meet what the camera sees
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
@@ -133,6 +134,7 @@ struct ParticleEffect {
     [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
     void append_runs(bool half, std::size_t first, std::size_t last, ViewParticles& seen);
     void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
     void draw_velocity(PassContext& context, const ViewData& view);
     void

@@ -280,10 +280,8 @@ void ParticleShadowEffect::draw_shared(FrameGraph& graph, const FrameData& frame
 void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& frame) {
     const auto& sprites = frame.data.get<ParticleSprites>();
     const ImagePool& images = frame.materials->images();
-    const bool has_images = !frame.assets->images.empty();
     Variant variant;
-    variant.add_if(has_images, "IMAGES");
-    variant.add_if(sprites.motions, "MOTION");
+    sprites.features.add_to(variant);
     const gpu::Program* const program = programs.get(variant);
     if (program == nullptr || (view.record[4].x < 0 && gpu_casters.empty())) {
         return;
@@ -297,10 +295,10 @@ void ParticleShadowEffect::draw_casters(PassContext& context, const FrameData& f
     (gpu_casters.empty() ? record : fitted).bind(device, kRecordUnit);
     sprites.look_texels->bind(device, kLooksUnit);
     const auto bind_images = [&](const ParticleArrays& arrays) {
-        if (has_images) {
+        if (sprites.features.images) {
             device.bind_texture(kImagesUnit, images.array(arrays.images));
         }
-        if (sprites.motions) {
+        if (sprites.features.motions) {
             device.bind_texture(kMotionsUnit, images.array(arrays.motions));
         }
     };

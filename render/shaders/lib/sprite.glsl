@@ -1,5 +1,6 @@
 // The image of a particle: a frame of a flipbook on its way to the next, or a soft disc. Definitions:
 //   IMAGES   some particle has an image
+//   FLIPBOOKS  some of them have several frames
 //   RIBBONS  some are segments of ribbons, along which it repeats
 //   MOTION   some flipbook has a motion map: both frames are fetched where it has been or will be what is seen between
 //            them, so that shapes move instead of cross-fading (particle.motion-vectors)
@@ -24,7 +25,7 @@ layout(binding = 1) uniform sampler2DArray motion_maps;
 // How far what the frame at `offset` has at `uv` moves until the next frame, as a share of the frame; `motion`: layer of
 // the map, what its full value means.
 vec2 motion_at(vec2 uv, vec4 frames, vec2 offset, vec2 motion) {
-    vec2 encoded = texture(motion_maps, vec3(uv * frames.xy + offset, motion.x)).rg;
+    vec2 encoded = textureLod(motion_maps, vec3(uv * frames.xy + offset, motion.x), 0.0).rg;
     return motion.y * (encoded * (255.0 / 127.0) - 128.0 / 127.0);
 }
 
@@ -47,15 +48,17 @@ vec4 sprite_at(vec2 place, vec4 frames, vec2 next_frame, float progress, float l
     vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
     vec2 from = uv;
     vec2 to = uv;
-#ifdef MOTION
+#if defined(MOTION) && defined(FLIPBOOKS)
     if (motion.x >= 0.0) {
         from = within_frame(uv - progress * motion_at(uv, frames, frames.zw, motion), frames);
         to = within_frame(uv + (1.0 - progress) * motion_at(uv, frames, next_frame, motion), frames);
     }
 #endif
-    vec4 now = image_at(from, frames, frames.zw, max(layer, 0.0));
-    vec4 next = image_at(to, frames, next_frame, max(layer, 0.0));
-    return layer < 0.0 ? disc : mix(now, next, progress);
+    vec4 shown = image_at(from, frames, frames.zw, max(layer, 0.0));
+#ifdef FLIPBOOKS
+    shown = mix(shown, image_at(to, frames, next_frame, max(layer, 0.0)), progress);
+#endif
+    return layer < 0.0 ? disc : shown;
 #else
     return disc;
 #endif
