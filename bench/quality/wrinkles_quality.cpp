@@ -82,13 +82,14 @@ void measure_furrows(QualityReport& report) {
     const auto map = *lay_out_furrows(make_furrow_surface(FurrowSurface::Square), recipe);
     const FurrowStyle style = style_of(recipe);
     const auto cover = cover_furrow_map(map);
-    const FurrowDrawing drawing = trace_furrows(map, cover, style, 0);
+    std::vector<FurrowSegment> segments;
+    const FurrowDrawing drawing = trace_furrows(map, cover, style, 0, &segments);
     double turn = 0;
     double largest = 0;
     double length = 0;
     std::size_t whole = 0;
     std::size_t met = 0;
-    for (const FurrowSegment& s : drawing.segments) {
+    for (const FurrowSegment& s : segments) {
         const Vec2 d = (s.to - s.from) * (s.backward ? -1.0f : 1.0f);
         length += static_cast<double>(glm::length(d));
         met += s.met ? 1 : 0;
@@ -116,7 +117,7 @@ void measure_furrows(QualityReport& report) {
         "furrows: half a band, the least distance", 0.5 * static_cast<double>(shape.density), "px");
     report.inform(
         "furrows: segments that end at another furrow",
-        100.0 * static_cast<double>(met) / static_cast<double>(drawing.segments.size()), "%");
+        100.0 * static_cast<double>(met) / static_cast<double>(segments.size()), "%");
 }
 
 ColorImage make_image(int height) {

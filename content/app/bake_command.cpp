@@ -32,6 +32,8 @@
 namespace limn {
 namespace {
 
+constexpr int kGutter = 4;  // around the parts of an atlas [px]
+
 /// A mesh of the file: the one of this name, or the one with the most triangles.
 Result<MeshData> load_mesh(const std::string& path, const std::string& name) {
     register_game_components();
@@ -134,8 +136,9 @@ Status bake_furrows(const BakeOptions& options) {
     progress.update(1);
     const FurrowMap map = LIMN_TRY(lay_out_furrows(mesh, recipe));
     progress.update(2);
-    const FurrowMaps maps = options.gpu ? LIMN_TRY(make_furrow_maps_on_gpu(map, style_of(recipe)))
-                                        : make_furrow_maps(map, style_of(recipe));
+    FurrowMaps maps = options.gpu ? LIMN_TRY(make_furrow_maps_on_gpu(map, style_of(recipe)))
+                                  : make_furrow_maps(map, style_of(recipe));
+    add_furrow_gutter(maps, kGutter);
     progress.update(3);
     const std::size_t dot = options.out.rfind('.');
     const std::string stem = options.out.substr(0, dot);

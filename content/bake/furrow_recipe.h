@@ -53,4 +53,8 @@ struct FurrowMaps {
 
 [[nodiscard]] FurrowMaps make_furrow_maps(const FurrowMap& map, const FurrowStyle& style);
 
+/// Extends height and normals by `rings` pixels beyond the surface, with the mean of the neighbors
+/// in the ring within, so that filtering at the borders of a texture atlas meets skin.
+void add_furrow_gutter(FurrowMaps& maps, int rings);
+
 }  // namespace limn

@@ -213,8 +213,8 @@ FurrowShape furrow_shape(const FurrowStyle& style, float magnitude) {
     const float limit = line(f.limit);
     FurrowShape shape;
     shape.angle = line(f.angle);
-    shape.length = style.scale * line(f.length);
-    shape.density = style.scale * line(f.density);
+    shape.length = std::max(style.scale * line(f.length), kMinFurrowStep);
+    shape.density = std::max(style.scale * line(f.density), 0.0f);
     shape.width = style.scale * (f.width * x);
     shape.depth = f.depth * (x * x);
     shape.limit = limit > 0 ? static_cast<int>(limit) : 0;
@@ -256,7 +256,8 @@ FurrowDrawing make_furrow_drawing(const FurrowMap& map) {
 
 void trace_half_furrow(
     const FurrowMap& map, const std::vector<std::int32_t>& cover, const FurrowStyle& style,
-    int field, std::uint32_t furrow, const Vec2& start, bool backward, FurrowDrawing& drawing) {
+    int field, std::uint32_t furrow, const Vec2& start, bool backward, FurrowDrawing& drawing,
+    std::vector<FurrowSegment>* segments) {
     LIMN_CHECK(field == 0 || field == 1);
     Canvas canvas{map, cover, drawing};
     Vec2 p = start;
@@ -290,7 +291,9 @@ void trace_half_furrow(
         const float length = walk(canvas, p, direction, shape.length, furrow, met);
         draw(canvas, p, direction, length, shape, furrow);
         const Vec2 q = p + direction * length;
-        drawing.segments.push_back({p, q, shape.density, furrow, backward, met});
+        if (segments != nullptr) {
+            segments->push_back({p, q, shape.density, furrow, backward, met});
+        }
         if (met || left <= 0) {
             return;
         }
@@ -301,7 +304,7 @@ void trace_half_furrow(
 
 FurrowDrawing trace_furrows(
     const FurrowMap& map, const std::vector<std::int32_t>& cover, const FurrowStyle& style,
-    int field) {
+    int field, std::vector<FurrowSegment>* segments) {
     FurrowDrawing drawing = make_furrow_drawing(map);
     const Canvas canvas{map, cover, drawing};
     const auto try_start = [&](const Vec2& start, std::size_t id) {
@@ -313,8 +316,8 @@ FurrowDrawing trace_furrows(
             return;
         }
         const auto furrow = static_cast<std::uint32_t>(id);
-        trace_half_furrow(map, cover, style, field, furrow, start, false, drawing);
-        trace_half_furrow(map, cover, style, field, furrow, start, true, drawing);
+        trace_half_furrow(map, cover, style, field, furrow, start, false, drawing, segments);
+        trace_half_furrow(map, cover, style, field, furrow, start, true, drawing, segments);
     };
     for (std::size_t t = 0; t < map.triangles.size(); ++t) {
         const FurrowTriangle& triangle = map.triangles[t];

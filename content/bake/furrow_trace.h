@@ -30,12 +30,14 @@ namespace limn {
 /// What the six functions say at one point, in pixels and radians.
 struct FurrowShape {
     float angle = 0;
-    float length = 0;   ///< of a segment
+    float length = 0;   ///< of a segment, at least kMinFurrowStep
     float density = 0;  ///< width of the band
     float width = 0;
     float depth = 0;  ///< 0 .. 1
     int limit = 0;    ///< segments that follow
 };
+
+inline constexpr float kMinFurrowStep = 0.5f;  // [px]: furrows do not stay where they are
 
 /// Of a field with this magnitude, which is clamped to 0 .. 2.
 [[nodiscard]] FurrowShape furrow_shape(const FurrowStyle& style, float magnitude);
@@ -62,21 +64,21 @@ struct FurrowDrawing {
     std::vector<std::uint32_t>
         cells;  ///< per pixel: id of the furrow that owns it, | kFurrowBand in a band
     std::vector<float> height;  ///< per pixel, 1: skin without a furrow .. 0
-    std::vector<FurrowSegment> segments;
 };
 
 /// A drawing without furrows.
 [[nodiscard]] FurrowDrawing make_furrow_drawing(const FurrowMap& map);
 
 /// Draws one half of a furrow of `field` (0 or 1) from `start` [px], which must lie within the
-/// image. `cover` is that of cover_furrow_map.
+/// image. `cover` is that of cover_furrow_map. Appends what it draws to `segments`, if any.
 void trace_half_furrow(
     const FurrowMap& map, const std::vector<std::int32_t>& cover, const FurrowStyle& style,
-    int field, std::uint32_t furrow, const Vec2& start, bool backward, FurrowDrawing& drawing);
+    int field, std::uint32_t furrow, const Vec2& start, bool backward, FurrowDrawing& drawing,
+    std::vector<FurrowSegment>* segments = nullptr);
 
 /// Draws all furrows of `field`. Afterwards every covered pixel is in a band.
 [[nodiscard]] FurrowDrawing trace_furrows(
     const FurrowMap& map, const std::vector<std::int32_t>& cover, const FurrowStyle& style,
-    int field);
+    int field, std::vector<FurrowSegment>* segments = nullptr);
 
 }  // namespace limn

@@ -42,6 +42,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/texture_combine.h"
+#include "ecs/components/texture_shade.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
@@ -125,6 +126,7 @@ void register_all_components() {
     register_component<Water>();
     register_component<WaterLook>();
     register_component<TextureCombine>();
+    register_component<TextureShade>();
     register_component<WaterDetail>();
     register_component<WaterWaves>();
     register_component<WaterRipples>();

@@ -35,7 +35,7 @@ LIMN_FIELDS(FurrowFunctions) {
     LIMN_FIELD(density, "band in which no other furrow starts, times the scale", "px", 0, 64);
     LIMN_FIELD(width, "of a furrow, times magnitude and scale", "px", 0, 32);
     LIMN_FIELD(depth, "times the magnitude squared; 1 is the deepest", "", 0, 1);
-    LIMN_FIELD(limit, "segments of half a furrow, less one", "", -1000, 1000);
+    LIMN_FIELD(limit, "segments of half a furrow, less one", "", -100, 100);
 }
 
 struct FurrowStyle {

@@ -49,6 +49,7 @@ const uint kBand = 0x80000000u;
 const int kTriangleFloats = 27;
 const float kStill = 1e-4;
 const float kFar = 1e30;
+const float kMinStep = 0.5;
 
 shared uint first_hit;
 shared uint found_start;
@@ -117,7 +118,7 @@ FurrowShape furrow_shape(float magnitude) {
     precise float width = scale * (width_depth.x * x);
     precise float depth = width_depth.y * (x * x);
     return FurrowShape(
-        line_at(angle_length.xy, x), length_px, density, width, depth, limit > 0.0 ? int(limit) : 0);
+        line_at(angle_length.xy, x), max(length_px, kMinStep), max(density, 0.0), width, depth, limit > 0.0 ? int(limit) : 0);
 }
 
 // Distance along a segment to its first line between pixels across an axis, and between lines.

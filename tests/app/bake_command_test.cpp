@@ -70,7 +70,9 @@ TEST_CASE("bake: furrows writes a height map and unit normals of the size asked 
     for (std::size_t i = 0; i < all->values.size(); ++i) {
         const float lesser = std::min(first->values[i], second->values[i]);
         CHECK(all->values[i] <= lesser);
-        CHECK(all->values[i] >= lesser - 0.3f);  // the noise of the preset
+        if (lesser < 1) {                            // of the surface, not of the gutter around it
+            CHECK(all->values[i] >= lesser - 0.3f);  // the noise of the preset
+        }
         furrowed += lesser < 1 ? 1 : 0;
     }
     CHECK(furrowed > 100);

@@ -1,6 +1,7 @@
 #include "content/bake/furrow_height.h"
 #include "content/bake/furrow_map.h"
 #include "content/bake/furrow_presets.h"
+#include "content/bake/furrow_recipe.h"
 #include "content/make/shapes.h"
 #include "ecs/base/hash.h"
 #include "ecs/base/jobs.h"
@@ -212,6 +213,34 @@ TEST_CASE("furrow height: any number of threads gives the same bits") {
     set_thread_count(threads);
     CHECK(found[0] == found[1]);
     CHECK(found[0] == found[2]);
+}
+
+TEST_CASE("furrow maps: beyond the surface its border goes on for as many rings as asked for") {
+    FurrowMap map = test::make_flat_furrow_map({40, 40}, {1, 0}, {0, 1});
+    map.triangles.resize(1);  // x > y
+    const FurrowMaps bare = make_furrow_maps(map, {.bump = 1});
+    FurrowMaps maps = bare;
+    add_furrow_gutter(maps, 3);
+    int changed = 0;
+    for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 40; ++x) {
+            const auto pixel = static_cast<std::size_t>(y * 40 + x);
+            CHECK(glm::length(maps.normals[pixel]) == test::near(1.0f));
+            if (x >= y || y - x > 6) {  // a ring reaches two diagonals further
+                CHECK(maps.height[pixel] == bare.height[pixel]);
+                CHECK(maps.normals[pixel] == bare.normals[pixel]);
+            } else if (y - x == 1 && x > 0 && y < 39) {  // seven neighbors, of which some are skin
+                float least = 1;
+                for (const int to : {-40, 1, -39, -41, 41}) {
+                    const auto near = static_cast<std::size_t>(static_cast<int>(pixel) + to);
+                    least = std::min(least, bare.growth.cover[near] < 0 ? 1 : bare.height[near]);
+                }
+                CHECK(maps.height[pixel] >= least);
+            }
+            changed += maps.height[pixel] != bare.height[pixel] ? 1 : 0;
+        }
+    }
+    CHECK(changed > 40);
 }
 
 TEST_CASE("furrow presets: they are the rows of Table 6.2") {

@@ -23,14 +23,20 @@ FurrowStyle make_straight_style() {
     return style;
 }
 
+/// What was drawn, and how.
+struct Traced : FurrowDrawing {
+    std::vector<FurrowSegment> segments = {};
+};
+
 /// Half a furrow from `start` in an empty image.
-FurrowDrawing trace_half(const FurrowMap& map, const FurrowStyle& style, const Vec2& start) {
-    FurrowDrawing drawing = make_furrow_drawing(map);
-    trace_half_furrow(map, cover_furrow_map(map), style, 0, 1, start, false, drawing);
-    return drawing;
+Traced trace_half(const FurrowMap& map, const FurrowStyle& style, const Vec2& start) {
+    Traced traced = {make_furrow_drawing(map)};
+    trace_half_furrow(
+        map, cover_furrow_map(map), style, 0, 1, start, false, traced, &traced.segments);
+    return traced;
 }
 
-float length_of(const FurrowDrawing& drawing) {
+float length_of(const Traced& drawing) {
     float length = 0;
     for (const FurrowSegment& s : drawing.segments) {
         length += glm::distance(s.from, s.to);
@@ -38,11 +44,14 @@ float length_of(const FurrowDrawing& drawing) {
     return length;
 }
 
-FurrowDrawing trace_all(const FurrowMap& map, const FurrowStyle& style, int field = 0) {
-    return trace_furrows(map, cover_furrow_map(map), style, field);
+Traced trace_all(const FurrowMap& map, const FurrowStyle& style, int field = 0) {
+    Traced traced;
+    static_cast<FurrowDrawing&>(traced) =
+        trace_furrows(map, cover_furrow_map(map), style, field, &traced.segments);
+    return traced;
 }
 
-std::size_t count_furrows(const FurrowDrawing& drawing) {
+std::size_t count_furrows(const Traced& drawing) {
     std::set<std::uint32_t> ids;
     for (const FurrowSegment& s : drawing.segments) {
         ids.insert(s.furrow);
@@ -83,13 +92,29 @@ TEST_CASE("furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.
     }
 }
 
+TEST_CASE("furrow functions: no style makes furrows stand still or bands of negative width") {
+    FurrowStyle style;
+    style.functions.length = {0, 0};
+    style.functions.density = {1, -6};
+    for (const float x : {0.0f, 1.0f, 2.0f}) {
+        CHECK(furrow_shape(style, x).length == kMinFurrowStep);
+        CHECK(furrow_shape(style, x).density >= 0);
+    }
+    style.literal_turn = true;
+    style.functions.angle = {1.2f, 0};
+    const FurrowMap map = test::make_flat_furrow_map({40, 40}, {2, 0});
+    for (const std::uint32_t cell : trace_all(map, style).cells) {
+        CHECK((cell & kFurrowBand) != 0);
+    }
+}
+
 TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments in a line") {
     const FurrowStyle style = make_straight_style();
     for (const auto& [x, segments, length] :
          {std::tuple{0.001f, 30, 120.0f}, std::tuple{0.5f, 26, 117.0f},
           std::tuple{1.0f, 21, 105.0f}, std::tuple{1.5f, 16, 88.0f}, std::tuple{2.0f, 11, 66.0f}}) {
         const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
-        const FurrowDrawing drawing = trace_half(map, style, {20.5f, 20.5f});
+        const Traced drawing = trace_half(map, style, {20.5f, 20.5f});
         CHECK(drawing.segments.size() == static_cast<std::size_t>(segments));
         CHECK(length_of(drawing) == test::near(length).epsilon(1e-3));
         for (const FurrowSegment& s : drawing.segments) {
@@ -102,18 +127,20 @@ TEST_CASE("furrow trace: half a furrow that nothing stops has limit + 1 segments
 TEST_CASE("furrow trace: a wall 12 px ahead ends a furrow there, in its third segment") {
     const FurrowMap map = test::make_flat_furrow_map({100, 40}, {1, 0});
     auto cover = cover_furrow_map(map);
-    FurrowDrawing drawing = make_furrow_drawing(map);
+    Traced drawing = {make_furrow_drawing(map)};
     for (std::size_t y = 0; y < 40; ++y) {
         drawing.cells[y * 100 + 32] = 77;  // another furrow, from x = 32 to 33
     }
-    trace_half_furrow(map, cover, make_straight_style(), 0, 5, {20, 20.5f}, false, drawing);
+    trace_half_furrow(
+        map, cover, make_straight_style(), 0, 5, {20, 20.5f}, false, drawing, &drawing.segments);
     REQUIRE(drawing.segments.size() == 3);
     CHECK(drawing.segments[2].met);
     CHECK(drawing.segments[2].to.x == test::near(32));
     CHECK(drawing.cells[20 * 100 + 32] == (77 | kFurrowBand));
     // The border of the surface is a wall as well, and the other half runs the other way.
-    FurrowDrawing other = make_furrow_drawing(map);
-    trace_half_furrow(map, cover, make_straight_style(), 0, 5, {18, 20.5f}, true, other);
+    Traced other = {make_furrow_drawing(map)};
+    trace_half_furrow(
+        map, cover, make_straight_style(), 0, 5, {18, 20.5f}, true, other, &other.segments);
     REQUIRE(other.segments.size() == 4);
     CHECK(other.segments[3].met);
     CHECK(other.segments[3].to.x == test::near(0).scale(1));
@@ -127,14 +154,14 @@ TEST_CASE("furrow trace: the shortest limit met on the way counts") {
     strong.corner[1] = {300, 0};
     strong.corner[2] = {24, 400};
     map.triangles.insert(map.triangles.begin(), strong);
-    const FurrowDrawing drawing = trace_half(map, make_straight_style(), {20.5f, 20.5f});
+    const Traced drawing = trace_half(map, make_straight_style(), {20.5f, 20.5f});
     // One weak segment and one of magnitude 2, after which 9 and the last one are left.
     CHECK(drawing.segments.size() == 1 + 1 + 9 + 1);
 }
 
 TEST_CASE("furrow trace: where the field is zero a furrow is one point of the band") {
     const FurrowMap map = test::make_flat_furrow_map({20, 20}, {0, 0});
-    const FurrowDrawing drawing = trace_half(map, {}, {10.5f, 10.5f});
+    const Traced drawing = trace_half(map, {}, {10.5f, 10.5f});
     CHECK(drawing.segments.empty());
     CHECK(drawing.cells[10 * 20 + 10] == kFurrowBand);
     CHECK(std::count(drawing.cells.begin(), drawing.cells.end(), 0u) == 399);
@@ -148,9 +175,10 @@ TEST_CASE("furrow trace: segments turn at random by up to the angle, evenly to b
     double most = 0;
     double count = 0;
     for (std::uint32_t furrow = 1; furrow <= 200; ++furrow) {
-        FurrowDrawing drawing = make_furrow_drawing(map);
+        Traced drawing = {make_furrow_drawing(map)};
         trace_half_furrow(
-            map, cover_furrow_map(map), style, 0, furrow, {200, 200}, furrow % 2 == 0, drawing);
+            map, cover_furrow_map(map), style, 0, furrow, {200, 200}, furrow % 2 == 0, drawing,
+            &drawing.segments);
         for (const FurrowSegment& s : drawing.segments) {
             const Vec2 d = (s.to - s.from) * (s.backward ? -1.0f : 1.0f);
             const double turn = std::atan2(static_cast<double>(d.y), static_cast<double>(d.x));
@@ -166,7 +194,7 @@ TEST_CASE("furrow trace: segments turn at random by up to the angle, evenly to b
     CHECK(std::abs(sum / count) < 3 * 0.6 / std::sqrt(3.0) / std::sqrt(count));
     CHECK(std::sqrt(square_sum / count) == test::near(0.6 / std::sqrt(3.0)).epsilon(0.02));
     style.literal_turn = true;
-    const FurrowDrawing literal = trace_half(map, style, {200, 200});
+    const Traced literal = trace_half(map, style, {200, 200});
     const Vec2 d = literal.segments[0].to - literal.segments[0].from;
     CHECK(std::atan2(d.y, d.x) == test::near(0.6));
 }
@@ -180,7 +208,7 @@ TEST_CASE("furrow trace: furrows of one field never cross, they end on each othe
             test::make_flat_furrow_map({160, 160}, x * Vec2(std::cos(angle), std::sin(angle)));
         FurrowStyle style;
         style.seed = run;
-        const FurrowDrawing drawing = trace_all(map, style);
+        const Traced drawing = trace_all(map, style);
         // A pixel belongs to the furrow that came first; no other one's axis may pass through it.
         int crossings = 0;
         int ends = 0;
@@ -220,7 +248,7 @@ TEST_CASE(
 
 TEST_CASE("furrow trace: no furrow starts within half the band of an earlier one") {
     const FurrowMap map = test::make_flat_furrow_map({200, 200}, {1.1f, -0.4f});
-    const FurrowDrawing drawing = trace_all(map, {});
+    const Traced drawing = trace_all(map, {});
     std::map<std::uint32_t, std::size_t> first;  // segment of each furrow
     for (std::size_t i = 0; i < drawing.segments.size(); ++i) {
         first.try_emplace(drawing.segments[i].furrow, i);
@@ -250,7 +278,7 @@ TEST_CASE("furrow trace: stronger fields have fewer, sparser furrows") {
 TEST_CASE("furrow trace: the same seed gives the same furrows, another seed others") {
     const FurrowMap map = test::make_flat_furrow_map({100, 100}, {1, 0.5f});
     FurrowStyle style;
-    const FurrowDrawing once = trace_all(map, style);
+    const Traced once = trace_all(map, style);
     CHECK(trace_all(map, style).cells == once.cells);
     CHECK(trace_all(map, style).height == once.height);
     style.seed = 2;
@@ -260,7 +288,7 @@ TEST_CASE("furrow trace: the same seed gives the same furrows, another seed othe
 TEST_CASE("furrow trace: furrows pass over the border of an image that repeats") {
     FurrowMap map = test::make_flat_furrow_map({64, 48}, {0.995f, 0.0995f});
     map.wrap_s = true;
-    const FurrowDrawing drawing = trace_half(map, make_straight_style(), {50.5f, 20.5f});
+    const Traced drawing = trace_half(map, make_straight_style(), {50.5f, 20.5f});
     CHECK(drawing.segments.size() == 21);
     CHECK(drawing.cells[21 * 64 + 0] != 0);  // beyond the right border
     map.wrap_s = false;
@@ -271,7 +299,7 @@ TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
     for (const float x : {0.3f, 0.7f, 1.0f, 1.6f}) {
         const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
         for (const float y : {20.5f, 20.3f, 20.0f}) {
-            const FurrowDrawing drawing = trace_half(map, make_straight_style(), {20.5f, y});
+            const Traced drawing = trace_half(map, make_straight_style(), {20.5f, y});
             const float depth = furrow_shape({}, x).depth;
             double sum = 0;
             for (std::size_t row = 0; row < 40; ++row) {
@@ -288,7 +316,7 @@ TEST_CASE("furrow topography: furrows of both fields cross and mostly enclose fo
     const FurrowMap map = test::make_flat_furrow_map({kSide, kSide}, {1, 0.2f}, {-0.2f, 1});
     FurrowStyle style;
     style.functions.angle = {0.1f, 0};
-    const FurrowDrawing drawings[] = {trace_all(map, style, 0), trace_all(map, style, 1)};
+    const Traced drawings[] = {trace_all(map, style, 0), trace_all(map, style, 1)};
     const auto owner = [&](int field, int pixel) {
         return drawings[field].cells[static_cast<std::size_t>(pixel)] & ~kFurrowBand;
     };
