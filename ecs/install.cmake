@@ -39,5 +39,6 @@ install(
     PATTERN base/math.h EXCLUDE
     PATTERN base/caustic_optics.h EXCLUDE
     PATTERN base/optics.h EXCLUDE
+    PATTERN base/repeatable_math.h EXCLUDE
     PATTERN base/rng.h EXCLUDE
     PATTERN base/rotation.h EXCLUDE)

@@ -31,11 +31,18 @@ void append_billboard(
     const std::uint32_t first = look.frames == ParticleFrames::Play ? 0 : (random >> 8) % frames;
     const float rate = look.frames == ParticleFrames::Pick ? 0 : look.frame_rate;
     const std::uint32_t frame = (first + billboard_frame(rate, frames, time)) % frames;
-    list.quads.push_back({right, static_cast<float>(alignment), up, static_cast<float>(frame)});
+    list.quads.push_back(
+        {.right = right,
+         .alignment = static_cast<float>(alignment),
+         .up = up,
+         .frame = static_cast<float>(frame)});
     list.places.push_back(place);
     if (is_composite) {
         const Vec3 across = half_width * transform_vector(world, {0, 0, -1});
-        list.quads.push_back({right, static_cast<float>(BillboardAlignment::None), across, 0});
+        list.quads.push_back(
+            {.right = right,
+             .alignment = static_cast<float>(BillboardAlignment::None),
+             .up = across});
         place.is_section = true;
         list.places.push_back(place);
     }

@@ -18,6 +18,8 @@ struct BillboardQuad {
     float alignment = 0;     ///< BillboardAlignment
     Vec3 up = {0, 1, 0};     ///< half of its height [m]
     float frame = 0;
+    Vec3 velocity = {0, 0, 0};  ///< [m/s]
+    float unused = 0;
 };
 static_assert(sizeof(BillboardQuad) == 16 * layout::kBillboardTexels);
 

@@ -18,6 +18,8 @@ namespace limn {
 namespace {
 
 constexpr unsigned kStepsUnit = 0;
+constexpr unsigned kSeenDepthUnit = 1;
+constexpr unsigned kViewBinding = 0;
 constexpr unsigned kStateBinding = 0;
 constexpr unsigned kBitsBinding = 1;
 constexpr unsigned kInstancesBinding = 2;
@@ -84,6 +86,21 @@ void pack_step(const GpuParticleStep& step, const StepParts& first, std::vector<
     texels.emplace_back(word(first.collider), word(step.colliders.size()), 0.0f, 0.0f);
 }
 
+Result<const gpu::Program*>
+load_update(gpu::Device& device, std::vector<gpu::ShaderDefine> defines) {
+    return device.shaders().load(
+        {.compute = "particle_update.comp", .defines = std::move(defines)});
+}
+
+/// Whether gravity and drag alone move particles in a step.
+bool is_plain(const GpuParticleStep& step) {
+    const MotionStep& motion = step.motion;
+    const bool steers = motion.steering.orbit > 0 || motion.steering.loss > 0;
+    const bool whirls = motion.vortex.around != 0 || motion.vortex.toward != 0;
+    return !motion.step.closed_form && motion.turbulence.strength == 0 && !steers && !whirls
+           && motion.forces.empty() && motion.wrap_size == Vec3(0) && step.colliders.empty();
+}
+
 void make_buffers(std::uint32_t capacity, GpuParticlePool& pool) {
     const std::size_t slots = std::max(capacity, 1u);
     pool.state = gpu::Buffer("particle state", slots * 2 * sizeof(Vec4), gpu::BufferUse::GpuOnly);
@@ -144,7 +161,9 @@ std::vector<Vec4> pack_particle_steps(
 
 Result<GpuParticlePools> GpuParticlePools::create(gpu::Device& device) {
     GpuParticlePools pools;
-    pools.program_ = LIMN_TRY(device.shaders().load({.compute = "particle_update.comp"}));
+    pools.programs_.births = LIMN_TRY(load_update(device, {}));
+    pools.programs_.old = LIMN_TRY(load_update(device, {{"OLD"}}));
+    pools.programs_.plain = LIMN_TRY(load_update(device, {{"OLD"}, {"PLAIN"}}));
     return pools;
 }
 
@@ -152,6 +171,7 @@ void GpuParticlePools::begin_frame(const World& world) {
     if (std::exchange(epoch_, world.core().epoch) != world.core().epoch) {
         pools_.clear();
     }
+    updated_ = false;
     for (auto& [entity, pool] : pools_) {
         pool->used = false;
     }
@@ -171,6 +191,26 @@ bool GpuParticlePools::can_sort(gpu::Device& device) {
         sort_programs_ = *made;
     }
     return true;
+}
+
+bool GpuParticlePools::can_meet_depth(gpu::Device& device) {
+    if (programs_.seen_old == nullptr) {
+        const Result<const gpu::Program*> births = load_update(device, {{"SEEN_DEPTH"}});
+        const Result<const gpu::Program*> old = load_update(device, {{"SEEN_DEPTH"}, {"OLD"}});
+        if (!births || !old) {
+            log_error("{}", (births ? old : births).error().message);
+            return false;
+        }
+        programs_.seen_births = *births;
+        programs_.seen_old = *old;
+    }
+    return true;
+}
+
+bool GpuParticlePools::meets_depth() const {
+    return std::any_of(pools_.begin(), pools_.end(), [](const auto& pool) {
+        return pool.second->collide_depth > 0;
+    });
 }
 
 void GpuParticlePools::add(
@@ -193,23 +233,81 @@ void GpuParticlePools::add(
     }
     pool.steps.upload(
         *frame.ring, pack_particle_steps(emitter, collision, particles, pool.done, pool.layout));
+    const std::span<const GpuParticleStep> to_do =
+        particles.kept().last(static_cast<std::size_t>(pool.layout.steps));
     pool.done = particles.step;
     pool.used = true;
     pool.look = look;
     pool.first = static_cast<std::uint32_t>(particles.oldest());
     pool.count = static_cast<std::uint32_t>(window);
+    const std::uint64_t born_before = to_do.empty() ? particles.clock.born : to_do.front().first;
+    pool.old =
+        static_cast<std::uint32_t>(std::max(born_before, particles.oldest()) - particles.oldest());
+    pool.plain.reset();
+    if (to_do.size() == 1 && is_plain(to_do.front())) {
+        pool.plain = to_do.front().motion.step;
+    }
     if (!particles.kept().empty()) {
         const ParticleStep& step = particles.kept().back().motion.step;
         pool.closed_form = step.closed_form;
         pool.gravity = step.gravity;
     }
+    const bool closed_form = pool.closed_form;
+    const float depth = collision != nullptr ? finite_or(collision->collide_depth, 0) : 0.0f;
+    pool.collide_depth = depth > 0 && !closed_form && can_meet_depth(*frame.device) ? depth : 0.0f;
     pool.sorted = sort_passes.has_value() && pool.count > 0 && can_sort(*frame.device);
     if (pool.sorted) {
         plan_particle_sort({pool.first, pool.count}, *sort_passes, pool.sort);
     }
 }
 
-void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward) {
+/// Those born before the steps to do, and those born in them.
+void GpuParticlePools::move(
+    gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const {
+    const bool meets = seen && pool.collide_depth > 0;
+    const bool is_plain_step = pool.plain.has_value() && !meets;
+    pool.steps.bind(device, kStepsUnit);
+    device.bind_storage(kStateBinding, pool.state);
+    device.bind_storage(kBitsBinding, pool.bits);
+    device.bind_storage(kInstancesBinding, pool.instances);
+    const auto dispatch = [&](const gpu::Program& program, std::uint32_t begin, std::uint32_t end) {
+        if (begin >= end) {
+            return;
+        }
+        device.use(program);
+        program.set("first", pool.first);
+        program.set("begin", begin);
+        program.set("end", end);
+        program.set("first_slot", pool.first % pool.capacity);
+        program.set("capacity", pool.capacity);
+        program.set("step_count", pool.layout.steps);
+        program.set("runs", pool.layout.runs);
+        program.set("forces", pool.layout.forces);
+        program.set("colliders", pool.layout.colliders);
+        program.set("look", pool.look);
+        program.set("back", back);
+        program.set("closed_form", pool.closed_form ? 1 : 0);
+        program.set("gravity", pool.gravity);
+        program.set("thickness", pool.collide_depth);
+        if (pool.plain) {
+            const ParticleStep& step = *pool.plain;
+            program.set("push_dt", Vec4(step.gravity * step.dt, step.dt));
+            program.set("air", Vec4(step.air, step.keep));
+            program.set("old_share", step.old_share);
+        }
+        device.dispatch((end - begin + layout::kParticleGroup - 1) / layout::kParticleGroup);
+    };
+    const gpu::Program* const old = is_plain_step ? programs_.plain
+                                    : meets       ? programs_.seen_old
+                                                  : programs_.old;
+    dispatch(*old, 0, pool.old);
+    dispatch(*(meets ? programs_.seen_births : programs_.births), pool.old, pool.count);
+}
+
+void GpuParticlePools::update(FrameGraph& graph, const GpuParticleView& view) {
+    if (std::exchange(updated_, true)) {
+        return;
+    }
     if (pools_.empty()) {
         return;
     }
@@ -219,42 +317,36 @@ void GpuParticlePools::update(FrameGraph& graph, float back, const Vec3& eye, co
             writes.emplace_back(graph.import("particles", *buffer));
         }
     }
-    graph.add_pass("move particles", {}, writes, [this, back](PassContext& context) {
-        gpu::Device& device = context.device();
-        device.use(*program_);
-        for (const auto& [entity, pool] : pools_) {
-            pool->steps.bind(device, kStepsUnit);
-            device.bind_storage(kStateBinding, pool->state);
-            device.bind_storage(kBitsBinding, pool->bits);
-            device.bind_storage(kInstancesBinding, pool->instances);
-            program_->set("first", pool->first);
-            program_->set("count", pool->count);
-            program_->set("capacity", pool->capacity);
-            program_->set("step_count", pool->layout.steps);
-            program_->set("runs", pool->layout.runs);
-            program_->set("forces", pool->layout.forces);
-            program_->set("colliders", pool->layout.colliders);
-            program_->set("look", pool->look);
-            program_->set("back", back);
-            program_->set("closed_form", pool->closed_form ? 1 : 0);
-            program_->set("gravity", pool->gravity);
-            device.dispatch((pool->count + layout::kParticleGroup - 1) / layout::kParticleGroup);
-        }
-    });
+    const SeenDepth seen = view.seen;
+    std::vector<Use> reads;
+    if (seen.depth != nullptr) {
+        reads.push_back(sampled(graph.import("seen depth", *seen.depth), kSeenDepthUnit));
+    }
+    graph.add_pass(
+        "move particles", reads, writes, [this, back = view.back, seen](PassContext& context) {
+            gpu::Device& device = context.device();
+            if (seen.depth != nullptr) {
+                device.bind_uniforms(
+                    kViewBinding, seen.camera.buffer, seen.camera.offset, seen.camera.size);
+            }
+            for (const auto& [entity, pool] : pools_) {
+                move(device, *pool, back, seen.depth != nullptr);
+            }
+        });
     for (const auto& [entity, found] : pools_) {
         GpuParticlePool& pool = *found;
         if (!pool.sorted) {
             continue;
         }
-        const Use reads[] = {graph.import("particles", pool.instances)};
+        const Use unsorted[] = {graph.import("particles", pool.instances)};
         const Use order[] = {
             graph.import("particle order", pool.sort.entries[0]),
             graph.import("particle order", pool.sort.entries[1]),
             graph.import("sorted particles", pool.sort.instances)};
-        graph.add_pass("sort particles", reads, order, [=, this, &pool](PassContext& context) {
+        graph.add_pass("sort particles", unsorted, order, [=, this, &pool](PassContext& context) {
             run_particle_sort(
-                context, *sort_programs_, {pool.first, pool.count}, pool.instances, eye, forward,
-                pool.sort);
+                context, *sort_programs_, {pool.first, pool.count}, pool.instances,
+                {view.eye, view.forward}, pool.sort);
         });
     }
 }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "ecs/components/gpu_particles.h"
 #include "ecs/entity.h"
 #include "render/buffer_texture.h"
 #include "render/frame_data.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/program.h"
 #include "render/gpu_particle_sort.h"
+#include "render/seen_depth.h"
 
 #include <cstdint>
 #include <map>
@@ -15,7 +17,6 @@
 
 namespace limn {
 
-struct GpuParticles;
 struct ParticleCollision;
 struct ParticleEmitter;
 class World;
@@ -52,6 +53,18 @@ struct GpuParticlePool {
     GpuParticleSort sort{};
     bool closed_form = false;  ///< states are those of birth
     Vec3 gravity = {0, 0, 0};  ///< of the last step [m/s^2]
+    std::uint32_t old = 0;     ///< of `count`, born before the steps to do
+    /// The one step to do, if nothing but gravity and drag moves them in it.
+    std::optional<ParticleStep> plain{};
+    float collide_depth = 0;  ///< as ParticleCollision::collide_depth
+};
+
+/// When and from where they are seen.
+struct GpuParticleView {
+    float back = 0;             ///< before the end of the last step [s]
+    Vec3 eye = {0, 0, 0};       ///< [m]
+    Vec3 forward = {0, 0, -1};  ///< unit
+    SeenDepth seen{};           ///< what those with a collide_depth meet
 };
 
 /// The texels of the steps from `from` on, as particle_gpu.h has them, without those that `from` is
@@ -76,9 +89,10 @@ class GpuParticlePools {
         const ParticleCollision* collision = nullptr);
     /// After they have been added: forgets all others.
     void forget_unused();
-    /// Adds the passes that move and sort them. They are seen from `eye` along `forward`, `back`
-    /// seconds before the end of the last step.
-    void update(FrameGraph& graph, float back, const Vec3& eye, const Vec3& forward);
+    /// Adds the passes that move and sort them, unless someone has in this frame.
+    void update(FrameGraph& graph, const GpuParticleView& view);
+    /// Whether some of this frame meet what the camera saw.
+    [[nodiscard]] bool meets_depth() const;
 
     [[nodiscard]] const std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>>& pools() const {
         return pools_;
@@ -86,10 +100,23 @@ class GpuParticlePools {
 
   private:
     bool can_sort(gpu::Device& device);
+    bool can_meet_depth(gpu::Device& device);
 
-    const gpu::Program* program_ = nullptr;
+    /// For those born in the steps to do; those born before; those that meet what was seen,
+    /// likewise, loaded when there are some; those of a plain step.
+    struct Programs {
+        const gpu::Program* births = nullptr;
+        const gpu::Program* old = nullptr;
+        const gpu::Program* seen_births = nullptr;
+        const gpu::Program* seen_old = nullptr;
+        const gpu::Program* plain = nullptr;
+    };
+    void move(gpu::Device& device, const GpuParticlePool& pool, float back, bool seen) const;
+
+    Programs programs_{};
     std::optional<ParticleSortPrograms> sort_programs_{};  ///< compiled when something is sorted
     std::uint32_t epoch_ = 0;                              ///< of the world
+    bool updated_ = false;                                 ///< in this frame
     std::map<std::uint64_t, std::unique_ptr<GpuParticlePool>> pools_{};  ///< by entity
 };
 

@@ -4,6 +4,8 @@
 #include "render/gpu/shader_library.h"
 #include "render/shaders/particle_gpu.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -69,6 +71,22 @@ void sort_some(
 
 }  // namespace
 
+ParticleSortView
+predict_sort_view(const ParticleSortView& previous, const ParticleSortView& now, float frames) {
+    constexpr float kMaxMove = 10;      // a frame [m]; more is a cut, as is_cut() has it
+    constexpr float kMinCosine = 0.5f;  // of its turn
+    constexpr float kMaxTurn =
+        0.15f;  // that is expected [rad]: who looks around soon stops, by eye
+    const Vec3 move = now.eye - previous.eye;
+    if (!(glm::length(move) <= kMaxMove && glm::dot(previous.forward, now.forward) >= kMinCosine)) {
+        return now;
+    }
+    const Vec3 turn = now.forward - previous.forward;
+    const float turned = frames * glm::length(turn);
+    const float turn_frames = turned > kMaxTurn ? frames * kMaxTurn / turned : frames;
+    return {now.eye + frames * move, glm::normalize(now.forward + turn_frames * turn)};
+}
+
 std::uint32_t sort_size(std::uint32_t count) {
     return std::max(std::bit_ceil(count), kLocal);
 }
@@ -88,6 +106,8 @@ void plan_particle_sort(const ParticleWindow& now, std::uint32_t passes, GpuPart
     }
     plan.size = sort_size(sort.sorting.count);
     const std::uint32_t all = bitonic_pass_count(plan.size);
+    plan.ahead =
+        whole ? 0.0f : 1.5f * static_cast<float>((all + passes - 1) / passes);  // 1 to 2 sorts
     plan.first_pass = sort.next_pass;
     plan.last_pass = whole ? all : std::min(all, sort.next_pass + passes);
     sort.next_pass = plan.last_pass;
@@ -114,9 +134,10 @@ Result<ParticleSortPrograms> ParticleSortPrograms::create(gpu::Device& device) {
 
 void run_particle_sort(
     PassContext& context, const ParticleSortPrograms& programs, const ParticleWindow& now,
-    const gpu::Buffer& instances, const Vec3& eye, const Vec3& forward, GpuParticleSort& sort) {
+    const gpu::Buffer& instances, const ParticleSortView& view, GpuParticleSort& sort) {
     gpu::Device& device = context.device();
     const ParticleSortPlan& plan = sort.plan;
+    const ParticleSortView previous = std::exchange(sort.view, view).value_or(view);
     const bool ended = sort.next_pass == 0;
     const int sorted = ended ? 1 - sort.current : sort.current;
     device.storage_barrier();  // after the particles have moved
@@ -126,8 +147,9 @@ void run_particle_sort(
         device.use(*programs.keys);
         programs.keys->set("count", now.count);
         programs.keys->set("size", plan.size);
-        programs.keys->set("eye", eye);
-        programs.keys->set("forward", forward);
+        const ParticleSortView its = predict_sort_view(previous, view, plan.ahead);
+        programs.keys->set("eye", its.eye);
+        programs.keys->set("forward", its.forward);
         device.dispatch(plan.size / kGroup);
         device.storage_barrier();
     }

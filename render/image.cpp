@@ -24,6 +24,7 @@
 #include "render/passes/speed_line_pass.h"
 #include "render/passes/temporal_pass.h"
 #include "render/passes/texture_combine_pass.h"
+#include "render/passes/texture_shade_pass.h"
 #include "render/passes/vignette_pass.h"
 #include "render/passes/water_pass.h"
 #include "render/passes/water_veil_pass.h"
@@ -37,6 +38,7 @@ namespace {
 constexpr EffectEntry kImage[] = {
     // What is in the world, and what of it each view shows.
     effect<TextureCombineEffect>(0),
+    effect<TextureShadeEffect>(0),         // after textures are combined
     effect<DeformEffect>(kSceneViews),     // before all that draws meshes
     effect<WrinkleEffect>(kSceneViews),    // where deformed skin is compressed
     effect<LightListEffect>(kSceneViews),  // records and clusters

@@ -22,7 +22,7 @@ Vec4 shadow_texel(const ParticleLook& look) {
 
 }  // namespace
 
-LookRecord make_look_record(const ParticleLook& look, int layer) {
+LookRecord make_look_record(const ParticleLook& look, int layer, int motion_layer) {
     LookRecord record{};
     record[0] = {look.size, look.size_spread, look.turn_spread, look.spin};
     record[1] = {look.spin_spread, look.stretch, look.softness, look.forward};
@@ -38,6 +38,11 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
         static_cast<float>(place.wave), place.base, place.amplitude, place.phase};
     record[layout::kLookMore + 3] = {place.frequency, look.color_spread};
     record[layout::kLookShadow] = shadow_texel(look);
+    // A streak is blurred already.
+    const bool is_streak = look.facing == ParticleFacing::Velocity && look.stretch != 0;
+    record[layout::kLookMotion] = {
+        static_cast<float>(motion_layer), look.motion_strength,
+        is_streak ? 1.0f : to_share(look.velocity_cover), 0};
     for (std::uint32_t i = 0; i < layout::kLookSamples; ++i) {
         const float at = static_cast<float>(i) / static_cast<float>(layout::kLookSamples - 1);
         record[layout::kLookSizes + i / 4][static_cast<int>(i % 4)] =
@@ -45,6 +50,10 @@ LookRecord make_look_record(const ParticleLook& look, int layer) {
         record[layout::kLookColors + i] = sample_colors(look.colors, at);
     }
     return record;
+}
+
+bool moves_pixels(const LookRecord& look) {
+    return look[2].z > look[layout::kLookMotion].z;  // no opacity is above 1
 }
 
 float reach_of(const ParticleInstance& instance, const LookRecord& look) {

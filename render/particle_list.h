@@ -5,6 +5,7 @@
 #include "render/buffer_texture.h"
 #include "render/particle_packing.h"
 #include "render/shaders/particle_gpu.h"
+#include "render/variant.h"
 
 #include <array>
 #include <cstdint>
@@ -20,8 +21,13 @@ static_assert(sizeof(ParticleInstance) == 16 * layout::kParticleTexels);
 /// The record of a look in particle_gpu.h.
 using LookRecord = std::array<Vec4, layout::kLookTexels>;
 
-/// `layer`: of the texture array that its image is in; -1: a soft disc.
-[[nodiscard]] LookRecord make_look_record(const ParticleLook& look, int layer);
+/// `layer`: of the texture array that its image is in; -1: a soft disc. `motion_layer`: likewise of
+/// its motion map; -1: none.
+[[nodiscard]] LookRecord
+make_look_record(const ParticleLook& look, int layer, int motion_layer = -1);
+
+/// Whether pixels of a look may move with it: ParticleLook::velocity_cover.
+[[nodiscard]] bool moves_pixels(const LookRecord& look);
 
 /// Appends the particles that exist `back` seconds before the end of the step, where they are then.
 /// Streaks show velocities relative to `observer` [m/s].
@@ -33,19 +39,46 @@ void append_particles(
 /// streak.
 [[nodiscard]] float reach_of(const ParticleInstance& instance, const LookRecord& look);
 
-/// Particles that follow one another in the order and have images of one texture array.
+/// Where the image of a look and its motion map are, in ImagePool; 0: it has none.
+struct ParticleArrays {
+    std::uint32_t images = 0;
+    std::uint32_t motions = 0;
+
+    bool operator==(const ParticleArrays&) const = default;
+};
+
+/// What some look has: definitions of lib/sprite.glsl.
+struct SpriteFeatures {
+    bool images = false;
+    bool flipbooks = false;  ///< of several frames
+    bool motions = false;    ///< with a motion map
+
+    void add_to(Variant& variant) const {
+        variant.add_if(images, "IMAGES");
+        variant.add_if(images && flipbooks, "FLIPBOOKS");
+        variant.add_if(images && motions, "MOTION");
+    }
+};
+
+/// Particles that follow one another in the order and have images of the same texture arrays.
 struct ParticleRun {
-    std::uint32_t array = 0;  ///< of ImagePool
+    ParticleArrays arrays{};
     int first = 0;
     int count = 0;
 };
 
-/// All that is drawn but what the GPU moves, for effects that draw it once more; published in
-/// collect(), until the end of the frame.
+class GpuParticlePools;
+struct GpuParticleView;
+
+/// All that is drawn, for effects that draw it once more; published in collect(), until the end of
+/// the frame.
 struct ParticleSprites {
-    std::span<const ParticleInstance> instances;
+    std::span<const ParticleInstance> instances;  ///< but for those that the GPU moves
+    GpuParticlePools* gpu = nullptr;              ///< those; update() them before they are read
+    const GpuParticleView* gpu_view = nullptr;    ///< for that
     std::span<const LookRecord> looks;
-    std::span<const std::uint32_t> arrays;  ///< of each look's image, in ImagePool
+    std::span<const ParticleArrays> arrays;  ///< of each look
+    SpriteFeatures features{};
     const BufferTexture* look_texels = nullptr;
 };
 

@@ -89,11 +89,13 @@ bool use_run(
 }  // namespace
 
 std::vector<Use> mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads) {
-    if (const auto* images = frame.data.find<DrawnImages>()) {
-        for (const gpu::Texture* array : images->arrays) {
-            reads.emplace_back(graph.import("images", *array));
+    const auto add_images = [&](const auto* images) {
+        for (std::size_t i = 0; images != nullptr && i < images->arrays.size(); ++i) {
+            reads.emplace_back(graph.import("images", *images->arrays[i]));
         }
-    }
+    };
+    add_images(frame.data.find<DrawnImages>());
+    add_images(frame.data.find<ShadedImages>());
     if (!frame.shapes->work().batches.empty()) {
         for (const BufferId buffer : import_deformed(graph, frame.shapes->vertices())) {
             reads.emplace_back(buffer);

@@ -53,8 +53,13 @@ struct DrawnImages {
     std::vector<const gpu::Texture*> arrays;
 };
 
-/// `reads`, the DrawnImages and, where meshes are deformed in this frame, their vertices: what
-/// passes that call the functions above must declare.
+/// The same, of images that are lit texel by texel.
+struct ShadedImages {
+    std::vector<const gpu::Texture*> arrays;
+};
+
+/// `reads`, the DrawnImages, the ShadedImages and, where meshes are deformed in this frame, their
+/// vertices: what passes that call the functions above must declare.
 [[nodiscard]] std::vector<Use>
 mesh_reads(FrameGraph& graph, const FrameData& frame, std::vector<Use> reads = {});
 

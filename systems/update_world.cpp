@@ -17,9 +17,11 @@
 #include "systems/particles/beam_system.h"
 #include "systems/particles/billboard_system.h"
 #include "systems/particles/gpu_particle_system.h"
+#include "systems/particles/particle_balls_system.h"
 #include "systems/particles/particle_mesh_system.h"
 #include "systems/particles/particle_obstacles.h"
 #include "systems/particles/particle_system.h"
+#include "systems/particles/point_mass_system.h"
 #include "systems/particles/trail_system.h"
 #include "systems/path_system.h"
 #include "systems/ripple_system.h"
@@ -104,7 +106,10 @@ void add_particle_systems(SystemList& systems) {
     systems.add<add_trail_states>(Create, Both);
     systems.add<add_beam_states>(Create, Both);
     systems.add<find_particle_obstacles>(Follow);
+    systems.add<update_point_masses>(
+        Follow);                            // what they hit is known now; they are there next step
     systems.add<update_particles>(Follow);  // after everything that moves emitters
+    systems.add<update_particle_balls>(Follow);
     systems.add<record_gpu_particles>(Follow);
     systems.add<update_particle_meshes>(Follow);
     systems.add<update_trails>(Follow);  // after particles, which it follows

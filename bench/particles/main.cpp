@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     app.add_option("--json", json, "write the numbers as JSON; - is stdout");
     app.add_option("--svg", svg, "draw the cost per particle over their number");
     app.add_option("--only", only, "one part")
-        ->check(CLI::IsMember({"update", "sort", "collision", "world", "growth"}));
+        ->check(CLI::IsMember({"update", "sort", "collision", "world", "draw", "growth"}));
     app.add_option("--most", most, "particles of the last point of the curves")
         ->check(CLI::Range(std::size_t{1000}, std::size_t{100'000'000}));
     app.add_option(
@@ -51,6 +51,9 @@ int main(int argc, char** argv) {
     }
     if (wanted("world")) {
         add_world_rows(bench);
+    }
+    if (wanted("draw")) {
+        add_draw_rows(bench);
     }
     if (wanted("growth")) {
         add_growth(bench, most);

@@ -17,7 +17,7 @@ struct GateRow {
     double ours = 0;
     double other = 0;         ///< what it is compared with; 0: `ours` itself is held to the limit
     std::string against;      ///< what that is
-    std::string unit = "ns";  ///< of both, per particle
+    std::string unit = "ns";  ///< of both, per particle; or per pixel
     double limit = 1;         ///< of ours / other
 
     [[nodiscard]] double ratio() const { return other > 0 ? ours / other : ours; }
@@ -57,6 +57,8 @@ void add_update_rows(
 void add_sort_rows(ParticleBench& bench);       ///< 10 .. 12
 void add_collision_rows(ParticleBench& bench);  ///< 13 .. 15
 void add_world_rows(ParticleBench& bench);      ///< memory, emitters, growth, threads: 22 .. 27
+/// Drawing, and moving on the GPU: 18 .. 21. Nothing but a note without OpenGL.
+void add_draw_rows(ParticleBench& bench);
 /// From a thousand to `most` particles: motion by the engine and by hand, births, deaths, sorting.
 void add_growth(ParticleBench& bench, std::size_t most);
 

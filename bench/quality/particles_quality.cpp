@@ -95,7 +95,7 @@ Result<std::vector<Vec3>> places_on_gpu(HeadlessRenderer& headless, const Founta
         frame, fountain.emitter, fountain.world.get<const ParticleEmitter>(fountain.emitter),
         fountain.world.get<const GpuParticles>(fountain.emitter), 0);
     graph.begin_frame();
-    pools.update(graph, 0, {0, 0, 0}, {0, 0, -1});
+    pools.update(graph, {});
     graph.execute();
     ring.end_frame();
     const GpuParticlePool& pool = *pools.pools().begin()->second;

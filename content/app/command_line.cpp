@@ -1,5 +1,6 @@
 #include "content/app/command_line.h"
 
+#include "content/app/bake_command.h"
 #include "content/app/bench_command.h"
 #include "content/app/check_command.h"
 #include "content/app/command_values.h"
@@ -13,6 +14,7 @@
 #include "content/app/render_command.h"
 #include "content/app/sibling_program.h"
 #include "content/app/view_command.h"
+#include "content/make/find_kind.h"
 #include "ecs/base/type_name.h"
 
 #include <CLI/CLI.hpp>
@@ -33,7 +35,7 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
-constexpr const char* kSceneDoc = "level name, .level.json, .gltf or .glb";
+constexpr const char* kSceneDoc = "level name, .level.json, .gltf, .glb or .obj";
 
 /// A command, and the function that runs it once its options are parsed.
 struct Command {
@@ -50,7 +52,9 @@ add_parsed(CLI::App& app, const std::string& name, const std::string& doc, T& ta
         [&target, parse, name](const std::string& text) {
             auto value = parse(text);
             if (!value) {
-                throw CLI::ValidationError(name.substr(name.find("--")), value.error().message);
+                const std::size_t dashes = name.find("--");  // none: a positional one
+                throw CLI::ValidationError(
+                    name.substr(dashes == std::string::npos ? 0 : dashes), value.error().message);
             }
             target = static_cast<T>(*std::move(value));
         },
@@ -425,10 +429,58 @@ Command add_compare(CLI::App& program, CompareOptions& options) {
     return {app, [&options] { return run_compare(options); }};
 }
 
+Command add_bake(CLI::App& program, BakeOptions& options) {
+    CLI::App* app = program.add_subcommand("bake", "Make maps from a mesh");
+    std::string kinds;
+    for (const BakeKind& kind : bake_kinds()) {
+        kinds += fmt::format("  {:<10} {}\n", kind.name, kind.doc);
+    }
+    add_parsed(
+        *app, "kind", "of maps", options.kind,
+        [](const std::string& text) {
+            return find_kind(bake_kinds(), text) != nullptr
+                       ? Result<std::string>(text)
+                       : Error{fmt::format(
+                           "found \"{}\", expected {}{}", text, kind_names(bake_kinds()),
+                           kind_suggestion(bake_kinds(), text))};
+        })
+        ->type_name("KIND")
+        ->required();
+    app->add_option("in", options.in, ".gltf or .glb")->type_name("IN")->required();
+    add_parsed(
+        *app, "-o,--out", "NAME.png or NAME.exr", options.out,
+        [](const std::string& text) {
+            const Result<ImageFileKind> kind = image_file_kind(text);
+            return kind ? Result<std::string>(text) : kind.error();
+        })
+        ->type_name("FILE")
+        ->required();
+    app->add_option("--recipe", options.recipe, "settings of the kind")->type_name("FILE.json");
+    app->add_option("--mesh", options.mesh, "name of the mesh; default: the largest of the file")
+        ->type_name("NAME");
+    app->add_flag("--gpu", options.gpu, "compute on the GPU, to the same maps");
+    add_assignments(*app, options.assignments);
+    app->footer(fmt::format(
+        "KIND is one of\n{}\n"
+        "PATH of --set is a field of the recipe, VALUE is JSON or a bare word.\n"
+        "furrows writes NAME_height.png, 16 bits gray, white is skin without a furrow, or\n"
+        "NAME_height.exr with both fields apart as first.Y and second.Y; and NAME_normal.png, "
+        "green up.\n"
+        "Its recipe has the fields of the image kind furrows (limn components furrows), as\n"
+        "  {{\"preset\": \"hand\", \"projection\": \"uv\", \"arrows\": [\n"
+        "    {{\"at\": [0, 1, 0], \"first\": [0, 1, 0], \"second\": [1, 0, 0], \"weight\": 1}}]}}\n"
+        "Files are written under a temporary name and renamed when complete.\n\n"
+        "Examples:\n"
+        "  limn bake furrows model.glb -o skin.png --set projection=cylinder\n"
+        "  limn bake furrows model.glb -o skin.exr --set projection=planar --set preset=hand",
+        kinds));
+    return {app, [&options] { return run_bake(options); }};
+}
+
 Command add_info(CLI::App& program, std::string& file) {
     CLI::App* app = program.add_subcommand(
         "info", "Print the contents of a file; for a scene, the number of shader programs, too");
-    app->add_option("file", file, ".level.json, .gltf, .glb, .png, .exr ...")
+    app->add_option("file", file, ".level.json, .gltf, .glb, .obj, .png, .exr ...")
         ->type_name("FILE")
         ->required();
     app->footer("Example:\n  limn info model.glb");
@@ -484,6 +536,7 @@ struct AllOptions {
     BenchOptions bench;
     HashOptions hash;
     CompareOptions compare;
+    BakeOptions bake;
     std::string info_file;
     std::string show;
     std::string checked;
@@ -500,6 +553,7 @@ std::vector<Command> add_commands(CLI::App& program, AllOptions& options) {
         add_hash(program, options.hash),
         add_quality(program),
         add_compare(program, options.compare),
+        add_bake(program, options.bake),
         add_info(program, options.info_file),
         add_levels(program),
         add_shows(program, options.show),

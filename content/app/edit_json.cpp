@@ -58,6 +58,52 @@ JsonValue& named(JsonValue& entities, std::string_view name) {
     return added;
 }
 
+/// The entity of a level that placed the file of a node, or the root of a file by itself.
+Entity source_of(const World& world, Entity node) {
+    while (!node.is_null() && !world.has<GltfSource>(node)) {
+        node = parent_of(world, node);
+    }
+    return node;
+}
+
+/// Whether there are assets or entities among the fields: those of a glTF file have no names in a
+/// level.
+bool names_others(const std::vector<FieldInfo>& fields) {
+    return std::any_of(fields.begin(), fields.end(), [](const FieldInfo& field) {
+        return field.type == FieldType::Asset || field.type == FieldType::Entity
+               || names_others(field.fields);
+    });
+}
+
+/// {"name": ..., "gltf": ..., "nodes": {NODE: components}}: how a level changes a node of a file.
+std::string node_as_json(const World& world, Entity node, JsonValue components) {
+    const Entity source = source_of(world, node);
+    JsonValue object = json_object();
+    if (source.is_null()) {
+        return write_json(components);
+    }
+    const Name* const owner = name_of(world, source);
+    if (owner != nullptr && !world.has<FromGltf>(source)) {
+        set_member(object, "name", json_of(std::string_view(owner->text)));
+    }
+    set_member(object, "gltf", json_of(std::string_view(world.get<const GltfSource>(source).file)));
+    const Name* const name = name_of(world, node);
+    if (name == nullptr) {
+        return write_json(object) + "  // this node has no name, by which a level could change it";
+    }
+    set_member(member(object, "nodes"), name->text, std::move(components));
+    return write_json(object);
+}
+
+/// Where the components of an entity are in a patch of a level.
+JsonValue& patched(const World& world, JsonValue& entities, Entity entity, const Name& name) {
+    const Entity source = world.has<FromGltf>(entity) ? source_of(world, entity) : Entity{};
+    const Name* const owner = name_of(world, source);
+    return owner == nullptr || world.has<FromGltf>(source)
+               ? named(entities, name.text)
+               : member(member(named(entities, owner->text), "nodes"), name.text);
+}
+
 /// What the value was before the first of its edits.
 const Edit& first_edit_of(std::span<const Edit> edits, const Edit& edit) {
     const auto same = [&](const Edit& other) {
@@ -79,26 +125,29 @@ std::string component_as_json(const World& world, const ComponentInfo& info, con
 
 std::string entity_as_json(const World& world, Entity entity) {
     JsonValue object = json_object();
-    if (const Name* const name = name_of(world, entity)) {
+    const bool is_node = world.has<FromGltf>(entity);
+    if (const Name* const name = name_of(world, entity); name != nullptr && !is_node) {
         set_member(object, "name", json_of(std::string_view(name->text)));
     }
-    if (const auto* const source = world.find<GltfSource>(entity)) {
+    if (const auto* const source = world.find<GltfSource>(entity); source != nullptr && !is_node) {
         set_member(object, "gltf", json_of(std::string_view(source->file)));
     }
     for (const ComponentId id : world.components_of(entity)) {
         const ComponentInfo& info = component_info(id);
         if (!info.is_registered || !info.saved || is_internal(info)
-            || id == component_id<Name> || id == component_id<Parent>) {
+            || id
+                   == component_id<
+                       Name> || id == component_id<Parent> || (is_node && names_others(info.fields))) {
             continue;
         }
         const AnyComponent value = AnyComponent::read(world, entity, info);
         JsonValue json = write_component(info, value.data(), make_name_provider(world));
-        if (info.defaults != nullptr) {
+        if (info.defaults != nullptr && !is_node) {  // a file may have others than the defaults
             json = without_equal(std::move(json), write_component(info, info.defaults, {}));
         }
         set_member(object, info.name, std::move(json));
     }
-    return write_json(object);
+    return is_node ? node_as_json(world, entity, std::move(object)) : write_json(object);
 }
 
 std::string edits_as_json(const World& world, std::span<const Edit> edits) {
@@ -120,7 +169,8 @@ std::string edits_as_json(const World& world, std::span<const Edit> edits) {
                 if (world.has(edit.entity, info.id)) {
                     value = edited(AnyComponent::read(world, edit.entity, info).data());
                 }
-                set_member(named(entities, name->text), info.name, std::move(value));
+                set_member(
+                    patched(world, entities, edit.entity, *name), info.name, std::move(value));
             }
             break;
         case EditKind::Resource:

@@ -18,7 +18,8 @@ class World;
 component_as_json(const World& world, const ComponentInfo& info, const void* value);
 
 /// The entity as a level has it: its name and the fields of its components that differ from their
-/// defaults, without what systems keep.
+/// defaults, without what systems keep. A node of a glTF file is in the "nodes" of the entity that
+/// places the file, without the components that name assets or entities.
 [[nodiscard]] std::string entity_as_json(const World& world, Entity entity);
 
 /// The edited fields of components, resources and materials with their present values, as a level

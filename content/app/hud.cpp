@@ -12,6 +12,9 @@
 #include <iterator>
 #include <utility>
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 namespace limn {
 namespace {
 
@@ -73,7 +76,13 @@ Hud::Hud(Window& window) : window_(&window) {
     const float height = static_cast<float>(window.framebuffer_size().y);
     const float scale = std::max(window.content_scale(), std::clamp(height / 900.0f, 1.0f, 2.5f));
     style_ = apply_hud_style(scale);
-    ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+    // Keys and text go through the window's queue (feed_typing), not through ImGui's callbacks.
+    GLFWwindow* const handle = window.handle();
+    const GLFWkeyfun on_key = glfwSetKeyCallback(handle, nullptr);
+    const GLFWcharfun on_character = glfwSetCharCallback(handle, nullptr);
+    ImGui_ImplGlfw_InitForOpenGL(handle, true);
+    glfwSetKeyCallback(handle, on_key);
+    glfwSetCharCallback(handle, on_character);
     ImGui_ImplOpenGL3_Init("#version 450");
 }
 
@@ -86,7 +95,7 @@ Hud::~Hud() {
 void Hud::begin_frame(float dt) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    hold_short_presses();
+    feed_typing();
     ImGui::NewFrame();
     for (Toast& toast : toasts_) {
         toast.age += dt;
@@ -94,19 +103,22 @@ void Hud::begin_frame(float dt) {
     std::erase_if(toasts_, [](const Toast& toast) { return toast.age > kToastLife; });
 }
 
-/// ImGui looks at the keys once a frame: one that went down and up since the last frame stays down
-/// for one.
-void Hud::hold_short_presses() {
-    auto& down = ImGui::GetIO().KeysDown;
-    for (const int key : std::exchange(held_keys_, {})) {
-        down[key] = window_->is_key_down(key);
-    }
-    for (const KeyPress& press : window_->events().keys) {
-        if (press.key >= 0 && press.key < IM_ARRAYSIZE(down) && !down[press.key]) {
-            down[press.key] = true;
-            held_keys_.push_back(press.key);
+/// In the order in which they were typed, as far as one frame can show it.
+void Hud::feed_typing() {
+    ImGuiIO& io = ImGui::GetIO();
+    for (const TypingEvent& event : window_->typing().take_frame()) {
+        if (event.key < 0) {
+            io.AddInputCharacter(event.character);
+        } else if (event.key < IM_ARRAYSIZE(io.KeysDown)) {
+            io.KeysDown[event.key] = event.down;
         }
     }
+    const auto either = [&io](int left, int right) {
+        return io.KeysDown[left] || io.KeysDown[right];
+    };
+    io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
 }
 
 void Hud::end_frame() {

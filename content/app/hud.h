@@ -81,14 +81,13 @@ class Hud {
         float age = 0.0f;  ///< [s]
     };
 
-    void hold_short_presses();
+    void feed_typing();
     void draw_help();
     void draw_toasts();
 
-    const Window* window_;
+    Window* window_;
     HudStyle style_;
     std::vector<Toast> toasts_;
-    std::vector<int> held_keys_;  ///< released, but shown to ImGui as down
 };
 
 }  // namespace limn

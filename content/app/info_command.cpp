@@ -4,6 +4,7 @@
 #include "content/game/game.h"
 #include "content/load/exr_file.h"
 #include "content/load/image_load.h"
+#include "content/load/level_hints.h"
 #include "content/load/scene_load.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/light.h"
@@ -83,7 +84,9 @@ void print_components(const World& world, std::span<const Entity> entities) {
     std::map<std::string, std::size_t> counts;
     for (const Entity entity : entities) {
         for (const ComponentId id : world.components_of(entity)) {
-            ++counts[component_info(id).name];
+            if (!is_internal(component_info(id))) {
+                ++counts[component_info(id).name];
+            }
         }
     }
     fmt::print("{}\n", counted(entities.size(), "entity"));

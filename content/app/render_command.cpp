@@ -11,12 +11,15 @@
 #include "ecs/components/env_probe.h"
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
+#include "ecs/components/particle_collider.h"
+#include "ecs/components/particles.h"
 #include "ecs/components/rendering.h"
 #include "render/render_view.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -124,14 +127,30 @@ FrameOutput draw_sampled(
     return finish_accumulation(renderer, stage.world, shown);
 }
 
+/// Frames that particles which meet what the camera sees live, of two seconds at most.
+int depth_collision_frames(const World& world, double step) {
+    constexpr double kLongest = 2;  // [s]
+    double longest = 0;
+    world.query<const ParticleEmitter, const ParticleCollision>().each(
+        [&](const ParticleEmitter& emitter, const ParticleCollision& collision) {
+            if (runs_on_gpu(emitter) && collision.collide_depth > 0) {
+                longest =
+                    std::max(longest, static_cast<double>(emitter.life + emitter.life_spread));
+            }
+        });
+    return static_cast<int>(std::ceil(std::min(longest, kLongest) / step));
+}
+
 /// How many frames the image of a later one depends on.
-int previous_frames(const World& world) {
+int previous_frames(const World& world, double step) {
     const auto* const blur = world.find_resource<MotionBlur>();
     const auto* const rendering = world.find_resource<Rendering>();
     const bool averages = blur != nullptr && needs_previous_frames(blur->mode);
     const bool accumulates =
         rendering != nullptr && rendering->antialiasing == Antialiasing::Temporal;
-    return std::max(averages ? blur->window : 0, accumulates ? kTemporalFrames : 0);
+    return std::max(
+        {averages ? blur->window : 0, accumulates ? kTemporalFrames : 0,
+         depth_collision_frames(world, step)});
 }
 
 Status
@@ -151,7 +170,7 @@ FrameOutput draw_still(
     if (time > 0 && !stage.world.query<const EnvProbe>().empty()) {
         draw_at(0);
     }
-    for (int i = previous_frames(stage.world); i > 0; --i) {
+    for (int i = previous_frames(stage.world, step); i > 0; --i) {
         if (time - i * step >= stage_time(stage)) {
             draw_at(time - i * step);
         }

@@ -124,6 +124,12 @@ void Window::install_callbacks() {
             window_of(window).collecting_.keys.push_back(
                 {.key = key, .modifiers = modifiers, .repeated = action == GLFW_REPEAT});
         }
+        if (action != GLFW_REPEAT && key >= 0) {
+            window_of(window).typing_.add({.key = key, .down = action == GLFW_PRESS});
+        }
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
+        window_of(window).typing_.add({.character = character});
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double y) {
         window_of(window).collecting_.wheel += static_cast<float>(y);

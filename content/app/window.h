@@ -1,5 +1,6 @@
 #pragma once
 
+#include "content/app/typing_queue.h"
 #include "ecs/base/math.h"
 #include "ecs/base/result.h"
 
@@ -53,8 +54,8 @@ class Window {
     const WindowEvents& poll();
     /// Sleeps until an event arrives, at most `seconds`; poll returns it.
     void wait_events(double seconds);
-    /// What the last poll took.
-    [[nodiscard]] const WindowEvents& events() const { return events_; }
+    /// Keys and text for panels, since somebody took them.
+    [[nodiscard]] TypingQueue& typing() { return typing_; }
     /// Presents the back buffer; if vsync is on it waits for the display, or where the driver
     /// cannot (software OpenGL, remote displays), as long as the display would.
     void swap();
@@ -86,6 +87,7 @@ class Window {
     GLFWwindow* window_ = nullptr;
     WindowEvents collecting_;
     WindowEvents events_;
+    TypingQueue typing_;
     Vec2 last_mouse_ = {0, 0};
     bool mouse_known_ = false;
     Vec2 press_position_ = {0, 0};

@@ -1,5 +1,6 @@
 #include "content/load/component_json.h"
 
+#include "content/load/color_names.h"
 #include "content/load/level_hints.h"
 #include "ecs/base/srgb.h"
 #include "ecs/base/text.h"
@@ -277,24 +278,26 @@ struct Reader {
     }
 
     static std::string expected_color(std::span<const float> floats) {
-        return floats.size() == 4 ? R"([r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"
-                                  : R"([r, g, b] or "#rrggbb")";
+        return floats.size() == 4
+                   ? R"([r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"
+                   : R"([r, g, b], "#rrggbb" or a name such as "orange")";
     }
 
     Status read_color(const JsonValue& json, std::span<float> floats, const JsonPlace& at) const {
         const std::string& text = json.text;
         const std::size_t digits = text.size() - 1;
-        std::uint32_t code = 0;
+        const std::optional<std::uint32_t> named = find_color(text);
+        std::uint32_t code = named.value_or(0);
         bool good = text.starts_with('#') && (digits == 6 || (digits == 8 && floats.size() == 4));
         if (good) {
             const char* const end = text.data() + text.size();
             const std::from_chars_result parsed = std::from_chars(text.data() + 1, end, code, 16);
             good = parsed.ec == std::errc() && parsed.ptr == end;
         }
-        if (!good) {
-            return unexpected(json, at, expected_color(floats));
+        if (!good && !named) {
+            return unexpected(json, at, expected_color(floats) + did_you_mean(text, color_names()));
         }
-        if (digits == 8) {
+        if (!named && digits == 8) {
             floats[3] = static_cast<float>(code & 0xff) / 255.0f;
             code >>= 8;
         }
@@ -462,13 +465,12 @@ JsonValue write_one(const FieldInfo& info, const void* field, const NameProvider
         return json;
     }
     case FieldType::Quat: {
+        // As people write it: few decimals, where they give the same bits.
         const Quat& q = *static_cast<const Quat*>(field);
-        // As people write it, where that gives the same bits.
-        const Vec3 angles = glm::round(degrees_from_rotation(q) * 1e3f) / 1e3f;
-        if (rotation_from_degrees(angles) == q) {
-            return json_array({json_of(angles.x), json_of(angles.y), json_of(angles.z)});
-        }
-        return json_array({json_of(q.x), json_of(q.y), json_of(q.z), json_of(q.w)});
+        const Vec3 exact = degrees_from_rotation(q);
+        const Vec3 rounded = glm::round(exact * 1e3f) / 1e3f;
+        const Vec3 angles = rotation_from_degrees(rounded) == q ? rounded : exact;
+        return json_array({json_of(angles.x), json_of(angles.y), json_of(angles.z)});
     }
     case FieldType::String:
         return json_of(std::string_view(*static_cast<const std::string*>(field)));
@@ -637,11 +639,13 @@ Quat rotation_from_degrees(const Vec3& yaw_pitch_roll) {
 }
 
 Vec3 degrees_from_rotation(const Quat& q) {
-    const Mat3 r = glm::mat3_cast(q);  // r[column][row]
-    const float pitch = std::asin(std::clamp(-r[2][1], -1.0f, 1.0f));
-    const float yaw = std::atan2(r[2][0], r[2][2]);
-    const float roll = std::atan2(r[0][1], r[1][1]);
-    return glm::degrees(Vec3(yaw, pitch, roll)) + Vec3(0.0f);  // -0 becomes 0
+    const glm::dmat3 r = glm::mat3_cast(glm::normalize(glm::dquat(q)));  // r[column][row]
+    const double level = std::hypot(r[2][0], r[2][2]);                   // cosine of the pitch
+    const bool is_vertical = level < 1e-9;  // yaw and roll turn about one axis: all is yaw
+    const double yaw = is_vertical ? std::atan2(-r[0][2], r[0][0]) : std::atan2(r[2][0], r[2][2]);
+    const double pitch = std::atan2(-r[2][1], level);
+    const double roll = is_vertical ? 0 : std::atan2(r[0][1], r[1][1]);
+    return Vec3(glm::degrees(glm::dvec3(yaw, pitch, roll))) + Vec3(0.0f);  // -0 becomes 0
 }
 
 }  // namespace limn

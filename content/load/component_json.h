@@ -23,8 +23,8 @@ namespace limn {
 //     bool           true, false
 //     enum           the enumerator's name: "inverse_square"
 //     vector         an array of its length
-//     color          linear [r, g, b] or [r, g, b, a], or "#rrggbb", "#rrggbbaa" in sRGB;
-//                    without alpha, the field keeps its own
+//     color          linear [r, g, b] or [r, g, b, a], or "#rrggbb", "#rrggbbaa" in sRGB, or
+//                    a color of CSS: "orange"; without alpha, the field keeps its own
 //     rotation       [x, y, z, w], or [yaw, pitch, roll] in degrees, or with a unit, about y, then
 //                    x, then z (R = Ry Rx Rz)
 //     matrix         an array of its elements, column-major; Affine row-major
@@ -108,7 +108,8 @@ read_struct(const JsonValue& json, T& object, const JsonPlace& place, const Name
     const JsonValue& json, const FieldInfo& info, void* field, const JsonPlace& place,
     const NameResolver& names);
 
-/// Writes all fields of `object`; reading them into any value of the type restores `object`.
+/// Writes all fields of `object`; reading them into any value of the type restores `object`:
+/// rotations, which are written in degrees, to 1e-6 rad, all else to the bit.
 [[nodiscard]] JsonValue
 write_component(const ComponentInfo& info, const void* object, const NameProvider& names);
 [[nodiscard]] JsonValue

@@ -39,6 +39,7 @@ struct GltfNode {
     /// From extras.limn. Entities are nodes encoded by gltf_node_entity(), assets are indices into
     /// this scene.
     std::vector<AnyComponent> components;
+    bool is_named = false;  ///< a level changes it: becomes an entity even if it is a joint
 };
 
 struct GltfScene {

@@ -3,6 +3,7 @@
 #include "content/load/asset_lists.h"
 #include "content/load/component_json.h"
 #include "ecs/component_bytes.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/placement.h"
 #include "ecs/hierarchy.h"
@@ -44,7 +45,7 @@ std::vector<bool> find_kept_nodes(const GltfScene& scene, bool has_character) {
             std::count_if(node.components.begin(), node.components.end(), [&](const auto& c) {
                 return !has_character || !is_of_character(c);
             });
-        keeps[i] = keeps[i] || !is_joint || !node.parts.empty() || node.has_camera
+        keeps[i] = keeps[i] || !is_joint || node.is_named || !node.parts.empty() || node.has_camera
                    || node.light.index() != 0 || components > 0;
         if (!is_joint && node.parent >= 0) {
             keeps[static_cast<std::size_t>(node.parent)] = true;
@@ -121,7 +122,7 @@ class GltfSpawner {
         }
         rig.weights = std::move(scene_.morph_weights);
         if (parent_.is_null()) {
-            parent_ = world_.create(Transform{}, Name{scene_.name});
+            parent_ = world_.create(Transform{}, Name{scene_.name}, FromGltf{});
             result_.roots.push_back(parent_);
             owns_character_ = true;
         }
@@ -137,7 +138,8 @@ class GltfSpawner {
         const std::int32_t joint = scene_.joints[index];
         const Entity entity = world_.create(
             joint >= 0 ? decompose_affine(rest_[static_cast<std::size_t>(joint)])
-                       : Transform{node.transform});
+                       : Transform{node.transform},
+            FromGltf{});
         if (joint >= 0) {
             world_.add(entity, JointAttachment{parent_, static_cast<std::uint16_t>(joint)});
             link(entity, parent_);
@@ -167,7 +169,7 @@ class GltfSpawner {
             if (node.parts.size() == 1) {
                 world_.add(entity, instance);
             } else {
-                drawn = world_.create(Transform{}, instance);
+                drawn = world_.create(Transform{}, instance, FromGltf{});
                 link(drawn, entity);
             }
             if (node.skin >= 0 || node.first_morph >= 0) {

@@ -24,15 +24,17 @@ struct SpawnedGltf {
 };
 
 /// Spawns a loaded scene into `world` and its assets into `assets`; cannot fail. Each node becomes
-/// an entity with Transform, Parent unless it is a root, Name unless it has none, MeshInstance,
-/// Camera, a light, and the components of its extras.limn, which override those of glTF. A node
-/// with several parts gets a child for each. Roots are children of `parent` unless that is null.
+/// an entity with FromGltf, Transform, Parent unless it is a root, Name unless it has none,
+/// MeshInstance, Camera, a light, and the components of its extras.limn, which override those of
+/// glTF. A node with several parts gets a child for each. Roots are children of `parent` unless
+/// that is null.
 ///
 /// A file with joints or morph targets is one character: `parent`, or without one a new entity with
 /// the file's name as the only root. It gets the components of make_character; a clip_player,
 /// skeleton or morph_weights in extras.limn of any node goes to the character. Joint nodes become
 /// entities, with a JointAttachment, only if something needs them: parts, a camera, a light,
-/// components, children that are no joints, or a reference from a component. Skinned meshes are
+/// components, children that are no joints, a name in a level's "nodes", or a reference from a
+/// component. Skinned meshes are
 /// children of the character and Deformed.
 SpawnedGltf spawn_gltf(World& world, Assets& assets, GltfScene&& scene, Entity parent = Entity{});
 

@@ -20,7 +20,8 @@ namespace {
 constexpr std::uint32_t kUseGeneration = 0xfffffffdu;  // marks a placeholder for a NameUse
 constexpr std::size_t kMaxLayers = 64;
 
-const std::vector<std::string_view> kNodeKeys = {"name", "prefab", "gltf", "repeat", "children"};
+const std::vector<std::string_view> kNodeKeys = {"name",  "prefab", "gltf",
+                                                 "nodes", "repeat", "children"};
 
 bool is_node_key(std::string_view key) {
     return std::find(kNodeKeys.begin(), kNodeKeys.end(), key) != kNodeKeys.end();
@@ -282,8 +283,27 @@ Status LevelEntities::add_copy(
     }
     list.scope_of.push_back(scope);
 
-    if (const JsonValue* const gltf = find_in_layers(node.layers, "gltf")) {
-        const JsonPlace place{file_, node.path};
+    LIMN_TRY(add_gltf(list, node, index));
+    for (const JsonValue* const layer : node.layers) {
+        const JsonValue* const children = layer->find("children");
+        if (children == nullptr) {
+            continue;
+        }
+        LIMN_TRY(expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
+        for (std::size_t i = 0; i < children->items.size(); ++i) {
+            LIMN_TRY(add_node(
+                list, children->items[i], {index, scope, context.depth + 1},
+                fmt::format("{}.children[{}]", node.path, i)));
+        }
+    }
+    return Done{};
+}
+
+/// The file of an entity, and the changes of its nodes.
+Status LevelEntities::add_gltf(List& list, const Node& node, std::uint32_t index) {
+    const JsonPlace place{file_, node.path};
+    const JsonValue* const gltf = find_in_layers(node.layers, "gltf");
+    if (gltf != nullptr) {
         LIMN_TRY(expect(*gltf, JsonKind::String, place, "the path of a .gltf or .glb file"));
         const auto known =
             std::find_if(list.gltfs.begin(), list.gltfs.end(), [&](const GltfUse& use) {
@@ -295,15 +315,13 @@ Status LevelEntities::add_copy(
         use.entities.push_back(index);
     }
     for (const JsonValue* const layer : node.layers) {
-        const JsonValue* const children = layer->find("children");
-        if (children == nullptr) {
-            continue;
+        const JsonValue* const nodes = layer->find("nodes");
+        if (nodes != nullptr && gltf == nullptr) {
+            return refuse(node.path, nodes->at, "nodes without a glTF file", "\"gltf\" as well");
         }
-        LIMN_TRY(expect(*children, JsonKind::Array, {file_, node.path}, "an array of entities"));
-        for (std::size_t i = 0; i < children->items.size(); ++i) {
-            LIMN_TRY(add_node(
-                list, children->items[i], {index, scope, context.depth + 1},
-                fmt::format("{}.children[{}]", node.path, i)));
+        if (nodes != nullptr) {
+            LIMN_TRY(read_node_changes(
+                *nodes, index, place_in(place, "nodes"), names_, list.node_changes));
         }
     }
     return Done{};
@@ -347,7 +365,7 @@ Status LevelEntities::read_layer(
             }
             return refuse(
                 node.path, member.at, "the component " + in_quotes(member.key),
-                "one of `limn components`, or one of name prefab gltf repeat children"
+                "one of `limn components`, or one of name prefab gltf nodes repeat children"
                     + where_it_belongs(member.key, did_you_mean(member.key, known)));
         }
         if (is_internal(*info)) {

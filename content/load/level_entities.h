@@ -2,6 +2,7 @@
 
 #include "content/load/component_json.h"
 #include "content/load/json_document.h"
+#include "content/load/level_nodes.h"
 #include "content/load/level_repeat.h"
 #include "ecs/base/result.h"
 #include "ecs/prefab.h"
@@ -65,6 +66,7 @@ class LevelEntities {
     /// Where each of them is written.
     [[nodiscard]] std::vector<SourcePosition>& positions() { return level_.positions; }
     [[nodiscard]] std::vector<GltfUse>& gltfs() { return level_.gltfs; }
+    [[nodiscard]] std::vector<NodeChange>& node_changes() { return level_.node_changes; }
 
   private:
     /// Names visible in a part of a list. Scope 0 is the outermost.
@@ -84,6 +86,7 @@ class LevelEntities {
         std::vector<Scope> scopes = {Scope{}};
         std::vector<NameUse> uses;
         std::vector<GltfUse> gltfs;
+        std::vector<NodeChange> node_changes;
     };
     /// Where a node is added.
     struct Context {
@@ -108,8 +111,7 @@ class LevelEntities {
     [[nodiscard]] Status add_copy(
         List& list, const Node& node, const Context& context, std::vector<AnyComponent> components,
         const std::string& name);
-    [[nodiscard]] Status
-    add_name(List& list, const Node& node, std::uint32_t scope, const std::string& name);
+    [[nodiscard]] Status add_gltf(List& list, const Node& node, std::uint32_t index);
     [[nodiscard]] Result<std::vector<AnyComponent>> read_components(List& list, const Node& node);
     [[nodiscard]] Status read_layer(
         List& list, const JsonValue& layer, const Node& node,

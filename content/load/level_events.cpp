@@ -26,6 +26,41 @@ std::string event_hint(std::string_view name, const std::string& did_you_mean) {
                : where_it_belongs(name, did_you_mean);
 }
 
+/// Reads the fields that `json` names into action.value, at `offset`. Fields of a struct that are
+/// not named keep their values.
+Status read_field_edits(
+    const JsonValue& json, const std::vector<FieldInfo>& fields, std::uint32_t offset,
+    const JsonPlace& at, const NameResolver& names, ScriptAction& action) {
+    LIMN_TRY(expect(json, JsonKind::Object, at, "an object with the fields to set"));
+    for (const JsonMember& member : json.members) {
+        const FieldInfo* const field = find_field(fields, member.key);
+        if (field == nullptr) {
+            return error_at(
+                at, member.at, "the field " + in_quotes(member.key),
+                "an existing field" + field_suggestion(fields, member.key));
+        }
+        const JsonPlace inner = place_in(at, member.key);
+        const std::uint32_t inner_offset = offset + field->offset;
+        if (field->type == FieldType::Struct && field->shape == FieldShape::One) {
+            LIMN_TRY(
+                read_field_edits(member.value, field->fields, inner_offset, inner, names, action));
+            continue;
+        }
+        FieldInfo wide = *field;
+        if (action.action == EventAction::Impulse) {
+            if (number_count(field->type) == 0 || field->shape == FieldShape::List) {
+                return error_at(inner, member.at, "a non-numeric field", "a numeric one");
+            }
+            wide.meta.min = -INFINITY;  // a difference may be negative where the value may not
+            wide.meta.max = INFINITY;
+        }
+        void* const data = static_cast<std::byte*>(action.value.data()) + inner_offset;
+        LIMN_TRY(read_field(member.value, wide, data, inner, names));
+        action.edits.push_back({field, inner_offset});
+    }
+    return Done{};
+}
+
 struct EventReader {
     const JsonPlace& place;
     const NameResolver& names;
@@ -103,40 +138,6 @@ struct EventReader {
         return key == "destroy" ? read_destroys(member.value, at) : Done{};
     }
 
-    /// Reads the fields that `json` names into action.value. Fields of a struct that are not named
-    /// keep their values.
-    Status read_edits(
-        const JsonValue& json, const std::vector<FieldInfo>& fields, std::uint32_t offset,
-        const JsonPlace& at, ScriptAction& action) {
-        LIMN_TRY(expect(json, JsonKind::Object, at, "an object with the fields to set"));
-        for (const JsonMember& member : json.members) {
-            const FieldInfo* const field = find_field(fields, member.key);
-            if (field == nullptr) {
-                return error_at(
-                    at, member.at, "the field " + in_quotes(member.key),
-                    "an existing field" + field_suggestion(fields, member.key));
-            }
-            const JsonPlace inner = place_in(at, member.key);
-            const std::uint32_t inner_offset = offset + field->offset;
-            if (field->type == FieldType::Struct && field->shape == FieldShape::One) {
-                LIMN_TRY(read_edits(member.value, field->fields, inner_offset, inner, action));
-                continue;
-            }
-            FieldInfo wide = *field;
-            if (action.action == EventAction::Impulse) {
-                if (number_count(field->type) == 0 || field->shape == FieldShape::List) {
-                    return error_at(inner, member.at, "a non-numeric field", "a numeric one");
-                }
-                wide.meta.min = -INFINITY;  // a difference may be negative where the value may not
-                wide.meta.max = INFINITY;
-            }
-            void* const data = static_cast<std::byte*>(action.value.data()) + inner_offset;
-            LIMN_TRY(read_field(member.value, wide, data, inner, names));
-            action.edits.push_back({field, inner_offset});
-        }
-        return Done{};
-    }
-
     Status read_change(
         const JsonMember& member, const ComponentInfo* info, const std::string& hint,
         ScriptAction action, const JsonPlace& at) {
@@ -147,8 +148,7 @@ struct EventReader {
                 at, member.at, fmt::format("the {} {}", noun, in_quotes(member.key)),
                 "one of `limn components`" + event_hint(member.key, hint));
         }
-        action.value = AnyComponent(*info);
-        LIMN_TRY(read_edits(member.value, info->fields, 0, place_in(at, member.key), action));
+        LIMN_TRY(read_edits(member.value, *info, place_in(at, member.key), names, action));
         event.actions.push_back(std::move(action));
         return Done{};
     }
@@ -219,6 +219,13 @@ struct EventReader {
 };
 
 }  // namespace
+
+Status read_edits(
+    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const NameResolver& names, ScriptAction& action) {
+    action.value = AnyComponent(info);
+    return read_field_edits(json, info.fields, 0, place, names, action);
+}
 
 Result<ScriptEvent> read_event(
     const JsonValue& json, const JsonPlace& place, const NameResolver& names,

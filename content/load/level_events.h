@@ -29,6 +29,12 @@ namespace limn {
 /// Reads an entity of "spawn" and its descendants.
 using ReadPrefab = std::function<Result<Prefab>(const JsonValue& node, const JsonPlace& place)>;
 
+/// Reads the fields of a component that `json` names into the value and edits of `action`, which
+/// is Set or Impulse.
+[[nodiscard]] Status read_edits(
+    const JsonValue& json, const ComponentInfo& info, const JsonPlace& place,
+    const NameResolver& names, ScriptAction& action);
+
 [[nodiscard]] Result<ScriptEvent> read_event(
     const JsonValue& json, const JsonPlace& place, const NameResolver& names,
     const ReadPrefab& read_prefab);

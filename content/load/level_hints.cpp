@@ -39,7 +39,8 @@ bool is_internal(const ComponentInfo& info) {
         "input",
         "sibling_order",
         "thrown_stone",
-        "gltf_source"};
+        "gltf_source",
+        "from_gltf"};
     return info.name.ends_with("_state")
            || std::find(std::begin(kInternal), std::end(kInternal), info.name)
                   != std::end(kInternal);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace limn {
 
@@ -36,7 +37,11 @@ constexpr LevelKey kLevelKeys[] = {
     {"bindings", JsonKind::Object},  {"shows", JsonKind::Array},
     {"$schema", JsonKind::String},  // for editors
 };
-constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm"};
+constexpr const char* kPatternMaps[] = {".base_color", ".normal", ".orm", ".motion"};
+
+std::span<const char* const> pattern_maps(const PatternKind& kind) {
+    return std::span(kPatternMaps).first(kind.has_motion ? 4 : 3);
+}
 
 using Names = std::unordered_map<std::string, std::uint32_t>;
 
@@ -116,28 +121,36 @@ class LevelParser {
     /// Keeps an error for kept_errors(), so that one run reports several; one for each place in the
     /// file, since a prefab has the same errors in all its copies.
     void keep_error(const Status& status) {
-        if (status || errors_.size() >= kMaxErrors) {
+        if (status) {
             return;
         }
         const std::string& message = status.error().message;
-        const auto at = [&](const std::string& line) {
-            return line.substr(0, line.find(": ", level_.file.size()));
-        };
-        if (std::none_of(errors_.begin(), errors_.end(), [&](const std::string& error) {
-                return at(error) == at(message);
-            })) {
+        const std::size_t place = message.find(": ", level_.file.size());
+        if (error_places_.insert(message.substr(0, place)).second
+            && errors_.size() < kShownErrors) {
             errors_.push_back(message);
         }
     }
 
     [[nodiscard]] Status kept_errors() const {
-        return errors_.empty() ? Status(Done{}) : Error{join_text(errors_, "\n")};
+        if (errors_.empty()) {
+            return Done{};
+        }
+        std::string lines = join_text(errors_, "\n");
+        if (const std::size_t more = error_places_.size() - errors_.size(); more > 0) {
+            lines += fmt::format(
+                "\n{}: and {}{} more", level_.file, has_room() ? "" : "at least ", more);
+        }
+        return Error{std::move(lines)};
     }
+
+    /// Whether further errors are counted.
+    [[nodiscard]] bool has_room() const { return error_places_.size() < kMaxErrors; }
 
     Status read_section(
         const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonPlace&)) {
         for (const JsonMember& member : json_[section].members) {
-            if (errors_.size() >= kMaxErrors) {
+            if (!has_room()) {
                 break;
             }
             keep_error((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
@@ -222,7 +235,7 @@ class LevelParser {
             image.parameters = LIMN_TRY(
                 read_component(without(json, {"make"}), *image.pattern->parameters, at, {}));
             patterns_[member.key] = image.index;
-            for (const char* const map : kPatternMaps) {
+            for (const char* const map : pattern_maps(*image.pattern)) {
                 const std::string name = member.key + map;
                 images_[name] = static_cast<std::uint32_t>(level_.assets.images.size());
                 level_.assets.images.emplace_back().name = name;
@@ -342,23 +355,25 @@ class LevelParser {
         LevelEntities entities(
             level_.file, json_["prefabs"].members, asset_names(), limits_.entities);
         const std::vector<JsonValue>& nodes = json_["entities"].items;
-        for (std::size_t i = 0; i < nodes.size() && errors_.size() < kMaxErrors; ++i) {
+        for (std::size_t i = 0; i < nodes.size() && has_room(); ++i) {
             keep_error(entities.add(nodes[i], fmt::format("entities[{}]", i)));
             if (entities.is_full()) {
                 break;
             }
         }
         LIMN_TRY(kept_errors());
-        LIMN_TRY(entities.resolve_names());
-        LIMN_TRY(read_events(entities));
-        LIMN_TRY(entities.check_unused_prefabs());
+        keep_error(entities.resolve_names());
+        read_events(entities);
+        keep_error(entities.check_unused_prefabs());
+        LIMN_TRY(kept_errors());
         level_.entities = std::move(entities.entities());
         level_.entity_positions = std::move(entities.positions());
         level_.gltfs = std::move(entities.gltfs());
+        level_.node_changes = std::move(entities.node_changes());
         return Done{};
     }
 
-    Status read_events(LevelEntities& entities) {
+    void read_events(LevelEntities& entities) {
         NameResolver names = asset_names();
         names.entity = [&](std::string_view name, SourcePosition) -> std::optional<Entity> {
             const std::int64_t index = entities.find(name);
@@ -372,7 +387,7 @@ class LevelParser {
             return entities.read_prefab(node, at.path);
         };
         const std::vector<JsonValue>& events = json_["events"].items;
-        for (std::size_t i = 0; i < events.size() && errors_.size() < kMaxErrors; ++i) {
+        for (std::size_t i = 0; i < events.size() && has_room(); ++i) {
             Result<ScriptEvent> event =
                 read_event(events[i], place(fmt::format("events[{}]", i)), names, read_prefab);
             if (!event) {
@@ -383,7 +398,6 @@ class LevelParser {
             level_.event_positions.push_back(events[i].at);
             bind_key(level_.events.events.back(), events[i]["text"].text);
         }
-        return kept_errors();
     }
 
     /// So that the player reads the key of an event.
@@ -452,11 +466,13 @@ class LevelParser {
         return names;
     }
 
-    static constexpr std::size_t kMaxErrors = 10;
+    static constexpr std::size_t kShownErrors = 10;
+    static constexpr std::size_t kMaxErrors = 1000;  // that are looked for
 
     const JsonValue& json_;
     LevelLimits limits_;
-    std::vector<std::string> errors_;  // independent of each other, a line each
+    std::vector<std::string> errors_;  // the first, independent of each other, a line each
+    std::unordered_set<std::string> error_places_;  // of all
     Level level_;
     Names images_;
     Names materials_;
@@ -476,7 +492,8 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     const FieldInfo* const size = find_field(image.parameters.info().fields, "size");
     const auto side =
         size == nullptr ? 0.0 : get_number(*size, field_ptr(image.parameters.data(), *size));
-    const auto pixels = static_cast<std::uint64_t>(3.0 * side * side);
+    const auto maps_of_it = pattern_maps(*image.pattern).size();
+    const auto pixels = static_cast<std::uint64_t>(static_cast<double>(maps_of_it) * side * side);
     if (pixels > pixels_left) {
         return fail(
             "{}: found {} pixels, expected at most {} more in this level",
@@ -485,7 +502,8 @@ make_pattern(Level& level, const LevelImage& image, MadeAssets& made, std::uint6
     pixels_left -= pixels;
     PatternMaps maps = made.pattern(*image.pattern, image.parameters);
     std::size_t index = image.index;
-    for (ImageData* const map : {&maps.base_color, &maps.normal, &maps.orm}) {
+    ImageData* const made_maps[] = {&maps.base_color, &maps.normal, &maps.orm, &maps.motion};
+    for (ImageData* const map : std::span(made_maps).first(maps_of_it)) {
         map->name = level.assets.images[index].name;
         level.assets.images[index++] = std::move(*map);
     }
@@ -583,6 +601,7 @@ Status load_level_assets(
         }
         level.scenes.push_back(std::move(scene));
     }
+    LIMN_TRY(find_changed_nodes(level));
     return resolve_deferred_names(level);
 }
 

@@ -4,6 +4,7 @@
 #include "content/load/json_document.h"
 #include "content/load/level_entities.h"
 #include "content/load/level_include.h"
+#include "content/load/level_nodes.h"
 #include "content/load/level_show.h"
 #include "content/load/level_update.h"
 #include "content/load/made_assets.h"
@@ -62,6 +63,7 @@ class World;
 //       "point_light": {"color": "#ffcc80", "intensity": 30},
 //       "spin": null,              // removes the prefab's
 //       "gltf": "fox.glb",         // its roots become children
+//       "nodes": NODES,            // changes of them: level_nodes.h
 //       "clip_player": {"clip": "Run"},     // a clip of that file
 //       "repeat": REPEAT,          // copies of it and its descendants
 //       "children": [NODE, ...]    // after those of the prefab
@@ -121,6 +123,7 @@ struct Level {
     std::vector<LevelMesh> meshes;
     std::vector<LevelImage> images;
     std::vector<GltfUse> gltfs;
+    std::vector<NodeChange> node_changes;
     /// All initial entities; roots have no Parent. Assets are indices into `assets`.
     Prefab entities;
     /// Entities outside the action's own prefab are level_entity(index in `entities`).
@@ -140,7 +143,7 @@ struct Level {
 };
 
 /// Reads and checks `text`. `file` is the prefix of messages and gives the level its name. An error
-/// is one line, or up to ten for parts that do not depend on each other.
+/// is one line, or up to ten for parts that do not depend on each other, and how many are left.
 /// Components must be registered (ecs/components/all.h).
 [[nodiscard]] Result<Level>
 parse_level(std::string_view text, const std::string& file, const LevelLimits& limits = {});

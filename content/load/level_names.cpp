@@ -53,6 +53,13 @@ class DeferredNames {
             LIMN_TRY(resolve(resource, resource.info().name, {}));
         }
         LIMN_TRY(resolve(level_.entities, true));
+        for (NodeChange& change : level_.node_changes) {
+            if (!change.set.value.is_empty()) {
+                LIMN_TRY(resolve(
+                    change.set.value, fmt::format("nodes.{}.{}", change.node, change.info->name),
+                    scene_of(change.entity)));
+            }
+        }
         for (ScriptEvent& event : level_.events.events) {
             for (ScriptAction& action : event.actions) {
                 LIMN_TRY(resolve(action.prefab, false));

@@ -1,5 +1,6 @@
 #include "content/load/level_schema.h"
 
+#include "content/load/color_names.h"
 #include "content/load/level_hints.h"
 #include "content/load/level_repeat.h"
 #include "content/load/level_show.h"
@@ -22,6 +23,8 @@ namespace limn {
 namespace {
 
 using Members = std::vector<JsonMember>;
+
+constexpr const char* kColorName = "name of a color";  // a definition
 
 JsonMember member(std::string key, JsonValue value) {
     return {std::move(key), {}, std::move(value)};
@@ -159,7 +162,9 @@ JsonValue schema_of_element(const FieldInfo& field, const void* defaults) {
     if (field.meta.color) {
         const char* const form =
             lanes == 4 ? "^#([0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" : "^#[0-9a-fA-F]{6}$";
-        return any_of({std::move(numbers), of_type("string", {member("pattern", text(form))})});
+        return any_of(
+            {std::move(numbers), of_type("string", {member("pattern", text(form))}),
+             reference(kColorName)});
     }
     return numbers;
 }
@@ -306,6 +311,10 @@ JsonValue schema_of_node() {
                  of_type("string"), "a node of \"prefabs\", whose fields this one overrides")),
          member(
              "gltf", described(of_type("string"), "a .gltf or .glb beside the level, placed here")),
+         member(
+             "nodes", described(
+                          map_of(reference("components")),
+                          "changes of the nodes of \"gltf\", by name; null removes a component")),
          member("repeat", any_of({reference("repeat of a node"), of_type("null")})),
          member(
              "children",
@@ -392,7 +401,8 @@ JsonValue schema_of_show() {
 JsonValue definitions() {
     Members all = {
         member("node", schema_of_node()), member("repeat of a node", schema_of_repeat()),
-        member("event", schema_of_event())};
+        member("components", schema_of_components({}, true)), member("event", schema_of_event()),
+        member(kColorName, described(one_of_words(color_names()), "a color of CSS, in sRGB"))};
     for (const std::vector<const ComponentInfo*>& infos : {all_components(), all_resources()}) {
         for (const ComponentInfo* const info : infos) {
             all.push_back(member(info->name, schema_of_fields(info->fields, info->defaults)));

@@ -145,6 +145,12 @@ std::vector<Entity> spawn_level(World& world, Level level) {
     for (std::size_t i = 0; i < level.scenes.size(); ++i) {
         spawn_scene(world, assets, std::move(level.scenes[i]), level.gltfs[i], entities);
     }
+    for (NodeChange& change : level.node_changes) {
+        if (!change.set.value.is_empty()) {
+            offset_asset_ids(*change.info, change.set.value.data(), offsets);
+        }
+    }
+    apply_node_changes(world, level.node_changes, entities);
     localize(level.events, offsets, entities);
     world.insert_resource(std::move(level.events));
     return entities;

@@ -5,6 +5,7 @@
 #include "ecs/component_bytes.h"
 #include "ecs/world.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace limn {
@@ -26,6 +27,14 @@ bool same_kinds(const std::vector<AnyComponent>& a, const std::vector<AnyCompone
     return same;
 }
 
+bool same_change(const NodeChange& a, const NodeChange& b) {
+    const auto offset = [](const FieldEdit& edit) { return edit.offset; };
+    return a.entity == b.entity && a.node == b.node && a.info == b.info
+           && a.set.value.is_empty() == b.set.value.is_empty()
+           && std::ranges::equal(a.set.edits, b.set.edits, {}, offset, offset)
+           && (a.set.value.is_empty() || same_value(a.set.value, b.set.value));
+}
+
 }  // namespace
 
 LevelFields remember_fields(const Level& level, const std::string& path) {
@@ -40,6 +49,7 @@ LevelFields remember_fields(const Level& level, const std::string& path) {
     for (const PrefabEntity& entity : level.entities.entities) {
         fields.components.push_back(entity.components);
     }
+    fields.node_changes = level.node_changes;
     const Assets& assets = level.assets;
     const auto add_names = [&](const auto& list) {
         for (const auto& asset : list) {
@@ -66,6 +76,9 @@ update_level(World& world, LevelFields& fields, const ShowChoice& choice, MadeAs
     if (!same) {
         return fail(
             "{}: entities, components or assets were added or removed: load it again", path);
+    }
+    if (!std::ranges::equal(now.node_changes, fields.node_changes, same_change)) {
+        return fail("{}: nodes of a glTF file are changed otherwise: load it again", path);
     }
     std::size_t updated = 0;
     for (std::size_t i = 0; i < now.components.size(); ++i) {

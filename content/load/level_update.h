@@ -1,6 +1,7 @@
 #pragma once
 
 #include "content/load/level_include.h"
+#include "content/load/level_nodes.h"
 #include "content/load/level_show.h"
 #include "ecs/any_component.h"
 #include "ecs/base/result.h"
@@ -25,12 +26,14 @@ struct LevelFields {
     std::vector<Entity> entities;                       ///< in the level's order
     std::vector<std::vector<AnyComponent>> components;  ///< of each, before it was spawned
     std::vector<std::string> assets;                    ///< names of all, which indices refer to
+    std::vector<NodeChange> node_changes;               ///< of glTF files
 };
 
 /// Loads the level anew and sets the components whose values in the files are others than before,
 /// and the level's events. Returns how many components that were. Fails, and changes nothing, with
-/// the loader's error, or where the level has other entities, kinds of components or assets now,
-/// which only loading it again can bring. `world` held nothing else when the level was spawned.
+/// the loader's error, or where the level has other entities, kinds of components, changes of glTF
+/// nodes or assets now, which only loading it again can bring. `world` held nothing else when the
+/// level was spawned.
 [[nodiscard]] Result<std::size_t> update_level(
     World& world, LevelFields& fields, const ShowChoice& choice = {}, MadeAssets* made = nullptr);
 

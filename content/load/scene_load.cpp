@@ -4,6 +4,7 @@
 #include "content/load/gltf_spawn.h"
 #include "content/load/level_list.h"
 #include "content/load/level_load.h"
+#include "content/load/obj_scene.h"
 #include "content/load/scene_bounds.h"
 #include "content/load/scene_warnings.h"
 #include "ecs/base/log.h"
@@ -12,6 +13,7 @@
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/environment.h"
+#include "ecs/components/gltf_source.h"
 #include "ecs/components/name.h"
 #include "ecs/components/post.h"
 #include "ecs/components/rendering.h"
@@ -20,7 +22,9 @@
 #include "ecs/world.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -86,14 +90,20 @@ void complete_scene(World& world, const SceneOptions& options, LoadedScene& scen
 }
 
 Result<LoadedScene>
-load_gltf_scene(World& world, const std::string& path, const SceneOptions& options) {
+load_model_scene(World& world, const std::string& path, const SceneOptions& options) {
     Backdrop backdrop = LIMN_TRY(load_backdrop(options.model.backdrop));
-    GltfScene gltf = LIMN_TRY(load_gltf(path));
+    const bool is_obj = ends_with_any(path, {".obj"});
+    GltfScene model = LIMN_TRY(is_obj ? load_obj_scene(path) : load_gltf(path));
     LoadedScene scene;
-    scene.name = gltf.name;
+    scene.name = model.name;
     scene.path = path;
     insert_missing<Assets>(world);
-    (void)spawn_gltf(world, world.resource<Assets>(), std::move(gltf));
+    const std::string file = std::filesystem::path(path).filename().string();
+    for (const Entity root : spawn_gltf(world, world.resource<Assets>(), std::move(model)).roots) {
+        if (!is_obj) {  // which levels cannot place
+            world.add(root, GltfSource{file});
+        }
+    }
     complete_scene(world, options, scene);
     scene.model = add_model_view(world, std::move(backdrop), options.model.turntable);
     scene.camera = scene.model->camera;
@@ -140,20 +150,19 @@ load_level_scene(World& world, const std::string& path, const SceneOptions& opti
 Result<LoadedScene>
 load_scene(World& world, const std::string& scene, const SceneOptions& options) {
     register_all_components();
-    for (const char* const other :
-         {".obj", ".fbx", ".stl", ".ply", ".dae", ".blend", ".usd", ".usdz"}) {
+    for (const char* const other : {".fbx", ".stl", ".ply", ".dae", ".blend", ".usd", ".usdz"}) {
         if (ends_with_any(scene, {other})) {
             return fail(
-                "{}: found a {} file, expected a level, .gltf or .glb (Blender and most other "
-                "tools export glTF)",
+                "{}: found a {} file, expected a level, .gltf, .glb or .obj (Blender and most "
+                "other tools export glTF)",
                 scene, other);
         }
     }
-    if (ends_with_any(scene, {".gltf", ".glb"})) {
+    if (ends_with_any(scene, {".gltf", ".glb", ".obj"})) {
         if (!options.show.technique.empty()) {
-            return fail("{}: found a glTF file, expected a level with --show", scene);
+            return fail("{}: found a model, expected a level with --show", scene);
         }
-        return load_gltf_scene(world, scene, options);
+        return load_model_scene(world, scene, options);
     }
     if (options.model.backdrop != ModelViewOptions{}.backdrop || options.model.turntable > 0) {
         return fail("{}: found a level, expected a model with --backdrop and --turntable", scene);

@@ -17,8 +17,8 @@ namespace limn {
 class MadeAssets;
 class World;
 
-// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a glTF file,
-// which gets what is needed to look at it (model_view.h).
+// Loads the SCENE of `limn play SCENE` into a world: a level by name, a level file or a model (glTF
+// or Wavefront OBJ), which gets what is needed to look at it (model_view.h).
 
 struct SceneOptions {
     std::optional<std::uint64_t> seed = {};  ///< overrides the level's
@@ -37,7 +37,7 @@ struct LoadedScene {
     std::vector<LevelShow> shows;
     std::optional<LevelShow> show;   ///< the chosen one
     LevelFields fields;              ///< of a level, for update_level
-    std::optional<ModelView> model;  ///< of a glTF file by itself
+    std::optional<ModelView> model;  ///< of a model by itself
 };
 
 /// Fills `world`, which afterwards has the resources Assets, Environment, Rendering, Exposure,

@@ -1,5 +1,7 @@
 #include "content/load/scene_warnings.h"
 
+#include "content/load/inside_mesh.h"
+#include "ecs/components/animation.h"
 #include "ecs/components/camera.h"
 #include "ecs/components/camera_path.h"
 #include "ecs/components/caustics.h"
@@ -12,6 +14,7 @@
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
+#include "ecs/components/point_mass.h"
 #include "ecs/components/rotation_track.h"
 #include "ecs/components/script.h"
 #include "ecs/components/shadow.h"
@@ -22,6 +25,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -70,9 +74,14 @@ constexpr Need kNeeds[] = {
     {"particle_source", {"particle_emitter", "", ""}},
     {"particle_light", {"particle_emitter", "", ""}},
     {"particle_surface", {"particle_emitter", "", ""}},
-    {"particle_collision", {"particle_emitter", "", ""}},
+    {"particle_balls", {"particle_emitter", "", ""}},
+    {"particle_collision", {"particle_emitter", "point_mass", ""}},
+    {"point_mass", {"transform", "", ""}},
+    {"air_drag", {"point_mass", "", ""}},
+    {"variable_mass", {"point_mass", "", ""}},
 };
 
+constexpr double kInside = 0.5;       // winding number of what is rather closed
 constexpr float kMinSunSine = 0.02f;  // height of a sun that causes caustics
 
 std::string label_of(const World& world, Entity entity) {
@@ -94,6 +103,36 @@ Vec3 back_of(const World& world, Entity entity) {
         back = transform != nullptr ? transform->rotation * back : back;
     }
     return back;
+}
+
+/// From the world to the entity's space.
+Vec3 local_point(const World& world, Entity entity, Vec3 point) {
+    const Entity parent = parent_of(world, entity);
+    point = parent.is_null() ? point : local_point(world, parent, point);
+    const auto* const t = world.find<Transform>(entity);
+    return t == nullptr ? point : glm::conjugate(t->rotation) * (point - t->position) / t->scale;
+}
+
+Vec3 world_position(const World& world, Entity entity) {
+    Vec3 point(0);
+    for (; !entity.is_null(); entity = parent_of(world, entity)) {
+        if (const auto* const t = world.find<Transform>(entity)) {
+            point = t->position + t->rotation * (t->scale * point);
+        }
+    }
+    return point;
+}
+
+bool contains(const Bounds& box, const Vec3& point) {
+    return glm::all(glm::greaterThan(point, box.min)) && glm::all(glm::lessThan(point, box.max));
+}
+
+/// Whether something opaque has an outside only: what is inside sees nothing of it.
+bool is_solid(const Assets& assets, const MeshInstance& instance) {
+    return instance.mesh.index < assets.meshes.size()
+           && (instance.material.index >= assets.materials.size()
+               || (assets.materials[instance.material.index].alpha_mode == AlphaMode::Opaque
+                   && !assets.materials[instance.material.index].double_sided));
 }
 
 struct SceneCheck {
@@ -191,7 +230,8 @@ struct SceneCheck {
         world.query<const ParticleEmitter>().each(
             [&](Entity entity, const ParticleEmitter& emitter) {
                 for (const std::string_view one :
-                     {"particle_mesh", "particle_light", "particle_surface", "trail"}) {
+                     {"particle_mesh", "particle_light", "particle_surface", "particle_balls",
+                      "trail"}) {
                     if (runs_on_gpu(emitter) && has_component(world, entity, one)) {
                         warn(
                             entity, fmt::format(
@@ -207,13 +247,27 @@ struct SceneCheck {
             for_cpu = for_cpu || collider.shape >= ColliderShape::Mesh;
         });
         world.query<const ParticleEmitter, const ParticleCollision>().each(
-            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision&) {
-                if (for_cpu && runs_on_gpu(emitter)) {
+            [&](Entity entity, const ParticleEmitter& emitter, const ParticleCollision& collision) {
+                const bool meets_seen = collision.collide_depth > 0;
+                if (for_cpu && runs_on_gpu(emitter) && !meets_seen) {
                     warn(
                         entity,
                         "particles of the GPU meet planes, spheres and boxes alone; for meshes, "
-                        "height fields and water set particle_emitter.executor to cpu");
+                        "height fields and water set particle_emitter.executor to cpu, or "
+                        "particle_collision.collide_depth to meet what is in view");
+                } else if (meets_seen && !runs_on_gpu(emitter)) {
+                    warn(
+                        entity,
+                        "particle_collision.collide_depth has no effect on particles of the CPU; "
+                        "set particle_emitter.executor to gpu");
                 }
+            });
+    }
+
+    void check_point_masses() {
+        world.query<const PointMass, const Parent>().each(
+            [&](Entity entity, const PointMass&, const Parent&) {
+                warn(entity, "point_mass has no effect on an entity that has a parent");
             });
     }
 
@@ -229,6 +283,33 @@ struct SceneCheck {
                 "{} active cameras: {}; the first is used, set \"active\": false on the others",
                 active.size(), fmt::join(active, ", "))});
         }
+    }
+
+    /// Cameras that start inside of a closed mesh, where they see neither it nor light.
+    void check_camera_places() {
+        const auto* const assets = world.find_resource<Assets>();
+        world.query<const Camera, const Transform>().each([&](Entity camera, const Camera& settings,
+                                                              const Transform&) {
+            if (assets == nullptr || !settings.active || world.has<OrbitCamera>(camera)
+                || world.has<PathFollower>(camera)) {  // placed by the first step
+                return;
+            }
+            const Vec3 place = world_position(world, camera);
+            world.query<const MeshInstance>().each([&](Entity entity,
+                                                       const MeshInstance& instance) {
+                if (!is_solid(*assets, instance) || world.has<Deformed>(entity)) {
+                    return;
+                }
+                const MeshData& mesh = assets->meshes[instance.mesh.index];
+                const Vec3 point = local_point(world, entity, place);
+                if (contains(mesh.bounds, point) && winding_number(mesh, point) > kInside) {
+                    warn(
+                        camera, fmt::format(
+                                    "the camera starts inside of {}, at [{:.3g}, {:.3g}, {:.3g}]",
+                                    label_of(world, entity), place.x, place.y, place.z));
+                }
+            });
+        });
     }
 
     /// Caustics need a sun above the horizon, which may still be off.
@@ -377,7 +458,9 @@ std::vector<SceneWarning> find_scene_warnings(const World& world) {
     check.check_surfaces();
     check.check_gpu_particles();
     check.check_colliders();
+    check.check_point_masses();
     check.check_cameras();
+    check.check_camera_places();
     check.check_caustics();
     check.check_colors<PointLight>();
     check.check_colors<SpotLight>();

@@ -18,11 +18,12 @@ struct PatternTexel {
     float opacity = 1;                ///< 0 .. 1
 };
 
-/// Three square images of one size that tile in both directions.
+/// Square images of one size that tile in both directions.
 struct PatternMaps {
     ImageData base_color;  ///< sRGB, and opacity
     ImageData normal;      ///< tangent space, green up, from the heights
     ImageData orm;         ///< r occlusion, g roughness, b metalness, as glTF packs them
+    ImageData motion;      ///< of flipbooks, as ParticleLook::motion; empty of others
 };
 
 /// Calls texel(uv) once for the center of every pixel, on several threads; `size` >= 1 pixels.

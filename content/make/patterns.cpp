@@ -1,6 +1,10 @@
 #include "content/make/patterns.h"
 
+<<<<<<< HEAD
 #include "content/make/fold_pattern.h"
+=======
+#include "content/make/furrow_patterns.h"
+>>>>>>> f73e2adbfc543dbce38a183fbd98335f874f0001
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -357,11 +361,11 @@ PatternMaps make_asphalt(const AsphaltPattern& pattern) {
 namespace {
 
 template <typename Pattern, PatternMaps (*make)(const Pattern&)>
-PatternKind pattern_kind(const char* name, const char* doc) {
+PatternKind pattern_kind(const char* name, const char* doc, bool has_motion = false) {
     const auto call = [](const void* parameters) {
         return make(*static_cast<const Pattern*>(parameters));
     };
-    return {name, doc, &component_info<Pattern>(), call};
+    return {name, doc, &component_info<Pattern>(), call, has_motion};
 }
 
 }  // namespace
@@ -379,11 +383,17 @@ std::span<const PatternKind> pattern_kinds() {
             "confetti", "a flipbook of cut paper in bright colors"),
         pattern_kind<FabricPattern, make_fabric>("fabric", "a plain weave of two threads"),
         pattern_kind<FirePattern, make_fire>(
-            "fire", "a flipbook of fire from a simulation, in color"),
+            "fire", "a flipbook of fire from a simulation, in color, with its motion", true),
         pattern_kind<FireballPattern, make_fireball>(
-            "fireball", "a flipbook of a burst of fire that turns to soot, in color"),
+            "fireball",
+            "a flipbook of a burst of fire that turns to soot, in color, with its motion", true),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
+<<<<<<< HEAD
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
+=======
+        pattern_kind<FurrowsPattern, make_furrows>(
+            "furrows", "skin with wrinkle furrows that grow along two vector fields"),
+>>>>>>> f73e2adbfc543dbce38a183fbd98335f874f0001
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),

@@ -18,6 +18,7 @@ struct PatternKind {
     const char* doc;                  ///< one line
     const ComponentInfo* parameters;  ///< fields, defaults, how to construct and destroy
     PatternMaps (*make)(const void* parameters);
+    bool has_motion = false;  ///< a flipbook whose shapes are known to move: PatternMaps::motion
 };
 
 /// All kinds, by name.

@@ -92,7 +92,26 @@ float sample_field(const std::vector<float>& field, int side, const Vec2& at) {
 struct FluidFrame {
     std::vector<float> heat;
     std::vector<float> soot;
+    std::vector<float> right, up;  ///< what moves until the next frame [sides]
 };
+
+FluidFrame frame_of(const FluidGrid& fluid) {
+    const std::vector<float> nothing(fluid.u.size(), 0.0f);
+    return {fluid.heat, fluid.soot, nothing, nothing};
+}
+
+/// Adds what a step has moved.
+void add_motion(const FluidGrid& fluid, float dt, FluidFrame& frame) {
+    for (std::size_t i = 0; i < fluid.u.size(); ++i) {
+        frame.right[i] += dt * fluid.u[i];
+        frame.up[i] += dt * fluid.v[i];
+    }
+}
+
+/// As a byte of a motion map, 0 .. 1.
+float encode_motion(float share) {
+    return (128.0f + 127.0f * std::clamp(share / kMotionReach, -1.0f, 1.0f)) / 255.0f;
+}
 
 /// `texel(heat, soot, frame point)`, bilinear between the cells of the frame.
 template <typename Texel>
@@ -100,18 +119,29 @@ PatternMaps render_frames(
     const PatternSize& image, int frames, int side, const std::vector<FluidFrame>& film,
     Texel&& texel) {
     const float count = static_cast<float>(frames);
-    return make_pattern_maps(image.size, [&](const Vec2& uv) {
-        const Vec2 cell = glm::min(glm::floor(uv * count), Vec2(count - 1.0f));
-        const Vec2 inside = uv * count - cell;
-        const auto number = static_cast<std::size_t>(cell.y * count + cell.x);
-        const Vec2 at = {inside.x, 1.0f - inside.y};
-        const float edge = 2.0f * std::max(std::abs(inside.x - 0.5f), std::abs(inside.y - 0.5f));
-        PatternTexel t = texel(
-            sample_field(film[number].heat, side, at), sample_field(film[number].soot, side, at),
-            at);
+    const auto render = [&](auto&& its) {
+        return make_pattern_maps(image.size, [&](const Vec2& uv) {
+            const Vec2 cell = glm::min(glm::floor(uv * count), Vec2(count - 1.0f));
+            const Vec2 inside = uv * count - cell;
+            const auto number = static_cast<std::size_t>(cell.y * count + cell.x);
+            return its(film[number], Vec2(inside.x, 1.0f - inside.y));
+        });
+    };
+    PatternMaps maps = render([&](const FluidFrame& frame, const Vec2& at) {
+        const float edge = 2.0f * std::max(std::abs(at.x - 0.5f), std::abs(at.y - 0.5f));
+        PatternTexel t =
+            texel(sample_field(frame.heat, side, at), sample_field(frame.soot, side, at), at);
         t.opacity = std::clamp(t.opacity, 0.0f, 1.0f) * glm::smoothstep(0.97f, 0.88f, edge);
         return t;
     });
+    // Occlusion and roughness stand for the first channels of a linear image.
+    maps.motion = render([&](const FluidFrame& frame, const Vec2& at) {
+                      PatternTexel t;
+                      t.occlusion = encode_motion(sample_field(frame.right, side, at));
+                      t.roughness = encode_motion(-sample_field(frame.up, side, at));
+                      return t;
+                  }).orm;
+    return maps;
 }
 
 int fluid_side(const PatternSize& image, int frames) {
@@ -144,10 +174,12 @@ void close_loop(std::vector<FluidFrame>& film, int count, int overlap) {
     for (int i = 0; i < overlap; ++i) {
         const float share = (static_cast<float>(i) + 1.0f) / (static_cast<float>(overlap) + 1.0f);
         const auto first = static_cast<std::size_t>(i);
-        const std::vector<float>& late = film[first + static_cast<std::size_t>(count)].heat;
-        std::vector<float>& early = film[first].heat;
-        for (std::size_t cell = 0; cell < late.size(); ++cell) {
-            early[cell] = glm::mix(late[cell], early[cell], share);
+        const FluidFrame& late = film[first + static_cast<std::size_t>(count)];
+        FluidFrame& early = film[first];
+        for (const auto field : {&FluidFrame::heat, &FluidFrame::right, &FluidFrame::up}) {
+            for (std::size_t cell = 0; cell < early.heat.size(); ++cell) {
+                (early.*field)[cell] = glm::mix((late.*field)[cell], (early.*field)[cell], share);
+            }
         }
     }
 }
@@ -166,11 +198,14 @@ PatternMaps make_fire(const FirePattern& pattern) {
     step.whirls = pattern.whirls;
     step.drag = 1.0f;
     std::vector<FluidFrame> film;
-    for (int i = 0; i < kWarmUp + (count + overlap) * kFluidSteps; ++i) {
+    for (int i = 0; i < kWarmUp + (count + overlap + 1) * kFluidSteps; ++i) {
         heat_foot(pattern, static_cast<float>(i) * step.dt, step.dt, fluid);
         step_fluid(fluid, step);
+        if (!film.empty()) {
+            add_motion(fluid, step.dt, film.back());
+        }
         if (i >= kWarmUp && (i - kWarmUp) % kFluidSteps == kFluidSteps - 1) {
-            film.push_back({fluid.heat, {}});
+            film.push_back(frame_of(fluid));
         }
     }
     close_loop(film, count, overlap);
@@ -221,9 +256,10 @@ PatternMaps make_fireball(const FireballPattern& pattern) {
     }
     std::vector<FluidFrame> film;
     for (int i = 0; i < count; ++i) {
-        film.push_back({fluid.heat, fluid.soot});
+        film.push_back(frame_of(fluid));
         for (int k = 0; k < kFluidSteps + i / 3; ++k) {  // fast at first
             step_fluid(fluid, step);
+            add_motion(fluid, step.dt, film.back());
             step.expansion *= 0.8f;
         }
     }

@@ -5,7 +5,10 @@
 namespace limn {
 
 // Flipbooks for particles: `frames` x `frames` white images whose opacity is the shape, in order
-// from the top left. Every frame is transparent at its border.
+// from the top left. Every frame is transparent at its border. Those from simulations come with a
+// motion map, for the default of particle_look's motion_strength.
+
+inline constexpr float kMotionReach = 0.25f;  ///< what 255 in it means, as a share of a frame
 
 /// A puff that swirls and frays.
 struct SmokePattern {

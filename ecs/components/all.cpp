@@ -24,11 +24,13 @@
 #include "ecs/components/motion_blur.h"
 #include "ecs/components/name.h"
 #include "ecs/components/ocean.h"
+#include "ecs/components/particle_balls.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particle_mesh.h"
 #include "ecs/components/particle_surface.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/path.h"
+#include "ecs/components/point_mass.h"
 #include "ecs/components/post.h"
 #include "ecs/components/projector.h"
 #include "ecs/components/rendering.h"
@@ -40,6 +42,7 @@
 #include "ecs/components/speed_lines.h"
 #include "ecs/components/surface.h"
 #include "ecs/components/texture_combine.h"
+#include "ecs/components/texture_shade.h"
 #include "ecs/components/time.h"
 #include "ecs/components/trail.h"
 #include "ecs/components/transform.h"
@@ -61,6 +64,7 @@ namespace limn {
 
 void register_all_components() {
     register_component<Name>();
+    register_component<FromGltf>();
     register_component<GltfSource>();
     register_component<Lifetime>();
     register_component<ForceField>();
@@ -68,6 +72,7 @@ void register_all_components() {
     register_component<ParticleSource>();
     register_component<ParticleCollision>();
     register_component<ParticleCollider>();
+    register_component<ParticleBalls>();
     register_component<ParticleMotion>();
     register_component<ParticleWrap>();
     register_component<ParticleLook>();
@@ -76,6 +81,9 @@ void register_all_components() {
     register_component<ParticleMesh>();
     register_component<ParticleMeshState>();
     register_component<ParticleSurface>();
+    register_component<PointMass>();
+    register_component<AirDrag>();
+    register_component<VariableMass>();
     register_component<Trail>();
     register_component<TrailState>();
     register_component<Billboard>();
@@ -120,6 +128,7 @@ void register_all_components() {
     register_component<Water>();
     register_component<WaterLook>();
     register_component<TextureCombine>();
+    register_component<TextureShade>();
     register_component<WaterDetail>();
     register_component<WaterWaves>();
     register_component<WaterRipples>();

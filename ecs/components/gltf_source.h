@@ -15,4 +15,8 @@ LIMN_FIELDS(GltfSource) {
     LIMN_FIELD(file, "relative to the level");
 }
 
+/// Marks the entities that a glTF file made. The file is the GltfSource of the nearest ancestor, or
+/// their own where the file is no part of a level.
+struct FromGltf {};
+
 }  // namespace limn

@@ -52,6 +52,7 @@ struct ParticleCollision {
     float bounce = 0.3f;
     float friction = 0.8f;
     float radius = 0.005f;
+    float collide_depth = 0;
 };
 
 LIMN_FIELDS(ParticleCollision) {
@@ -59,6 +60,11 @@ LIMN_FIELDS(ParticleCollision) {
     LIMN_FIELD(bounce, "share of the speed toward the surface that is kept, outward", "", 0, 1);
     LIMN_FIELD(friction, "share of the velocity along the surface that is kept", "", 0, 1);
     LIMN_FIELD(radius, "of the particle, as far as colliders other than water go", "m", 0, 100);
+    LIMN_FIELD(
+        collide_depth,
+        "on the GPU: they also meet what the camera saw in the previous frame, taken to be so "
+        "thick, and nothing that it did not see; to look at only, as it follows the camera; 0: no",
+        "m", 0, 100);
 }
 
 }  // namespace limn

@@ -309,6 +309,8 @@ struct ParticleLook {
     std::uint32_t rows = 1;
     ParticleFrames frames = ParticleFrames::Play;
     float frame_rate = 0;
+    ImageId motion;
+    float motion_strength = 0.25f;
     float size = 0.1f;
     float size_spread = 0;
     std::vector<CurveKey> size_curve;
@@ -334,6 +336,7 @@ struct ParticleLook {
     float fade = 0;
     ParticleCulling culling = ParticleCulling::Particles;
     float cull_margin = 0;
+    float velocity_cover = 0.5f;
     float shadow = 0;
     Vec3 shadow_tint = {1, 1, 1};
     ParticleResolution resolution = ParticleResolution::Full;
@@ -347,6 +350,14 @@ LIMN_FIELDS(ParticleLook) {
         frames, .doc = "play: from the first; shuffle: from one by chance; pick: one by chance",
         .values = "play shuffle pick");
     LIMN_FIELD(frame_rate, "frames per second, over and over; 0: once in a life", "1/s", 0, 1000);
+    LIMN_FIELD(
+        motion,
+        "of a flipbook: how far what is seen moves until the next frame, an image of the same "
+        "frames that is not sRGB: red to the right, green downward, 128 of 255 at rest; none: "
+        "frames cross-fade");
+    LIMN_FIELD(
+        motion_strength, "what 255 in that image means, and 1 the other way, as a share of a frame",
+        "", 0, 1);
     LIMN_FIELD(size, "diameter", "m", 0, 1e4);
     LIMN_FIELD(size_spread, "give or take", "m", 0, 1e4);
     LIMN_FIELD(size_curve, "factor on the size over the life, at most 8 keys");
@@ -399,10 +410,14 @@ LIMN_FIELDS(ParticleLook) {
         .values = "particles bounds emitter");
     LIMN_FIELD(cull_margin, "by which that is taken larger", "m", 0, 1e5);
     LIMN_FIELD(
+        velocity_cover,
+        "opacity times cover above which a pixel moves with it instead of with what is behind, for "
+        "motion blur and temporal antialiasing; 1: never; streaks never do",
+        "", 0, 1);
+    LIMN_FIELD(
         shadow,
         "share of the opacity that casts a shadow, on surfaces and particles, in the first "
-        "directional light, or without one in the first spot with a shadow; not if the GPU moves "
-        "them",
+        "directional light, or without one in the first spot with a shadow",
         "", 0, 1);
     LIMN_FIELD(
         shadow_tint, .doc = "factors on the optical depth of red, green and blue in the shadow",

@@ -7,6 +7,7 @@
 #include "ecs/components/time.h"
 #include "ecs/components/transform.h"
 #include "ecs/world.h"
+#include "render/fullscreen.h"
 #include "render/gpu/device.h"
 #include "render/lighting.h"
 #include "render/material_pool.h"
@@ -26,6 +27,7 @@ namespace limn {
 namespace {
 
 constexpr unsigned kImagesUnit = 0;
+constexpr unsigned kMotionsUnit = 1;
 constexpr unsigned kParticlesUnit = 2;
 constexpr unsigned kLooksUnit = 3;
 constexpr unsigned kSceneDepthUnit = 4;
@@ -173,9 +175,9 @@ float particle_lag(const FrameData& frame) {
     return (1.0f - frame.camera.alpha) * particle_step(frame);
 }
 
-Vec3 camera_velocity(const World& world, Entity camera, float step) {
-    const auto* const now = world.find<WorldTransform>(camera);
-    const auto* const previous = world.find<PreviousWorldTransform>(camera);
+Vec3 entity_velocity(const World& world, Entity entity, float step) {
+    const auto* const now = world.find<WorldTransform>(entity);
+    const auto* const previous = world.find<PreviousWorldTransform>(entity);
     if (now == nullptr || previous == nullptr || step <= 0 || is_cut(previous->world, now->world)) {
         return Vec3(0);
     }
@@ -200,8 +202,15 @@ void order_by_distance(
 
 Result<ParticleEffect> ParticleEffect::create(gpu::Device& device, const RenderSettings&) {
     ParticleEffect effect{
-        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"})};
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle.frag"}),
+        ProgramVariants(device, {.vertex = "particle.vert", .fragment = "particle_velocity.frag"})};
     effect.gpu = LIMN_TRY(GpuParticlePools::create(device));
+    // As of materials: between mip levels only where that costs nothing.
+    const GLenum minify =
+        device.caps().software ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
+    effect.image_sampler =
+        gpu::Sampler("particle images", {.minify = minify, .wrap = GL_CLAMP_TO_EDGE});
+    effect.depth_copy = LIMN_TRY(load_fullscreen(device, "seen_depth.frag"));
     return effect;
 }
 
@@ -213,15 +222,32 @@ std::uint32_t ParticleEffect::add_look(
     const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place) {
     const bool has_image = frame.assets->images.size() > look.image.index;
     const ImageLayer image = has_image ? frame.materials->images().find(look.image) : ImageLayer{};
-    looks.push_back(make_look_record(look, has_image ? static_cast<int>(image.layer) : -1));
-    arrays.push_back(image.array);
+    const ImageLayer motion = frame.materials->images().find(look.motion);
+    const bool has_motion = has_image && motion.array != 0;
+    looks.push_back(make_look_record(
+        look, has_image ? static_cast<int>(image.layer) : -1,
+        has_motion ? static_cast<int>(motion.layer) : -1));
+    arrays.push_back({.images = image.array, .motions = has_motion ? motion.array : 0});
     places.push_back(place);
     extents.push_back(make_look_extent(look));
     halves.push_back(look.resolution == ParticleResolution::Half ? 1 : 0);
     has_halves = has_halves || halves.back() != 0;
     lit = lit || look.lit > 0;
-    images = images || has_image;
+    features.images = features.images || has_image;
+    features.flipbooks = features.flipbooks || look.columns > 1 || look.rows > 1;
+    features.motions = features.motions || has_motion;
+    soft = soft || look.softness > 0;
+    moving = moving || moves_pixels(looks.back());
     return static_cast<std::uint32_t>(looks.size() - 1);
+}
+
+/// What bends the ways of an emitter's particles, gusts apart.
+void ParticleEffect::add_pull(const World& world, Entity emitter, std::uint32_t look) {
+    if (const auto* const motion = world.find<ParticleMotion>(emitter)) {
+        constexpr float kGravity = 9.81f;  // [m/s^2]
+        const Vec3 at_rest = Vec3(0, -kGravity * motion->gravity, 0) + motion->drag * motion->wind;
+        looks[look][layout::kLookMotion + 1] = Vec4(at_rest, motion->drag);
+    }
 }
 
 void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float step) {
@@ -230,6 +256,7 @@ void ParticleEffect::collect_ribbons(const FrameData& frame, float back, float s
         has_ribbons = true;
         const std::uint32_t index = add_look(frame, look);
         looks[index][2].w = static_cast<float>(layout::kFacingRibbon);
+        looks[index][layout::kLookMotion].x = -1;  // its image goes on beyond the frame
         extents[index] = {};
         for (const std::uint32_t before : ribbons.segments) {
             const Vec3 middle =
@@ -277,6 +304,7 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
         }
         looks.pop_back();
         arrays.pop_back();
+        halves.pop_back();
         places.pop_back();
         extents.pop_back();
         return index - 1;
@@ -287,6 +315,7 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
                                                                 const ParticleLook& look) {
         const std::optional<Affine> pose = pose_of(world, entity, frame.camera.alpha);
         const std::size_t first = billboards.quads.size();
+        const Vec3 velocity = entity_velocity(world, entity, particle_step(frame));
         const std::uint32_t random = entity.index * 0x9e3779b9u;
         if (!pose || looks.size() + 2 > kMaxLooks) {
             return;
@@ -295,7 +324,8 @@ void ParticleEffect::collect_billboards(const FrameData& frame, float back) {
         append_billboard(billboard, look, *pose, time, random, billboards);
         for (std::size_t i = first; i < billboards.quads.size(); ++i) {
             const BillboardPlace& place = billboards.places[i];
-            const BillboardQuad& quad = billboards.quads[i];
+            BillboardQuad& quad = billboards.quads[i];
+            quad.velocity = velocity;
             ParticleLook its = look;
             if (place.is_section) {
                 its.image = billboard.section;
@@ -321,7 +351,7 @@ void ParticleEffect::collect(FrameData& frame) {
     const World& world = *frame.world;
     const float step = particle_step(frame);
     const float back = particle_lag(frame);
-    const Vec3 eye_velocity = camera_velocity(world, frame.camera.entity, step);
+    const Vec3 eye_velocity = entity_velocity(world, frame.camera.entity, step);
     looks.clear();
     arrays.clear();
     places.clear();
@@ -331,7 +361,8 @@ void ParticleEffect::collect(FrameData& frame) {
     billboards.quads.clear();
     billboards.places.clear();
     extents.clear();
-    lit = images = has_ribbons = has_billboards = has_halves = false;
+    features = {};
+    lit = soft = moving = has_ribbons = has_billboards = has_halves = false;
     const float alpha = frame.camera.alpha;
     const auto shape_in_world = [&](Entity entity) {
         const auto* const emitter = world.find<ParticleEmitter>(entity);
@@ -350,6 +381,7 @@ void ParticleEffect::collect(FrameData& frame) {
                 }
                 const std::size_t first = instances.size();
                 const std::uint32_t index = add_look(frame, look, place);
+                add_pull(world, entity, index);
                 append_particles(
                     particles, index, back, instances, look.camera_streak * eye_velocity);
                 if (look.culling == ParticleCulling::Bounds) {
@@ -368,6 +400,7 @@ void ParticleEffect::collect(FrameData& frame) {
                   const GpuParticles& particles, const ParticleCollision* collision) {
             if (looks.size() < kMaxLooks) {
                 const std::uint32_t index = add_look(frame, look);
+                add_pull(world, entity, index);
                 gpu.add(frame, entity, emitter, particles, index, sort_passes(look), collision);
                 if (look.culling == ParticleCulling::Emitter) {
                     extents[index].group = shape_in_world(entity);
@@ -382,17 +415,23 @@ void ParticleEffect::collect(FrameData& frame) {
     }
 
     const Affine& camera = frame.camera.world_from_camera;
-    order_by_distance(
-        instances, places, transform_point(camera, Vec3(0)),
-        transform_vector(camera, Vec3(0, 0, -1)), order);
+    gpu_view = {
+        .back = back,
+        .eye = transform_point(camera, Vec3(0)),
+        .forward = transform_vector(camera, Vec3(0, 0, -1)),
+        .seen = gpu.meets_depth() ? recall_depth(seen_depth, frame) : SeenDepth{}};
+    order_by_distance(instances, places, gpu_view.eye, gpu_view.forward, order);
     sorted.clear();
     for (const std::uint32_t i : order.indices) {
         sorted.push_back(instances[i]);
     }
     auto& sprites = frame.data.publish<ParticleSprites>();
     sprites.instances = instances;
+    sprites.gpu = &gpu;
+    sprites.gpu_view = &gpu_view;
     sprites.looks = looks;
     sprites.arrays = arrays;
+    sprites.features = features;
     sprites.look_texels = &look_texels;
     look_texels.upload(*frame.ring, looks);
     ribbon_texels.upload(*frame.ring, ribbons.points);
@@ -445,6 +484,14 @@ std::size_t ParticleEffect::middle_half() const {
     return 0;
 }
 
+/// Discs fit any arrays.
+bool ParticleEffect::fits(const ParticleRun& run, std::uint32_t look) const {
+    const bool is_disc = looks[look][3].w < 0;
+    const bool is_still = looks[look][layout::kLookMotion].x < 0;
+    return (is_disc || run.arrays.images == arrays[look].images)
+           && (is_still || run.arrays.motions == arrays[look].motions);
+}
+
 /// Those of this resolution in [first, last) that are visible, from back to front.
 void ParticleEffect::append_runs(
     bool half, std::size_t first, std::size_t last, ViewParticles& seen) {
@@ -454,11 +501,9 @@ void ParticleEffect::append_runs(
         if (visible[i] == 0 || (halves[look] != 0) != half) {
             continue;
         }
-        // Discs fit any array.
-        const bool is_disc = looks[look][3].w < 0;
-        if (seen.runs.size() == first_run || (!is_disc && seen.runs.back().array != arrays[look])) {
+        if (seen.runs.size() == first_run || !fits(seen.runs.back(), look)) {
             seen.runs.push_back(
-                {.array = arrays[look],
+                {.arrays = arrays[look],
                  .first = static_cast<int>(seen.instances.size()),
                  .count = 0});
         }
@@ -470,11 +515,16 @@ void ParticleEffect::append_runs(
     }
 }
 
-void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData& frame) {
-    const Affine& camera = frame.camera.world_from_camera;
-    gpu.update(
-        graph, particle_lag(frame), transform_point(camera, Vec3(0)),
-        transform_vector(camera, Vec3(0, 0, -1)));
+void ParticleEffect::draw_shared(FrameGraph& graph, const FrameData&) {
+    gpu.update(graph, gpu_view);
+}
+
+void ParticleEffect::add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const {
+    for (const auto& [entity, pool] : gpu.pools()) {
+        reads.emplace_back(
+            pool->sorted ? graph.import("sorted particles", pool->sort.instances)
+                         : graph.import("particles", pool->instances));
+    }
 }
 
 void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& view) {
@@ -482,11 +532,7 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
     const auto add_pass = [&](const char* name, TextureId depth, const Use& target, Part part) {
         std::vector<Use> reads =
             lighting_reads(view, {depth_tested(depth), sampled(depth, kSceneDepthUnit)});
-        for (const auto& [entity, pool] : gpu.pools()) {
-            reads.emplace_back(
-                pool->sorted ? graph.import("sorted particles", pool->sort.instances)
-                             : graph.import("particles", pool->instances));
-        }
+        add_pool_reads(graph, reads);
         const Use writes[] = {target};
         graph.add_pass(name, std::span(reads), writes, [this, part, &view](PassContext& context) {
             draw_sprites(context, view, part);
@@ -510,17 +556,59 @@ void ParticleEffect::draw(FrameGraph& graph, const FrameData& frame, ViewData& v
         end_particle_layer(graph, *layer_programs, layer, view);
     }
     add_pass("particles", view.gbuffer.depth, view.radiance, Part::Front);
+    if (view.velocity && moving) {
+        std::vector<Use> reads = {
+            depth_tested(view.gbuffer.depth), sampled(view.gbuffer.depth, kSceneDepthUnit)};
+        add_pool_reads(graph, reads);
+        const Use writes[] = {view.gbuffer.velocity};
+        graph.add_pass(
+            "particles.velocity", std::span(reads), writes,
+            [this, &view](PassContext& context) { draw_velocity(context, view); });
+    }
+    if (view.is(kMainViews) && gpu.meets_depth()) {
+        remember_depth(graph, *depth_copy, view, seen_depth);
+    }
+}
+
+Variant ParticleEffect::sprite_variant(const ViewData& view) const {
+    Variant variant;
+    features.add_to(variant);
+    variant.add_if(is_clipped(view), "CLIPPED");
+    variant.add_if(soft, "SOFT");
+    variant.add_if(has_ribbons, "RIBBONS");
+    variant.add_if(has_billboards, "BILLBOARDS");
+    return variant;
+}
+
+void ParticleEffect::draw_velocity(PassContext& context, const ViewData& view) {
+    const bool clipped = is_clipped(view);
+    Variant variant("VELOCITY");
+    variant.add(sprite_variant(view));
+    const gpu::Program* const program = velocity_programs.get(variant);
+    if (program == nullptr) {
+        return;
+    }
+    context.device().use(
+        gpu::Pipeline{program, {.depth = {.write = false}, .cull = GL_NONE, .clip = clipped}});
+    bind_view(context, view);
+    // Frames between steps show particles on straight lines, from the velocity of the step's end.
+    const float step = particle_step(*view.frame);
+    const float back = particle_lag(*view.frame);
+    const RenderView& camera = view.camera;
+    const float time = std::min(
+        (camera.alpha - camera.previous_alpha) * step, static_cast<float>(view.frame->time));
+    const bool crosses = time + back > 0.999f * step;  // the beginning of the step
+    const float bend = crosses ? step * (back + time - 0.5f * step) : 0.0f;
+    program->set("since_previous", Vec2(std::max(time, 0.0f), bend));
+    draw_runs(context, view, *program, Part::All);
 }
 
 /// What the GPU moves at full resolution is in front.
 void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Part part) {
     const bool clipped = is_clipped(view);
     Variant variant = view.lighting.variant;
-    variant.add_if(clipped, "CLIPPED");
     variant.add_if(lit, "LIT");
-    variant.add_if(images, "IMAGES");
-    variant.add_if(has_ribbons, "RIBBONS");
-    variant.add_if(has_billboards, "BILLBOARDS");
+    variant.add(sprite_variant(view));
     const gpu::Program* const program = programs.get(variant);
     if (program == nullptr) {
         return;
@@ -533,32 +621,44 @@ void ParticleEffect::draw_sprites(PassContext& context, const ViewData& view, Pa
          .cull = GL_NONE,
          .clip = clipped}});
     bind_lighting(context, view);
+    draw_runs(context, view, *program, part);
+}
+
+void ParticleEffect::draw_runs(
+    PassContext& context, const ViewData& view, const gpu::Program& program, Part part) {
+    gpu::Device& device = context.device();
     const auto& seen = view.data.get<ViewParticles>();
     seen.texels.bind(device, kParticlesUnit);
     look_texels.bind(device, kLooksUnit);
     ribbon_texels.bind(device, kRibbonsUnit);
     billboard_texels.bind(device, kBillboardsUnit);
-    const auto bind_images = [&](std::uint32_t array) {
-        if (images) {
-            device.bind_texture(kImagesUnit, view.frame->materials->images().array(array));
+    const auto bind_images = [&](const ParticleArrays& its) {
+        const ImagePool& pool = view.frame->materials->images();
+        if (features.images) {
+            device.bind_texture(kImagesUnit, pool.array(its.images), &image_sampler);
+        }
+        if (features.motions) {
+            device.bind_texture(kMotionsUnit, pool.array(its.motions), &image_sampler);
         }
     };
     const std::span<const ParticleRun> all(seen.runs);
     const auto runs = part == Part::Behind ? all.first(seen.half_begin)
                       : part == Part::Half
                           ? all.subspan(seen.half_begin, seen.half_end - seen.half_begin)
-                          : all.subspan(seen.half_end);
+                      : part == Part::Front ? all.subspan(seen.half_end)
+                                            : all;
     for (const ParticleRun& run : runs) {
-        program->set("first", run.first);
-        bind_images(run.array);
+        program.set("first", run.first);
+        bind_images(run.arrays);
         device.draw(GL_TRIANGLE_STRIP, 0, 4, run.count);
     }
-    program->set("first", 0);
+    program.set("first", 0);
     const Frustum frustum = make_frustum(view.camera.clip_from_world);
     for (const auto& [entity, pool] : gpu.pools()) {
         const std::uint32_t count = pool->sorted ? pool->sort.count : pool->count;
         const Part its = halves[pool->look] != 0 ? Part::Half : Part::Front;
-        if (count > 0 && its == part && is_group_in_view(extents[pool->look], frustum)) {
+        if (count > 0 && (its == part || part == Part::All)
+            && is_group_in_view(extents[pool->look], frustum)) {
             bind_images(arrays[pool->look]);
             (pool->sorted ? pool->sort.texels : pool->texels).bind(device, kParticlesUnit);
             device.draw(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(count));

@@ -25,9 +25,9 @@ namespace limn {
 //
 // Reads    depth, light clusters, environment; ParticlePool, Trail, Beam, Billboard with
 //          ParticleLook
-// Writes   radiance
+// Writes   radiance; velocity, where they cover more than their look states
 // Order    after blended surfaces, before the lens
-// Shaders  particle.vert, particle.frag; layout in particle_gpu.h
+// Shaders  particle.vert, particle.frag, particle_velocity.frag; layout in particle_gpu.h
 //
 // A look's `cover` is a factor on the opacity of premultiplied colors, so that fire that adds light
 // and smoke that hides it are drawn in one order, and in one draw unless images differ in size or
@@ -40,8 +40,8 @@ namespace limn {
 /// Time of the frame before the end of the last step [s].
 [[nodiscard]] float particle_lag(const FrameData& frame);
 
-/// Of the last step [m/s]; 0 after a cut.
-[[nodiscard]] Vec3 camera_velocity(const World& world, Entity camera, float step);
+/// Of an entity in the last step [m/s]; 0 where it jumped.
+[[nodiscard]] Vec3 entity_velocity(const World& world, Entity entity, float step);
 
 /// Keeps its memory from frame to frame.
 struct DistanceOrder {
@@ -74,7 +74,7 @@ void cull_particles(
 
 struct ParticleEffect {
     /// What is drawn at half the resolution, and what the middle one of it hides or is hidden by.
-    enum class Part { Behind, Half, Front };
+    enum class Part { Behind, Half, Front, All };
 
     /// What a view draws.
     struct ViewParticles {
@@ -88,9 +88,10 @@ struct ParticleEffect {
     };
 
     ProgramVariants programs;
+    ProgramVariants velocity_programs;
     std::vector<LookRecord> looks = {};
-    std::vector<std::uint32_t> arrays = {};  ///< of each look's image
-    std::vector<char> halves = {};           ///< of each look: drawn at half the resolution
+    std::vector<ParticleArrays> arrays = {};  ///< of each look
+    std::vector<char> halves = {};            ///< of each look: drawn at half the resolution
     RibbonList ribbons = {};
     BillboardList billboards = {};
     std::vector<LookExtent> extents = {};  ///< of each look
@@ -100,12 +101,18 @@ struct ParticleEffect {
     std::vector<ParticleInstance> sorted = {};
     std::vector<std::uint8_t> visible = {};
     GpuParticlePools gpu = {};  ///< drawn after the others
+    GpuParticleView gpu_view = {};
     bool lit = false;
-    bool images = false;
+    bool soft = false;  ///< some fade where they meet a surface
+    SpriteFeatures features = {};
+    bool moving = false;  ///< some look may cover enough to move pixels
     bool has_ribbons = false;
     bool has_billboards = false;
     bool has_halves = false;
     std::optional<ParticleLayerPrograms> layer_programs = {};  ///< created with the first half one
+    const gpu::Program* depth_copy = nullptr;
+    gpu::Sampler image_sampler = {};
+    DepthMemory seen_depth = {};  ///< while some on the GPU meet what the camera sees
     BufferTexture look_texels = BufferTexture("particle looks", GL_RGBA32F);
     BufferTexture ribbon_texels = BufferTexture("ribbon points", GL_RGBA32F);
     BufferTexture billboard_texels = BufferTexture("billboards", GL_RGBA32F);
@@ -120,11 +127,18 @@ struct ParticleEffect {
   private:
     std::uint32_t add_look(
         const FrameData& frame, const ParticleLook& look, std::optional<Vec3> place = std::nullopt);
+    void add_pull(const World& world, Entity emitter, std::uint32_t look);
     void collect_ribbons(const FrameData& frame, float back, float step);
     void collect_billboards(const FrameData& frame, float back);
     [[nodiscard]] std::size_t middle_half() const;
+    [[nodiscard]] bool fits(const ParticleRun& run, std::uint32_t look) const;
     void append_runs(bool half, std::size_t first, std::size_t last, ViewParticles& seen);
+    void add_pool_reads(FrameGraph& graph, std::vector<Use>& reads) const;
+    [[nodiscard]] Variant sprite_variant(const ViewData& view) const;
     void draw_sprites(PassContext& context, const ViewData& view, Part part);
+    void draw_velocity(PassContext& context, const ViewData& view);
+    void
+    draw_runs(PassContext& context, const ViewData& view, const gpu::Program& program, Part part);
 };
 
 }  // namespace limn

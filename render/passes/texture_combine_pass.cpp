@@ -2,6 +2,7 @@
 
 #include "ecs/components/texture_combine.h"
 #include "ecs/world.h"
+#include "render/drawn_image.h"
 #include "render/fullscreen.h"
 #include "render/material_pool.h"
 #include "render/surface_draws.h"
@@ -54,9 +55,7 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
             wrapped(frame.time * static_cast<double>(combine.speed.x)),
             wrapped(frame.time * static_cast<double>(combine.speed.y)));
         const gpu::Texture& array = images.array(target.array);
-        const TextureId combined = create_target(
-            graph, "combined texture", array.desc().format, {array.width(), array.height()},
-            array.desc().levels);
+        const TextureId combined = create_drawn_image(graph, images, target);
         add_fullscreen_pass(
             graph, "combine textures",
             {array_of(combine.water), array_of(combine.grating),
@@ -69,14 +68,7 @@ void TextureCombineEffect::draw_shared(FrameGraph& graph, const FrameData& frame
                 its.set("gain", gain);
                 its.set("encoded", array.desc().format == GL_SRGB8_ALPHA8 ? 1 : 0);
             });
-        // Copied, since materials may read other layers of the array by the same texture.
-        graph.add_pass(
-            "place combined texture", {}, {image(combined), image(array_of(combine.target))},
-            [combined, target, &images](PassContext& context) {
-                const gpu::Texture& texture = context.texture(combined);
-                glGenerateTextureMipmap(texture.id());
-                texture.copy_to(images.array(target.array), static_cast<int>(target.layer));
-            });
+        place_drawn_image(graph, images, combined, target);
     });
 }
 

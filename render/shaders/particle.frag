@@ -1,27 +1,32 @@
-// A particle: an image or a soft disc, fading where it meets a surface. Definitions: those of
-// lib/sprite.glsl.
+// A particle: an image or a soft disc. Definitions: those of lib/sprite.glsl, and
+//   SOFT  some fade where they meet a surface
 #version 450
 #include "lib/radiance.glsl"
 #include "lib/sprite.glsl"
 #include "lib/view.glsl"
 
+#ifdef SOFT
 layout(binding = 4) uniform sampler2D scene_depth;
+#endif
 
 layout(location = 0) in vec3 corner;
 layout(location = 1) in vec4 light;
 layout(location = 2) flat in vec4 frames;
 layout(location = 3) flat in vec4 blend;
-layout(location = 4) flat in vec2 next_frame;
+layout(location = 4) flat in vec4 next_frame;
 layout(location = 5) in float distance_ahead;
 
 layout(location = 0) out vec4 radiance;
 
 void main() {
     vec2 place = vec2(corner.x, corner.y / max(corner.z, 1e-6));
-    vec4 s = sprite_at(place, frames, next_frame, blend.z, blend.w);
+    vec4 s = sprite_at(place, frames, next_frame.xy, blend.z, blend.w, next_frame.zw);
+    float fade = 1.0;
+#ifdef SOFT
     float depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
     float room = view_distance(max(depth, 1e-20)) - distance_ahead;
-    float fade = clamp(room / max(blend.y, 1e-4), 0.0, 1.0);
+    fade = clamp(room / max(blend.y, 1e-4), 0.0, 1.0);
+#endif
     float weight = s.a * fade;
     radiance = vec4(storable(light.rgb * s.rgb * weight), light.a * weight * blend.x);
 }

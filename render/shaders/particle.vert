@@ -2,6 +2,7 @@
 //   LIT      some particle scatters light
 //   RIBBONS  some are segments of ribbons
 //   BILLBOARDS  some are quads of billboards
+//   VELOCITY  without light, but with where they were in the previous frame
 #version 450
 #define UNMASKED  // shadow masks are of the surfaces behind
 #include "lib/particle.glsl"
@@ -19,13 +20,18 @@ layout(binding = 8) uniform samplerBuffer ribbon_points;
 layout(binding = 26) uniform samplerBuffer billboard_quads;
 #endif
 
+#ifdef VELOCITY
+#include "lib/particle_motion.glsl"
+layout(location = 6) out vec3 previous_clip;  // clip x, y, w
+#endif
+
 uniform int first;  // of the particles to draw
 
 layout(location = 0) out vec3 corner;                  // -1 .. 1; y is multiplied by z, so that it stays straight
 layout(location = 1) out vec4 light;                   // radiance of the middle, premultiplied by a: its opacity
 layout(location = 2) flat out vec4 frames;             // texture coordinates: scale xy, offset of the frame zw
 layout(location = 3) flat out vec4 blend;              // cover, softness [m], share of the next frame, layer
-layout(location = 4) flat out vec2 next_frame;         // its offset
+layout(location = 4) flat out vec4 next_frame;         // its offset; layer of the motion map, its full value
 layout(location = 5) out float distance_ahead;         // along the view axis [m]
 
 const int kFacingVelocity = 1;
@@ -232,6 +238,19 @@ void main() {
     vec3 corner_ws = p.position + offset;
     gl_Position = view.clip_from_world * vec4(corner_ws, 1.0);
     distance_ahead = gl_Position.w;
+#ifdef VELOCITY
+    vec3 velocity = p.velocity;
+    float age = p.age;
+    vec4 pull = look_texel(look, kLookMotion + 1u);
+#ifdef BILLBOARDS
+    if (is_billboard) {
+        velocity = texelFetch(billboard_quads, p.record * int(kBillboardTexels) + 2).xyz;
+        age = since_previous.x;
+        pull = vec4(0.0);
+    }
+#endif
+    previous_clip = (view.previous_clip_from_world * vec4(previous_place(corner_ws, velocity, age, pull), 1.0)).xyw;
+#endif
 #ifdef CLIPPED
     gl_ClipDistance[0] = dot(view.clip_plane, vec4(corner_ws, 1.0));
 #endif
@@ -258,14 +277,22 @@ void main() {
 #endif
     Flipbook flipbook = flipbook_at(shown, book, int(more.x));
     frames = flipbook.frames;
-    next_frame = flipbook.next;
+    next_frame = vec4(flipbook.next, look_texel(look, kLookMotion).xy);
     blend = vec4(glow.z, streak.z, flipbook.progress, book.w);
     // Too small to draw, transparent or dead.
     bool is_gone = size <= 0.0 || color.a <= 0.0 || p.is_dead;
+#ifdef VELOCITY
+    is_gone = is_gone || color.a * glow.z <= look_texel(look, kLookMotion).z;
+    blend.x = glow.z / max(look_texel(look, kLookMotion).z, 1e-6);
+#endif
 #ifdef RIBBONS
+#ifdef VELOCITY
+    is_gone = is_gone || is_ribbon;
+#else
     is_gone = is_gone && !is_ribbon;
 #endif
-#ifdef BILLBOARDS
+#endif
+#if defined(BILLBOARDS) && !defined(VELOCITY)
     is_gone = is_billboard ? color.a <= 0.0 : is_gone;
 #endif
     if (is_gone) {

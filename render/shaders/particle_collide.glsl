@@ -1,5 +1,6 @@
 // A step of a particle among planes, spheres and boxes: swept from contact to contact as in
-// systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp.
+// systems/particles/particle_collision.cpp, in single precision. Included by particle_update.comp. Definition:
+//   SEEN_DEPTH  particles also meet what the camera saw in the previous frame
 
 const uint kColliderPlane = 0u, kColliderSphere = 1u, kColliderBox = 2u;
 const uint kBounce = 1u, kStick = 2u, kKill = 3u;  // of the emitter; 0: does not collide
@@ -111,6 +112,10 @@ vec4 find_exit(GpuCollider collider, vec3 place, float radius) {
     return vec4(from_box(collider, normal), inside[nearest]);
 }
 
+#ifdef SEEN_DEPTH
+#include "particle_seen.glsl"
+#endif
+
 Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta, float radius) {
     Touch nearest = Touch(2.0, vec3(0.0));
     for (int i = 0; i < collider_count; ++i) {
@@ -119,7 +124,29 @@ Touch first_touch(int first_collider, int collider_count, vec3 from, vec3 delta,
             nearest = one;
         }
     }
+#ifdef SEEN_DEPTH
+    Touch seen = touch_seen(from, delta, radius);
+    if (seen.share < nearest.share) {
+        nearest = seen;
+    }
+#endif
     return nearest;
+}
+
+// Takes a particle at `place` on its way `to` out of what it is in. Whether it was in it, by more than rounding.
+bool leave(vec4 way_out, inout vec3 place, inout vec3 to, inout vec3 velocity) {
+    if (way_out.w <= 0.0) {
+        return false;
+    }
+    vec3 way = to - place;
+    place += (way_out.w + 0.5 * kSkin) * way_out.xyz;
+    bool is_inside = way_out.w > 0.5 * kSkin;
+    if (is_inside) {
+        velocity -= min(dot(velocity, way_out.xyz), 0.0) * way_out.xyz;
+        way -= min(dot(way, way_out.xyz), 0.0) * way_out.xyz;
+    }
+    to = place + way;
+    return is_inside;
 }
 
 // From `start` to where the step has moved it, in `dt` seconds. `response`: bounce, friction, radius, action (word).
@@ -129,19 +156,14 @@ void collide(inout Particle p, vec3 start, float dt, int first_collider, int col
     vec3 place = start;
     vec3 to = p.place;
     bool stopped = false;
+    float reach = response.z + 0.5 * kSkin;
     for (int i = 0; i < collider_count && !stopped; ++i) {
-        vec4 way_out = find_exit(read_collider(first_collider + i * int(kColliderTexels)), place, response.z + 0.5 * kSkin);
-        if (way_out.w > 0.0) {
-            vec3 way = to - place;
-            place += (way_out.w + 0.5 * kSkin) * way_out.xyz;
-            if (way_out.w > 0.5 * kSkin) {
-                p.velocity -= min(dot(p.velocity, way_out.xyz), 0.0) * way_out.xyz;
-                way -= min(dot(way, way_out.xyz), 0.0) * way_out.xyz;
-                stopped = stops;
-            }
-            to = place + way;
-        }
+        vec4 way_out = find_exit(read_collider(first_collider + i * int(kColliderTexels)), place, reach);
+        stopped = leave(way_out, place, to, p.velocity) && stops;
     }
+#ifdef SEEN_DEPTH
+    stopped = stopped || (leave(find_seen_exit(place, reach), place, to, p.velocity) && stops);
+#endif
     float time = dt;
     for (int bounce = 0; !stopped; ++bounce) {
         Touch found = first_touch(first_collider, collider_count, place, to - place, response.z);

@@ -26,7 +26,8 @@ const uint kFacingRibbon = 4u;  // after those of ParticleFacing
 // Quads of billboards (BillboardList): texels of four floats.
 //   0  half the extent to the right xyz [m]; BillboardAlignment
 //   1  half the extent upward xyz [m]; frame of the flipbook
-const uint kBillboardTexels = 2u;
+//   2  velocity xyz [m/s]
+const uint kBillboardTexels = 3u;
 const uint kFacingBillboard = 5u;
 
 // A look: texels of four floats.
@@ -46,12 +47,17 @@ const uint kLookColors = 12u;
 const uint kLookMore = 44u;
 //  48  factors on the optical depth of its shadow for red, green and blue; factor on the opacity, 0: casts none
 const uint kLookShadow = 48u;
-const uint kLookTexels = 49u;
+//  49  layer of the motion map, -1: none; what its full value means, as a share of a frame; coverage above which pixels
+//      move with it, 1: never
+const uint kLookMotion = 49u;
+//  50  acceleration at rest [m/s^2]; drag [1/s]
+const uint kLookTexels = 51u;
 
 // ParticleShadowRecord: rows that map the world to the opacity maps (lib/particle_shadow.glsl).
 //   0, 1, 3  texture coordinates s and t, as rows 0 and 1 divided by row 3
 //   2        depth, as a share of the range of depths that casters are in; not divided
-//   4        index of the light that they shadow, -1: none
+//   4        index of the light that they shadow, -1: none; shares of the range of depths per meter; that index, whether or
+//            not anything casts
 const uint kParticleShadowTexels = 5u;
 
 // Particles that the GPU moves (render/gpu_particle_pools.h): texels of four floats, words as bits.

@@ -6,13 +6,13 @@ layout(binding = 31) uniform samplerBuffer particle_shadow;  // ParticleShadowRe
 uniform int first;         // of the particles to draw
 uniform vec3 light_right;  // unit, along the map's columns and rows
 uniform vec3 light_up;
-uniform float depth_scale;  // shares of the range of depths per meter
 
 layout(location = 0) out vec2 corner;
 layout(location = 1) flat out vec4 slab;  // opacity, depth, thickness (shares of the range), progress of the flipbook
 layout(location = 2) flat out vec4 frames;
 layout(location = 3) flat out vec3 next_frame;  // its offset; layer of the image
 layout(location = 4) flat out vec3 tint;
+layout(location = 5) flat out vec2 motion;  // layer of the motion map, its full value
 
 void main() {
     Particle p = read_particle(first + gl_InstanceID);
@@ -29,11 +29,13 @@ void main() {
 
     vec4 opacity = look_texel(p.look, kLookShadow);
     Flipbook flipbook = flipbook_of(p, book, int(look_texel(p.look, kLookMore).x));
-    slab = vec4(color_of(p).a * opacity.w, dot(texelFetch(particle_shadow, 2), vec4(p.position, 1.0)), size * depth_scale,
+    slab = vec4(color_of(p).a * opacity.w, dot(texelFetch(particle_shadow, 2), vec4(p.position, 1.0)),
+                size * texelFetch(particle_shadow, 4).y,
                 flipbook.progress);
     frames = flipbook.frames;
     next_frame = vec3(flipbook.next, book.w);
     tint = opacity.rgb;
+    motion = look_texel(p.look, kLookMotion).xy;
     if (size <= 0.0 || slab.x <= 0.0 || p.is_dead) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }

@@ -1,10 +1,16 @@
 // Births and motion of particles, one invocation each: all steps since it last ran (particle.gpu-init,
-// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp.
+// particle.gpu-update). The same as systems/particles/particle_births.cpp and particle_kernels.cpp. Definitions: that of
+// particle_collide.glsl, and, for what most of them need, as a software OpenGL runs both sides of every condition,
+//   OLD    all were born before these steps
+//   PLAIN  with OLD: one step, under gravity and drag alone
 #version 450
+#include "lib/philox.glsl"
 #include "particle_gpu.h"
 
 layout(local_size_x = 128) in;  // kParticleGroup
+#ifndef PLAIN
 layout(binding = 0) uniform samplerBuffer steps;
+#endif
 layout(std430, binding = 0) buffer State {
     vec4 state[];  // of each slot: place, age; velocity, lifetime
 };
@@ -16,7 +22,9 @@ layout(std430, binding = 2) writeonly buffer Instances {
 };
 
 uniform uint first;       // number of the oldest particle, low word
-uniform uint count;       // of particles that may be alive
+uniform uint begin;       // of those to move, from the oldest on
+uniform uint end;         // one after the last
+uniform uint first_slot;  // of the oldest
 uniform uint capacity;    // slots
 uniform int step_count;   // steps to do
 uniform int runs;         // texel of the first run of births
@@ -25,6 +33,11 @@ uniform int colliders;    // texel of the first collider
 uniform uint look;
 uniform int closed_form;  // states are those of birth
 uniform vec3 gravity;
+#ifdef PLAIN
+uniform vec4 push_dt;     // texels of the step
+uniform vec4 air;
+uniform float old_share;
+#endif
 uniform float back;       // how long before the end of the last step the particles are seen [s]
 
 const float kPi = 3.14159265358979;
@@ -43,7 +56,22 @@ struct Particle {
     uint look_bits;
 };
 
+#ifdef PLAIN
+
+void move(inout Particle p) {
+    if (p.life > 0.0) {  // does not stick
+        vec3 start = p.velocity;
+        vec3 old = old_share == 1.0 ? start : p.velocity;
+        p.velocity = air.xyz + (p.velocity + push_dt.xyz - air.xyz) * air.w;
+        p.place += old * (push_dt.w * old_share) + p.velocity * (push_dt.w - push_dt.w * old_share);
+    }
+    p.age += push_dt.w;
+}
+
+#else
 #include "particle_collide.glsl"
+
+#ifndef OLD
 
 // ---- random numbers: ecs/base/rng.h
 
@@ -53,17 +81,6 @@ struct Random {
     uvec4 words;
     uint left;
 };
-
-uvec4 philox(uvec4 counter, uvec2 key) {
-    for (int i = 0; i < 10; ++i) {
-        uint a_high, a_low, b_high, b_low;
-        umulExtended(0xd2511f53u, counter.x, a_high, a_low);
-        umulExtended(0xcd9e8d57u, counter.z, b_high, b_low);
-        counter = uvec4(b_high ^ counter.y ^ key.x, b_low, a_high ^ counter.w ^ key.y, a_low);
-        key += uvec2(0x9e3779b9u, 0xbb67ae85u);
-    }
-    return counter;
-}
 
 uint next_word(inout Random random) {
     if (random.left == 0u) {
@@ -76,7 +93,7 @@ uint next_word(inout Random random) {
     return word;
 }
 float next_share(inout Random random) {
-    return float(next_word(random) >> 8) * (1.0 / 16777216.0);
+    return share_of(next_word(random));
 }
 float next_signed(inout Random random) {
     return -1.0 + 2.0 * next_share(random);
@@ -220,6 +237,7 @@ Particle give_birth(uint number, uint index, int texel, uvec4 births) {
     return p;
 }
 
+#endif
 // ---- motion: particle_kernels.cpp
 
 float lattice_value(uvec3 products) {
@@ -349,21 +367,34 @@ void move(inout Particle p, int texel) {
     vec3 turns = floor((p.place - texelFetch(steps, texel + 15).xyz) / max(box, 1e-30) + 0.5);
     p.place -= mix(vec3(0.0), turns * box, greaterThan(box, vec3(0.0)));
     uvec4 met = floatBitsToUint(texelFetch(steps, texel + 17));
-    if (met.y > 0u) {
+    bool collides = met.y > 0u;
+#ifdef SEEN_DEPTH
+    collides = collides || thickness > 0.0;
+#endif
+    if (collides) {
         collide(p, start_place, push_dt.w, colliders + int(met.x), int(met.y), texelFetch(steps, 6));
     }
 }
 
+#endif
+
 void main() {
-    uint index = gl_GlobalInvocationID.x;
-    if (index >= count) {
+    uint index = begin + gl_GlobalInvocationID.x;
+    if (index >= end) {
         return;
     }
-    uint number = first + index;
-    uint slot = number % capacity;
-    Particle p = Particle(state[2u * slot].xyz, state[2u * slot].w, state[2u * slot + 1u].xyz, state[2u * slot + 1u].w, bits[slot]);
+    uint slot = first_slot + index;
+    slot -= slot >= capacity ? capacity : 0u;
+    vec4 place_age = state[2u * slot];
+    vec4 velocity_life = state[2u * slot + 1u];
+    Particle p = Particle(place_age.xyz, place_age.w, velocity_life.xyz, velocity_life.w, bits[slot]);
+#ifdef PLAIN
+    move(p);
+#else
     for (int i = 0; i < step_count; ++i) {
         int texel = int(kEmitterTexels) + i * int(kStepTexels);
+#ifndef OLD
+        uint number = first + index;
         uvec4 births = floatBitsToUint(texelFetch(steps, texel));
         int since = int(number - births.x);  // wraps
         if (since >= int(births.y)) {
@@ -372,21 +403,27 @@ void main() {
         if (since >= 0) {
             p = give_birth(number, uint(since), texel, births);
         }
+#endif
         move(p, texel);
     }
+#endif
     state[2u * slot] = vec4(p.place, p.age);
     state[2u * slot + 1u] = vec4(p.velocity, p.life);
+#ifndef OLD
     bits[slot] = p.look_bits;
+#endif
 
     float age = p.age - back;
     float life = abs(p.life);
     bool is_alive = p.age < life && age >= 0.0;
     float share = clamp(age / max(life, 1e-6), 0.0, 1.0);
     vec3 place = p.place - p.velocity * back;
+#ifndef PLAIN
     if (closed_form != 0) {
         place = p.place + (p.velocity + 0.5 * gravity * age) * age;
         p.velocity += gravity * age;
     }
+#endif
     instances[2u * index] = uvec4(floatBitsToUint(place), look << 16 | uint(share * 65535.0));
     instances[2u * index + 1u] =
         uvec4(packHalf2x16(p.velocity.xy), packHalf2x16(vec2(p.velocity.z, age)), p.look_bits, is_alive ? 0u : 1u);

@@ -58,8 +58,8 @@ TEST_CASE("cli: --version names the program and its version") {
 TEST_CASE("cli: every command has help with an example") {
     const TemporaryFolder folder;
     for (const char* command :
-         {"play", "render", "bench", "hash", "quality", "compare", "info", "levels", "shows",
-          "components"}) {
+         {"play", "render", "bench", "hash", "quality", "compare", "bake", "info", "levels",
+          "shows", "components"}) {
         const ProgramRun run = run_limn(folder, {command, "--help"});
         CAPTURE(command);
         CHECK(run.exit_code == 0);

@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -30,17 +31,33 @@ constexpr const char* kLevel = R"({
   ]
 })";
 
-struct Level {
+/// A bulb with a light, and a nameless triangle.
+constexpr const char* kLamp = R"({
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 7}]}},
+  "scene": 0, "scenes": [{"nodes": [0, 1]}],
+  "nodes": [
+    {"name": "Bulb.001", "translation": [1, 2, 3], "scale": [2, 2, 2], "mesh": 0,
+     "extensions": {"KHR_lights_punctual": {"light": 0}}},
+    {"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}]
+})";
+
+struct OpenLevel {
     test::TemporaryFolder folder;
     std::unique_ptr<Stage> stage;
 
-    explicit Level(const std::string& text = kLevel) {
+    /// `text` is a.level.json; `scene` is opened.
+    explicit OpenLevel(
+        const std::string& text = kLevel, const std::string& scene = "a.level.json") {
+        test::write_text(folder.file("lamp.gltf"), kLamp);
         test::write_text(folder.file("a.level.json"), text);
         const std::vector<std::byte> lantern = test::square_glb();
         test::write_text(
             folder.file("lantern.glb"),
             {reinterpret_cast<const char*>(lantern.data()), lantern.size()});
-        Result<std::unique_ptr<Stage>> opened = open_stage(folder.file("a.level.json"));
+        Result<std::unique_ptr<Stage>> opened = open_stage(folder.file(scene));
         REQUIRE_MESSAGE(opened.ok(), (opened ? std::string() : opened.error().message));
         stage = *std::move(opened);
     }
@@ -56,11 +73,11 @@ struct Level {
 }  // namespace
 
 TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity") {
-    Level level;
+    OpenLevel level;
     const std::string text = entity_as_json(level.world(), level.find("lamp"));
     const std::string pasted = std::string(R"({"title": "B", "entities": [)") + text
                                + R"(, {"name": "eye", "camera": {}}]})";
-    Level other(pasted);
+    OpenLevel other(pasted);
     const Entity lamp = other.find("lamp");
     REQUIRE(other.world().alive(lamp));
     CHECK(other.world().get<const PointLight>(lamp).intensity == 5.0f);
@@ -69,7 +86,7 @@ TEST_CASE("edit_json: a copied entity, pasted into a level, is the same entity")
 }
 
 TEST_CASE("edit_json: a copy names its glTF file, and turns as people write it") {
-    Level level(R"({
+    OpenLevel level(R"({
       "title": "A lantern",
       "entities": [
         {"name": "lantern", "gltf": "lantern.glb", "transform": {"rotation": [30, -20, 45]}},
@@ -86,11 +103,74 @@ TEST_CASE("edit_json: a copy names its glTF file, and turns as people write it")
     // No angles of three decimals give these bits.
     level.world().get<Transform>(lantern).rotation = glm::normalize(Quat(0.9f, 0.1f, 0.2f, 0.3f));
     const Result<JsonValue> other = parse_json(entity_as_json(level.world(), lantern), "copy");
-    CHECK((*other)["transform"]["rotation"].items.size() == 4);
+    CHECK((*other)["transform"]["rotation"].items.size() == 3);
+}
+
+TEST_CASE("edit_json: a copied node of a glTF file, pasted into a level, changes that node") {
+    const char* const kLamps = R"({"entities": [
+        {"name": "lamps", "children": [{"name": "left", "gltf": "lamp.gltf"}]},
+        {"name": "eye", "camera": {}}]})";
+    OpenLevel level(kLamps);
+    const Entity bulb = level.find("Bulb.001");
+    level.world().get<PointLight>(bulb).intensity = 40;
+    level.world().get<Transform>(bulb).scale = Vec3(1);  // the file has 2
+    const std::string text = entity_as_json(level.world(), bulb);
+    const Result<JsonValue> json = parse_json(text, "copy");
+    REQUIRE_MESSAGE(json.ok(), text);
+    CHECK((*json)["name"].text == "left");
+    CHECK((*json)["gltf"].text == "lamp.gltf");
+    CHECK(json->members.size() == 3);
+    CHECK((*json)["nodes"]["Bulb.001"].find("mesh_instance") == nullptr);
+    OpenLevel other(R"({"entities": [)" + text + R"(, {"name": "eye", "camera": {}}]})");
+    const Entity pasted = other.find("Bulb.001");
+    CHECK(other.world().get<const PointLight>(pasted).intensity == 40);
+    CHECK(other.world().get<const Transform>(pasted).scale == Vec3(1));
+    CHECK(other.world().get<const Transform>(pasted).position == Vec3(1, 2, 3));
+    CHECK(entity_as_json(other.world(), pasted) == text);
+}
+
+TEST_CASE(
+    "edit_json: a node of a file that is shown by itself names it; one without name says so") {
+    OpenLevel lamp(kLevel, "lamp.gltf");
+    const auto json_of_entity = [&](Entity entity) {
+        const std::string text = entity_as_json(lamp.world(), entity);
+        const Result<JsonValue> json = parse_json(text, "copy");
+        REQUIRE_MESSAGE(json.ok(), text);
+        CHECK((*json)["gltf"].text == "lamp.gltf");
+        CHECK(json->find("name") == nullptr);
+        return std::pair(*json, text);
+    };
+    const JsonValue bulb = json_of_entity(lamp.find("Bulb.001")).first;
+    CHECK(bulb["nodes"]["Bulb.001"]["transform"].kind == JsonKind::Object);
+    Entity nameless;
+    lamp.world().query<const MeshInstance, Without<Name>>().each(
+        [&](Entity entity, const MeshInstance&) { nameless = entity; });
+    const auto [json, text] = json_of_entity(nameless);
+    CHECK(json.members.size() == 1);
+    CHECK(text.find("// this node has no name") != std::string::npos);
+}
+
+TEST_CASE("edit_json: an edit of a node of a glTF file is a change of nodes") {
+    OpenLevel level(R"({"entities": [{"name": "left", "gltf": "lamp.gltf"},
+                                     {"name": "eye", "camera": {}}]})");
+    World& world = level.world();
+    Edit change;
+    change.kind = EditKind::Component;
+    change.entity = level.find("Bulb.001");
+    const ComponentInfo& light = component_info<PointLight>();
+    change.before = AnyComponent::read(world, change.entity, light);
+    PointLight brighter = world.get<const PointLight>(change.entity);
+    brighter.intensity = 30;
+    change.after = AnyComponent(light, &brighter);
+    REQUIRE(apply_edit_value(world, change, change.after));
+    const std::vector<Edit> edits = {change};
+    CHECK(
+        write_json(*parse_json(edits_as_json(world, edits), ""))
+        == R"({"entities": [{"name": "left", "nodes": {"Bulb.001": {"point_light": {"intensity": 30}}}}]})");
 }
 
 TEST_CASE("edit_json: edits are a patch with the present values; removed components are null") {
-    Level level;
+    OpenLevel level;
     World& world = level.world();
     const Entity lamp = level.find("lamp");
     UndoStack undo;

@@ -1,4 +1,6 @@
+#include "content/load/color_names.h"
 #include "content/load/component_json.h"
+#include "ecs/base/rng.h"
 #include "ecs/base/rotation.h"
 #include "ecs/components/all.h"
 #include "ecs/components/camera.h"
@@ -10,6 +12,7 @@
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -18,6 +21,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 using namespace limn;
@@ -229,6 +233,35 @@ TEST_CASE("component json: a color may be written in sRGB, and its alpha left ou
     CHECK(read<Everything>(R"({"glass": "#0000ff"})").glass == Vec4(0, 0, 1, 0.5f));
 }
 
+TEST_CASE("component json: a color may be named as in CSS, which keeps the alpha") {
+    const auto code_of = [](std::string_view name) { return find_color(name).value_or(1); };
+    CHECK(code_of("aliceblue") == 0xf0f8ff);  // the first and the last
+    CHECK(code_of("yellowgreen") == 0x9acd32);
+    CHECK(code_of("gray") == 0x808080);  // not that of X11
+    CHECK(code_of("green") == 0x008000);
+    CHECK(code_of("rebeccapurple") == 0x663399);
+    CHECK_FALSE(find_color("Orange"));
+    CHECK_FALSE(find_color(""));
+    const std::vector<std::string_view> names = color_names();
+    CHECK(names.size() == 148);
+    CHECK(std::is_sorted(names.begin(), names.end()));
+    for (const std::string_view name : names) {
+        CAPTURE(name);
+        const auto named =
+            read<Everything>(fmt::format(R"({{"tint": "{0}", "glass": "{0}"}})", name));
+        const std::string code = fmt::format("#{:06x}", code_of(name));
+        const auto coded =
+            read<Everything>(fmt::format(R"({{"tint": "{0}", "glass": "{0}"}})", code));
+        CHECK(named.tint == coded.tint);
+        CHECK(named.glass == coded.glass);
+        CHECK(named.glass.w == 0.5f);
+    }
+    CHECK(
+        error_of<Everything>(R"({"tint": "ornage"})")
+        == "t.json:1:10: thing.tint: found the string \"ornage\", expected [r, g, b], "
+           "\"#rrggbb\" or a name such as \"orange\" (did you mean orange?)");
+}
+
 TEST_CASE("component json: angles turn about y, then x, then z") {
     const Quat q = rotation_from_degrees({90, 0, 0});
     const Vec3 ahead = q * Vec3(0, 0, -1);
@@ -396,6 +429,32 @@ TEST_CASE("component json: what is written reads back the same, to the bit") {
         < 1e-6f);
     all.turn = back.turn;
     CHECK(same(component_info<Everything>(), &all, &back));
+}
+
+TEST_CASE("component json: rotations are written in degrees and turn as before, also straight up") {
+    const FieldInfo& turn = *find_field(component_info<Everything>().fields, "turn");
+    Random random(7, 0, 0, 0);
+    const auto draw = [&] { return random.uniform(-1.0f, 1.0f); };
+    const auto turns_alike = [&](const Quat& q) {
+        const JsonValue json = write_field(turn, &q, {});
+        REQUIRE(json.items.size() == 3);
+        Quat back(1, 0, 0, 0);
+        REQUIRE(read_field(json, turn, &back, {"t.json", ""}, {}).ok());
+        for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+            CHECK(glm::length(q * axis - back * axis) < 1e-6f);
+        }
+    };
+    for (int i = 0; i < 1000; ++i) {
+        const Quat any(draw(), draw(), draw(), draw());
+        turns_alike(glm::normalize(any));
+    }
+    for (const float pitch : {90.0f, -90.0f, 89.9999f, 89.99f}) {
+        for (const float yaw : {0.0f, 40.0f, 170.0f, -120.0f}) {
+            turns_alike(rotation_from_degrees({yaw, pitch, 25}));
+        }
+    }
+    const Quat q = rotation_from_degrees({30, -20, 45});
+    CHECK(write_json(write_field(turn, &q, {})) == "[30, -20, 45]");
 }
 
 TEST_CASE("component json: the defaults of every registered component survive a round trip") {

@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -82,16 +84,16 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
          "2:54: entities[0]: path_follower.path: found the path \"wya\", expected an existing name "
          "(did you mean way?)"},
         {R"({"entities": [{"position": [0, 1, 0]}]})",
-         R"(one of name prefab gltf repeat children ("position" is a field of transform))"},
+         R"(one of name prefab gltf nodes repeat children ("position" is a field of transform))"},
         {R"({"entities": [{"rotation": [0, 1, 0]}]})", R"(("rotation" is a field of transform))"},
         {R"({"entities": [{"intensity": 3}]})",
          R"(("intensity" is a field of particle_light or point_light or spot_light))"},
         {R"({"entities": [{"point_light": {"fov_y": 1}}]})", R"(("fov_y" is a field of camera))"},
         {R"({"resources": {"ev": 1}})", R"(("ev" is a field of exposure))"},
-        {R"({"entities": [{"point_light": {"color": "orange"}}]})",
-         R"(found the string "orange", expected [r, g, b] or "#rrggbb")"},
+        {R"({"entities": [{"point_light": {"color": "ornage"}}]})",
+         R"(expected [r, g, b], "#rrggbb" or a name such as "orange" (did you mean orange?))"},
         {R"({"materials": {"m": {"base_color": [1, 1]}}})",
-         R"(expected [r, g, b], [r, g, b, a], "#rrggbb" or "#rrggbbaa")"},
+         R"(expected [r, g, b], [r, g, b, a], "#rrggbb", "#rrggbbaa" or a name such as "orange")"},
         {R"({"materials": {"m": {"pattern": "leaf.png"}}})",
          R"(expected the name of a made image in "images" (for a file write )"
          R"("base_color_texture": {"image": "leaf"}, and "leaf": {"file": "leaf.png"} in "images"))"},
@@ -188,7 +190,8 @@ TEST_CASE("bad level: unknown keys, components, fields and names, with the neare
         error_of(R"({"entities": [{"mesh_instance": {"mesh": "a"}}]})"), "no names of that kind"));
 }
 
-TEST_CASE("bad level: errors that do not depend on each other come together, at most ten") {
+TEST_CASE(
+    "bad level: errors that do not depend on each other come together, ten and how many more") {
     register_all_components();
     const auto lines_of = [](const std::string& text) {
         const Result<Level> level = parse_level(text, "t.level.json");
@@ -217,11 +220,25 @@ TEST_CASE("bad level: errors that do not depend on each other come together, at 
     CHECK(
         lines_of(R"({"events": [{"at": -1}, {"at": 2}, {"at": "soon"}]})")
         == Lines{"t.level.json:1:20", "t.level.json:1:43"});
-    std::string many = R"({"entities": [3)";
-    for (int i = 0; i < 50; ++i) {
-        many += ", 3";
-    }
-    CHECK(lines_of(many + "]}").size() == 10);
+    CHECK(
+        lines_of(R"({"prefabs": {"unused": {"spinn": {}}},
+"entities": [{"autofocus": {"target": "nobody"}}],
+"events": [{"at": 1, "destroy": ["nobody"]}]})")
+        == Lines{"t.level.json:2:39", "t.level.json:3:34", "t.level.json:1:25"});
+    const auto last_line_of = [](std::size_t errors) {
+        std::string many = R"({"entities": [3)";
+        for (std::size_t i = 1; i < errors; ++i) {
+            many += ", 3";
+        }
+        register_all_components();
+        const std::string message = parse_level(many + "]}", "t.level.json").error().message;
+        CHECK(std::count(message.begin(), message.end(), '\n') == (errors > 10 ? 10 : 9));
+        return message.substr(message.rfind('\n') + 1);
+    };
+    CHECK(last_line_of(10).starts_with("t.level.json:1:42: entities[9]: found the number 3"));
+    CHECK(last_line_of(11) == "t.level.json: and 1 more");
+    CHECK(last_line_of(50) == "t.level.json: and 40 more");
+    CHECK(last_line_of(5000) == "t.level.json: and at least 990 more");
 }
 
 TEST_CASE("bad level: wrong types and numbers out of range") {

@@ -671,6 +671,12 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
     CHECK(intensity->items[0].find("minimum")->number == 0.0);
     CHECK(intensity->items[0].find("maximum")->number == 1e6);
     CHECK(intensity->items[1].find("pattern")->text == "^-?[0-9.]+ ?(cd)$");
+    const JsonValue& color = schema["$defs"]["point_light"]["properties"]["color"]["anyOf"];
+    REQUIRE(color.items.size() == 3);
+    CHECK(color.items[2]["$ref"].text == "#/$defs/name of a color");
+    CHECK(schema["$defs"]["name of a color"]["enum"].items.size() == 148);
+    const JsonValue& rotation = schema["$defs"]["transform"]["properties"]["rotation"];
+    CHECK(rotation["items"]["anyOf"].items[1]["pattern"].text == "^-?[0-9.]+ ?(deg|rad)$");
     CHECK(schema["$defs"]["node"]["properties"].find("spin") != nullptr);
     CHECK(schema["$defs"]["node"]["properties"].find("world_transform") == nullptr);
     for (const char* part : {"event", "node", "repeat of a node"}) {

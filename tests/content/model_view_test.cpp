@@ -225,10 +225,12 @@ TEST_CASE("model view: an unknown backdrop names those that exist") {
 
 TEST_CASE("model view: formats that are not read are named, with what is") {
     World world;
-    for (const char* const file : {"head.obj", "HEAD.FBX", "part.stl"}) {
+    for (const char* const file : {"head.ply", "HEAD.FBX", "part.stl"}) {
         const Result<LoadedScene> scene = load_scene(world, file);
         REQUIRE_FALSE(scene.ok());
-        CHECK(scene.error().message.find("expected a level, .gltf or .glb") != std::string::npos);
+        CHECK(
+            scene.error().message.find("expected a level, .gltf, .glb or .obj")
+            != std::string::npos);
     }
     const Result<LoadedScene> level =
         load_scene(world, "gallery", {.model = {.backdrop = "sky", .turntable = 0}});

@@ -62,7 +62,7 @@ std::uint64_t bits(const PatternMaps& maps) {
 }  // namespace
 
 TEST_CASE("patterns: every kind makes three whole images of the size asked for") {
-    REQUIRE(pattern_kinds().size() == 27);
+    REQUIRE(pattern_kinds().size() == 28);
     for (const PatternKind& kind : pattern_kinds()) {
         INFO(std::string(kind.name));
         const PatternMaps maps = make_small(kind, 64);
@@ -134,6 +134,45 @@ TEST_CASE("patterns: flames end below the upper edge and repeat without a jump")
     CHECK(high < 0.15 * low);
     const double most = *std::max_element(steps, steps + 15);
     CHECK(steps[15] < 1.3 * most);
+}
+
+TEST_CASE("patterns: a frame of fire moved by its motion map is closer to the next than it was") {
+    constexpr int kSide = 64;
+    for (const char* const name : {"fire", "fireball"}) {
+        CAPTURE(name);
+        const PatternKind* const kind = find_kind(pattern_kinds(), name);
+        REQUIRE(kind->has_motion);
+        const PatternMaps maps = make_small(*kind, 4 * kSide);
+        CHECK(!maps.motion.srgb);
+        const auto at = [&](const ImageData& image, int frame, int x, int y, int c) {
+            const int column = frame % 4 * kSide + std::clamp(x, 0, kSide - 1);
+            return channel(image, column, frame / 4 * kSide + std::clamp(y, 0, kSide - 1), c);
+        };
+        double still = 0;
+        double moved = 0;
+        for (int frame = 0; frame < 15; ++frame) {
+            for (int y = 0; y < kSide; ++y) {
+                for (int x = 0; x < kSide; ++x) {
+                    const auto motion = [&](int c) {
+                        const int encoded = at(maps.motion, frame, x, y, c);
+                        return kMotionReach * kSide * static_cast<float>(encoded - 128) / 127;
+                    };
+                    // Nearest texel: half a pixel of error at most.
+                    const int from_x =
+                        static_cast<int>(std::lround(static_cast<float>(x) - motion(0)));
+                    const int from_y =
+                        static_cast<int>(std::lround(static_cast<float>(y) - motion(1)));
+                    const int next = at(maps.base_color, frame + 1, x, y, 3);
+                    still += std::abs(next - at(maps.base_color, frame, x, y, 3));
+                    moved += std::abs(next - at(maps.base_color, frame, from_x, from_y, 3));
+                }
+            }
+        }
+        CHECK(moved < 0.8 * still);
+    }
+    for (const PatternKind& kind : pattern_kinds()) {
+        CHECK(make_small(kind, 16).motion.pixels.empty() != kind.has_motion);
+    }
 }
 
 TEST_CASE("patterns: billows of smoke are lit from above, a veil is white") {

@@ -1,17 +1,23 @@
 // What a level says that has no effect, or not the one that its author expects.
 
+#include "content/load/inside_mesh.h"
 #include "content/load/level_load.h"
 #include "content/load/scene_load.h"
 #include "content/load/scene_warnings.h"
 #include "ecs/components/all.h"
+#include "ecs/components/surface.h"
 #include "ecs/world.h"
+#include "tests/near.h"
 #include "tests/support.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace limn;
@@ -22,6 +28,7 @@ std::vector<std::string> warnings_of(std::string_view text) {
     register_all_components();
     Result<Level> level = parse_level(text, "t.level.json");
     REQUIRE_MESSAGE(level.ok(), (level ? std::string() : level.error().message));
+    REQUIRE(load_level_assets(*level, ".").ok());
     World world;
     (void)spawn_level(world, *std::move(level));
     std::vector<std::string> lines;
@@ -108,6 +115,19 @@ TEST_CASE("scene warnings: what particles of the GPU cannot do") {
                     "particle_emitter.executor to cpu"});
 }
 
+TEST_CASE("scene warnings: bodies with a mass that cannot move, and what acts on none") {
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "cart", "transform": {}, "children": [
+            {"name": "shot", "transform": {}, "point_mass": {}}]}]})")
+        == std::vector<std::string>{
+            R"(entity "shot": point_mass has no effect on an entity that has a parent)"});
+    CHECK(
+        warnings_of(R"({"entities": [{"name": "shot", "transform": {}, "air_drag": {}}]})")
+        == std::vector<std::string>{R"(entity "shot": air_drag has no effect without point_mass)"});
+    CHECK(warnings_of(R"({"entities": [{"transform": {}, "point_mass": {}, "air_drag": {}}]})")
+              .empty());
+}
+
 TEST_CASE("scene warnings: a resolution that is rounded, with its field") {
     CHECK(
         warnings_of(R"({"entities": [{"name": "lamp", "spot_light": {},
@@ -135,6 +155,55 @@ TEST_CASE("scene warnings: events on a component that the entity lacks") {
     CHECK(
         warnings_of(with("", "impulse"))
         == Warnings{"events[0]: entity \"box\" has no spin; the event does nothing"});
+}
+
+TEST_CASE("scene warnings: a camera inside of what is solid") {
+    const auto with = [](const char* place, const char* mesh, const char* material) {
+        return fmt::format(
+            R"({{"meshes": {{"m": {{{}}}}}, "materials": {{"a": {{{}}}}},
+                "entities": [
+                {{"name": "wall", "transform": {{"position": [5, 0, 0], "rotation": [30, 0, 0],
+                    "scale": [2, 3, 4]}}, "children": [
+                    {{"name": "stone", "transform": {{"position": [0, 1, 0]}},
+                      "mesh_instance": {{"mesh": "m", "material": "a"}}}}]}},
+                {{"name": "rig", "transform": {{"position": [1, 0, 0]}}, "children": [
+                    {{"name": "eye", "transform": {{"position": {}}}, "camera": {{}}}}]}}]}})",
+            mesh, material, place);
+    };
+    const std::string box = R"("make": "box", "size": [1, 1, 1])";
+    const Warnings inside = {
+        "entity \"eye\": the camera starts inside of entity \"stone\", at [5, 3, 0]"};
+    // The box is 2 x 3 x 4 m about (5, 3, 0).
+    CHECK(warnings_of(with("[4, 3, 0]", box.c_str(), "")) == inside);
+    CHECK(warnings_of(with("[4, 4.4, 0]", box.c_str(), "")).size() == 1);
+    CHECK(warnings_of(with("[4, 4.6, 0]", box.c_str(), "")).empty());
+    CHECK(warnings_of(with("[5.73, 3, 1.195]", box.c_str(), "")).size() == 1);  // near a corner
+    CHECK(warnings_of(with("[4.95, 3, -1.9]", box.c_str(), "")).empty());
+    CHECK(warnings_of(with("[4, 3, 0]", R"("make": "sphere")", "")) == inside);
+    // What is open, transparent or a room with an inside is none of it.
+    CHECK(warnings_of(with("[4, 3, 0]", R"("make": "plane")", "")).empty());
+    CHECK(warnings_of(with("[4, 3, 0]", box.c_str(), R"("double_sided": true)")).empty());
+    CHECK(warnings_of(with("[4, 3, 0]", box.c_str(), R"("alpha_mode": "blend")")).empty());
+}
+
+TEST_CASE("inside mesh: the winding number is 1 in a closed mesh and 0 outside") {
+    MeshData tetrahedron;
+    tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    tetrahedron.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    CHECK(winding_number(tetrahedron, {0.2f, 0.2f, 0.2f}) == test::near(1));
+    CHECK(winding_number(tetrahedron, {0.01f, 0.01f, 0.97f}) == test::near(1));
+    CHECK(std::abs(winding_number(tetrahedron, {0.4f, 0.4f, 0.4f})) < 1e-12);
+    CHECK(std::abs(winding_number(tetrahedron, {-3, 1, 2})) < 1e-12);
+    MeshData turned = tetrahedron;
+    for (std::size_t i = 0; i < turned.indices.size(); i += 3) {
+        std::swap(turned.indices[i], turned.indices[i + 1]);
+    }
+    CHECK(winding_number(turned, {0.2f, 0.2f, 0.2f}) == test::near(-1));
+    // From its center, a face of a cube fills a sixth of the sphere.
+    MeshData face;
+    face.positions = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+    face.indices = {0, 1, 2, 0, 2, 3};
+    CHECK(winding_number(face, {0, 0, 0}) == test::near(1.0 / 6));
 }
 
 TEST_CASE("scene warnings: caustics without a sun above the horizon") {

@@ -4,6 +4,7 @@
 #include "ecs/components/gpu_particles.h"
 #include "ecs/components/particle_collider.h"
 #include "ecs/components/particles.h"
+#include "ecs/components/shadow.h"
 #include "ecs/components/time.h"
 #include "ecs/components/weather.h"
 #include "render/gpu_particle_pools.h"
@@ -15,6 +16,7 @@
 #include "tests/render/scene_fixture.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +86,7 @@ struct Executors : Scene {
             frame, gpu, world.get<const ParticleEmitter>(gpu), recorded(), 0, std::nullopt,
             world.find<ParticleCollision>(gpu));
         graph.begin_frame();
-        pools.update(graph, 0, {0, 0, 0}, {0, 0, -1});
+        pools.update(graph, {});
         graph.execute();
         ring.end_frame();
         const GpuParticlePool& its = *pools.pools().begin()->second;
@@ -480,6 +482,64 @@ TEST_CASE("gpu particles: those that cover are drawn from back to front, as the 
     CHECK(
         largest_difference(drawn_by(both.cpu, ParticleSort::Births), unsorted) < 0.01f * brightest);
     CHECK(largest_difference(drawn_by(both.cpu, ParticleSort::Distance), cpu) == 0);  // alone again
+}
+
+TEST_CASE("gpu particles: in the light of a sun or a spot their shadows are those of the CPU's") {
+    for (const bool in_spot : {false, true}) {
+        CAPTURE(in_spot);
+        ParticleEmitter emitter = fountain();
+        emitter.rate = 0;
+        emitter.bursts = {{.time = 0, .count = 60}};
+        emitter.shape = EmitterShape::Ball;
+        emitter.size = {1, 1, 1};
+        emitter.speed = emitter.speed_spread = 0;
+        emitter.life = 100;
+        Executors both(emitter, {.gravity = 0});
+        both.step(2);
+        both.place(
+            both.add(make_square()), both.add(Material{.base_color = {1, 1, 1, 1}, .roughness = 1}),
+            affine_from({1, 2, 1}, {1, 0, 0, 0}, Vec3(3)));
+        if (in_spot) {
+            both.world.create(
+                SpotLight{.intensity = 80, .radius = 20, .inner_angle = 0.5f, .outer_angle = 0.6f},
+                Shadow{}, WorldTransform{at({1, 2, 7})});
+        } else {
+            both.shine(
+                DirectionalLight{.illuminance = 3},
+                affine_from({0, 0, 9}, glm::angleAxis(0.3f, Vec3(0, 1, 0)), Vec3(1)));
+        }
+        ParticleLook puff;
+        puff.size = 0.5f;
+        puff.size_spread = 0.2f;
+        puff.colors = {{.at = 0, .color = {1, 1, 1}, .opacity = 0.6f}};
+        puff.near_fade = 1000;  // not seen, but for its shadow
+        puff.shadow = 1;
+        const RenderView view = both.look({1, 2, 4}, {1, 2, 1}, 64, 64);
+        const auto shadowed_by = [&](Entity entity) {
+            both.world.add(entity, ParticleLook(puff));
+            gpu::FloatImage image = both.radiance(view);
+            both.world.remove<ParticleLook>(entity);
+            return image;
+        };
+        const gpu::FloatImage open = both.radiance(view);
+        const float brightest = *std::max_element(open.pixels.begin(), open.pixels.end());
+        const gpu::FloatImage cpu = shadowed_by(both.cpu);
+        const gpu::FloatImage gpu = shadowed_by(both.gpu);
+        CHECK(largest_difference(cpu, open) > 0.3f * brightest);
+        CHECK(largest_difference(gpu, cpu) < 0.02f * brightest);
+        // With casters of both kinds the light that is left is about the square.
+        both.world.add(both.cpu, ParticleLook(puff));
+        const gpu::FloatImage twice = shadowed_by(both.gpu);
+        both.world.remove<ParticleLook>(both.cpu);
+        float worst = 0;
+        for (std::size_t i = 0; i < open.pixels.size(); i += 4) {
+            if (open.pixels[i] > 0.05f * brightest) {
+                const float left = cpu.pixels[i] / open.pixels[i];
+                worst = std::max(worst, std::abs(twice.pixels[i] / open.pixels[i] - left * left));
+            }
+        }
+        CHECK(worst < 0.05f);
+    }
 }
 
 TEST_CASE("gpu particles: no number makes a NaN, a hang or more than fits") {

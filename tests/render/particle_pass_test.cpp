@@ -236,9 +236,9 @@ TEST_CASE(
     const Affine far = affine_from({1, 2, 900}, Quat(1, 0, 0, 0), Vec3(1));
     const Entity moving = world.create(WorldTransform{to}, PreviousWorldTransform{from});
     const Entity cut = world.create(WorldTransform{to}, PreviousWorldTransform{far});
-    CHECK(camera_velocity(world, moving, 0.1f).z == near(-10));
-    CHECK(camera_velocity(world, cut, 0.1f) == Vec3(0));
-    CHECK(camera_velocity(world, Entity{}, 0.1f) == Vec3(0));
+    CHECK(entity_velocity(world, moving, 0.1f).z == near(-10));
+    CHECK(entity_velocity(world, cut, 0.1f) == Vec3(0));
+    CHECK(entity_velocity(world, Entity{}, 0.1f) == Vec3(0));
     ParticlePool pool;
     for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz, &pool.life}) {
         column->push_back(1);

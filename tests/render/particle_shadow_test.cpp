@@ -148,7 +148,7 @@ TEST_CASE("particle shadow: the map of a sun holds what casts, whole and in dept
         }
     }
     const Vec4 deeper = Vec4(0.25f * axis, 0);
-    CHECK(glm::dot(view.record[2], deeper) == near(0.25f * view.depth_scale));
+    CHECK(glm::dot(view.record[2], deeper) == near(0.25f * view.record[4].y));
     CHECK(view_from_sun(4, axis, {}).record[4].x == -1);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ecs/base/rng.h"
 #include "ecs/components/all.h"
 #include "ecs/components/particles.h"
 #include "ecs/components/surface.h"
@@ -74,6 +75,28 @@ inline ParticleMotion falling(float gravity = 1) {
     ParticleMotion motion;
     motion.gravity = gravity;
     return motion;
+}
+
+/// A pool of particles anywhere, some of them dead.
+inline ParticlePool random_pool(std::size_t count) {
+    ParticlePool pool;
+    Random random(3, 4, 5, 6);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto* column : {&pool.x, &pool.y, &pool.z, &pool.vx, &pool.vy, &pool.vz}) {
+            column->push_back(random.uniform(-20.0f, 20.0f));
+        }
+        pool.age.push_back(random.uniform(0.0f, 2.0f));
+        pool.life.push_back(random.uniform(1.0f, 3.0f));
+        pool.look.push_back(random.word());
+        pool.stuck.push_back(pool.look.back() & 1);
+    }
+    return pool;
+}
+
+inline bool same_bits(const ParticlePool& a, const ParticlePool& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.vx == b.vx && a.vy == b.vy && a.vz == b.vz
+           && a.age == b.age && a.life == b.life && a.look == b.look && a.stuck == b.stuck
+           && a.clock.born == b.clock.born;
 }
 
 }  // namespace limn::test

@@ -1,6 +1,9 @@
 // The image of a particle: a frame of a flipbook on its way to the next, or a soft disc. Definitions:
 //   IMAGES   some particle has an image
+//   FLIPBOOKS  some of them have several frames
 //   RIBBONS  some are segments of ribbons, along which it repeats
+//   MOTION   some flipbook has a motion map: both frames are fetched where it has been or will be what is seen between
+//            them, so that shapes move instead of cross-fading (particle.motion-vectors)
 
 #ifdef IMAGES
 layout(binding = 0) uniform sampler2DArray images;
@@ -15,19 +18,47 @@ vec4 image_at(vec2 uv, vec4 frames, vec2 offset, float layer) {
     return texture(images, vec3(uv * frames.xy + offset, layer));
 #endif
 }
+
+#ifdef MOTION
+layout(binding = 1) uniform sampler2DArray motion_maps;
+
+// How far what the frame at `offset` has at `uv` moves until the next frame, as a share of the frame; `motion`: layer of
+// the map, what its full value means.
+vec2 motion_at(vec2 uv, vec4 frames, vec2 offset, vec2 motion) {
+    vec2 encoded = textureLod(motion_maps, vec3(uv * frames.xy + offset, motion.x), 0.0).rg;
+    return motion.y * (encoded * (255.0 / 127.0) - 128.0 / 127.0);
+}
+
+// Not beyond the centers of the frame's outermost texels.
+vec2 within_frame(vec2 uv, vec4 frames) {
+    vec2 rim = 0.5 / (vec2(textureSize(images, 0).xy) * frames.xy);
+    return clamp(uv, rim, 1.0 - rim);
+}
+#endif
 #endif
 
 // Color, and opacity in a.
 //   place     in the quad, -1 .. 1
 //   layer     of its image; < 0: none
-vec4 sprite_at(vec2 place, vec4 frames, vec2 next_frame, float progress, float layer) {
+//   motion    layer of its motion map, < 0: none; what the map's full value means, as a share of a frame
+vec4 sprite_at(vec2 place, vec4 frames, vec2 next_frame, float progress, float layer, vec2 motion) {
     float inside = max(1.0 - dot(place, place), 0.0);
     vec4 disc = vec4(1.0, 1.0, 1.0, inside * inside);
 #ifdef IMAGES
     vec2 uv = vec2(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
-    vec4 now = image_at(uv, frames, frames.zw, max(layer, 0.0));
-    vec4 next = image_at(uv, frames, next_frame, max(layer, 0.0));
-    return layer < 0.0 ? disc : mix(now, next, progress);
+    vec2 from = uv;
+    vec2 to = uv;
+#if defined(MOTION) && defined(FLIPBOOKS)
+    if (motion.x >= 0.0) {
+        from = within_frame(uv - progress * motion_at(uv, frames, frames.zw, motion), frames);
+        to = within_frame(uv + (1.0 - progress) * motion_at(uv, frames, next_frame, motion), frames);
+    }
+#endif
+    vec4 shown = image_at(from, frames, frames.zw, max(layer, 0.0));
+#ifdef FLIPBOOKS
+    shown = mix(shown, image_at(to, frames, next_frame, max(layer, 0.0)), progress);
+#endif
+    return layer < 0.0 ? disc : shown;
 #else
     return disc;
 #endif

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "content/load/gltf_scene.h"
+#include "content/load/obj_file.h"
+#include "ecs/base/result.h"
+#include "ecs/components/surface.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+// Wavefront OBJ files as scenes, to look at, and as meshes for importers.
+
+/// A mesh, and for each of its vertices the position of the file that it was made from.
+struct ObjMesh {
+    MeshData mesh;
+    std::vector<std::uint32_t> source;
+};
+
+/// The mesh of the faces with these indices, cut into triangles; without tangents, and without
+/// normals unless all corners have one. A corner with a texture coordinate or normal of its own
+/// gets a vertex of its own; vertices are in the order in which the triangles use them.
+[[nodiscard]] ObjMesh make_obj_mesh(const ObjFile& obj, std::span<const std::uint32_t> faces);
+
+/// A node for each object and group with faces, in parts by material. Missing normals are generated
+/// as for glTF. Materials have the color, emission and opacity of the file's libraries beside it,
+/// and a roughness that gives highlights as wide as Phong's exponent does; a library that cannot be
+/// read is a warning.
+[[nodiscard]] Result<GltfScene>
+load_obj_scene(const std::string& path, const ObjLimits& limits = {});
+
+}  // namespace limn

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "render/effect.h"
+#include "render/gpu/texture.h"
+
+namespace limn {
+
+// Lights images in their own space (TextureShade, wrinkle.furrow.texture-space-shading).
+//
+// Reads    the images of every TextureShade
+// Writes   its target, with mip levels
+// Order    before surfaces are drawn
+// Shaders  texture_shade.frag
+//
+// Normals are rotated into the space of the camera: those of an unrolled cylinder are rolled up
+// first. One image a frame, whatever the number of views: mirrors and probes show what the camera
+// sees.
+
+struct TextureShadeEffect {
+    const gpu::Program* program = nullptr;
+    gpu::Sampler texels;
+
+    static Result<TextureShadeEffect> create(gpu::Device& device, const RenderSettings&);
+    static bool is_used(const FrameData& frame);
+    /// Skips a TextureShade that lacks an image or reads its own target.
+    void collect(FrameData& frame);
+    void draw_shared(FrameGraph& graph, const FrameData& frame);
+};
+
+}  // namespace limn

@@ -1,0 +1,10 @@
+// A copy of the depth, for the next frame (render/seen_depth.h).
+#version 450
+
+layout(binding = 4) uniform sampler2D scene_depth;
+
+layout(location = 0) out float depth;
+
+void main() {
+    depth = texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r;
+}

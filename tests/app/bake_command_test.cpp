@@ -1,0 +1,143 @@
+#include "content/load/exr_file.h"
+#include "content/load/image_load.h"
+#include "ecs/components/surface.h"
+#include "tests/app/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace limn {
+
+using test::count_lines;
+using test::ProgramRun;
+using test::run_limn;
+using test::TemporaryFolder;
+using test::write_text;
+
+namespace {
+
+const std::string kModel = LIMN_SOURCE_DIR "/content/levels/lagoon_lantern.gltf";
+
+using Words = std::vector<std::string>;
+
+ProgramRun bake(const TemporaryFolder& folder, Words more) {
+    Words words = {"bake", "furrows", kModel};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_limn(folder, words);
+}
+
+/// The run failed with `code` and one line that says `says`, and left no file.
+void check_fails(const TemporaryFolder& folder, const Words& more, int code, const char* says) {
+    const ProgramRun run = bake(folder, more);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == code);
+    CHECK(count_lines(run.err) == 1);
+    CHECK(run.err.find(says) != std::string::npos);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        CHECK(entry.path().extension() != ".png");
+    }
+}
+
+}  // namespace
+
+TEST_CASE("bake: furrows writes a height map and unit normals of the size asked for") {
+    const TemporaryFolder folder;
+    const ProgramRun run =
+        bake(folder, {"-o", "skin.exr", "--set", "size=96", "--recipe", "recipe.json"});
+    CHECK(run.exit_code == 1);  // there is no recipe yet
+    write_text(
+        folder.file("recipe.json"),
+        R"({"preset": "rough", "projection": "planar", "arrows": [{"at": [0, 0, 0], "first": [0, 1, 0],
+            "second": [1, 0.2, 0]}]})");
+    const ProgramRun good =
+        bake(folder, {"-o", "skin.exr", "--set", "size=96", "--recipe", "recipe.json"});
+    CAPTURE(good.err);
+    REQUIRE(good.exit_code == 0);
+    const auto height = read_exr(folder.file("skin_height.exr"));
+    REQUIRE(height.ok());
+    CHECK(height->width == 96);
+    CHECK(height->height == 96);
+    const ExrChannel* const all = find_channel(*height, "Y");
+    const ExrChannel* const first = find_channel(*height, "first.Y");
+    const ExrChannel* const second = find_channel(*height, "second.Y");
+    REQUIRE((all != nullptr && first != nullptr && second != nullptr));
+    std::size_t furrowed = 0;
+    for (std::size_t i = 0; i < all->values.size(); ++i) {
+        const float lesser = std::min(first->values[i], second->values[i]);
+        CHECK(all->values[i] <= lesser);
+        if (lesser < 1) {                            // of the surface, not of the gutter around it
+            CHECK(all->values[i] >= lesser - 0.3f);  // the noise of the preset
+        }
+        furrowed += lesser < 1 ? 1 : 0;
+    }
+    CHECK(furrowed > 100);
+    const auto normals = load_image(folder.file("skin_normal.png"), false);
+    REQUIRE(normals.ok());
+    CHECK(normals->width == 96);
+    for (std::size_t i = 0; i < normals->pixels.size(); i += 4) {
+        const Vec3 n =
+            Vec3(normals->pixels[i], normals->pixels[i + 1], normals->pixels[i + 2]) / 127.5f
+            - 1.0f;
+        CHECK(std::abs(glm::length(n) - 1.0f) < 0.02f);
+    }
+}
+
+TEST_CASE("bake: the same command writes the same files, another seed others") {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.png", "b.png"}) {
+        REQUIRE(
+            bake(folder, {"-o", name, "--set", "size=64", "--set", "projection=planar"}).exit_code
+            == 0);
+    }
+    REQUIRE(
+        bake(
+            folder,
+            {"-o", "c.png", "--set", "size=64", "--set", "projection=planar", "--set", "seed=7"})
+            .exit_code
+        == 0);
+    const std::string a = test::read_text(folder.file("a_height.png"));
+    CHECK(!a.empty());
+    CHECK(a == test::read_text(folder.file("b_height.png")));
+    CHECK(a != test::read_text(folder.file("c_height.png")));
+}
+
+TEST_CASE("bake: the GPU makes the same height map") {
+    const TemporaryFolder folder;
+    const Words settings = {"--set", "size=48", "--set", "projection=planar", "--set", "noise=0.2"};
+    Words cpu = {"-o", "cpu.png"};
+    Words gpu = {"-o", "gpu.png", "--gpu"};
+    cpu.insert(cpu.end(), settings.begin(), settings.end());
+    gpu.insert(gpu.end(), settings.begin(), settings.end());
+    REQUIRE(bake(folder, cpu).exit_code == 0);
+    REQUIRE(bake(folder, gpu).exit_code == 0);
+    CHECK(
+        test::read_text(folder.file("cpu_height.png"))
+        == test::read_text(folder.file("gpu_height.png")));
+}
+
+TEST_CASE("bake: what is wrong is one line that says what was found and what was expected") {
+    const TemporaryFolder folder;
+    const ProgramRun unknown = run_limn(folder, {"bake", "furows", kModel, "-o", "a.png"});
+    CHECK(unknown.exit_code == 2);
+    CHECK(unknown.err.find("did you mean furrows?") != std::string::npos);
+    check_fails(folder, {}, 2, "--out");
+    check_fails(folder, {"-o", "a.bmp"}, 2, ".png");
+    check_fails(folder, {"-o", "a.png", "--set", "size=0"}, 1, "size: found the number 0");
+    check_fails(folder, {"-o", "a.png", "--set", "sise=4"}, 1, "did you mean size?");
+    check_fails(folder, {"-o", "a.png"}, 1, "found no triangle with an area");
+    check_fails(folder, {"-o", "a.png", "--mesh", "nose"}, 1, "found no mesh \"nose\"");
+    write_text(folder.file("recipe.json"), "{\n  \"noice\": 1}");
+    check_fails(folder, {"-o", "a.png", "--recipe", "recipe.json"}, 1, "recipe.json:2:3");
+    write_text(folder.file("recipe.json"), R"({"arrows": [{"weight": 11}]})");
+    check_fails(folder, {"-o", "a.png", "--recipe", "recipe.json"}, 1, "arrows[0].weight");
+    const ProgramRun absent = run_limn(folder, {"bake", "furrows", "none.glb", "-o", "a.png"});
+    CHECK(absent.exit_code == 1);
+    CHECK(absent.err.find("none.glb") != std::string::npos);
+}
+
+}  // namespace limn

@@ -1,0 +1,198 @@
+// What a level changes of the nodes of a glTF file.
+
+#include "content/load/level_update.h"
+#include "content/load/scene_load.h"
+#include "ecs/components/animation.h"
+#include "ecs/components/light.h"
+#include "ecs/components/name.h"
+#include "ecs/components/surface.h"
+#include "ecs/components/transform.h"
+#include "ecs/hierarchy.h"
+#include "ecs/world.h"
+#include "tests/support.h"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+#include <string_view>
+
+using namespace limn;
+
+namespace {
+
+/// A lamp of two parts, and a joint without anything.
+constexpr const char* kLamp = R"({
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+  "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 7}]}},
+  "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+  "nodes": [
+    {"name": "Bulb", "translation": [1, 2, 3], "scale": [2, 2, 2],
+     "extensions": {"KHR_lights_punctual": {"light": 0}}},
+    {"name": "Case", "mesh": 0},
+    {"name": "arm.L"}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}}]}],
+  "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"},
+                {"componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1],
+                 "bufferView": 0},
+                {"componentType": 5126, "count": 2, "type": "VEC3"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 8}],
+  "buffers": [{"byteLength": 8, "uri": "data:application/octet-stream;base64,AAAAAAAAgD8="}],
+  "animations": [{"samplers": [{"input": 1, "output": 2}],
+                  "channels": [{"sampler": 0, "target": {"node": 2, "path": "translation"}}]}]
+})";
+
+struct Scene {
+    test::TemporaryFolder folder;
+    World world;
+    LevelFields fields;
+    std::string error;
+
+    explicit Scene(const std::string& entities) {
+        std::ofstream(folder.file("lamp.gltf")) << kLamp;
+        write(entities);
+        Result<LoadedScene> scene = load_scene(world, folder.file("t.level.json"));
+        if (scene) {
+            fields = std::move(scene->fields);
+        } else {
+            error = scene.error().message.substr(folder.path().size() + 1);
+        }
+    }
+    void write(const std::string& entities) const {
+        std::ofstream(folder.file("t.level.json"))
+            << R"({"materials": {"amber": {}}, "entities": [)" << entities << "]}";
+    }
+    Entity find(std::string_view name, std::string_view owner) {
+        Entity found;
+        world.query<const Name>().each([&](Entity entity, const Name& own) {
+            const Entity parent = parent_of(world, entity);
+            if (own.text == name && world.alive(parent)
+                && world.get<const Name>(parent).text == owner) {
+                found = entity;
+            }
+        });
+        return found;
+    }
+};
+
+bool has(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("level nodes: fields that are named change in one use of a file, the others stay") {
+    Scene scene(R"(
+        {"name": "left", "gltf": "lamp.gltf", "nodes": {
+            "Bulb": {"point_light": {"intensity": 40}, "transform": {"scale": [1, 1, 1]}, "spin": {}}}},
+        {"name": "right", "gltf": "lamp.gltf"},
+        {"name": "dark", "gltf": "lamp.gltf", "nodes": {"Bulb": {"point_light": null}}})");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    World& world = scene.world;
+    const Entity left = scene.find("Bulb", "left");
+    const Entity right = scene.find("Bulb", "right");
+    CHECK(world.get<const PointLight>(left).intensity == 40);
+    CHECK(world.get<const PointLight>(right).intensity == 7);
+    CHECK(world.get<const PointLight>(left).color == world.get<const PointLight>(right).color);
+    CHECK(world.get<const Transform>(left).position == Vec3(1, 2, 3));
+    CHECK(world.get<const Transform>(left).scale == Vec3(1));
+    CHECK(world.get<const Transform>(right).scale == Vec3(2));
+    CHECK(world.has<Spin>(left));
+    CHECK_FALSE(world.has<Spin>(right));
+    CHECK_FALSE(world.has<PointLight>(scene.find("Bulb", "dark")));
+}
+
+TEST_CASE("level nodes: a material of the level goes to all parts of a node") {
+    Scene scene(R"({"name": "left", "gltf": "lamp.gltf", "nodes": {
+        "Case": {"mesh_instance": {"material": "amber"}}}})");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    int parts = 0;
+    const Assets& assets = scene.world.resource<Assets>();
+    scene.world.query<const MeshInstance>().each([&](const MeshInstance& part) {
+        CHECK(assets.materials[part.material.index].name == "amber");
+        CHECK(part.mesh.index < assets.meshes.size());
+        ++parts;
+    });
+    CHECK(parts == 2);
+}
+
+TEST_CASE("level nodes: a joint that is named becomes an entity, which follows the joint") {
+    Scene plain(R"({"name": "left", "gltf": "lamp.gltf"})");
+    CHECK(plain.find("arm.L", "left").is_null());
+    Scene scene(
+        R"({"name": "left", "gltf": "lamp.gltf", "nodes": {"arm.L": {"point_light": {}}}})");
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    const Entity arm = scene.find("arm.L", "left");
+    REQUIRE(scene.world.alive(arm));
+    CHECK(scene.world.has<PointLight>(arm));
+    CHECK(scene.world.has<JointAttachment>(arm));
+}
+
+TEST_CASE("level nodes: a prefab's changes come first, and each copy has them") {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.file("lamp.gltf")) << kLamp;
+    std::ofstream(folder.file("t.level.json")) << R"({"prefabs": {"lamp": {"gltf": "lamp.gltf",
+        "nodes": {"Bulb": {"point_light": {"intensity": 1, "radius": 3}}}}},
+        "entities": [{"name": "a", "prefab": "lamp", "repeat": {"count": [3, 1, 1]},
+                      "nodes": {"Bulb": {"point_light": {"intensity": 2}}}}]})";
+    World world;
+    const Result<LoadedScene> scene = load_scene(world, folder.file("t.level.json"));
+    REQUIRE_MESSAGE(scene.ok(), (scene ? std::string() : scene.error().message));
+    int lamps = 0;
+    world.query<const PointLight>().each([&](const PointLight& light) {
+        CHECK(light.intensity == 2);
+        CHECK(light.radius == 3);
+        ++lamps;
+    });
+    CHECK(lamps == 3);
+}
+
+TEST_CASE("level nodes: what a file does not have is refused with its place and the nearest name") {
+    const struct {
+        const char* entity;
+        const char* message;
+    } kCases[] = {
+        {R"({"gltf": "lamp.gltf", "nodes": {"Blub": {"spin": {}}}})",
+         "t.level.json:1:75: nodes: found the node \"Blub\", expected a node of lamp.gltf (did you "
+         "mean "
+         "Bulb?)"},
+        {R"({"name": "a", "nodes": {"Bulb": {}}})",
+         "entity \"a\": found nodes without a glTF file, expected \"gltf\" as well"},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"point_ligt": {}}}})",
+         "entity \"a\".nodes.Bulb: found the component \"point_ligt\", expected one of `limn "
+         "components` (did you mean point_light?)"},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"point_light": {"intensity": -1}}}})",
+         "entity \"a\".nodes.Bulb.point_light.intensity: found the number -1, expected a number 0 "
+         ".. "
+         "1000000 cd"},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"clip_player": {"clip": "none"}}}})",
+         "nodes.Bulb.clip_player: found the clip \"none\""},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"autofocus": {"target": "a"}}}})",
+         "found the entity \"a\", expected none"},
+        {R"({"name": "a", "gltf": "lamp.gltf", "nodes": [1]})",
+         "expected an object: nodes of the glTF file by name"},
+    };
+    for (const auto& [entity, message] : kCases) {
+        const Scene scene(entity);
+        CHECK_MESSAGE(has(scene.error, message), scene.error);
+        CHECK(scene.error.starts_with("t.level.json:1:"));
+        CHECK(scene.world.entity_count() == 0);
+    }
+}
+
+TEST_CASE("level nodes: other changes need the level loaded again") {
+    const auto with = [](const char* intensity) {
+        return std::string(R"({"name": "a", "gltf": "lamp.gltf", "nodes": {"Bulb": {"point_light":
+            {"intensity": )")
+               + intensity + "}}}}";
+    };
+    Scene scene(with("3"));
+    REQUIRE_MESSAGE(scene.error.empty(), scene.error);
+    const Result<std::size_t> same = update_level(scene.world, scene.fields);
+    REQUIRE(same.ok());
+    CHECK(*same == 0);
+    scene.write(with("4"));
+    const Result<std::size_t> other = update_level(scene.world, scene.fields);
+    REQUIRE_FALSE(other.ok());
+    CHECK(has(other.error().message, "nodes of a glTF file are changed otherwise: load it again"));
+}

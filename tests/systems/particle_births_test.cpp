@@ -1,0 +1,355 @@
+#include "ecs/components/camera.h"
+#include "ecs/components/particles.h"
+#include "ecs/components/transform.h"
+#include "ecs/components/water_spray.h"
+#include "systems/particles/particle_births.h"
+#include "tests/near.h"
+#include "tests/systems/particle_emitters.h"
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace limn;
+using namespace limn::test;
+
+TEST_CASE(
+    "particles: ten a step are ten, 2.5 a step are 250 in a hundred, none for a negative rate") {
+    Emitters scene;
+    scene.add(steady(10 / kStep));
+    scene.add(steady(2.5f / kStep));
+    scene.add(steady(-50));
+    for (int i = 1; i <= 100; ++i) {
+        scene.run();
+        CHECK(scene.pool(0).size() == static_cast<std::size_t>(10 * i));
+    }
+    CHECK(scene.pool(1).size() == 250);
+    CHECK(scene.pool(2).size() == 0);
+}
+
+TEST_CASE("particles: births that vary by half have the mean rate, whatever the step") {
+    for (const float step : {1.0f / 200, 1.0f / 30}) {
+        CAPTURE(step);
+        Emitters scene(step);
+        ParticleEmitter emitter = steady(300);
+        emitter.rate_spread = 150;
+        emitter.life = 0.01f;
+        scene.add(emitter);
+        const int steps = static_cast<int>(100 / step);
+        scene.run(steps);
+        CHECK(std::abs(static_cast<double>(scene.pool().clock.born) / 30000 - 1) < 0.01);
+    }
+}
+
+TEST_CASE("particles: a rate along a curve gives its integral") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(600);
+    emitter.duration = 4;
+    emitter.loop = false;
+    emitter.rate_curve = {{0, 0}, {1, 1}};
+    scene.add(emitter);
+    scene.run(120);
+    CHECK(std::abs(static_cast<double>(scene.pool().clock.born) - 300) <= 1);  // 600 t^2 / 8
+    scene.run(300);
+    CHECK(std::abs(static_cast<double>(scene.pool().clock.born) - 1200) <= 1);
+
+    Emitters falling_rate;
+    emitter.rate_curve = {{0, 1}, {1, 0}};
+    emitter.life = 0.5f;
+    falling_rate.add(emitter);
+    std::size_t last = 0;
+    for (int i = 0; i < 4; ++i) {
+        falling_rate.run(55);
+        CHECK((i == 0 || falling_rate.pool().size() < last));
+        last = falling_rate.pool().size();
+    }
+}
+
+TEST_CASE("particles: by screen area, half the area are half the births") {
+    Emitters scene;
+    const Entity eye =
+        scene.world.create(Camera{.fov_y = 1}, WorldTransform{}, PreviousWorldTransform{Affine{}});
+    const auto seen_from = [&](float distance) {
+        scene.world.get<WorldTransform>(eye).world =
+            affine_from({0, 0, distance}, Quat(1, 0, 0, 0), Vec3(1));
+    };
+    ParticleEmitter emitter = steady(1e5f);
+    emitter.by_screen_area = true;
+    emitter.size = {0.5f, 0.2f, 0.1f};
+    seen_from(10);
+    scene.add(emitter);
+    scene.run(60);
+    const auto near = static_cast<double>(scene.pool().clock.born);
+    seen_from(10 * std::sqrt(2.0f));
+    scene.run(60);
+    const auto far = static_cast<double>(scene.pool().clock.born) - near;
+    CHECK(far / near == test::near(0.5).epsilon(0.01));
+    // A ball of 0.5 m at 10 m, in an image of 2 tan(0.5) by 16 / 9 of it.
+    const double height = 2 * std::tan(0.5);
+    const double share = 3.14159 * 0.25 / 99.75 / (height * height * 16 / 9);
+    CHECK(near == test::near(1e5 * share).epsilon(0.01));
+    seen_from(0.1f);
+    scene.run(1);
+    CHECK(
+        static_cast<double>(scene.pool().clock.born) - near - far
+        == test::near(1e5 / 60).epsilon(0.01));
+}
+
+TEST_CASE("particles: births are evenly spaced in time, across steps too") {
+    Emitters scene;
+    scene.add(steady(7 / kStep), falling(0));
+    scene.run(5);
+    const ParticlePool& pool = scene.pool();
+    REQUIRE(pool.size() == 35);
+    for (std::size_t i = 1; i < pool.size(); ++i) {
+        CHECK(pool.age[i - 1] - pool.age[i] == test::near(kStep / 7).epsilon(1e-3));
+        CHECK(pool.y[i - 1] - pool.y[i] == test::near(kStep / 7).epsilon(1e-3));  // 1 m/s
+    }
+    CHECK(pool.age.back() >= 0);
+    CHECK(pool.age.front() <= 5 * kStep);
+}
+
+TEST_CASE("particles: bursts come at their time and again, and with the duration anew") {
+    Emitters scene(0.1f);
+    ParticleEmitter emitter = steady(0);
+    emitter.bursts = {{.time = 0.25f, .count = 5, .spread = 0, .interval = 0.5f, .repeats = 2}};
+    scene.add(emitter);
+    emitter.duration = 0.65f;
+    scene.add(emitter);
+    emitter.loop = false;
+    scene.add(emitter);
+    std::vector<int> once;
+    std::vector<int> looped;
+    std::vector<int> ended;
+    for (int i = 0; i < 20; ++i) {
+        scene.run();
+        once.push_back(static_cast<int>(scene.pool(0).clock.born));
+        looped.push_back(static_cast<int>(scene.pool(1).clock.born));
+        ended.push_back(static_cast<int>(scene.pool(2).clock.born));
+    }
+    // At 0.25, 0.75 and 1.25 s.
+    CHECK(once[1] == 0);
+    CHECK(once[2] == 5);
+    CHECK(once[7] == 10);
+    CHECK(once[12] == 15);
+    CHECK(once.back() == 15);
+    // Only the first is within 0.65 s: at 0.25, 0.9 and 1.55 s.
+    CHECK(looped[2] == 5);
+    CHECK(looped[7] == 5);
+    CHECK(looped[9] == 10);
+    CHECK(looped[15] == 15);
+    CHECK(looped.back() == 15);
+    CHECK(ended.back() == 5);
+}
+
+TEST_CASE("particles: attributes are within their spread, and reach its ends") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(5000);
+    emitter.speed = 3;
+    emitter.speed_spread = 1;
+    emitter.life = 2;
+    emitter.life_spread = 0.5f;
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    const auto [slow, fast] = std::minmax_element(pool.vy.begin(), pool.vy.end());
+    CHECK(*slow >= 2.0f);
+    CHECK(*slow < 2.01f);
+    CHECK(*fast <= 4.0f);
+    CHECK(*fast > 3.99f);
+    const auto [early, late] = std::minmax_element(pool.life.begin(), pool.life.end());
+    CHECK(*early >= 1.5f);
+    CHECK(*late <= 2.5f);
+    CHECK(*late - *early > 0.99f);
+}
+
+TEST_CASE("particles: shapes are filled evenly") {
+    Random random(1, 2, 3, 4);
+    constexpr int kCount = 100000;
+    struct Case {
+        EmitterShape shape;
+        double half_share;  // of the points, within half the radius
+        int axes;           // that have an extent
+    };
+    for (const Case& one :
+         {Case{EmitterShape::Ball, 0.125, 3}, Case{EmitterShape::Disc, 0.25, 2},
+          Case{EmitterShape::Sphere, 0, 3}, Case{EmitterShape::Circle, 0, 2}}) {
+        CAPTURE(static_cast<int>(one.shape));
+        const Vec3 size = {2, 3, 4};
+        int near = 0;
+        glm::dvec3 sum(0);
+        for (int i = 0; i < kCount; ++i) {
+            const Vec3 p = sample_shape(one.shape, size, random) / size;
+            const float radius = glm::length(p);
+            REQUIRE(radius <= 1.00001f);
+            REQUIRE((one.half_share > 0 || radius >= 0.99999f));
+            REQUIRE((one.axes == 3 || p.y == 0.0f));
+            near += radius < 0.5f ? 1 : 0;
+            sum += glm::dvec3(p);
+        }
+        CHECK(near / double{kCount} == test::near(one.half_share).scale(1).epsilon(0.005));
+        CHECK(glm::length(sum) / kCount < 0.01);
+    }
+    Vec3 high(0);
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 p = sample_shape(EmitterShape::Box, {1, 2, 3}, random);
+        high = glm::max(high, glm::abs(p));
+        REQUIRE(glm::all(glm::lessThanEqual(glm::abs(p), Vec3(1, 2, 3))));
+    }
+    CHECK(glm::length(high - Vec3(1, 2, 3)) < 0.01f);
+    CHECK(sample_shape(EmitterShape::Point, {1, 2, 3}, random) == Vec3(0));
+}
+
+TEST_CASE("particles: the torus of the book is a ring without a hole in its tube") {
+    Random random(1, 2, 3, 4);
+    Vec3 sum(0);
+    int inner = 0;
+    constexpr int kCount = 50000;
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 p = sample_shape(EmitterShape::Torus, {10, 1, 10}, random);
+        const float across = std::sqrt(p.x * p.x + p.z * p.z) - 10;
+        REQUIRE(across * across + p.y * p.y <= 1.00001f);
+        inner += across * across + p.y * p.y < 0.5f ? 1 : 0;
+        sum += p;
+    }
+    CHECK(inner / double{kCount} == test::near(0.5).epsilon(0.02));
+    CHECK(glm::length(sum) / kCount < 0.1f);
+}
+
+TEST_CASE("particles: a shell's radii vary by axis, and an axis of 0 leaves a ring") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(20000);
+    emitter.shape = EmitterShape::Sphere;
+    emitter.size = {10, 10, 0};
+    emitter.size_spread = {1, 1, 1};
+    emitter.speed = 0;
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    REQUIRE(pool.size() == 20000);
+    const float reach = std::sqrt(2.0f);
+    float thick = 0;
+    float nearest = 20;
+    float farthest = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        const float radius = std::sqrt(pool.x[i] * pool.x[i] + pool.y[i] * pool.y[i]);
+        nearest = std::min(nearest, radius);
+        farthest = std::max(farthest, radius);
+        thick = std::max(thick, std::abs(pool.z[i]));
+    }
+    CHECK(nearest >= 10 - reach);
+    CHECK(nearest < 10 - 0.9f * reach);
+    CHECK(farthest <= 10 + reach);
+    CHECK(farthest > 10 + 0.9f * reach);
+    CHECK(thick <= 1);
+    CHECK(thick > 0.99f);
+}
+
+TEST_CASE("particles: velocities vary by axis, each by itself, and a small shell is a point") {
+    Emitters scene;
+    ParticleEmitter emitter = burst(20000);
+    emitter.shape = EmitterShape::Sphere;
+    emitter.size = Vec3(0.001f);
+    emitter.speed = 5;
+    emitter.velocity_spread = {2, 1, 0.5f};
+    scene.add(emitter, falling(0));
+    scene.run();
+    const ParticlePool& pool = scene.pool();
+    const auto reach = [](const std::vector<float>& v, float mean) {
+        float most = 0;
+        double sum = 0;
+        for (const float x : v) {
+            most = std::max(most, std::abs(x - mean));
+            sum += x;
+        }
+        CHECK(sum / static_cast<double>(v.size()) == near(mean).scale(1).epsilon(0.03));
+        return most;
+    };
+    CHECK(reach(pool.vx, 0) == near(2).epsilon(0.001));
+    CHECK(reach(pool.vy, 5) == near(1).epsilon(0.001));
+    CHECK(reach(pool.vz, 0) == near(0.5).epsilon(0.001));
+    double product = 0;
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+        product += pool.vx[i] * (pool.vy[i] - 5);
+    }
+    CHECK(std::abs(product / 20000) < 0.02);
+}
+
+TEST_CASE("particles: directions are unit, within the cone, even over its cap") {
+    Random random(1, 2, 3, 4);
+    constexpr int kCount = 50000;
+    const float cone = 0.7f;
+    const float middle = 0.5f * (1 + std::cos(cone));  // halves the cap's area
+    int inner = 0;
+    for (int i = 0; i < kCount; ++i) {
+        const Vec3 v = sample_cone(cone, random);
+        REQUIRE(std::abs(glm::length(v) - 1) < 1e-5f);
+        REQUIRE(v.y >= std::cos(cone) - 1e-6f);
+        inner += v.y > middle ? 1 : 0;
+    }
+    CHECK(inner / double{kCount} == test::near(0.5).epsilon(0.02));
+}
+
+TEST_CASE("particles: a prewarmed emitter starts as another is after that time") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(60);
+    emitter.life = 1;
+    scene.add(emitter, falling());
+    emitter.prewarm = 3;
+    scene.add(emitter, falling());
+    scene.run();
+    CHECK(scene.pool(0).size() == 1);
+    CHECK(scene.pool(1).size() == test::near(60).epsilon(0.04));
+    CHECK(scene.pool(1).clock.time == test::near(3 + 1.0 / 60).epsilon(1e-3));
+    scene.run(240);
+    CHECK(
+        scene.pool(0).size()
+        == test::near(static_cast<double>(scene.pool(1).size())).epsilon(0.04));
+    CHECK(scene.pool(1).clock.born == test::near(60 * 7).epsilon(0.02));
+}
+
+TEST_CASE("particles: drops that waves throw up fly on from where they are, up to the capacity") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(0);
+    emitter.capacity = 30;
+    const Entity entity = scene.add(emitter, falling(0));
+    scene.world.add(
+        entity, SprayDrops{.drops = std::vector<SprayDrop>(20, {{1, 2, 3}, {6, 0, 0}})});
+    scene.run();
+    REQUIRE(scene.pool().size() == 20);
+    for (std::size_t i = 0; i < 20; ++i) {
+        CHECK(scene.pool().x[i] >= 1.0f);
+        CHECK(scene.pool().x[i] <= 1 + 6 * kStep + 1e-5f);
+        CHECK(scene.pool().x[i] - 1 == test::near(6 * scene.pool().age[i]).scale(1).epsilon(1e-5));
+        CHECK(scene.pool().y[i] == 2.0f);
+    }
+    CHECK(scene.pool().x[0] != scene.pool().x[1]);
+    scene.world.get<ParticleEmitter>(entity).drop_speed = 2;
+    scene.run();
+    CHECK(scene.pool().size() == 30);
+    CHECK(scene.pool().clock.dropped == 10);
+    CHECK(scene.pool().vx[0] == 6.0f);
+    CHECK(scene.pool().vx.back() == 12.0f);
+}
+
+TEST_CASE("particles: a moving emitter leaves no gaps, and gives on its velocity") {
+    Emitters scene;
+    ParticleEmitter emitter = steady(10 / kStep);
+    emitter.speed = 0;
+    emitter.inherit = 0;
+    const Entity entity = scene.add(emitter, falling(0));
+    const auto place = [](float x) { return affine_from({x, 0, 0}, Quat(1, 0, 0, 0), Vec3(1)); };
+    scene.world.get<WorldTransform>(entity).world = place(6);
+    scene.world.get<PreviousWorldTransform>(entity).world = place(5);
+    scene.run();
+    REQUIRE(scene.pool().size() == 10);
+    for (std::size_t i = 0; i < 10; ++i) {
+        CHECK(scene.pool().x[i] == test::near(5.1 + 0.1 * static_cast<double>(i)));
+    }
+    scene.world.get<ParticleEmitter>(entity).inherit = 0.5f;
+    scene.run();
+    CHECK(scene.pool().vx.back() == test::near(30));  // of 60 m/s
+}
