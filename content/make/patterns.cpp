@@ -1,10 +1,7 @@
 #include "content/make/patterns.h"
 
-<<<<<<< HEAD
 #include "content/make/fold_pattern.h"
-=======
 #include "content/make/furrow_patterns.h"
->>>>>>> f73e2adbfc543dbce38a183fbd98335f874f0001
 #include "content/make/masonry_patterns.h"
 #include "content/make/noise.h"
 #include "content/make/pattern_tools.h"
@@ -388,12 +385,9 @@ std::span<const PatternKind> pattern_kinds() {
             "fireball",
             "a flipbook of a burst of fire that turns to soot, in color, with its motion", true),
         pattern_kind<FlamePattern, make_flame>("flame", "a flipbook of a tongue of fire"),
-<<<<<<< HEAD
         pattern_kind<FoldsPattern, make_folds>("folds", "folds of skin along u, as a wrinkle map"),
-=======
         pattern_kind<FurrowsPattern, make_furrows>(
             "furrows", "skin with wrinkle furrows that grow along two vector fields"),
->>>>>>> f73e2adbfc543dbce38a183fbd98335f874f0001
         pattern_kind<LeafPattern, make_leaf>("leaf", "a flipbook of leaves, each another one"),
         pattern_kind<MarblePattern, make_marble>("marble", "polished, with veins"),
         pattern_kind<RingPattern, make_ring>("ring", "a flipbook of a torn ring"),
