@@ -150,9 +150,9 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
          {".obj", ".fbx", ".stl", ".ply", ".dae", ".blend", ".usd", ".usdz"}) {
         if (ends_with_any(scene, {other})) {
             return fail(
-                "{}: found a {} file, expected a level, .gltf or .glb (Blender and most other "
+                "{}: format not supported, expected a level, .gltf or .glb (Blender and most other "
                 "tools export glTF)",
-                scene, other);
+                scene);
         }
     }
     if (ends_with_any(scene, {".gltf", ".glb"})) {

@@ -73,6 +73,10 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         {R"({"images": {"i": {"make": "wod"}}})", "expected one of "},
         {R"({"events": [{"time": 1}]})",
          R"(found the key "time", expected "at": seconds since the start of the level)"},
+        {R"({"events": [{"at": "2kg"}]})",
+         R"(events[0].at: found the string "2kg", expected a number 0 .. 1000000 s or a string )"
+         R"(like "45ms")"},
+        {R"({"events": [{"at": "-2s"}]})", R"(found the string "-2s", expected a number 0)"},
         {R"({"events": [{"at": 1, "set": "a.spin"}]})",
          R"(expected {"entity": {"component": {"field": value}}})"},
         {R"({"events": [{"at": 1, "set": {"glow": {"amount": 1}}}]})",
