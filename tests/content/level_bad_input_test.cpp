@@ -224,6 +224,16 @@ TEST_CASE(
     CHECK(
         lines_of(R"({"events": [{"at": -1}, {"at": 2}, {"at": "soon"}]})")
         == Lines{"t.level.json:1:20", "t.level.json:1:43"});
+    // What names something that has an error has none itself.
+    CHECK(
+        lines_of(R"({"images": {"oak": {"make": "wod"}},
+"materials": {"m": {"pattern": "oak"}, "n": {"like": "o"}, "o": {"rough": 1}, "p": {"base_color_texture": {"image": "oak"}}},
+"meshes": {"b": {"make": "bxo"}}, "paths": {"w": {"knots": 3}},
+"entities": [{"mesh_instance": {"mesh": "b", "material": "o"}, "path_follower": {"path": "w"}},
+{"mesh_instance": {"mesh": "c"}}]})")
+        == Lines{
+            "t.level.json:1:29", "t.level.json:2:66", "t.level.json:3:60", "t.level.json:3:26",
+            "t.level.json:5:28"});
     CHECK(
         lines_of(R"({"prefabs": {"unused": {"spinn": {}}},
 "entities": [{"autofocus": {"target": "nobody"}}],
