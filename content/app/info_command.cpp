@@ -273,6 +273,10 @@ void print_assets(
     }
     for (const SkeletonData& skeleton : assets.skeletons) {
         fmt::print("skeleton of {}  {}\n", counted(skeleton.joints.size(), "joint"), skeleton.name);
+        for (std::size_t i = 0; i < std::min(skeleton.joints.size(), kMaxLines); ++i) {
+            fmt::print("    {}\n", skeleton.joints[i].empty() ? "(no name)" : skeleton.joints[i]);
+        }
+        print_rest(skeleton.joints.size());
     }
     std::vector<std::string> skins;
     for (const SkinData& skin : assets.skins) {

@@ -536,12 +536,19 @@ Status expect_keys(
     return Done{};
 }
 
-Result<double>
-expect_number(const JsonValue& json, double min, double max, const JsonPlace& place) {
-    if (json.kind != JsonKind::Number || json.number < min || json.number > max) {
-        return unexpected(json, place, fmt::format("a number {} .. {}", min, max));
+Result<double> expect_number(
+    const JsonValue& json, double min, double max, const JsonPlace& place, std::string_view unit) {
+    const std::optional<double> number = json.kind == JsonKind::Number ? json.number
+                                         : json.kind == JsonKind::String
+                                             ? number_with_unit(json.text, unit)
+                                             : std::nullopt;
+    if (!number || *number < min || *number > max) {
+        return unexpected(
+            json, place,
+            fmt::format("a number {} .. {}{}{}", min, max, unit.empty() ? "" : " ", unit)
+                + or_with_unit(unit));
     }
-    return json.number;
+    return *number;
 }
 
 Status read_component(

@@ -82,8 +82,11 @@ expect(const JsonValue& json, JsonKind kind, const JsonPlace& place, std::string
     const JsonValue& json, const JsonPlace& place, std::span<const std::string_view> known,
     std::string_view expected = "an object");
 
-[[nodiscard]] Result<double>
-expect_number(const JsonValue& json, double min, double max, const JsonPlace& place);
+/// Fails unless `json` is a number within the range, or a string with one and a unit that a field
+/// in `unit` may have.
+[[nodiscard]] Result<double> expect_number(
+    const JsonValue& json, double min, double max, const JsonPlace& place,
+    std::string_view unit = "");
 
 /// Sets the fields that the JSON object names and keeps the others. `object` is of type `info`. On
 /// an error some fields may already be set: work on a copy.

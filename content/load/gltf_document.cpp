@@ -30,16 +30,36 @@ std::uint64_t size_of(const JsonValue& value) {
     return static_cast<std::uint64_t>(value.number);
 }
 
-bool has_extension(const std::string& name) {
+bool has_extension(std::string_view name) {
     return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
 }
 
+/// Names of the extensions in `json`, whether the file lists them or not.
+void find_extensions(const JsonValue& json, std::set<std::string_view>& names) {
+    for (const JsonValue& item : json.items) {
+        find_extensions(item, names);
+    }
+    for (const JsonMember& member : json.members) {
+        if (member.key == "extensions") {
+            for (const JsonMember& extension : member.value.members) {
+                names.insert(extension.key);
+            }
+        } else if (member.key != "extras") {
+            find_extensions(member.value, names);
+        }
+    }
+}
+
 void warn_of_extensions(GltfDocument& document) {
-    std::set<std::string_view> ignored;
-    for (const JsonValue& used : document.json["extensionsUsed"].items) {
-        if (!has_extension(used.text) && ignored.insert(used.text).second) {
-            document.warnings.push_back(fmt::format(
-                "{}: the extension {} is ignored", document.file, in_quotes(used.text)));
+    std::set<std::string_view> used;
+    for (const JsonValue& name : document.json["extensionsUsed"].items) {
+        used.insert(name.text);
+    }
+    find_extensions(document.json, used);
+    for (const std::string_view name : used) {
+        if (!has_extension(name)) {
+            document.warnings.push_back(
+                fmt::format("{}: the extension {} is ignored", document.file, in_quotes(name)));
         }
     }
 }

@@ -103,9 +103,10 @@ struct EventReader {
                 place, json.at, "no time",
                 "\"at\": seconds since the start of the level, or \"key\": one that is pressed");
         }
-        event.time = LIMN_TRY(expect_number(*at, 0.0, kMaxTime, place_in(place, "at")));
+        event.time = LIMN_TRY(expect_number(*at, 0.0, kMaxTime, place_in(place, "at"), "s"));
         if (every != nullptr) {
-            event.every = LIMN_TRY(expect_number(*every, 1e-6, kMaxTime, place_in(place, "every")));
+            event.every =
+                LIMN_TRY(expect_number(*every, 1e-6, kMaxTime, place_in(place, "every"), "s"));
             event.times = std::numeric_limits<std::uint32_t>::max();
         }
         if (times != nullptr) {

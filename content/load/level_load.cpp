@@ -76,13 +76,12 @@ class LevelParser {
     Result<Level> parse() {
         LIMN_TRY(check_keys());
         level_.title = json_["title"].text;
-        LIMN_TRY(read_section("images", &LevelParser::read_image));
-        LIMN_TRY(read_section("materials", &LevelParser::read_material));
-        LIMN_TRY(read_section("paths", &LevelParser::read_path));
-        LIMN_TRY(read_section("meshes", &LevelParser::read_mesh));
-        // Nothing depends on these: their errors are reported with those of entities.
-        (void)read_section("resources", &LevelParser::read_resource);
-        (void)read_section("bindings", &LevelParser::read_binding);
+        read_section("images", &LevelParser::read_image);
+        read_section("materials", &LevelParser::read_material);
+        read_section("paths", &LevelParser::read_path);
+        read_section("meshes", &LevelParser::read_mesh);
+        read_section("resources", &LevelParser::read_resource);
+        read_section("bindings", &LevelParser::read_binding);
         LIMN_TRY(read_entities());
         level_.shows = LIMN_TRY(read_shows(json_, level_.file));
         place_cameras();
@@ -147,7 +146,7 @@ class LevelParser {
     /// Whether further errors are counted.
     [[nodiscard]] bool has_room() const { return error_places_.size() < kMaxErrors; }
 
-    Status read_section(
+    void read_section(
         const char* section, Status (LevelParser::*read)(const JsonMember&, const JsonPlace&)) {
         for (const JsonMember& member : json_[section].members) {
             if (!has_room()) {
@@ -155,7 +154,11 @@ class LevelParser {
             }
             keep_error((this->*read)(member, place(fmt::format("{}.{}", section, member.key))));
         }
-        return kept_errors();
+    }
+
+    /// Whether `name` is in the section, but what it names had an error: no further one then.
+    [[nodiscard]] bool has_failed(const char* section, std::string_view name) const {
+        return !errors_.empty() && json_[section].find(name) != nullptr;
     }
 
     Status read_resource(const JsonMember& member, const JsonPlace& at) {
@@ -249,11 +252,11 @@ class LevelParser {
         const JsonValue& json = member.value;
         Material material;
         if (const JsonValue* const like = json.find("like")) {
-            if (!errors_.empty()) {
-                return Done{};  // the other may be what failed
-            }
             const auto other =
                 like->kind == JsonKind::String ? materials_.find(like->text) : materials_.end();
+            if (other == materials_.end() && has_failed("materials", like->text)) {
+                return Done{};
+            }
             if (other == materials_.end()) {
                 return unexpected(
                     *like, at,
@@ -302,6 +305,9 @@ class LevelParser {
     Status read_pattern(const JsonValue& json, const JsonPlace& at, Material& material) {
         const auto pattern =
             json.kind == JsonKind::String ? patterns_.find(json.text) : patterns_.end();
+        if (pattern == patterns_.end() && has_failed("images", json.text)) {
+            return Done{};
+        }
         if (pattern == patterns_.end()) {
             return unexpected(
                 json, at, "the name of a made image in \"images\"" + pattern_hint(json.text));
@@ -439,6 +445,13 @@ class LevelParser {
         }
     }
 
+    static const char* section_of(std::string_view kind) {
+        return kind == asset_kind<MeshId>       ? "meshes"
+               : kind == asset_kind<MaterialId> ? "materials"
+               : kind == asset_kind<ImageId>    ? "images"
+                                                : "paths";
+    }
+
     NameResolver asset_names() {
         const auto names_of_kind = [this](std::string_view kind) -> const Names* {
             return kind == asset_kind<MeshId>       ? &meshes_
@@ -457,7 +470,10 @@ class LevelParser {
                 return static_cast<std::uint32_t>(level_.deferred_names.size() - 1);
             }
             const auto found = all->find(std::string(name));
-            return found == all->end() ? std::nullopt : std::optional(found->second);
+            if (found != all->end()) {
+                return found->second;
+            }
+            return has_failed(section_of(kind), name) ? std::optional(0u) : std::nullopt;
         };
         names.all = [names_of_kind](std::string_view kind) {
             const Names* const all = names_of_kind(kind);

@@ -129,6 +129,13 @@ JsonValue schema_of_number(const FieldInfo& field) {
     return schema;
 }
 
+/// Seconds 0 .. max, which may have a unit.
+JsonValue schema_of_time(double max) {
+    FieldInfo time;
+    time.meta = {.unit = "s", .min = 0, .max = max};
+    return schema_of_number(time);
+}
+
 /// `defaults` is a struct with these fields, or null where there is none.
 JsonValue schema_of_fields(const std::vector<FieldInfo>& fields, const void* defaults);
 
@@ -335,11 +342,7 @@ JsonValue schema_of_resources() {
 }
 
 JsonValue schema_of_event() {
-    const auto time = [](std::string_view words) {
-        return described(
-            of_type("number", {member("minimum", number(0)), member("maximum", number(1e6))}),
-            words);
-    };
+    const auto time = [](std::string_view words) { return described(schema_of_time(1e6), words); };
     return closed_object(
         {member("at", time("since the start of the level [s]")),
          member(
@@ -383,11 +386,7 @@ JsonValue schema_of_show() {
         {member("technique", described(of_type("string"), "its id, for --show")),
          member("text", described(of_type("string"), "a sentence: what to look at")),
          member("set", patch()), member("off", patch()),
-         member(
-             "time",
-             described(
-                 of_type("number", {member("minimum", number(0)), member("maximum", number(3600))}),
-                 "when it is seen best [s]")),
+         member("time", described(schema_of_time(3600), "when it is seen best [s]")),
          member(
              "camera", described(
                            any_of({of_type("string"), closed_object(properties_of<ShowCamera>())}),

@@ -55,7 +55,7 @@ Result<LevelShow> read_show(const JsonValue& json, const JsonPlace& place) {
         return unexpected(json, place, "\"set\", \"off\" or both");
     }
     if (const JsonValue* const time = json.find("time")) {
-        show.time = LIMN_TRY(expect_number(*time, 0, kMaxTime, place_in(place, "time")));
+        show.time = LIMN_TRY(expect_number(*time, 0, kMaxTime, place_in(place, "time"), "s"));
     }
     if (const JsonValue* const camera = json.find("camera")) {
         LIMN_TRY(read_camera(*camera, place_in(place, "camera"), show));

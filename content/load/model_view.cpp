@@ -335,7 +335,8 @@ Result<Backdrop> load_backdrop(const std::string& name) {
     if (std::find(kBackdrops.begin(), kBackdrops.end(), name) != kBackdrops.end()) {
         return Backdrop{.name = name};
     }
-    if (!std::filesystem::exists(name)) {
+    const bool is_path = name.find_first_of("./") != std::string::npos;
+    if (!is_path && !std::filesystem::exists(name)) {
         return fail(
             "--backdrop: found \"{}\", expected {} or an image file", name,
             "studio, sky, gray, black");

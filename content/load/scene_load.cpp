@@ -153,9 +153,9 @@ load_scene(World& world, const std::string& scene, const SceneOptions& options) 
     for (const char* const other : {".fbx", ".stl", ".ply", ".dae", ".blend", ".usd", ".usdz"}) {
         if (ends_with_any(scene, {other})) {
             return fail(
-                "{}: found a {} file, expected a level, .gltf, .glb or .obj (Blender and most "
+                "{}: format not supported, expected a level, .gltf, .glb or .obj (Blender and most "
                 "other tools export glTF)",
-                scene, other);
+                scene);
         }
     }
     if (ends_with_any(scene, {".gltf", ".glb", ".obj"})) {

@@ -273,15 +273,20 @@ struct SceneCheck {
 
     void check_cameras() {
         std::vector<std::string> active;
+        Entity last;
         world.query<const Camera>().each([&](Entity entity, const Camera& camera) {
             if (camera.active) {
                 active.push_back(label_of(world, entity));
+                last = entity;
             }
         });
         if (active.size() > 1) {
-            warnings.push_back({fmt::format(
-                "{} active cameras: {}; the first is used, set \"active\": false on the others",
-                active.size(), fmt::join(active, ", "))});
+            warnings.push_back(
+                {fmt::format(
+                     "{} active cameras: {}; the first is used, set \"active\": false on the "
+                     "others",
+                     active.size(), fmt::join(active, ", ")),
+                 last});
         }
     }
 

@@ -141,6 +141,24 @@ Status set_in_material(
         in_quotes(name), did_you_mean(name, names));
 }
 
+/// What to set, where no entity's name begins `path`: the longest of its beginnings that is similar
+/// to a name.
+Error unknown_target(const World& world, std::string_view path, const JsonPlace& place) {
+    std::vector<std::string_view> known = make_name_resolver(world).all("entity");
+    for (const ComponentInfo* const resource : all_resources()) {
+        known.emplace_back(resource->name);
+    }
+    std::string_view name = path;
+    std::string hint;
+    while (hint.empty() && name.find('.') != std::string_view::npos) {
+        name = name.substr(0, name.rfind('.'));
+        hint = did_you_mean(name, known);
+    }
+    return fail(
+        "{}: found {}, expected an entity, a resource or materials before a dot{}", place.file,
+        in_quotes(name), hint);
+}
+
 /// Splits `path` at the last dot that an entity's name comes before: names of glTF nodes may
 /// contain dots.
 Status
@@ -165,14 +183,10 @@ set_in_named(World& world, std::string_view path, const JsonValue& value, const 
         }
         return set_in_entities(world, entities, *info, rest.substr(end + 1), value, place);
     }
-    const std::string_view name = path.substr(0, path.find('.'));
-    std::vector<std::string_view> known = make_name_resolver(world).all("entity");
-    for (const ComponentInfo* const resource : all_resources()) {
-        known.emplace_back(resource->name);
+    if (!find_entities(world, path).empty()) {
+        return fail("{}: found no component, expected ENTITY.COMPONENT.FIELD", place.file);
     }
-    return fail(
-        "{}: found {}, expected an entity, a resource or materials before the first dot{}",
-        place.file, in_quotes(name), did_you_mean(name, known));
+    return unknown_target(world, path, place);
 }
 
 }  // namespace

@@ -300,6 +300,26 @@ TEST_CASE("cli: check draws a level that is right, and warns of what has no effe
     CHECK(run_limn(folder, {"check", "none.level.json"}).exit_code == 1);
 }
 
+TEST_CASE("cli: info lists the joints of a glTF file, which a level can name") {
+    const TemporaryFolder folder;
+    test::write_text(folder.file("arm.gltf"), R"({
+      "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+      "nodes": [{"name": "elbow.L", "children": [1]}, {}],
+      "accessors": [{"componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1],
+                     "bufferView": 0},
+                    {"componentType": 5126, "count": 2, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 8}],
+      "buffers": [{"byteLength": 8, "uri": "data:application/octet-stream;base64,AAAAAAAAgD8="}],
+      "animations": [{"samplers": [{"input": 0, "output": 1}],
+                      "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]})");
+    const ProgramRun run = run_limn(folder, {"info", "arm.gltf"});
+    CAPTURE(run.err);
+    CAPTURE(run.out);
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.find("joints  arm\n") != std::string::npos);
+    CHECK(run.out.find("    elbow.L\n") != std::string::npos);
+}
+
 TEST_CASE("cli: the state hash is the same on one thread, on two, and again") {
     const TemporaryFolder folder;
     const Words words = {"hash", "stress-instances", "--frames", "4", "--threads"};

@@ -58,6 +58,11 @@ TEST_CASE("gltf: each extension that is ignored is named once") {
             R"("scene": 0)",
             R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_sheen", "KHR_lights_punctual"])"),
         "square.glb: the extension \"KHR_materials_sheen\" is ignored");
+    // Also one that the file has, but does not list; not what an application put into extras.
+    check_square(
+        load_edited(R"("scene": 0)", R"("scene": 0, "extensions": {"EXT_other": {}},
+                "extras": {"extensions": {"MY_own": {}}})"),
+        "square.glb: the extension \"EXT_other\" is ignored");
 }
 
 TEST_CASE("gltf: data URIs may be percent-encoded text") {

@@ -73,6 +73,10 @@ TEST_CASE("bad level: what is in the wrong place or by another name is told wher
         {R"({"images": {"i": {"make": "wod"}}})", "expected one of "},
         {R"({"events": [{"time": 1}]})",
          R"(found the key "time", expected "at": seconds since the start of the level)"},
+        {R"({"events": [{"at": "2kg"}]})",
+         R"(events[0].at: found the string "2kg", expected a number 0 .. 1000000 s or a string )"
+         R"(like "45ms")"},
+        {R"({"events": [{"at": "-2s"}]})", R"(found the string "-2s", expected a number 0)"},
         {R"({"events": [{"at": 1, "set": "a.spin"}]})",
          R"(expected {"entity": {"component": {"field": value}}})"},
         {R"({"events": [{"at": 1, "set": {"glow": {"amount": 1}}}]})",
@@ -220,6 +224,16 @@ TEST_CASE(
     CHECK(
         lines_of(R"({"events": [{"at": -1}, {"at": 2}, {"at": "soon"}]})")
         == Lines{"t.level.json:1:20", "t.level.json:1:43"});
+    // What names something that has an error has none itself.
+    CHECK(
+        lines_of(R"({"images": {"oak": {"make": "wod"}},
+"materials": {"m": {"pattern": "oak"}, "n": {"like": "o"}, "o": {"rough": 1}, "p": {"base_color_texture": {"image": "oak"}}},
+"meshes": {"b": {"make": "bxo"}}, "paths": {"w": {"knots": 3}},
+"entities": [{"mesh_instance": {"mesh": "b", "material": "o"}, "path_follower": {"path": "w"}},
+{"mesh_instance": {"mesh": "c"}}]})")
+        == Lines{
+            "t.level.json:1:29", "t.level.json:2:66", "t.level.json:3:60", "t.level.json:3:26",
+            "t.level.json:5:28"});
     CHECK(
         lines_of(R"({"prefabs": {"unused": {"spinn": {}}},
 "entities": [{"autofocus": {"target": "nobody"}}],

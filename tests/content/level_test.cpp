@@ -450,7 +450,7 @@ TEST_CASE("level: events name entities, resources and what they spawn") {
         "entities": [{"name": "lamp", "point_light": {}}, {"name": "target"}],
         "prefabs": {"stone": {"orbit_camera": {"target": "target"}, "children": [{"name": "chip"}]}},
         "events": [
-            {"at": 0.5, "every": 0.25, "times": 4, "set": {"lamp": {"point_light": {"attenuation": {"linear": 2}}}},
+            {"at": "500ms", "every": 0.25, "times": 4, "set": {"lamp": {"point_light": {"attenuation": {"linear": 2}}}},
              "set_resources": {"exposure": {"ev": -1}},
              "impulse": {"lamp": {"transform": {"position": [0, -1, 0]}, "point_light": {"intensity": -3}}},
              "spawn": [{"prefab": "stone"}], "destroy": ["target"]},
@@ -642,6 +642,24 @@ TEST_CASE("set: what cannot be set is named, and nothing changes") {
     CHECK(set_value(world, "lamp.point_light.intensty", "1")
               .error()
               .message.ends_with("(did you mean intensity?)"));
+    (void)world.create(Name{"Bone.001"}, PointLight{});
+    const auto error_of = [&](const char* path) {
+        const Status status = set_value(world, path, "1");
+        REQUIRE_FALSE(status.ok());
+        return status.error().message;
+    };
+    CHECK(
+        error_of("Bone.002.point_light.intensity")
+        == "--set Bone.002.point_light.intensity: found \"Bone.002\", expected an entity, a "
+           "resource "
+           "or materials before a dot (did you mean Bone.001?)");
+    CHECK(
+        error_of("house.point_light.intensity")
+        == "--set house.point_light.intensity: found \"house\", expected an entity, a resource or "
+           "materials before a dot");
+    CHECK(
+        error_of("Bone.001")
+        == "--set Bone.001: found no component, expected ENTITY.COMPONENT.FIELD");
 }
 
 TEST_CASE("level schema: it is JSON and knows every component with its ranges") {
@@ -677,6 +695,10 @@ TEST_CASE("level schema: it is JSON and knows every component with its ranges") 
     CHECK(schema["$defs"]["name of a color"]["enum"].items.size() == 148);
     const JsonValue& rotation = schema["$defs"]["transform"]["properties"]["rotation"];
     CHECK(rotation["items"]["anyOf"].items[1]["pattern"].text == "^-?[0-9.]+ ?(deg|rad)$");
+    const JsonValue& at = schema["$defs"]["event"]["properties"]["at"]["anyOf"];
+    REQUIRE(at.items.size() == 2);
+    CHECK(at.items[0]["maximum"].number == 1e6);
+    CHECK(at.items[1]["pattern"].text == "^-?[0-9.]+ ?(ms|min|s)$");
     CHECK(schema["$defs"]["node"]["properties"].find("spin") != nullptr);
     CHECK(schema["$defs"]["node"]["properties"].find("world_transform") == nullptr);
     for (const char* part : {"event", "node", "repeat of a node"}) {

@@ -218,6 +218,9 @@ TEST_CASE("model view: an unknown backdrop names those that exist") {
     CHECK(
         none.error().message
         == "--backdrop: found \"stduio\", expected studio, sky, gray, black or an image file");
+    const Result<Backdrop> missing = load_backdrop("no/such.exr");
+    REQUIRE_FALSE(missing.ok());
+    CHECK(missing.error().message == "no/such.exr: no such file");
     const test::TemporaryFolder folder;
     std::ofstream(folder.file("a.exr")) << "not an image";
     CHECK_FALSE(load_backdrop(folder.file("a.exr")).ok());
@@ -229,7 +232,8 @@ TEST_CASE("model view: formats that are not read are named, with what is") {
         const Result<LoadedScene> scene = load_scene(world, file);
         REQUIRE_FALSE(scene.ok());
         CHECK(
-            scene.error().message.find("expected a level, .gltf, .glb or .obj")
+            scene.error().message.find(
+                "format not supported, expected a level, .gltf, .glb or .obj")
             != std::string::npos);
     }
     const Result<LoadedScene> level =

@@ -281,6 +281,25 @@ TEST_CASE("scene warnings: a line of a level names the place in its file") {
             path + ":6:5: events[0]: entity \"a\" has no spin; the event does nothing"});
 }
 
+TEST_CASE("scene warnings: of several active cameras, with the place of the last") {
+    register_all_components();
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("t.level.json");
+    std::ofstream(path) << R"({"entities": [
+    {"name": "a", "camera": {}}, {"name": "b", "camera": {"active": false}},
+    {"name": "c", "camera": {}}]})";
+    const std::vector<std::string> lines = test::messages_of([&] {
+        World world;
+        CHECK(load_scene(world, path).ok());
+    });
+    CHECK(
+        lines
+        == Warnings{
+            path
+            + ":3:5: 2 active cameras: entity \"a\", entity \"c\"; the first is used, set "
+              "\"active\": false on the others"});
+}
+
 TEST_CASE("scene warnings: state that systems keep, written by hand") {
     register_all_components();
     const std::vector<std::string> logged = test::messages_of([] {
