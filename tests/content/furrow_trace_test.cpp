@@ -92,7 +92,7 @@ TEST_CASE("furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.
     }
 }
 
-TEST_CASE("furrow functions: no style makes furrows stand still or bands of negative width") {
+TEST_CASE("furrow functions: no style makes furrows stand still or turn back") {
     FurrowStyle style;
     style.functions.length = {0, 0};
     style.functions.density = {1, -6};
@@ -101,7 +101,8 @@ TEST_CASE("furrow functions: no style makes furrows stand still or bands of nega
         CHECK(furrow_shape(style, x).density >= 0);
     }
     style.literal_turn = true;
-    style.functions.angle = {1.2f, 0};
+    style.functions.angle = {1.2f, 1.2f};
+    CHECK(furrow_shape(style, 2).angle == kMaxFurrowTurn);
     const FurrowMap map = test::make_flat_furrow_map({40, 40}, {2, 0});
     for (const std::uint32_t cell : trace_all(map, style).cells) {
         CHECK((cell & kFurrowBand) != 0);
