@@ -296,6 +296,17 @@ TEST_CASE("furrow trace: furrows pass over the border of an image that repeats")
     CHECK(trace_half(map, make_straight_style(), {50.5f, 20.5f}).segments.size() == 3);
 }
 
+TEST_CASE("furrow trace: a wide furrow owns the pixels that it covers") {
+    const FurrowMap map = test::make_flat_furrow_map({200, 40}, {2, 0});
+    FurrowStyle style = make_straight_style();
+    style.scale = 2;  // 4 px wide
+    const Traced drawing = trace_half(map, style, {20.5f, 20.3f});
+    for (std::size_t row = 0; row < 40; ++row) {
+        const std::uint32_t owner = drawing.cells[row * 200 + 60] & ~kFurrowBand;
+        CHECK(owner == (row >= 18 && row <= 21 ? 1u : 0u));
+    }
+}
+
 TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
     for (const float x : {0.3f, 0.7f, 1.0f, 1.6f}) {
         const FurrowMap map = test::make_flat_furrow_map({200, 40}, {x, 0});
