@@ -212,7 +212,7 @@ FurrowShape furrow_shape(const FurrowStyle& style, float magnitude) {
     const auto line = [x](const Vec2& coefficients) { return coefficients.x + coefficients.y * x; };
     const float limit = line(f.limit);
     FurrowShape shape;
-    shape.angle = line(f.angle);
+    shape.angle = std::clamp(line(f.angle), -kMaxFurrowTurn, kMaxFurrowTurn);
     shape.length = std::max(style.scale * line(f.length), kMinFurrowStep);
     shape.density = std::max(style.scale * line(f.density), 0.0f);
     shape.width = style.scale * (f.width * x);

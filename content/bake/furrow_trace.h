@@ -29,7 +29,7 @@ namespace limn {
 
 /// What the six functions say at one point, in pixels and radians.
 struct FurrowShape {
-    float angle = 0;
+    float angle = 0;    ///< -kMaxFurrowTurn .. kMaxFurrowTurn
     float length = 0;   ///< of a segment, at least kMinFurrowStep
     float density = 0;  ///< width of the band
     float width = 0;
@@ -37,6 +37,7 @@ struct FurrowShape {
     int limit = 0;    ///< segments that follow
 };
 
+inline constexpr float kMaxFurrowTurn = 1.2f;  // [rad]; as far as repeatable_cos_sin reaches
 inline constexpr float kMinFurrowStep = 0.5f;  // [px]: furrows do not stay where they are
 
 /// Of a field with this magnitude, which is clamped to 0 .. 2.

@@ -50,6 +50,7 @@ const int kTriangleFloats = 27;
 const float kStill = 1e-4;
 const float kFar = 1e30;
 const float kMinStep = 0.5;
+const float kMaxTurn = 1.2;
 
 shared uint first_hit;
 shared uint found_start;
@@ -118,7 +119,7 @@ FurrowShape furrow_shape(float magnitude) {
     precise float width = scale * (width_depth.x * x);
     precise float depth = width_depth.y * (x * x);
     return FurrowShape(
-        line_at(angle_length.xy, x), max(length_px, kMinStep), max(density, 0.0), width, depth, limit > 0.0 ? int(limit) : 0);
+        clamp(line_at(angle_length.xy, x), -kMaxTurn, kMaxTurn), max(length_px, kMinStep), max(density, 0.0), width, depth, limit > 0.0 ? int(limit) : 0);
 }
 
 // Distance along a segment to its first line between pixels across an axis, and between lines.

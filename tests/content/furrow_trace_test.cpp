@@ -92,7 +92,7 @@ TEST_CASE("furrow functions: they are those of Table 3.1 and Equations 5.1 to 5.
     }
 }
 
-TEST_CASE("furrow functions: no style makes furrows stand still or bands of negative width") {
+TEST_CASE("furrow functions: no style makes furrows stand still or turn back") {
     FurrowStyle style;
     style.functions.length = {0, 0};
     style.functions.density = {1, -6};
@@ -101,7 +101,8 @@ TEST_CASE("furrow functions: no style makes furrows stand still or bands of nega
         CHECK(furrow_shape(style, x).density >= 0);
     }
     style.literal_turn = true;
-    style.functions.angle = {1.2f, 0};
+    style.functions.angle = {1.2f, 1.2f};
+    CHECK(furrow_shape(style, 2).angle == kMaxFurrowTurn);
     const FurrowMap map = test::make_flat_furrow_map({40, 40}, {2, 0});
     for (const std::uint32_t cell : trace_all(map, style).cells) {
         CHECK((cell & kFurrowBand) != 0);
@@ -293,6 +294,17 @@ TEST_CASE("furrow trace: furrows pass over the border of an image that repeats")
     CHECK(drawing.cells[21 * 64 + 0] != 0);  // beyond the right border
     map.wrap_s = false;
     CHECK(trace_half(map, make_straight_style(), {50.5f, 20.5f}).segments.size() == 3);
+}
+
+TEST_CASE("furrow trace: a wide furrow owns the pixels that it covers") {
+    const FurrowMap map = test::make_flat_furrow_map({200, 40}, {2, 0});
+    FurrowStyle style = make_straight_style();
+    style.scale = 2;  // 4 px wide
+    const Traced drawing = trace_half(map, style, {20.5f, 20.3f});
+    for (std::size_t row = 0; row < 40; ++row) {
+        const std::uint32_t owner = drawing.cells[row * 200 + 60] & ~kFurrowBand;
+        CHECK(owner == (row >= 18 && row <= 21 ? 1u : 0u));
+    }
 }
 
 TEST_CASE("furrow trace: a line of width w covers w of each pixel across it") {
