@@ -93,8 +93,10 @@ struct MovingParticle : Scene {
 
 TEST_CASE_FIXTURE(
     MovingParticle, "particle velocity: a particle moves as its projection does, to 0.05 px") {
-    for (const auto& [alpha, before] :
+    for (const auto& frame :
          {std::pair(1.0f, 0.0f), std::pair(0.7f, 0.3f), std::pair(0.2f, -0.6f)}) {
+        const float alpha = frame.first;
+        const float before = frame.second;
         CAPTURE(alpha);
         const double back = (1.0 - static_cast<double>(alpha)) * static_cast<double>(kDt);
         const double earlier = (1.0 - static_cast<double>(before)) * static_cast<double>(kDt);
@@ -118,8 +120,10 @@ TEST_CASE_FIXTURE(
     const auto drawn = [&](double alpha) {
         return alpha > 0 ? where - velocity * ((1 - alpha) * dt) : begin + old * (alpha * dt);
     };
-    for (const auto& [alpha, before] :
+    for (const auto& frame :
          {std::pair(1.0f, 0.0f), std::pair(0.7f, 0.3f), std::pair(0.2f, -0.6f)}) {
+        const float alpha = frame.first;
+        const float before = frame.second;
         CAPTURE(alpha);
         CHECK(
             error(
