@@ -128,13 +128,13 @@ move_particles_vector(const ParticleBlock& b, const ParticleStep& step, std::siz
     });
 }
 
-/// -1 .. 1 of a lattice point, from the products of its coordinates with the multipliers.
+/// -2^23 .. 2^23 of a lattice point, from the products of its coordinates with the multipliers.
+/// Sums of these round as those of values scaled to -1 .. 1 do: the scale is a power of two.
 HWY_INLINE V lattice_value(U x, U y, U z) {
-    U h = hn::Xor(hn::Xor(x, y), z);
+    U h = hn::Xor3(x, y, z);
     h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(du, particles::kHashMix));
-    h = hn::Xor(h, hn::ShiftRight<13>(h));
-    const V unit = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(h)));
-    return hn::Sub(hn::Mul(unit, hn::Set(d, 0x1p-23f)), hn::Set(d, 1.0f));
+    h = hn::Xor3(h, hn::ShiftRight<13>(h), hn::Set(du, 0x80000000u));
+    return hn::ConvertTo(d, hn::ShiftRight<8>(hn::BitCast(di, h)));
 }
 
 /// Quintic weight of the upper lattice point, and its slope.
@@ -193,10 +193,11 @@ HWY_INLINE Gradient noise_gradient(V px, V py, V pz, std::uint32_t seed) {
     const V y1w = blend(x01, x11, fy.weight);
     const V dx0 = blend(hn::Sub(v100, v000), hn::Sub(v110, v010), fy.weight);
     const V dx1 = blend(hn::Sub(v101, v001), hn::Sub(v111, v011), fy.weight);
+    const V unit = hn::Set(d, 0x1p-23f);
     return {
-        hn::Mul(blend(dx0, dx1, fz.weight), fx.slope),
-        hn::Mul(blend(hn::Sub(x10, x00), hn::Sub(x11, x01), fz.weight), fy.slope),
-        hn::Mul(hn::Sub(y1w, y0w), fz.slope)};
+        hn::Mul(hn::Mul(blend(dx0, dx1, fz.weight), unit), fx.slope),
+        hn::Mul(hn::Mul(blend(hn::Sub(x10, x00), hn::Sub(x11, x01), fz.weight), unit), fy.slope),
+        hn::Mul(hn::Mul(hn::Sub(y1w, y0w), unit), fz.slope)};
 }
 
 HWY_INLINE void add_to(float* HWY_RESTRICT v, V push) {
